@@ -1,0 +1,256 @@
+"""Write examples/shi_bei_jiu.mid: the traditional tune "Shi Bei Jiu", phrased for a yehu.
+
+    python scripts/make_shi_bei_jiu.py [OUT]
+
+The notes were read from a performance, one every 0.125 s. Bowing, dynamics, slides and
+vibrato are added here, all `By ear:` and all from fixed rules: each run writes the same bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from mido import Message, MetaMessage, MidiFile, MidiTrack, bpm2tempo
+
+OUT = Path(__file__).resolve().parent.parent / "examples" / "shi_bei_jiu.mid"
+
+# One MIDI note a slot, one line a bar of 2/4, one paragraph a phrase; 0 prolongs the note
+# before. The yehu's open strings are 65 (F4) and 72 (C5); the leaps between 69 and 76
+# are one finger position on both strings, and 65 between high notes is the open string.
+PHRASES = """
+65 67 65 74 65 67 65 67
+72 74 72 69 72 74 72 77
+
+74 77 74 72 69 67 69 72
+67 69 67 65 67 69 67 69
+
+72 74 72 69 72 74 72 69
+67 70 69 72 67 69 67 69
+
+76 65 74 76 74 76 74 69
+67 69 67 69 76 69 76 74
+
+72 74 72 69 72 74 72 74
+72 69 72 74 65 67 69 69
+
+67 69 65 67 69 67 69 72
+67 65 67 69 72 69 72 76
+74 76 74 72 74 76 74 77
+
+72 74 72 69 72 74 72 69
+67 70 69 72 67 69 67 69
+
+76  0 74 76 74 76 74 69
+67 69 67 69 76 69 76 74
+
+72 74 72 69 72 74 72 74
+76 65 74 69 76 69 76 74
+
+72 74 72 69 72 74 72 74
+76 65 74 69 76 69 76 74
+
+72 69 72 74 65 67 69 76
+74 76 74 72 70 72 70 69
+
+72 69 72 76 74 72 74 77
+72 74 72 69 72 74 72 67
+"""
+
+QUARTER = 480  # ticks
+SLOT = QUARTER // 4  # a sixteenth: 0.125 s at 120 bpm
+BEAT, BAR = 4, 8  # slots
+FINAL = 13  # slots of the last note: its own, and a bar and a half more
+OVERLAP = 6  # ticks by which a slurred note reaches into the next
+GAP = 14  # ticks of air between two bow strokes
+BREATH = 30  # ticks of air after a phrase
+LOWEST = 65  # the open string, which no finger slides into
+CROSSING = 5  # semitones: from here on a leap takes a new bow stroke, mostly on the other string
+
+BEND_RANGE_CENTS = 200
+VIBRATO_HZ, VIBRATO_CENTS = 5.5, 15.0
+
+# Slots from the end of the slotted tune, and the speed from there on (bpm).
+RITARDANDO = ((8, 116), (6, 112), (4, 106), (2, 99), (1, 92))
+
+
+@dataclass
+class Note:
+    """One note: where it starts, how long it is (slots), and how it is bowed."""
+
+    pitch: int
+    slot: int
+    slots: int
+    arch: float  # 0 at the ends of its phrase, 1 in the middle
+    opens_phrase: bool
+    closes_phrase: bool
+    slurred: bool = False  # into the next note
+
+    @property
+    def start(self) -> int:
+        return self.slot * SLOT
+
+    @property
+    def end(self) -> int:
+        air = -OVERLAP if self.slurred else BREATH if self.closes_phrase else GAP
+        return self.start + self.slots * SLOT - air
+
+    @property
+    def shaped_end(self) -> int:
+        """Where its own bends and pressure stop: before the next note, slurred or not."""
+        return min(self.end, self.start + self.slots * SLOT)
+
+    @property
+    def held(self) -> bool:
+        return self.slots > 1
+
+    @property
+    def velocity(self) -> int:
+        accent = 13 if self.slot % BAR == 0 else 7 if self.slot % BEAT == 0 else 0
+        if self.slot % 2:
+            accent = -5
+        return min(max(round(64 + 24 * self.arch + accent), 50), 105)
+
+
+def read_phrases() -> list[list[int]]:
+    """The pitches of each phrase, a number a slot."""
+    return [[int(pitch) for pitch in phrase.split()] for phrase in PHRASES.split("\n\n")]
+
+
+def make_notes() -> list[Note]:
+    """The tune as notes; equal neighbours and unclear slots (0) make longer ones."""
+    notes: list[Note] = []
+    slot = 0
+    for phrase in read_phrases():
+        first = len(notes)
+        for at, pitch in enumerate(phrase):
+            if at and pitch in (0, notes[-1].pitch):
+                notes[-1].slots += 1
+            else:
+                arch = math.sin(math.pi * (at + 0.5) / len(phrase))
+                notes.append(Note(pitch, slot + at, 1, arch, at == 0, False))
+        notes[-1].closes_phrase = True
+        slur(notes[first:])
+        slot += len(phrase)
+    notes[-1].slots = FINAL
+    notes[-1].arch = 0.75
+    return notes
+
+
+def slur(phrase: list[Note]) -> None:
+    """Two notes a bow; four in every other bar, where the beat lies within a fourth."""
+    for note, following in pairwise(phrase):
+        beat = [other for other in phrase if other.slot // BEAT == note.slot // BEAT]
+        pitches = [other.pitch for other in beat]
+        smooth = max(pitches) - min(pitches) <= CROSSING and note.slot // BAR % 2 == 1
+        together = BEAT if smooth else BEAT // 2
+        note.slurred = (
+            note.slot // together == following.slot // together
+            and abs(following.pitch - note.pitch) < CROSSING
+            and not following.held  # a long note has its own stroke, for its slide
+        )
+
+
+def tempo_changes(slots: int) -> list[tuple[int, int]]:
+    """Ticks and microseconds a quarter."""
+    slowing = [((slots - left) * SLOT, bpm2tempo(bpm)) for left, bpm in RITARDANDO]
+    return [(0, bpm2tempo(120)), *slowing]
+
+
+def bend(cents: float) -> Message:
+    return Message("pitchwheel", pitch=round(cents / BEND_RANGE_CENTS * 8192))
+
+
+def bends(note: Note, tempos: list[tuple[int, int]]) -> Iterator[tuple[int, Message]]:
+    """A slide into long and phrase-opening notes, vibrato on the long ones, then straight."""
+    depth, slide = (50.0, 84) if note.held else (35.0, 60)  # cents, ticks
+    for tick in range(0, slide, 12):
+        yield note.start + tick, bend(-depth * (1.0 - tick / slide) ** 2)
+    yield note.start + slide, bend(0.0)
+    if not note.held:
+        return
+    seconds_per_tick = [tempo for tick, tempo in tempos if tick <= note.start][-1] / QUARTER / 1e6
+    for tick in range(slide + 12, note.shaped_end - note.start, 12):
+        widening = min((tick - slide) / QUARTER * 2.0, 1.0)
+        turn = math.sin(2.0 * math.pi * VIBRATO_HZ * (tick - slide) * seconds_per_tick)
+        yield note.start + tick, bend(VIBRATO_CENTS * widening * turn)
+    yield note.shaped_end, bend(0.0)
+
+
+def swell(note: Note) -> Iterator[tuple[int, Message]]:
+    """Aftertouch that leans into a held note and lets go before its end."""
+    length = note.shaped_end - note.start
+    for tick in range(0, length, 24):
+        yield (
+            note.start + tick,
+            Message("aftertouch", value=round(70 * math.sin(math.pi * tick / length))),
+        )
+    yield note.shaped_end, Message("aftertouch", value=0)
+
+
+def bow_speed(notes: list[Note]) -> Iterator[tuple[int, Message]]:
+    """CC 1 rises and falls with each phrase, and dies away on the last note."""
+    for note in notes:
+        yield note.start, Message("control_change", control=1, value=round(56 + 40 * note.arch))
+    last = notes[-1]
+    for slot in range(1, last.slots):
+        value = round((56 + 40 * last.arch) * (1.0 - 0.6 * (slot / last.slots) ** 2))
+        yield last.start + slot * SLOT, Message("control_change", control=1, value=value)
+
+
+def setup() -> Iterator[tuple[int, Message]]:
+    """A bend range of two semitones (RPN 0), then the null RPN."""
+    for control, value in ((101, 0), (100, 0), (6, 2), (38, 0), (101, 127), (100, 127)):
+        yield 0, Message("control_change", control=control, value=value)
+    yield 0, bend(0.0)
+
+
+def performance(notes: list[Note], tempos: list[tuple[int, int]]) -> list[tuple[int, Message]]:
+    """All messages with their ticks; at one tick, controls come before the note they shape."""
+    events = [*setup(), *bow_speed(notes)]
+    for note in notes:
+        if note.held or (note.opens_phrase and note.pitch > LOWEST):
+            events += bends(note, tempos)
+        if note.held:
+            events += swell(note)
+    for note in notes:
+        events.append((note.start, Message("note_on", note=note.pitch, velocity=note.velocity)))
+        events.append((note.end, Message("note_off", note=note.pitch, velocity=64)))
+    return sorted(events, key=lambda event: event[0])
+
+
+def track(
+    name: str, events: list[tuple[int, Message]] | list[tuple[int, MetaMessage]]
+) -> MidiTrack:
+    """A track from messages at absolute ticks."""
+    written = MidiTrack([MetaMessage("track_name", name=name)])
+    now = 0
+    for tick, message in events:
+        written.append(message.copy(time=tick - now))
+        now = tick
+    return written
+
+
+def make_file() -> MidiFile:
+    notes = make_notes()
+    tempos = tempo_changes(slots=sum(map(len, read_phrases())))
+    conductor = [
+        (0, MetaMessage("text", text="Ten cups of wine, traditional")),
+        (0, MetaMessage("time_signature", numerator=2, denominator=4)),
+        (0, MetaMessage("key_signature", key="F")),
+        *((tick, MetaMessage("set_tempo", tempo=tempo)) for tick, tempo in tempos),
+    ]
+    file = MidiFile(type=1, ticks_per_beat=QUARTER)
+    file.tracks.append(track("Shi Bei Jiu", conductor))
+    file.tracks.append(track("Yehu", performance(notes, tempos)))
+    return file
+
+
+if __name__ == "__main__":
+    words = argparse.ArgumentParser(description="Write the tune Shi Bei Jiu as a MIDI file.")
+    words.add_argument("out", nargs="?", default=OUT, help="default: examples/shi_bei_jiu.mid")
+    make_file().save(words.parse_args().out)

@@ -1,0 +1,1 @@
+"""The instrument as a running thing: compiled gestures, the model, the output."""

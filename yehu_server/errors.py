@@ -1,0 +1,31 @@
+"""The errors a user can meet; each message is one clear line.
+
+Everything the package raises on purpose derives from :class:`YehuError`, so that
+the command line can print the message and leave with exit code 2.
+"""
+
+from __future__ import annotations
+
+
+class YehuError(Exception):
+    """Any foreseen failure: bad input, a missing device, a full disk."""
+
+
+class ParameterError(YehuError):
+    """An unknown parameter, a wrong type, a value out of bounds or not finite."""
+
+
+class MappingError(YehuError):
+    """A mapping file that cannot be read or does not make sense."""
+
+
+class ScoreError(YehuError):
+    """A performance file (MIDI, gesture) that cannot be read."""
+
+
+class DeviceError(YehuError):
+    """An audio or MIDI device that is missing or refuses."""
+
+
+class OutputError(YehuError):
+    """A result that cannot be written where it should go."""

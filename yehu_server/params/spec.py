@@ -1,0 +1,65 @@
+"""What one parameter is; values live elsewhere."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from yehu_server.errors import ParameterError
+
+
+class Curve(Enum):
+    """How 0..1 spreads over a range."""
+
+    LIN = "linear"
+    EXP = "exp"  # equal ratios; the range must be above zero
+    S = "s"  # gentle at both ends
+
+    def bend(self, unit: float, lo: float, hi: float) -> float:
+        """Map `unit` in 0..1 to `lo`..`hi`; hi below lo inverts."""
+        if self is Curve.EXP:
+            return float(lo * (hi / lo) ** unit)
+        if self is Curve.S:
+            unit = unit * unit * (3.0 - 2.0 * unit)
+        return lo + (hi - lo) * unit
+
+
+class Place(Enum):
+    """Who holds the value: the compiled engine, or the player who decides in Python."""
+
+    ENGINE = "engine"
+    PLAYER = "player"
+
+
+@dataclass(frozen=True)
+class Param:
+    """One row of the table.
+
+    `lo`, `hi`, `default` are in `unit`; `smooth_ms` is the ramp of a write that names none.
+    `owned` marks what the player moves while notes sound (decisions/0006).
+    """
+
+    address: str
+    symbol: str
+    unit: str
+    lo: float
+    hi: float
+    default: float
+    doc: str
+    place: Place = Place.PLAYER
+    curve: Curve = Curve.LIN
+    smooth_ms: float = 5.0
+    owned: bool = False
+
+    def accept(self, value: float) -> float:
+        """Return `value` clamped to the range. Errors: ParameterError unless finite."""
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ParameterError(f"{self.address}: expected a number, got {value!r}")
+        if not math.isfinite(value):
+            raise ParameterError(f"{self.address}: {value} is not finite")
+        return min(max(float(value), self.lo), self.hi)
+
+    def from_unit(self, unit: float) -> float:
+        """Map 0..1 over the whole range, along the parameter's curve."""
+        return self.curve.bend(min(max(unit, 0.0), 1.0), self.lo, self.hi)

@@ -1,0 +1,67 @@
+"""The bow: which string it is on, its hair, and the velocity the friction law sees.
+
+[Yehu] eqs. (47)-(50) and (60). Differs: C_h carries 4 k^2; s and the factor of f_b are
+read from the strings as they stand after the bridge has closed, so that they also hold
+where the bow is within reach of the bridge or of a finger.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.jit import compiled
+from yehu_server.physics.layout import BOW, STRINGS
+from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.stencil import read
+
+Array = Any
+
+
+def prepare_bow(model: np.void, quantities: Quantities) -> None:
+    """Write friction and hair coefficients into `model`. Source: [Yehu] eq. (60)."""
+    k, bow = model["k"], quantities.bow
+    for name in ("epsilon_0", "epsilon_1", "v_s", "mu_C", "mu_S", "xi", "lift_force"):
+        model[name] = getattr(bow, name)
+    M_h, K_h, R_h = bow.M_h, bow.K_h, bow.R_h
+    model["M_h"], model["K_h"], model["R_h"] = M_h, K_h, R_h
+    Lambda = 4.0 * M_h + k**2 * K_h + 2.0 * k * R_h
+    model["A_h"] = (8.0 * M_h - 2.0 * k**2 * K_h) / Lambda
+    model["B_h"] = (-4.0 * M_h - k**2 * K_h + 2.0 * k * R_h) / Lambda
+    model["C_h"] = 4.0 * k**2 / Lambda
+
+
+@compiled
+def choose_string(model: Any, s: Any, F_N: float) -> tuple[int, bool]:
+    """Return the string under the bow, by the sign of the force, and whether it is bowed.
+
+    Bristles that let go drop what they stored; the energy is booked as a loss.
+    """
+    bowed = abs(F_N) >= model.lift_force
+    string = s.string[BOW]
+    if bowed:
+        string = 0 if F_N > 0.0 else 1
+    for i in range(STRINGS):
+        if s.z[i] != 0.0 and not (bowed and i == string):
+            s.dropped_z += 0.5 * model.epsilon_0 * s.z[i] * s.z[i]
+            s.z[i] = 0.0
+    return string, bowed
+
+
+@compiled
+def advance_hair(model: Any, zeta_next: Array, zeta: Array, zeta_prev: Array) -> None:
+    """Advance the hair of both strings, free of friction: eq. (60)."""
+    for i in range(STRINGS):
+        zeta_next[i] = model.A_h * zeta[i] + model.B_h * zeta_prev[i]
+
+
+@compiled
+def hair_velocity(
+    model: Any, s: Any, u_next: Array, u_prev: Array, zeta_next: Array, zeta_prev: Array
+) -> float:
+    """I_b delta_t. u + delta_t. zeta at the bow, as `u_next` and `zeta_next` stand (m/s)."""
+    i = s.string[BOW]
+    first, weights = s.first[BOW], s.weights[BOW]
+    travel = read(u_next[i], first, weights) - read(u_prev[i], first, weights)
+    return float((travel + zeta_next[i] - zeta_prev[i]) / (2.0 * model.k))

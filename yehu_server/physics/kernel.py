@@ -1,0 +1,233 @@
+"""The model's time loop: one step of the scheme after another.
+
+[Yehu] section 3.7, in the order that lets contacts share nodes: strings and modes move
+freely, the bridge closes over them, the bow draws, the fingers press.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.errors import ParameterError
+from yehu_server.jit import compiled
+from yehu_server.physics.bow import advance_hair, choose_string, hair_velocity, prepare_bow
+from yehu_server.physics.bridge import (
+    advance_bridge,
+    close_bridge,
+    finish_bridge,
+    prepare_bridge,
+)
+from yehu_server.physics.contacts import place_contacts, push
+from yehu_server.physics.energy import book
+from yehu_server.physics.finger import (
+    advance_finger,
+    finish_fingers,
+    meet_fingers,
+    prepare_fingers,
+    solve_apart,
+    solve_jointly,
+    take_forces,
+)
+from yehu_server.physics.friction import solve_friction
+from yehu_server.physics.layout import (
+    BOW,
+    BRIDGE_FORCE,
+    BRIDGE_FORCE_1,
+    BRIDGE_FORCE_2,
+    BRIDGE_VELOCITY,
+    CONTROLS_PER_FINGER,
+    F_HAMMER,
+    F_N,
+    FINGER_CONTROLS,
+    FINGER_PROBES,
+    FRICTION_FORCE,
+    ITERATIONS,
+    LEVELS,
+    MAX_FINGERS,
+    MAX_MODES,
+    MODEL,
+    PRESSURE,
+    PROBES_PER_FINGER,
+    RELATIVE_VELOCITY,
+    STATE,
+    STRINGS,
+    V_B,
+    X_B,
+)
+from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.radiation import prepare_radiation, radiate
+from yehu_server.physics.string import advance_strings, prepare_strings, support
+
+Array = Any
+
+LOST_FORCE = 1e6  # N; no bridge force of a sound state comes near
+
+
+def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
+    """Derive every coefficient of the model for one sample rate.
+
+    Returns: ndarray [shape=(1,), dtype=layout.MODEL].
+    Errors: ParameterError where the quantities make no stable model at this rate.
+    """
+    if not 1 <= fingers <= MAX_FINGERS:
+        raise ParameterError(f"fingers: 1 to {MAX_FINGERS}, not {fingers}")
+    model = np.zeros(1, MODEL)
+    record = model[0]
+    record["k"] = 1.0 / rate
+    record["fingers"] = fingers
+    prepare_strings(record, quantities)
+    prepare_bridge(record, quantities)
+    prepare_bow(record, quantities)
+    prepare_fingers(record, quantities)
+    prepare_radiation(record, quantities.body)
+    return model
+
+
+def at_rest(model: Any) -> Any:
+    """An instrument at rest, its fingers at their rest height.
+
+    Returns: ndarray [shape=(1,), dtype=layout.STATE].
+    """
+    state = np.zeros(1, STATE)
+    state["U"][:] = model["rest_height"][0]
+    return state
+
+
+@compiled
+def come_to_rest(model: Any, s: Any) -> None:
+    """Put a state back to rest in place, keeping its counters. Real time: safe."""
+    s.level = 0
+    s.u[:], s.q[:], s.zeta[:], s.z[:] = 0.0, 0.0, 0.0, 0.0
+    s.U[:], s.Psi[:] = model.rest_height, 0.0
+    s.v_r, s.f_b, s.stored = 0.0, 0.0, 0.0
+    s.s_1[:], s.s_2[:], s.history[:] = 0.0, 0.0, 0.0
+    s.placed = 0
+    s.x[:] = 0.0
+
+
+@compiled
+def advance(model: Array, state: Array, controls: Array, probes: Array, ledger: Array) -> None:
+    """Run the model over one row of controls a sample.
+
+    Parameters
+    ----------
+    model, state : ndarray [shape=(1,)]
+        From `prepare` and `at_rest`; `state` is changed.
+    controls : ndarray [shape=(frames, control_columns)]
+        F_N (N, signed), v_b (m/s), x_b (m), hammer force (N), then x_f (m) and press
+        (N, positive) of each finger. Finite: a caller checks what comes from outside.
+    probes : ndarray [shape=(frames, probe_columns)]
+        Written: columns as named in ``layout``.
+    ledger : ndarray [shape=(frames, len(LEDGER))] or [shape=(0, 0)]
+        Written where it has rows.
+
+    A state that is lost (not finite) comes back at rest at the next sample, and is
+    counted in ``state.lost``; the sample that lost it reads -1 iterations, and zeros.
+
+    Real time: safe; no allocation, no exception.
+    Source: [Yehu] section 3.7.
+    """
+    m, s = model[0], state[0]
+    for n in range(controls.shape[0]):
+        row = ledger[n] if n < ledger.shape[0] else ledger[:0].reshape(-1)
+        step(m, s, controls[n], probes[n], row)
+
+
+@compiled
+def step(m: Any, s: Any, control: Array, probe: Array, row: Array) -> None:
+    """Advance the whole instrument by one sample. See `advance`."""
+    now = s.level
+    next_, prev = (now + 1) % LEVELS, (now + 2) % LEVELS
+    u_next, u, u_prev = s.u[next_], s.u[now], s.u[prev]
+    k, v_b = m.k, control[V_B]
+    s.dropped_z, s.dropped_Psi = 0.0, 0.0
+
+    string, bowed = choose_string(m, s, control[F_N])
+    finger_controls = control[FINGER_CONTROLS:].reshape((m.fingers, CONTROLS_PER_FINGER))
+    place_contacts(m, s, control[X_B], string, finger_controls)
+
+    # Strings and modes free of contacts, eq. (58), then tied together, eqs. (43)-(45).
+    advance_strings(m, u_next, u, u_prev)
+    Q = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
+    close_bridge(m, u_next, Q, s.f_c)
+
+    # The bow, eqs. (46)-(53).
+    advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
+    free = hair_velocity(m, s, u_next, u_prev, s.zeta[next_], s.zeta[prev]) - v_b
+    compliance = (s.G[BOW, BOW] + m.C_h) / (2.0 * k)
+    f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
+    if bowed:
+        f_b, z_bar, v_r, iterations, converged = solve_friction(
+            free, compliance, s.z[string], abs(control[F_N]), s.v_r, m, string
+        )
+        push(m, s, u_next, BOW, f_b)
+
+    # The fingers, eqs. (33)-(40).
+    for j in range(m.fingers):
+        s.U[next_, j] = advance_finger(m, s, j, finger_controls[j, 1], now, prev)
+    if meet_fingers(m, s, u_next, u, u_prev, next_, now, prev) > 0:
+        if s.overlapping == 0:
+            solve_apart(m, s)
+        else:
+            taken, taken_per_newton = solve_jointly(m, s)
+            more = 0.0
+            if bowed and (taken != 0.0 or taken_per_newton != 0.0):
+                first = f_b
+                free -= (taken - taken_per_newton * first) / (2.0 * k)
+                compliance += taken_per_newton / (2.0 * k)
+                f_b, z_bar, v_r, again, converged = solve_friction(
+                    free, compliance, s.z[string], abs(control[F_N]), v_r, m, string
+                )
+                iterations += again
+                more = f_b - first
+                push(m, s, u_next, BOW, more)
+            take_forces(m, s, more)
+        finish_fingers(m, s, u_next, next_)
+
+    # What the forces leave behind: eqs. (59), (60), and z at n + 1/2.
+    finish_bridge(m, s.q[next_], s.f_c)
+    s.zeta[next_, string] -= m.C_h * f_b
+    r = 0.0
+    if bowed:
+        r = 2.0 * (z_bar - s.z[string]) / k
+        s.z[string] = 2.0 * z_bar - s.z[string]
+        s.unconverged += 0 if converged else 1
+    else:
+        v_r = hair_velocity(m, s, u_next, u_prev, s.zeta[next_], s.zeta[prev]) - v_b
+    s.f_b, s.v_r = f_b, v_r
+    for i in range(STRINGS):
+        support(u_next[i], m.N[i])
+    s.level = next_
+
+    if row.shape[0] > 0:
+        book(m, s, control, z_bar, r, next_, now, prev, row)
+    measure(m, s, probe, iterations, next_, prev)
+
+
+@compiled
+def measure(m: Any, s: Any, probe: Array, iterations: int, next_: int, prev: int) -> None:
+    """Write the probes of one sample, and catch a lost state."""
+    bridge_force = s.f_c[0] + s.f_c[1]
+    if not abs(bridge_force) < LOST_FORCE:  # also true of NaN
+        come_to_rest(m, s)
+        s.lost += 1
+        probe[:] = 0.0
+        probe[ITERATIONS] = -1.0
+        return
+    bridge_travel = 0.0
+    for mode in range(MAX_MODES):
+        bridge_travel += s.q[next_, mode] - s.q[prev, mode]
+    probe[BRIDGE_FORCE] = bridge_force
+    probe[BRIDGE_FORCE_1], probe[BRIDGE_FORCE_2] = s.f_c[0], s.f_c[1]
+    probe[BRIDGE_VELOCITY] = bridge_travel / (2.0 * m.k)
+    probe[PRESSURE] = radiate(m, s, bridge_force)
+    probe[FRICTION_FORCE] = s.f_b
+    probe[RELATIVE_VELOCITY] = s.v_r
+    probe[ITERATIONS] = iterations
+    for j in range(m.fingers):
+        at = FINGER_PROBES + PROBES_PER_FINGER * j
+        probe[at] = s.U[next_, j]
+        for i in range(STRINGS):
+            probe[at + 1 + i] = s.f_f[STRINGS * j + i]

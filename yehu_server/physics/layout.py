@@ -1,0 +1,177 @@
+"""Where the model's coefficients and state live in memory.
+
+One record each, with room for the largest grid, so that every sample rate runs the
+same compiled code and a single address reaches everything. ``model`` is written once
+per sample rate; ``state`` is what a step changes, and all zeros but the finger
+heights is an instrument at rest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+STRINGS = 2
+MAX_NODES = 512  # grid intervals of one string; 0.38 m of silk at 192 kHz takes about 130
+GHOST = 1  # points before l = 0, so that the stencil of D4 needs no special case
+POINTS = MAX_NODES + 1 + 2 * GHOST
+LEVELS = 3  # u[n+1], u[n], u[n-1], taking turns
+MAX_MODES = 16
+MAX_SECTIONS = 32
+MAX_TAPS = 8
+MAX_FINGERS = 4
+STENCIL = 4  # nodes that one contact touches (cubic interpolation)
+MAX_CONTACTS = MAX_FINGERS * STRINGS + 1  # finger j on string i is contact 2 j + i
+BOW = MAX_CONTACTS - 1
+
+MODEL = np.dtype(
+    [
+        ("k", np.float64),
+        ("fingers", np.int64),
+        # strings, eqs. (32) and (57)
+        ("N", np.int64, STRINGS),
+        ("h", np.float64, STRINGS),
+        ("B", np.float64, (STRINGS, 3)),
+        ("C", np.float64, (STRINGS, 2)),
+        ("spread", np.float64, STRINGS),
+        ("rho_A", np.float64, STRINGS),
+        ("T", np.float64, STRINGS),
+        ("EI", np.float64, STRINGS),
+        ("sigma_0", np.float64, STRINGS),
+        ("sigma_1", np.float64, STRINGS),
+        # bridge, eqs. (41)-(45)
+        ("bridge_x", np.float64),
+        ("bridge_first", np.int64, STRINGS),
+        ("bridge_weights", np.float64, (STRINGS, STENCIL)),
+        ("modes", np.int64),
+        ("M_m", np.float64, MAX_MODES),
+        ("K_m", np.float64, MAX_MODES),
+        ("R_m", np.float64, MAX_MODES),
+        ("A_q", np.float64, MAX_MODES),
+        ("B_q", np.float64, MAX_MODES),
+        ("C_q", np.float64, MAX_MODES),
+        ("C_q_sum", np.float64),
+        ("S_c_inverse", np.float64, (STRINGS, STRINGS)),
+        # bow, eqs. (17)-(25) and (60)
+        ("epsilon_0", np.float64),
+        ("epsilon_1", np.float64),
+        ("v_s", np.float64),
+        ("mu_C", np.float64),
+        ("mu_S", np.float64),
+        ("xi", np.float64, STRINGS),
+        ("lift_force", np.float64),
+        ("M_h", np.float64),
+        ("K_h", np.float64),
+        ("R_h", np.float64),
+        ("A_h", np.float64),
+        ("B_h", np.float64),
+        ("C_h", np.float64),
+        # finger, eqs. (33)-(36)
+        ("M_f", np.float64),
+        ("K_f", np.float64),
+        ("alpha", np.float64),
+        ("beta", np.float64),
+        ("rest_height", np.float64),
+        ("K_lift", np.float64),
+        ("R_lift", np.float64),
+        # radiation
+        ("b_0", np.float64, MAX_SECTIONS),
+        ("b_1", np.float64, MAX_SECTIONS),
+        ("a_1", np.float64, MAX_SECTIONS),
+        ("a_2", np.float64, MAX_SECTIONS),
+        ("taps", np.float64, MAX_TAPS),
+    ],
+    align=True,
+)
+
+STATE = np.dtype(
+    [
+        ("level", np.int64),  # which of the LEVELS is "now"
+        ("u", np.float64, (LEVELS, STRINGS, POINTS)),
+        ("q", np.float64, (LEVELS, MAX_MODES)),
+        ("zeta", np.float64, (LEVELS, STRINGS)),
+        ("z", np.float64, STRINGS),
+        ("bowed_string", np.int64),
+        ("v_r", np.float64),
+        ("U", np.float64, (LEVELS, MAX_FINGERS)),
+        ("Psi", np.float64, MAX_CONTACTS),
+        # where the contacts are, and how each answers to the others (contacts.py)
+        ("placed", np.int64),
+        ("x", np.float64, MAX_CONTACTS),
+        ("string", np.int64, MAX_CONTACTS),
+        ("first", np.int64, MAX_CONTACTS),
+        ("weights", np.float64, (MAX_CONTACTS, STENCIL)),
+        ("at_bridge", np.float64, MAX_CONTACTS),
+        ("pull", np.float64, (MAX_CONTACTS, STRINGS)),
+        ("G", np.float64, (MAX_CONTACTS, MAX_CONTACTS)),
+        ("overlapping", np.int64),
+        # forces of the current step, and scratch of the contact solve
+        ("f_c", np.float64, STRINGS),
+        ("f_b", np.float64),
+        ("f_f", np.float64, MAX_CONTACTS),
+        ("f_ext", np.float64, MAX_FINGERS),
+        ("g", np.float64, MAX_CONTACTS),
+        ("A_f", np.float64, MAX_CONTACTS),
+        ("eta_prev", np.float64, MAX_CONTACTS),
+        ("d", np.float64, MAX_CONTACTS),
+        ("matrix", np.float64, (MAX_CONTACTS, MAX_CONTACTS)),
+        ("sides", np.float64, (2, MAX_CONTACTS)),
+        # energy given up since the last sample (J), and stored at the last one
+        ("dropped_z", np.float64),
+        ("dropped_Psi", np.float64),
+        ("stored", np.float64),
+        # radiation filter
+        ("s_1", np.float64, MAX_SECTIONS),
+        ("s_2", np.float64, MAX_SECTIONS),
+        ("history", np.float64, MAX_TAPS),
+        # counters, which outlive a lost state
+        ("unconverged", np.int64),
+        ("lost", np.int64),
+    ],
+    align=True,
+)
+
+# Columns of the controls, one row a sample. Fingers follow in pairs (x_f, press).
+F_N, V_B, X_B, F_HAMMER, FINGER_CONTROLS = range(5)
+CONTROLS_PER_FINGER = 2
+
+
+def control_columns(fingers: int) -> int:
+    """Columns of the control array of an instrument with so many fingers."""
+    return FINGER_CONTROLS + CONTROLS_PER_FINGER * fingers
+
+
+# Columns of the probes. Fingers follow in triples (U, f_f on string 1, f_f on string 2).
+(
+    BRIDGE_FORCE,
+    BRIDGE_FORCE_1,
+    BRIDGE_FORCE_2,
+    BRIDGE_VELOCITY,
+    PRESSURE,
+    FRICTION_FORCE,
+    RELATIVE_VELOCITY,
+    ITERATIONS,
+    FINGER_PROBES,
+) = range(9)
+PROBES_PER_FINGER = 3
+
+
+def probe_columns(fingers: int) -> int:
+    """Columns of the probe array of an instrument with so many fingers."""
+    return FINGER_PROBES + PROBES_PER_FINGER * fingers
+
+
+# Columns of the energy ledger: J, then W, then two residuals (m/s and m).
+LEDGER = (
+    "energy",
+    "power_in",
+    "loss_strings",
+    "loss_bridge",
+    "loss_finger",
+    "loss_hair",
+    "loss_friction",
+    "loss_bow_lift",
+    "loss_contact_reset",
+    "energy_error",
+    "v_r_residual",
+    "constraint_residual",
+)

@@ -1,0 +1,98 @@
+"""A stiff string with two losses: [Yehu] eqs. (30)-(32), boundaries eq. (3)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.jit import compiled
+from yehu_server.physics.grid import intervals
+from yehu_server.physics.layout import GHOST, STRINGS
+from yehu_server.physics.quantities import Quantities
+
+Array = Any
+
+
+def prepare_strings(model: np.void, quantities: Quantities) -> None:
+    """Write the strings' coefficients into `model`, both sides divided by A_s.
+
+    Source: [Yehu] eqs. (27), (31), (32), (57).
+    """
+    k = model["k"]
+    for i, string in enumerate(quantities.strings):
+        N = intervals(string, k, quantities.tension_headroom)
+        h = string.L / N
+        rho_A, EI, T = string.rho_A, string.EI, string.T
+        A_s = rho_A / k**2 + rho_A * string.sigma_0 / k
+        # D2 u = (u[l-1] - 2 u[l] + u[l+1]) / h^2, and D4 = D2 D2.
+        d2 = (T + 2.0 * rho_A * string.sigma_1 / k) / h**2
+        d4 = EI / h**4
+        model["N"][i] = N
+        model["h"][i] = h
+        model["B"][i] = (
+            (2.0 * rho_A / k**2 - 2.0 * d2 - 6.0 * d4) / A_s,
+            (d2 + 4.0 * d4) / A_s,
+            -d4 / A_s,
+        )
+        loss = 2.0 * rho_A * string.sigma_1 / (k * h**2)
+        model["C"][i] = (
+            (-rho_A / k**2 + rho_A * string.sigma_0 / k + 2.0 * loss) / A_s,
+            -loss / A_s,
+        )
+        model["spread"][i] = 1.0 / (h * A_s)
+        model["rho_A"][i] = rho_A
+        model["T"][i] = T
+        model["EI"][i] = EI
+        model["sigma_0"][i] = string.sigma_0
+        model["sigma_1"][i] = string.sigma_1
+
+
+@compiled
+def advance_string(u_next: Array, u: Array, u_prev: Array, N: int, B: Array, C: Array) -> None:
+    """Advance one stiff string by one sample, free of contact forces: u* of eq. (58).
+
+    Parameters
+    ----------
+    u_next, u, u_prev : ndarray [shape=(N+3 or more,), m]
+        Displacement one sample ahead, now and one sample ago, with one ghost node at
+        each end.
+    B : ndarray [shape=(3,)]
+        Weights of u at distance 0, 1 and 2.
+    C : ndarray [shape=(2,)]
+        Weights of u_prev at distance 0 and 1.
+
+    Real time: safe; no allocation, linear in N.
+    Source: [Yehu] eq. (32) with simple supports, eq. (3).
+    """
+    B_0, B_1, B_2 = B[0], B[1], B[2]
+    C_0, C_1 = C[0], C[1]
+    # Slices, since an index that might be negative keeps the loop from vectorising.
+    inner = N - 1
+    out = u_next[GHOST + 1 : GHOST + 1 + inner]
+    left_2, left, here = u[:inner], u[1 : 1 + inner], u[2 : 2 + inner]
+    right, right_2 = u[3 : 3 + inner], u[4 : 4 + inner]
+    left_prev, here_prev = u_prev[1 : 1 + inner], u_prev[2 : 2 + inner]
+    right_prev = u_prev[3 : 3 + inner]
+    for l in range(inner):
+        out[l] = (
+            B_0 * here[l]
+            + B_1 * (left[l] + right[l])
+            + B_2 * (left_2[l] + right_2[l])
+            + C_0 * here_prev[l]
+            + C_1 * (left_prev[l] + right_prev[l])
+        )
+
+
+@compiled
+def support(u: Array, N: int) -> None:
+    """Mirror the ghost nodes: u = 0 and D2 u = 0 at both ends, eq. (3)."""
+    u[0] = -u[2]
+    u[N + 2] = -u[N]
+
+
+@compiled
+def advance_strings(model: Any, u_next: Array, u: Array, u_prev: Array) -> None:
+    """Both strings, free of contact forces: arrays of shape (2, points)."""
+    for i in range(STRINGS):
+        advance_string(u_next[i], u[i], u_prev[i], model.N[i], model.B[i], model.C[i])

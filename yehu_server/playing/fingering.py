@@ -1,0 +1,75 @@
+"""Which string takes a pitch, and where the finger goes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from yehu_server.playing.intonation import OPEN_NOTES, Intonation
+
+LOWEST_NOTE, HIGHEST_NOTE = 65, 89  # F4 to F6
+OPEN_WITHIN = 0.25  # semitones about an open string that need no finger
+
+
+class RangePolicy(Enum):
+    """What happens to a note the instrument does not have."""
+
+    TRANSPOSE = "transpose"
+    CLAMP = "clamp"
+    SKIP = "skip"
+
+    def fit(self, note: int) -> int | None:
+        """Return the note to play instead of `note`, or None for none."""
+        if LOWEST_NOTE <= note <= HIGHEST_NOTE:
+            return note
+        if self is RangePolicy.SKIP:
+            return None
+        if self is RangePolicy.CLAMP:
+            return min(max(note, LOWEST_NOTE), HIGHEST_NOTE)
+        if note < LOWEST_NOTE:
+            return note + 12 * -(-(LOWEST_NOTE - note) // 12)
+        return note - 12 * -(-(note - HIGHEST_NOTE) // 12)
+
+
+@dataclass(frozen=True)
+class Fingering:
+    """A string (0: F4, 1: C5) and the finger's place on it (m); None for an open string."""
+
+    string: int
+    position: float | None
+
+    @property
+    def side(self) -> float:
+        """The value of ``/bow/side`` that bows this string."""
+        return 1.0 if self.string == 0 else -1.0
+
+
+def choose(pitch: float, hand: float | None, intonation: Intonation) -> Fingering:
+    """Finger a pitch (fractional MIDI note).
+
+    Below C5 there is only the F string; from C5 up the C string, unless the finger, down
+    at `hand` (m), would have a shorter way to the pitch on the F string.
+    """
+    for string, note in enumerate(OPEN_NOTES):
+        if abs(pitch - note) < OPEN_WITHIN:
+            return Fingering(string, None)
+    if pitch < OPEN_NOTES[1]:
+        return _stop(0, pitch, intonation)
+    near, far = _stop(1, pitch, intonation), _stop(0, pitch, intonation)
+    if hand is not None and near.position is not None and far.position is not None:
+        nearer = abs(far.position - hand) < abs(near.position - hand)
+        if nearer and intonation.reaches(0, pitch):
+            return far
+    return near
+
+
+def stay(pitch: float, string: int, intonation: Intonation) -> Fingering:
+    """Follow a bent pitch on the string it sounds on; below the open C string, on the F."""
+    open_note = OPEN_NOTES[string]
+    if abs(pitch - open_note) < OPEN_WITHIN or pitch < OPEN_NOTES[0]:
+        return Fingering(string if pitch >= OPEN_NOTES[0] else 0, None)
+    return _stop(string if pitch > open_note else 0, pitch, intonation)
+
+
+def _stop(string: int, pitch: float, intonation: Intonation) -> Fingering:
+    return Fingering(string, intonation.position(string, pitch))

@@ -1,0 +1,136 @@
+"""Mapping files: which controller moves which parameter, how far and along which curve.
+
+The format is described in mappings/README.md.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from yehu_server.errors import MappingError, ParameterError
+from yehu_server.params.spec import Curve, Place
+from yehu_server.params.table import find
+
+SOURCES = ("bend", "pressure", "poly-pressure", "velocity")
+_CC = re.compile(r"cc (\d{1,3})")
+DEFAULT = "keyboard"
+
+
+def mapping_folder() -> Path:
+    """Where the shipped mappings are: in the package, or beside it in a checkout."""
+    package = Path(__file__).parent.parent
+    inside = package / "mappings"
+    return inside if inside.is_dir() else package.parent / "mappings"
+
+
+@dataclass(frozen=True)
+class Bind:
+    """One controller that moves one parameter.
+
+    `source` is ``cc N``, ``bend``, ``pressure``, ``poly-pressure`` or ``velocity``. The
+    controller's way, 0 to 1, is spread over `span` along `curve`; a span from high to low
+    inverts. Without a span the bend is in semitones, by the bend range.
+    """
+
+    source: str
+    target: str
+    span: tuple[float, float] | None = None
+    curve: Curve = Curve.LIN
+
+    def apply(self, unit: float) -> float:
+        """Map the controller's place, 0 to 1, to the target's value."""
+        param = find(self.target)
+        lo, hi = self.span or (param.lo, param.hi)
+        return self.curve.bend(unit, lo, hi)
+
+
+@dataclass(frozen=True)
+class Mapping:
+    """A named set of binds; several may share a source or a target (the last move counts)."""
+
+    name: str
+    binds: tuple[Bind, ...]
+
+    def of(self, source: str) -> tuple[Bind, ...]:
+        """The binds of one source."""
+        return tuple(bind for bind in self.binds if bind.source == source)
+
+
+def load(name_or_path: str) -> Mapping:
+    """Read a mapping by the name of a shipped one, or from a file.
+
+    Errors: MappingError, naming the file and the bind.
+    """
+    path = Path(name_or_path)
+    if path.suffix != ".toml" and not path.exists():
+        shipped = mapping_folder() / f"{name_or_path}.toml"
+        if not shipped.exists():
+            names = ", ".join(sorted(file.stem for file in mapping_folder().glob("*.toml")))
+            raise MappingError(f"no mapping {name_or_path!r} (shipped: {names}; or name a file)")
+        path = shipped
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise MappingError(f"{path}: {error.strerror}") from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise MappingError(f"{path}: not a mapping file ({error})") from error
+    unknown = set(data) - {"name", "bind"}
+    if unknown:
+        raise MappingError(f"{path}: unknown entry {min(unknown)!r} (known: name, bind)")
+    entries = data.get("bind", [])
+    if not isinstance(entries, list):
+        raise MappingError(f"{path}: write each bind as [[bind]]")
+    binds = []
+    for number, entry in enumerate(entries, start=1):
+        try:
+            binds.append(_bind(entry))
+        except ParameterError as error:
+            raise MappingError(f"{path}: bind {number}: {error}") from error
+    return Mapping(str(data.get("name", path.stem)), tuple(binds))
+
+
+def _bind(entry: Any) -> Bind:
+    known = ("source", "target", "span", "curve")
+    if not isinstance(entry, dict):
+        raise ParameterError("expected a table")
+    for name in entry:
+        if name not in known:
+            raise ParameterError(f"unknown entry {name!r} (known: {', '.join(known)})")
+    source, target = entry.get("source"), entry.get("target")
+    if not isinstance(source, str) or not isinstance(target, str):
+        raise ParameterError("needs a source and a target")
+    controller = _CC.fullmatch(source)
+    if source not in SOURCES and not (controller and int(controller[1]) <= 127):
+        raise ParameterError(f"unknown source {source!r} (cc 0-127, {', '.join(SOURCES)})")
+    param = find(target)
+    if param.place is not Place.PLAYER:
+        raise ParameterError(f"{target} is moved by the player; map to one under /playing")
+    try:
+        curve = Curve(entry.get("curve", param.curve.value))
+    except ValueError:
+        names = ", ".join(curve.value for curve in Curve)
+        raise ParameterError(f"unknown curve {entry['curve']!r} (known: {names})") from None
+    span = _span(entry.get("span"), param.lo, param.hi)
+    lo, hi = span or (param.lo, param.hi)
+    if curve is Curve.EXP and min(lo, hi) <= 0.0:
+        raise ParameterError("an exp curve needs a span above zero")
+    return Bind(source, target, span, curve)
+
+
+def _span(value: Any, lo: float, hi: float) -> tuple[float, float] | None:
+    if value is None:
+        return None
+    numbers = isinstance(value, list) and all(
+        isinstance(end, int | float) and not isinstance(end, bool) for end in value
+    )
+    if not numbers or len(value) != 2:
+        raise ParameterError(f"span: expected [from, to], got {value!r}")
+    for end in value:
+        if not math.isfinite(end) or not lo <= end <= hi:
+            raise ParameterError(f"span: {end} is not within {lo:g} to {hi:g}")
+    return float(value[0]), float(value[1])

@@ -1,0 +1,250 @@
+"""A player of one instrument: notes and wishes in, moves of bow and finger out.
+
+Who owns the bow and the fingers: this player, as long as notes sound. A direct write to
+a parameter marked ``owned`` takes that one over until the next note begins or `release`
+is called; one written with ``hold`` is kept until `release` (decisions/0006).
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Protocol
+
+from yehu_server.errors import ParameterError
+from yehu_server.params.spec import Place
+from yehu_server.params.table import TABLE, find
+from yehu_server.playing.fingering import Fingering, RangePolicy, choose, stay
+from yehu_server.playing.intonation import Intonation
+
+
+class Sink(Protocol):
+    """What a player moves: an ``engine.instrument.Instrument``, or a stand-in."""
+
+    def write(
+        self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
+    ) -> float:
+        """Let a parameter of the engine move to a value."""
+
+    def silence(self, *, frame: int | None = None) -> None:
+        """Stop the sound at once."""
+
+
+@dataclass(frozen=True)
+class Key:
+    """What identifies a held note: where it came from and which key it is."""
+
+    channel: int
+    note: int
+
+
+# A finger that is up may be put elsewhere at once; one that is down slides.
+BEND_RAMP_MS = find("/playing/bend").smooth_ms
+LANDING_MS = 5.0
+CROSSING_MS = 20.0  # from one string to the other
+# Standard deviations at full variation. By ear.
+VARIED_SHARE = 0.1  # of bow speed and force
+VARIED_CENTS = 6.0
+
+
+class Performer:
+    """Plays one note at a time, the last one; see the module's docstring for ownership.
+
+    Parameters
+    ----------
+    sink : Sink
+        The instrument.
+    policy : RangePolicy
+        What happens to notes out of range.
+    seed : int
+        Of the variation between notes; the same seed plays the same.
+    """
+
+    def __init__(
+        self,
+        sink: Sink,
+        intonation: Intonation | None = None,
+        policy: RangePolicy = RangePolicy.TRANSPOSE,
+        seed: int = 0,
+    ) -> None:
+        self._sink = sink
+        self._intonation = intonation or Intonation()
+        self._policy = policy
+        self._chance = random.Random(seed)  # noqa: S311 - for music, not secrets
+        self._deviation = (0.0, 0.0, 0.0)  # of this note: speed, pressure, pitch; normal
+        self._value = {p.address: p.default for p in TABLE if p.place is Place.PLAYER}
+        self._held: dict[Key, int] = {}  # in the order pressed; values are fitted notes
+        self._sounding: Key | None = None
+        self._fingering: Fingering | None = None
+        self._direction = -1.0  # so that the first stroke is a down-bow, v_b > 0
+        self._taken: set[str] = set()
+        self._kept: set[str] = set()
+        self.notes_played = 0
+        self.notes_out_of_range = 0
+
+    @property
+    def sounding(self) -> Key | None:
+        """The key whose note sounds."""
+        return self._sounding
+
+    def value(self, address: str) -> float:
+        """The present value of a parameter of the player. Errors: ParameterError."""
+        try:
+            return self._value[find(address).address]
+        except KeyError:
+            raise ParameterError(f"{address} is not held by the player") from None
+
+    def write(
+        self, address: str, value: float, *, frame: int | None = None, hold: bool = False
+    ) -> float:
+        """Set any parameter of the table; return the value accepted.
+
+        Errors: ParameterError for an unknown address or a value that is not finite.
+        """
+        param = find(address)
+        accepted = param.accept(value)
+        if param.place is Place.ENGINE:
+            if param.owned:
+                (self._kept if hold else self._taken).add(address)
+                if address == "/bow/force":  # raw newtons are heard only without assist
+                    self._take_over("/bow/assist", 0.0, frame, hold)
+            return self._sink.write(address, accepted, frame=frame)
+        if self._value[address] == accepted:
+            return accepted
+        self._value[address] = accepted
+        if address == "/playing/bend":
+            self._follow_bend(frame)
+        elif address == "/playing/press":
+            self._press(frame)
+        elif address == "/playing/speed":
+            self._draw(frame, None)
+        elif address == "/playing/pressure":
+            self._lean(frame)
+        elif address == "/playing/assist":
+            self._move("/bow/assist", accepted, frame)
+        elif address in ("/playing/volume", "/playing/expression"):
+            level = (self._value["/playing/volume"] * self._value["/playing/expression"]) ** 2
+            self._move("/output/level", level, frame)
+        return accepted
+
+    def release(self) -> None:
+        """Give every parameter that was taken over back to the player."""
+        self._taken.clear()
+        self._kept.clear()
+
+    def note_on(self, key: Key, *, frame: int | None = None) -> None:
+        """Begin a note: legato where another sounds, else with a new stroke of the bow."""
+        note = self._policy.fit(key.note)
+        if note != key.note:
+            self.notes_out_of_range += 1
+        if note is None:
+            return
+        self.notes_played += 1
+        self._taken.clear()
+        legato = self._sounding is not None and self._sounding != key
+        self._held.pop(key, None)
+        self._held[key] = note
+        self._start(key, frame, legato=legato)
+
+    def note_off(self, key: Key, *, frame: int | None = None) -> None:
+        """End a note; the last one still held comes back, legato."""
+        if self._held.pop(key, None) is None or key != self._sounding:
+            return
+        if self._held:
+            self._start(next(reversed(self._held)), frame, legato=True)
+        else:
+            self._stop(frame)
+
+    def all_notes_off(self, *, frame: int | None = None) -> None:
+        """End every note, as if all keys were let go."""
+        self._held.clear()
+        if self._sounding is not None:
+            self._stop(frame)
+
+    def all_sound_off(self, *, frame: int | None = None) -> None:
+        """End every note and what still rings, at once."""
+        self.all_notes_off(frame=frame)
+        self._sink.silence(frame=frame)
+
+    def _start(self, key: Key, frame: int | None, *, legato: bool) -> None:
+        hand = self._fingering.position if self._fingering else None
+        was = self._fingering
+        self._sounding = key
+        self._deviation = (
+            self._chance.gauss(0.0, 1.0),
+            self._chance.gauss(0.0, 1.0),
+            self._chance.gauss(0.0, 1.0),
+        )
+        if not legato:
+            self._direction = -self._direction
+        self._place(
+            choose(self._pitch, hand, self._intonation), frame, self._value["/playing/glide"]
+        )
+        crossing = legato and was is not None and was.side != self._side
+        attack = self._value["/playing/attack"]
+        self._move("/bow/assist", self._value["/playing/assist"], frame)
+        self._lean(frame)
+        self._move("/bow/side", self._side, frame, CROSSING_MS if crossing else attack / 4.0)
+        self._draw(frame, self._value["/playing/glide"] if legato else attack)
+
+    def _stop(self, frame: int | None) -> None:
+        self._sounding = None
+        release = self._value["/playing/release"]
+        self._move("/bow/speed", 0.0, frame, release)
+        self._move("/bow/side", 0.0, frame, release)
+
+    @property
+    def _side(self) -> float:
+        return self._fingering.side if self._fingering else 0.0
+
+    @property
+    def _pitch(self) -> float:
+        """Fractional MIDI note the finger aims at."""
+        note = self._held[self._sounding] if self._sounding is not None else 0
+        stray = self._varied(2, VARIED_CENTS / 100.0)
+        return note + self._value["/playing/bend"] + stray
+
+    def _varied(self, which: int, spread: float) -> float:
+        return self._value["/playing/variation"] * spread * self._deviation[which]
+
+    def _lean(self, frame: int | None) -> None:
+        pressure = self._value["/playing/pressure"] * (1.0 + self._varied(1, VARIED_SHARE))
+        self._move("/bow/pressure", pressure, frame)
+
+    def _draw(self, frame: int | None, ramp_ms: float | None) -> None:
+        if self._sounding is not None:
+            speed = self._direction * self._value["/playing/speed"]
+            speed *= 1.0 + self._varied(0, VARIED_SHARE)
+            self._move("/bow/speed", speed, frame, ramp_ms)
+
+    def _place(self, fingering: Fingering, frame: int | None, glide_ms: float) -> None:
+        was_down = self._fingering is not None and self._fingering.position is not None
+        self._fingering = fingering
+        if fingering.position is not None:
+            ramp = glide_ms if was_down else 0.0
+            self._move("/finger/1/position", fingering.position, frame, ramp)
+        self._press(frame)
+
+    def _press(self, frame: int | None) -> None:
+        down = self._fingering is not None and self._fingering.position is not None
+        press = self._value["/playing/press"] if down else 0.0
+        self._move("/finger/1/press", press, frame, LANDING_MS)
+
+    def _follow_bend(self, frame: int | None) -> None:
+        if self._sounding is None or self._fingering is None:
+            return
+        fingering = stay(self._pitch, self._fingering.string, self._intonation)
+        crossing = fingering.string != self._fingering.string
+        self._place(fingering, frame, BEND_RAMP_MS)
+        if crossing:
+            self._move("/bow/side", self._side, frame, CROSSING_MS)
+
+    def _take_over(self, address: str, value: float, frame: int | None, hold: bool) -> None:
+        (self._kept if hold else self._taken).add(address)
+        self._sink.write(address, value, frame=frame)
+
+    def _move(
+        self, address: str, value: float, frame: int | None, ramp_ms: float | None = None
+    ) -> None:
+        if address not in self._taken and address not in self._kept:
+            self._sink.write(address, value, frame=frame, ramp_ms=ramp_ms)

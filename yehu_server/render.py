@@ -1,0 +1,199 @@
+"""MIDI files into a sound file, offline: score, player, instrument, file."""
+
+from __future__ import annotations
+
+import contextlib
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.audio.file import SoundWriter, check_format, sound_file
+from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import OutputError
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.mapping import DEFAULT, Mapping, load
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.performer import Performer
+from yehu_server.score.smf import Score
+
+Samples = np.ndarray[Any, np.dtype[np.float32]]
+
+BLOCK = 4096  # frames at a time; what is heard does not depend on it
+QUIET = 1e-4  # 80 dB under full scale
+QUIET_S = 0.2  # how long it has to stay so
+LONGEST_TAIL_S = 5.0
+NORMALIZED_PEAK = 10.0 ** (-1.0 / 20.0)
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to render; see ``yehu-server render --help``."""
+
+    rate: int = 44100
+    format_name: str = "wav"
+    subtype: str = "24"
+    channels: frozenset[int] | None = None  # counted from 0; None: all but percussion
+    tail_s: float | None = None  # None: until it is quiet
+    gain_db: float = 0.0
+    normalize: bool = False
+    mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
+    settings: tuple[tuple[str, float], ...] = ()
+    seed: int = 0
+    policy: RangePolicy = RangePolicy.TRANSPOSE
+    quantities: Quantities = field(default_factory=Quantities)
+    block: int = BLOCK
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What came of a rendering; levels are of full scale."""
+
+    duration_s: float
+    real_time_factor: float
+    peak: float
+    rms: float
+    notes_played: int
+    notes_out_of_range: int
+    unconverged_solves: int
+    lost_states: int
+    notes_by_channel: dict[int, int]
+
+
+class Performance:
+    """A score played on an instrument, block by block."""
+
+    def __init__(self, score: Score, options: Options) -> None:
+        self._score = score
+        self._options = options
+        self.instrument = Instrument(float(options.rate), options.quantities)
+        self.performer = Performer(self.instrument, policy=options.policy, seed=options.seed)
+        self.midi = MidiPlayer(self.performer, options.mapping, _set(options.channels))
+        self.instrument.write("/output/gain", options.gain_db, ramp_ms=0.0)
+        for address, value in options.settings:
+            self.performer.write(address, value, hold=True)
+        self.score_frames = self.instrument.frames(score.duration_s * 1e3)
+
+    def blocks(self) -> Iterator[Samples]:
+        """Yield the samples of score and tail, in full scale."""
+        events = iter(self._score.events)
+        event = next(events, None)
+        position = 0
+        while position < self.score_frames:
+            end = min(position + self._options.block, self.score_frames)
+            while event is not None:
+                frame = self.instrument.frames(event.time_s * 1e3)
+                if frame >= end:
+                    break
+                self.midi.receive(event.message, frame=frame)
+                event = next(events, None)
+            yield self._process(end - position)
+            position = end
+        while event is not None:  # on the very last frame
+            self.midi.receive(event.message, frame=position)
+            event = next(events, None)
+        self.performer.all_notes_off(frame=position)
+        yield from self._tail()
+
+    def _tail(self) -> Iterator[Samples]:
+        if self._options.tail_s is not None:
+            left = self.instrument.frames(self._options.tail_s * 1e3)
+            while left > 0:
+                yield self._process(min(self._options.block, left))
+                left -= self._options.block
+            return
+        window = self.instrument.frames(10.0)
+        quiet = 0.0
+        for _ in range(round(LONGEST_TAIL_S / 0.01)):
+            samples = self._process(window)
+            yield samples
+            quiet = quiet + 0.01 if np.abs(samples).max() < QUIET else 0.0
+            if quiet >= QUIET_S:
+                return
+
+    def _process(self, frames: int) -> Samples:
+        out = np.zeros(frames, np.float32)
+        self.instrument.process(out)
+        return out
+
+
+def render(
+    score: Score,
+    target: Path,
+    options: Options,
+    progress: Callable[[float, float], None] | None = None,
+) -> Summary:
+    """Render a score to a sound file.
+
+    `progress` is told seconds done and seconds of the score.
+    Errors: YehuError; nothing is left behind.
+    """
+    check_format(options.format_name, options.subtype)
+    performance = Performance(score, options)
+    start = time.perf_counter()
+    with sound_file(target, options.rate, options.format_name, options.subtype) as file:
+        blocks = _told(performance.blocks(), options.rate, score.duration_s, progress)
+        if options.normalize:
+            _write_normalized(blocks, file, target.parent)
+        else:
+            for samples in blocks:
+                file.write(samples)
+    elapsed = time.perf_counter() - start
+    duration_s = file.frames / options.rate
+    return Summary(
+        duration_s=duration_s,
+        real_time_factor=duration_s / elapsed,
+        peak=file.peak,
+        rms=file.rms,
+        notes_played=performance.performer.notes_played,
+        notes_out_of_range=performance.performer.notes_out_of_range,
+        unconverged_solves=performance.instrument.unconverged_solves,
+        lost_states=performance.instrument.lost_states,
+        notes_by_channel=dict(sorted(performance.midi.notes_by_channel.items())),
+    )
+
+
+def warm_up() -> None:
+    """Compile or load from the cache whatever rendering needs."""
+    instrument = Instrument(44100.0)
+    instrument.process(np.zeros(1, np.float32))
+
+
+def _write_normalized(blocks: Iterator[Samples], file: SoundWriter, folder: Path) -> None:
+    """Two passes through a scratch file, so that memory does not grow with the score."""
+    peak = 0.0
+    with contextlib.ExitStack() as stack:
+        try:
+            scratch = stack.enter_context(tempfile.TemporaryFile(dir=folder))
+            for samples in blocks:
+                peak = max(peak, float(np.abs(samples).max(initial=0.0)))
+                scratch.write(samples.tobytes())
+            scratch.seek(0)
+        except OSError as error:
+            raise OutputError(f"{folder}: cannot write: {error.strerror}") from error
+        factor = np.float32(NORMALIZED_PEAK / peak if peak > 0.0 else 1.0)
+        while data := scratch.read(4 * BLOCK):
+            file.write(np.frombuffer(data, np.float32) * factor)
+
+
+def _told(
+    blocks: Iterator[Samples],
+    rate: int,
+    total: float,
+    progress: Callable[[float, float], None] | None,
+) -> Iterator[Samples]:
+    frames = 0
+    for samples in blocks:
+        yield samples
+        frames += len(samples)
+        if progress is not None:
+            progress(frames / rate, total)
+
+
+def _set(channels: Sequence[int] | frozenset[int] | None) -> set[int] | None:
+    return None if channels is None else set(channels)

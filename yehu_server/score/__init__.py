@@ -1,0 +1,1 @@
+"""Performances as files: Standard MIDI Files now, captured sessions next."""

@@ -1,0 +1,349 @@
+"""A tolerant reader of Standard MIDI Files: what can be played is played.
+
+Files in the wild are cut short, miscount their tracks, hide in RIFF wrappers and
+write velocities above 127. This reader keeps what makes sense, says in
+`Score.warnings` what did not, and refuses only where nothing is left to play.
+"""
+
+from __future__ import annotations
+
+import os
+from bisect import bisect_right
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from operator import itemgetter
+from pathlib import Path
+from typing import Literal
+
+import mido
+
+from yehu_server.errors import ScoreError
+
+MAX_BYTES = 64 * 2**20
+MAX_EVENTS = 1_000_000  # messages and tempo changes; each takes some 0.5 kB in memory
+MAX_TRACKS = 65_535  # as many as a header can announce
+MAX_DURATION_H = 24
+
+DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
+TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop-frame video
+
+META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
+END_OF_TRACK, SET_TEMPO = 0x2F, 0x51
+SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
+RESET_ALL_CONTROLLERS = 121
+
+
+@dataclass(frozen=True)
+class ScoreEvent:
+    """One channel-voice message at its time (s) from the start of the score."""
+
+    time_s: float
+    message: mido.Message
+
+
+@dataclass(frozen=True)
+class Score:
+    """A performance: events in order, and what was wrong with the file.
+
+    Parameters
+    ----------
+    events : tuple of ScoreEvent
+        Sorted by time; at equal times, in the order of the tracks, then of the file.
+    duration_s : float
+        Up to the last event or end-of-track of the longest track.
+    name : str
+        The file's name, without folder and extension.
+    warnings : tuple of str
+        One line for each kind of damage met, with how often.
+
+    Raises
+    ------
+    ScoreError
+        If the score lasts longer than a day.
+    """
+
+    events: tuple[ScoreEvent, ...]
+    duration_s: float
+    name: str = ""
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.duration_s > MAX_DURATION_H * 3600:
+            hours = self.duration_s / 3600
+            raise ScoreError(f"the score lasts {hours:.3g} hours, more than {MAX_DURATION_H}")
+
+
+def read_score(path: str | os.PathLike[str]) -> Score:
+    """Read a Standard MIDI File, bare or in a RIFF wrapper.
+
+    Formats 0 and 1 play all tracks together under the tempo changes of all of them.
+    Format 2 plays its tracks one after another, as `concatenate` would, each starting
+    at 120 bpm with tempo changes of its own. Sysex, escapes and metas other than
+    tempo are dropped. A channel message with a data byte above 127 is dropped as a whole.
+
+    Raises
+    ------
+    ScoreError
+        One line naming the file, whatever its bytes: missing, unreadable, too large or
+        too long, not a MIDI file, or without one channel message to play.
+    """
+    shown = os.fspath(path)
+    if not shown.isprintable():  # a line break or a stray byte in a name
+        shown = ascii(shown)
+    try:
+        score = _parse(_load(path))
+    except ScoreError as error:
+        raise ScoreError(f"{shown}: {error}") from None
+    return replace(score, name=Path(path).stem)
+
+
+def concatenate(scores: Sequence[Score]) -> Score:
+    """Play several scores one after another, each when the one before has lasted its time.
+
+    Notes still sounding at the end of a score end there, and its channels' controllers
+    are reset (CC 121) before the next, so that no pedal, bend or fade reaches across.
+    """
+    events: list[ScoreEvent] = []
+    start = 0.0
+    for number, score in enumerate(scores, start=1):
+        events += (ScoreEvent(start + event.time_s, event.message) for event in score.events)
+        start += score.duration_s
+        events += (ScoreEvent(start, message) for message in _note_offs(score))
+        if number < len(scores):
+            events += (ScoreEvent(start, message) for message in _resets(score))
+    names = " + ".join(score.name for score in scores)
+    warnings = (f"{score.name}: {warning}" for score in scores for warning in score.warnings)
+    return Score(tuple(events), start, names, tuple(warnings))
+
+
+def _note_offs(score: Score) -> Iterator[mido.Message]:
+    sounding: dict[tuple[int, int], int] = {}
+    for message in (event.message for event in score.events):
+        if message.type in ("note_on", "note_off"):
+            key = message.channel, message.note
+            step = 1 if message.type == "note_on" and message.velocity > 0 else -1
+            sounding[key] = max(sounding.get(key, 0) + step, 0)
+    for (channel, note), count in sounding.items():
+        for _ in range(count):
+            yield mido.Message("note_off", channel=channel, note=note)
+
+
+def _resets(score: Score) -> Iterator[mido.Message]:
+    for channel in sorted({event.message.channel for event in score.events}):
+        yield mido.Message("control_change", channel=channel, control=RESET_ALL_CONTROLLERS)
+
+
+# ---------------------------------------------------------------- the file
+
+
+def _load(path: str | os.PathLike[str]) -> bytes:
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(MAX_BYTES + 1)  # bounded, as /dev/zero has no size
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise ScoreError(f"cannot be read ({reason.lower()})") from None
+    except ValueError:  # a NUL in the name
+        raise ScoreError("cannot be read (no such file name)") from None
+    if len(data) > MAX_BYTES:
+        raise ScoreError(f"larger than {MAX_BYTES // 2**20} MiB")
+    if not data:
+        raise ScoreError("is empty")
+    return data
+
+
+def _parse(data: bytes) -> Score:
+    found: Counter[str] = Counter()
+    if data[:4] == b"RIFF" and data[8:12] == b"RMID":
+        wrapped = _chunks(data[12:], "little", found)
+        data = next((body for tag, body in wrapped if tag == b"data"), b"")
+    if data[:4] != b"MThd":
+        raise ScoreError("is not a MIDI file")
+    chunks = _chunks(data, "big", found)
+    header = next(chunks, (b"", b""))[1]
+    if len(header) < 6:
+        raise ScoreError("has a damaged header")
+    file_format, announced, division = (
+        int.from_bytes(header[at : at + 2], "big") for at in (0, 2, 4)
+    )
+
+    tracks: list[_Track] = []
+    room = MAX_EVENTS
+    for tag, body in chunks:
+        if tag == b"MTrk":
+            tracks.append(_decode(body, room, found))
+            room -= tracks[-1].events
+        if len(tracks) > MAX_TRACKS:
+            raise ScoreError(f"has more than {MAX_TRACKS} tracks")
+    if not any(track.messages for track in tracks):
+        raise ScoreError("has no playable track")
+    if len(tracks) != announced:
+        found[f"{announced} tracks announced, {len(tracks)} found"] += 1
+    if file_format > 2:
+        found[f"unknown format {file_format}, read as format 1"] += 1
+
+    if file_format == 2:
+        score = concatenate([_play_together([track], division) for track in tracks])
+    else:
+        score = _play_together(tracks, division)
+    times = (f" ({count} times)" if count > 1 else "" for count in found.values())
+    return replace(score, warnings=tuple(map(str.__add__, found, times)))
+
+
+def _chunks(
+    data: bytes, order: Literal["big", "little"], found: Counter[str]
+) -> Iterator[tuple[bytes, bytes]]:
+    """Each chunk's tag and body; RIFF counts in little endian and pads to even lengths."""
+    pos = 0
+    while pos + 8 <= len(data):
+        tag = data[pos : pos + 4]
+        if not all(0x20 <= byte < 0x7F for byte in tag):
+            # The chunk before lied about its length, or padding follows it.
+            found["bytes outside any chunk skipped"] += 1
+            pos = data.find(b"MTrk", pos)
+            if pos < 0:
+                return
+            continue
+        length = int.from_bytes(data[pos + 4 : pos + 8], order)
+        body = data[pos + 8 : pos + 8 + length]
+        if len(body) < length:
+            found["the file is cut short"] += 1
+        yield tag, body
+        pos += 8 + length + (length % 2 if order == "little" else 0)
+
+
+# ---------------------------------------------------------------- one track
+
+
+@dataclass
+class _Track:
+    messages: list[tuple[int, mido.Message]] = field(default_factory=list)  # at ticks
+    tempos: list[tuple[int, int]] = field(default_factory=list)  # at ticks, in us a quarter
+    end: int = 0  # ticks
+
+    @property
+    def events(self) -> int:
+        return len(self.messages) + len(self.tempos)
+
+
+@dataclass
+class _Cursor:
+    """A place in a track; every step past the end is an EOFError."""
+
+    data: bytes
+    pos: int = 0
+
+    def take(self, length: int) -> bytes:
+        taken = self.data[self.pos : self.pos + length]
+        if len(taken) < length:
+            raise EOFError
+        self.pos += length
+        return taken
+
+    def byte(self) -> int:
+        return self.take(1)[0]
+
+    def at_status(self) -> bool:
+        status = self.byte() >= 0x80
+        self.pos -= 1
+        return status
+
+    def number(self) -> int:
+        """A variable-length number; four bytes at most, as the format has it."""
+        value = 0
+        for _ in range(4):
+            byte = self.byte()
+            value = value << 7 | byte & 0x7F
+            if byte < 0x80:
+                break
+        return value
+
+
+def _decode(data: bytes, room: int, found: Counter[str]) -> _Track:
+    """Read one track as far as it goes, with at most `room` events to keep."""
+    track = _Track()
+    cursor = _Cursor(data)
+    tick = 0
+    running = 0  # kept across metas and sysex: some writers rely on it
+    try:
+        while cursor.pos < len(data):  # a missing end-of-track harms nobody
+            tick += cursor.number()
+            if not running and not cursor.at_status():
+                found["data without a status byte skipped"] += 1
+                while not cursor.at_status():
+                    cursor.pos += 1
+            status = cursor.byte() if cursor.at_status() else running
+            if status == META:
+                kind = cursor.byte()
+                body = cursor.take(cursor.number())
+                if kind == SET_TEMPO:
+                    tempo = int.from_bytes(body[:3], "big")
+                    if len(body) >= 3 and tempo > 0:
+                        track.tempos.append((tick, tempo))
+                    else:
+                        found["a tempo of zero or cut short ignored"] += 1
+            elif status in (SYSEX, ESCAPE):
+                cursor.take(cursor.number())
+            elif status > SYSEX:
+                found["a system message, which no file should hold, skipped"] += 1
+                cursor.take(SYSTEM_DATA_BYTES.get(status, 0))
+            else:
+                running = status
+                body = cursor.take(1 if status & 0xE0 == 0xC0 else 2)
+                if max(body) < 0x80:
+                    message = mido.Message.from_bytes([status, *body])
+                    track.messages.append((tick, message))
+                else:
+                    # Dropped at its full length: mostly this is a velocity above 127,
+                    # and what follows is in step again.
+                    found["a damaged message dropped"] += 1
+            if track.events > room:
+                raise ScoreError(f"has more than {MAX_EVENTS} events")
+            track.end = tick
+            if status == META and kind == END_OF_TRACK:
+                break
+    except EOFError:
+        found["a track ends in the middle of an event"] += 1
+    return track
+
+
+# ---------------------------------------------------------------- ticks to seconds
+
+
+class _Clock:
+    """Seconds at a tick, summed in whole numbers so that long files do not drift."""
+
+    def __init__(self, division: int, tempos: Sequence[tuple[int, int]]) -> None:
+        if division >= 0x8000:  # SMPTE: no tempo, frames a second and ticks a frame
+            frames, seconds = TRUE_FRAMES.get(256 - (division >> 8), (256 - (division >> 8), 1))
+            self._units_per_second = frames * (division & 0xFF)
+            changes = [(0, seconds)]
+        else:
+            self._units_per_second = division * 1_000_000
+            changes = [(0, DEFAULT_TEMPO), *tempos]
+        if self._units_per_second == 0:
+            raise ScoreError("has a time division of zero")
+        self._ticks: list[int] = []
+        self._spans: list[tuple[int, int]] = []  # units so far, units a tick from here on
+        for tick, rate in changes:
+            so_far = self._units(tick) if self._ticks else 0
+            self._ticks.append(tick)
+            self._spans.append((so_far, rate))
+
+    def _units(self, tick: int) -> int:
+        at = bisect_right(self._ticks, tick) - 1
+        so_far, rate = self._spans[at]
+        return so_far + (tick - self._ticks[at]) * rate
+
+    def seconds(self, tick: int) -> float:
+        return self._units(tick) / self._units_per_second
+
+
+def _play_together(tracks: Sequence[_Track], division: int) -> Score:
+    # Sorting is stable: at one tick, the order of the tracks and within them stays.
+    tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
+    messages = sorted((pair for track in tracks for pair in track.messages), key=itemgetter(0))
+    clock = _Clock(division, tempos)
+    events = tuple(ScoreEvent(clock.seconds(tick), message) for tick, message in messages)
+    return Score(events, clock.seconds(max(track.end for track in tracks)))

@@ -11,8 +11,8 @@ and each equation of motion is diagonal in X^{n+1}:
     a X^{n+1} = b + G f,
 with b known, f the unknown forces and the columns of G their spreading vectors. Each force p also
 has a row of W that reads the motion it works on (the bridge's gap, a contact's eta, the bow's
-place). Bridge and contact forces are linear in W X^{n+1}: a dense system gives them as a + b f_b;
-what is left is one scalar equation for the friction force f_b.
+place). Bridge and contact forces are linear in W X^{n+1}: a dense system gives
+them as f_0 + f_1 f_b; what is left is one scalar equation for the friction force f_b.
 
 State convention. `RefState` holds u = u^n and u_prev = u^{n-1} (likewise q, zeta, U), and z, Psi at
 n-1/2. `step` returns the state one sample later. Inputs are never modified.

@@ -49,5 +49,8 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     Division by zero follows IEEE 754 (``error_model="numpy"``), since a compiled
     callback has nobody to raise to.
     """
-    jit = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=FASTMATH)
+    # Without forced inlining, arrays cross calls as ten words each: a fifth of the time.
+    jit = numba.njit(
+        cache=True, nogil=True, error_model="numpy", fastmath=FASTMATH, forceinline=True
+    )
     return cast("Callable[P, R]", jit(function))

@@ -12,26 +12,22 @@ from typing import Any
 
 from yehu_server.jit import compiled
 from yehu_server.physics.bridge import bridge_pull, pull_string
-from yehu_server.physics.layout import BOW, STRINGS
+from yehu_server.physics.layout import BOW, CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS, X_B
 from yehu_server.physics.stencil import overlap, place_cubic, place_linear, spread
 
 Array = Any
 
 
 @compiled
-def place_contacts(model: Any, s: Any, x_b: float, bowed_string: int, x_f: Array) -> None:
-    """Move bow and fingers; positions in metres from the restraining loop.
-
-    Parameters
-    ----------
-    x_f : ndarray [shape=(fingers, 2),]
-        Finger controls; column 0 is the position.
+def place_contacts(model: Any, s: Any, control: Array, bowed_string: int) -> None:
+    """Move bow and fingers to where a row of controls has them.
 
     The bow keeps one node away from the bridge and from the loop, a finger one node
     away from the ends. Work is done only for what moved.
     Real time: safe.
     """
     moved = s.placed == 0
+    x_b = control[X_B]
     if moved or s.x[BOW] != x_b or s.string[BOW] != bowed_string:
         i = bowed_string
         s.x[BOW], s.string[BOW] = x_b, i
@@ -40,11 +36,12 @@ def place_contacts(model: Any, s: Any, x_b: float, bowed_string: int, x_f: Array
         s.first[BOW] = place_linear(position, model.N[i], s.weights[BOW])
         moved = True
     for j in range(model.fingers):
-        if s.placed == 0 or s.x[STRINGS * j] != x_f[j, 0]:
+        x_f = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j]
+        if s.placed == 0 or s.x[STRINGS * j] != x_f:
             for i in range(STRINGS):
                 p = STRINGS * j + i
-                s.x[p], s.string[p] = x_f[j, 0], i
-                position = max(1.0, min(x_f[j, 0] / model.h[i], model.N[i] - 1.0))
+                s.x[p], s.string[p] = x_f, i
+                position = max(1.0, min(x_f / model.h[i], model.N[i] - 1.0))
                 s.first[p] = place_cubic(position, model.N[i], s.weights[p])
             moved = True
     if moved:

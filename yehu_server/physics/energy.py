@@ -11,7 +11,7 @@ from typing import Any
 
 from yehu_server.jit import compiled
 from yehu_server.physics.bow import hair_velocity
-from yehu_server.physics.layout import F_HAMMER, F_N, GHOST, MAX_MODES, STRINGS, V_B
+from yehu_server.physics.layout import F_HAMMER, F_N, GHOST, LEVELS, MAX_MODES, STRINGS, V_B
 from yehu_server.physics.stencil import read
 
 Array = Any
@@ -81,25 +81,10 @@ def stored_energy(model: Any, s: Any, next_: int, now: int) -> float:
 
 
 @compiled
-def book(
-    model: Any,
-    s: Any,
-    control: Array,
-    z_bar: float,
-    r: float,
-    next_: int,
-    now: int,
-    prev: int,
-    row: Array,
-) -> None:
-    """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete.
-
-    Parameters
-    ----------
-    z_bar, r : float, m and m/s
-        mu_t0 z and delta_t0 z of the bowed string.
-    """
+def book(model: Any, s: Any, control: Array, row: Array) -> None:
+    """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete."""
     k = model.k
+    next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     v_r = hair_velocity(model, s, s.u[next_], s.u[prev], s.zeta[next_], s.zeta[prev])
     v_r -= control[V_B]  # read back from the grid, not taken from the solver
 
@@ -124,7 +109,7 @@ def book(
                 # Psi stands at n + 1/2 by now; the law uses it at n - 1/2.
                 Psi = s.Psi[p] - 0.5 * s.g[p] * travel
                 finger += model.beta * s.g[p] * Psi * (travel / (2.0 * k)) ** 2
-    friction = s.f_b * v_r - model.epsilon_0 * z_bar * r if s.f_b != 0.0 else 0.0
+    friction = s.f_b * v_r - model.epsilon_0 * s.z_bar * s.r
     lifted, reset = s.dropped_z / k, s.dropped_Psi / k
 
     stored = stored_energy(model, s, next_, now)

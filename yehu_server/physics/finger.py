@@ -15,7 +15,7 @@ import numpy as np
 
 from yehu_server.jit import compiled
 from yehu_server.physics.contacts import eliminate, push
-from yehu_server.physics.layout import BOW, STRINGS
+from yehu_server.physics.layout import BOW, CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.stencil import read
 
@@ -32,12 +32,13 @@ def prepare_fingers(model: np.void, quantities: Quantities) -> None:
 
 
 @compiled
-def advance_finger(model: Any, s: Any, j: int, press: float, now: int, prev: int) -> float:
+def advance_finger(model: Any, s: Any, j: int, control: Array, now: int, prev: int) -> float:
     """Return U* of eq. (58), the finger's height free of contacts (m).
 
-    A `press` (N) above zero drives the finger down; without one the hand lifts it with
+    A press (N) above zero drives the finger down; without one the hand lifts it with
     a critically damped spring, an outside force whose work counts as power in.
     """
+    press = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j + 1]
     U, U_prev = s.U[now, j], s.U[prev, j]
     if press > 0.0:
         s.f_ext[j] = -press

@@ -37,10 +37,8 @@ from yehu_server.physics.layout import (
     BRIDGE_FORCE_1,
     BRIDGE_FORCE_2,
     BRIDGE_VELOCITY,
-    CONTROLS_PER_FINGER,
     F_HAMMER,
     F_N,
-    FINGER_CONTROLS,
     FINGER_PROBES,
     FRICTION_FORCE,
     ITERATIONS,
@@ -54,7 +52,6 @@ from yehu_server.physics.layout import (
     STATE,
     STRINGS,
     V_B,
-    X_B,
 )
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
@@ -131,13 +128,15 @@ def advance(model: Array, state: Array, controls: Array, probes: Array, ledger: 
     """
     m, s = model[0], state[0]
     for n in range(controls.shape[0]):
-        row = ledger[n] if n < ledger.shape[0] else ledger[:0].reshape(-1)
-        step(m, s, controls[n], probes[n], row)
+        step(m, s, controls[n])
+        if n < ledger.shape[0]:
+            book(m, s, controls[n], ledger[n])
+        measure(m, s, probes[n])
 
 
 @compiled
-def step(m: Any, s: Any, control: Array, probe: Array, row: Array) -> None:
-    """Advance the whole instrument by one sample. See `advance`."""
+def step(m: Any, s: Any, control: Array) -> None:
+    """Advance strings, bridge, bow and fingers by one sample. See `advance`."""
     now = s.level
     next_, prev = (now + 1) % LEVELS, (now + 2) % LEVELS
     u_next, u, u_prev = s.u[next_], s.u[now], s.u[prev]
@@ -145,8 +144,7 @@ def step(m: Any, s: Any, control: Array, probe: Array, row: Array) -> None:
     s.dropped_z, s.dropped_Psi = 0.0, 0.0
 
     string, bowed = choose_string(m, s, control[F_N])
-    finger_controls = control[FINGER_CONTROLS:].reshape((m.fingers, CONTROLS_PER_FINGER))
-    place_contacts(m, s, control[X_B], string, finger_controls)
+    place_contacts(m, s, control, string)
 
     # Strings and modes free of contacts, eq. (58), then tied together, eqs. (43)-(45).
     advance_strings(m, u_next, u, u_prev)
@@ -160,13 +158,13 @@ def step(m: Any, s: Any, control: Array, probe: Array, row: Array) -> None:
     f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
     if bowed:
         f_b, z_bar, v_r, iterations, converged = solve_friction(
-            free, compliance, s.z[string], abs(control[F_N]), s.v_r, m, string
+            free, compliance, s.z[string], abs(control[F_N]), s.f_b, m, string
         )
         push(m, s, u_next, BOW, f_b)
 
     # The fingers, eqs. (33)-(40).
     for j in range(m.fingers):
-        s.U[next_, j] = advance_finger(m, s, j, finger_controls[j, 1], now, prev)
+        s.U[next_, j] = advance_finger(m, s, j, control, now, prev)
     if meet_fingers(m, s, u_next, u, u_prev, next_, now, prev) > 0:
         if s.overlapping == 0:
             solve_apart(m, s)
@@ -178,7 +176,7 @@ def step(m: Any, s: Any, control: Array, probe: Array, row: Array) -> None:
                 free -= (taken - taken_per_newton * first) / (2.0 * k)
                 compliance += taken_per_newton / (2.0 * k)
                 f_b, z_bar, v_r, again, converged = solve_friction(
-                    free, compliance, s.z[string], abs(control[F_N]), v_r, m, string
+                    free, compliance, s.z[string], abs(control[F_N]), f_b, m, string
                 )
                 iterations += again
                 more = f_b - first
@@ -189,26 +187,23 @@ def step(m: Any, s: Any, control: Array, probe: Array, row: Array) -> None:
     # What the forces leave behind: eqs. (59), (60), and z at n + 1/2.
     finish_bridge(m, s.q[next_], s.f_c)
     s.zeta[next_, string] -= m.C_h * f_b
-    r = 0.0
+    s.z_bar, s.r = 0.0, 0.0
     if bowed:
-        r = 2.0 * (z_bar - s.z[string]) / k
+        s.z_bar, s.r = z_bar, 2.0 * (z_bar - s.z[string]) / k
         s.z[string] = 2.0 * z_bar - s.z[string]
         s.unconverged += 0 if converged else 1
     else:
         v_r = hair_velocity(m, s, u_next, u_prev, s.zeta[next_], s.zeta[prev]) - v_b
-    s.f_b, s.v_r = f_b, v_r
+    s.f_b, s.v_r, s.iterations = f_b, v_r, iterations
     for i in range(STRINGS):
         support(u_next[i], m.N[i])
     s.level = next_
 
-    if row.shape[0] > 0:
-        book(m, s, control, z_bar, r, next_, now, prev, row)
-    measure(m, s, probe, iterations, next_, prev)
-
 
 @compiled
-def measure(m: Any, s: Any, probe: Array, iterations: int, next_: int, prev: int) -> None:
+def measure(m: Any, s: Any, probe: Array) -> None:
     """Write the probes of one sample, and catch a lost state."""
+    next_, prev = s.level, (s.level + 1) % LEVELS
     bridge_force = s.f_c[0] + s.f_c[1]
     if not abs(bridge_force) < LOST_FORCE:  # also true of NaN
         come_to_rest(m, s)
@@ -225,7 +220,7 @@ def measure(m: Any, s: Any, probe: Array, iterations: int, next_: int, prev: int
     probe[PRESSURE] = radiate(m, s, bridge_force)
     probe[FRICTION_FORCE] = s.f_b
     probe[RELATIVE_VELOCITY] = s.v_r
-    probe[ITERATIONS] = iterations
+    probe[ITERATIONS] = s.iterations
     for j in range(m.fingers):
         at = FINGER_PROBES + PROBES_PER_FINGER * j
         probe[at] = s.U[next_, j]

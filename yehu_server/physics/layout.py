@@ -107,6 +107,9 @@ STATE = np.dtype(
         # forces of the current step, and scratch of the contact solve
         ("f_c", np.float64, STRINGS),
         ("f_b", np.float64),
+        ("z_bar", np.float64),
+        ("r", np.float64),
+        ("iterations", np.int64),
         ("f_f", np.float64, MAX_CONTACTS),
         ("f_ext", np.float64, MAX_FINGERS),
         ("g", np.float64, MAX_CONTACTS),

@@ -1,0 +1,245 @@
+# shellcheck shell=bash
+# Sets up the checkout's own environment, .venv; sourced by the scripts beside this folder.
+#
+#   setup run          what yehu-server needs: requirements.lock
+#   setup dev          that and what the checks need: requirements-dev.lock
+#   system_packages    the system's own libraries, where they are missing
+#
+# A stamp in .venv, written last, holds the hash of what the set-up was made from. A use that
+# finds it right runs nothing else; one that does not, sets up again. An interrupted set-up
+# leaves no stamp, and two at once take turns. Messages go to stderr; pip's go to a log, shown
+# only on failure. Nothing here relies on `set -e`. Bash 3.2 (macOS) is enough.
+
+root=$(CDPATH='' cd -P "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+venv=$root/.venv
+log=$venv/setup.log
+
+# What we need from Debian: to play live, and to compile python-rtmidi, which has no wheels for
+# Python 3.13 and newer.
+debian_packages=(libportaudio2)
+debian_build_packages=(g++ libasound2-dev pkg-config)
+
+# Python 3.12 and 3.11 first, since nothing has to be compiled for them. numba sets the newest.
+python_candidates=(python3.12 python3.11 python3.13 python3.14 python3 python)
+python_probe='
+import sys
+if (3, 11) <= sys.version_info[:2] <= (3, 14):
+    try:
+        from ensurepip import version
+        import venv
+        print("whole")
+    except ImportError:
+        print("no venv")
+'
+
+say() {
+    printf 'yehu: %s\n' "$*" >&2
+}
+
+die() {
+    say "$@"
+    exit 1
+}
+
+# Sets up .venv for `run` or `dev`, unless that is done already.
+setup() {
+    local kind=$1 python fresh=
+    is_set_up "$kind" && return
+
+    trap 'exit 130' INT # without a page of pip's log
+    python=$(find_python) || exit
+    mkdir -p "$venv" || die "cannot write to $root"
+    exec 9>>"$venv/.lock"
+    take_turns "$python" || exit
+    if ! is_set_up "$kind"; then # another process may have done it while we waited
+        if is_reusable; then python=$venv/bin/python; else fresh=yes; fi
+        rm -f "$venv/stamp-dev"
+        is_set_up run || rm -f "$venv/stamp-run"
+        if [ "$kind" = run ]; then system_packages; fi
+        build_packages "$python"
+        if [ "$fresh" ]; then
+            say "setting up .venv with Python $(python_version "$python"); takes a minute, once"
+            empty_venv
+            logged "$python" -I -m venv --prompt yehu "$venv"
+        else
+            say "bringing .venv up to date"
+        fi
+        install "$kind" || exit
+    fi
+    exec 9>&-
+    trap - INT
+}
+
+# --- is it set up? -----------------------------------------------------------------------
+
+lock_of() {
+    case $1 in
+        run) echo requirements.lock ;;
+        dev) echo requirements-dev.lock ;;
+    esac
+}
+
+# Prints the hash of all that the set-up of that kind is made from. The absolute paths in it
+# make a checkout that was moved set up again, as a virtual environment cannot be moved.
+fingerprint() {
+    local hash=cksum
+    if command -v sha256sum >/dev/null; then hash=sha256sum; fi
+    "$hash" "$root/requirements-dev.lock" "$root/requirements.lock" "$root/pyproject.toml" \
+        "$root/scripts/lib/setup.sh"
+}
+
+is_set_up() {
+    [ -x "$venv/bin/python" ] && [ -x "$venv/bin/yehu-server" ] && [ -f "$venv/stamp-$1" ] &&
+        [ "$(<"$venv/stamp-$1")" = "$(fingerprint)" ]
+}
+
+# Whether .venv is whole, made at this place, and only out of date.
+is_reusable() {
+    grep -qsF " $root/pyproject.toml" "$venv"/stamp-* || return
+    "$venv/bin/python" -I -m pip --version >/dev/null 2>&1
+}
+
+# --- Python ------------------------------------------------------------------------------
+
+# Prints the first usable Python, or $PYTHON where that is set.
+find_python() {
+    local candidate without_venv=
+    if [ "${PYTHON:-}" ]; then python_candidates=("$PYTHON"); fi
+    for candidate in "${python_candidates[@]}"; do
+        case $("$candidate" -I -c "$python_probe" 2>/dev/null) in
+            whole)
+                printf '%s\n' "$candidate"
+                return
+                ;;
+            'no venv') without_venv=${without_venv:-$(python_version "$candidate")} ;;
+        esac
+    done
+    if [ "$without_venv" ]; then
+        die "Python $without_venv lacks its venv module; on Debian:" \
+            "sudo apt-get install python${without_venv%.*}-venv"
+    elif [ "${PYTHON:-}" ]; then
+        die "PYTHON=$PYTHON is not a Python 3.11 to 3.14"
+    fi
+    die "needs Python 3.11 to 3.14; on Debian: sudo apt-get install python3 python3-venv"
+}
+
+python_version() {
+    "$1" -I -c 'import platform; print(platform.python_version())'
+}
+
+# Holds file descriptor 9 for this process alone, until it is closed.
+take_turns() {
+    "$1" -I -c '
+import fcntl, sys
+try:
+    try:
+        fcntl.flock(9, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print("yehu: waiting for another set-up to finish", file=sys.stderr)
+        fcntl.flock(9, fcntl.LOCK_EX)
+except OSError:
+    pass  # a file system without locks: go on without taking turns
+'
+}
+
+# --- what goes into .venv ----------------------------------------------------------------
+
+# Removes what an earlier set-up left, but for the lock that we hold and the log.
+empty_venv() {
+    find "$venv" -mindepth 1 -maxdepth 1 ! -name .lock ! -name "${log##*/}" -exec rm -rf {} +
+}
+
+install() (
+    trap 'exit 130' INT
+    pip=(env PATH="$venv/bin:$PATH" "$venv/bin/python" -I -m pip --disable-pip-version-check
+        --no-input install --progress-bar off)
+    lock=$(lock_of "$1")
+    made_from=$(fingerprint)
+    cd "$root" || exit
+    if compiles "$venv/bin/python"; then # first the rest, which has the locked tools to do it
+        awk '/^[^ ]/ { skip = /^python-rtmidi==/ } !skip' "$lock" >"$venv/rest.lock"
+        logged "${pip[@]}" --require-hashes -r "$venv/rest.lock"
+    fi
+    logged "${pip[@]}" --require-hashes --no-build-isolation -r "$lock"
+    logged "${pip[@]}" --no-deps --no-build-isolation --editable .
+    # Both kinds hold what `run` needs. A stamp appears whole or not at all.
+    for kind in run "$1"; do
+        printf '%s\n' "$made_from" >"$venv/stamp.new"
+        mv "$venv/stamp.new" "$venv/stamp-$kind"
+    done
+)
+
+# Whether this Python has to compile python-rtmidi, for lack of a wheel.
+compiles() {
+    "$1" -I -c 'import sys; sys.exit(sys.version_info < (3, 13))'
+}
+
+# Runs a command with its output in the log; shows the end of that and stops if it fails.
+logged() {
+    "$@" >"$log" 2>&1 </dev/null && return
+    tail -n 30 "$log" >&2
+    die "set-up failed; the whole log is $log"
+}
+
+# --- the system's packages ---------------------------------------------------------------
+
+# Installs what is missing (as root on Debian) or tells how to; without it, all but live sound
+# works. Only Linux needs this: elsewhere, sounddevice brings PortAudio along.
+system_packages() {
+    [ "$(uname -s)" = Linux ] || return 0
+    # shellcheck disable=SC2046
+    set -- $(missing "${debian_packages[@]}")
+    if [ $# -eq 0 ] || apt_install "$@"; then
+        return 0
+    elif command -v apt-get >/dev/null; then
+        say "to play live: sudo apt-get install $*"
+    else
+        say "to play live, install what Debian calls $*"
+    fi
+}
+
+# The same for what compiling python-rtmidi takes, where it is needed; without it we stop.
+build_packages() {
+    compiles "$1" && [ "$(uname -s)" = Linux ] && command -v apt-get >/dev/null || return 0
+    # A Python of Debian's has its headers in a package of their own.
+    # shellcheck disable=SC2046
+    set -- $(missing "${debian_build_packages[@]}") $("$1" -I -c '
+import os, sys, sysconfig
+if not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")):
+    print("python%d.%d-dev" % sys.version_info[:2])
+')
+    if [ $# -gt 0 ] && ! apt_install "$@"; then
+        die "this Python has to compile python-rtmidi: sudo apt-get install $*" \
+            "(Python 3.12 and 3.11 need not)"
+    fi
+}
+
+# Prints those of the given Debian packages that are not there.
+missing() {
+    local package
+    for package in "$@"; do
+        is_there "$package" || printf '%s\n' "$package"
+    done
+}
+
+is_there() {
+    case $1 in
+        libportaudio2) # wherever it is from
+            case $(PATH=$PATH:/usr/sbin:/sbin ldconfig -p 2>/dev/null) in
+                *libportaudio.so.2*) return 0 ;;
+            esac
+            return 1
+            ;;
+        *) [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ;;
+    esac
+}
+
+# Installs Debian packages, as root; fails for anyone else.
+apt_install() {
+    [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null || return
+    say "installing $*"
+    {
+        apt-get update
+        DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@"
+    } >"$log" 2>&1 </dev/null 9>&-
+}

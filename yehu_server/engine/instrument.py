@@ -32,7 +32,7 @@ Array = Any
 CHUNK = 64  # frames run through the kernel at a time
 FADE_S = 0.005
 BLOCKED_HZ = 10.0  # what is slower than this is no sound
-FULL_SCALE_PRESSURE = 2.0  # Pa at full scale with no gain. By ear.
+FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
 SOFT_ABOVE = 10.0 ** (-3.0 / 20.0)  # the limiter is transparent below -3 dBFS
 
 OUTPUT = np.dtype(

@@ -1,0 +1,159 @@
+"""Run the kernel for a test, and measure what comes out. Nothing here knows what is right."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from yehu_server.physics import kernel, layout
+from yehu_server.physics.energy import stored_energy
+from yehu_server.physics.quantities import Quantities
+
+COLUMNS = {"F_N": layout.F_N, "v_b": layout.V_B, "x_b": layout.X_B, "hammer": layout.F_HAMMER}
+PROBES = {
+    "bridge_force": layout.BRIDGE_FORCE,
+    "bridge_velocity": layout.BRIDGE_VELOCITY,
+    "pressure": layout.PRESSURE,
+    "f_b": layout.FRICTION_FORCE,
+    "v_r": layout.RELATIVE_VELOCITY,
+    "iterations": layout.ITERATIONS,
+}
+# What power comes in or is lost by; the largest of them is the power flowing in a run.
+FLOWS = tuple(name for name in layout.LEDGER if name.startswith(("power", "loss")))
+
+Curves = Mapping[str, Any]  # F_N, v_b, x_b, hammer; x_f and press: one entry a finger
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of the kernel: signals by name, and the state at its end."""
+
+    rate: float
+    model: Any
+    state: Any
+    controls: Any
+    probes: Any
+    ledger: Any
+
+    def __getitem__(self, name: str) -> Any:
+        """A probe or a ledger column, one value a sample."""
+        if name in PROBES:
+            return self.probes[:, PROBES[name]]
+        return self.ledger[:, layout.LEDGER.index(name)]
+
+    def finger(self, j: int) -> Any:
+        """Height of a finger and its two contact forces [shape=(frames, 3)]."""
+        at = layout.FINGER_PROBES + layout.PROBES_PER_FINGER * j
+        return self.probes[:, at : at + layout.PROBES_PER_FINGER]
+
+    @property
+    def power(self) -> float:
+        """The largest power that flowed in or out (W)."""
+        return max(float(np.abs(self[name]).max()) for name in FLOWS)
+
+
+def rows(frames: int, fingers: int, curves: Curves) -> Any:
+    """Control rows from curves; what is not given is zero, bow and fingers in the middle."""
+    table = np.zeros((frames, layout.control_columns(fingers)))
+    table[:, layout.X_B] = 0.255
+    for name, column in COLUMNS.items():
+        if name in curves:
+            table[:, column] = curves[name]
+    for j in range(fingers):
+        at = layout.FINGER_CONTROLS + layout.CONTROLS_PER_FINGER * j
+        table[:, at] = curves.get("x_f", (0.1,) * fingers)[j]
+        table[:, at + 1] = curves.get("press", (0.0,) * fingers)[j]
+    return table
+
+
+def play(
+    curves: Callable[[Any], Curves] | Curves,
+    seconds: float,
+    rate: float = 44100.0,
+    *,
+    fingers: int = 1,
+    quantities: Quantities | None = None,
+    state: Any = None,
+    ledger: bool = True,
+) -> Run:
+    """Run the kernel over curves, given as functions of time (s) or as constants."""
+    model = kernel.prepare(quantities or Quantities(), rate, fingers)
+    state = kernel.at_rest(model) if state is None else state
+    frames = round(seconds * rate)
+    if callable(curves):
+        curves = curves(np.arange(frames) / rate)
+    controls = rows(frames, fingers, curves)
+    probes = np.zeros((frames, layout.probe_columns(fingers)))
+    book = np.zeros((frames if ledger else 0, len(layout.LEDGER)))
+    level = int(state["level"][0])
+    state["stored"] = stored_energy(model[0], state[0], level, (level + 2) % layout.LEVELS)
+    kernel.advance(model, state, controls, probes, book)
+    return Run(rate, model, state, controls, probes, book)
+
+
+def shaped(model: Any, string: int, shape: Callable[[Any], Any]) -> Any:
+    """A state at rest but for one string, displaced to shape(x) (m) and about to be let go."""
+    state = kernel.at_rest(model)
+    N, h = int(model["N"][0, string]), float(model["h"][0, string])
+    u = state["u"][0, :, string, :]
+    u[:, layout.GHOST : layout.GHOST + N + 1] = shape(np.arange(N + 1) * h)
+    u[:, layout.GHOST] = u[:, layout.GHOST + N] = 0.0
+    u[:, 0], u[:, N + 2] = -u[:, 2], -u[:, N]
+    return state
+
+
+def bump(left: float, right: float, height: float) -> Callable[[Any], Any]:
+    """A smooth pluck: sin^4 between two places, flat outside."""
+
+    def shape(x: Any) -> Any:
+        inside = np.clip((x - left) / (right - left), 0.0, 1.0)
+        return height * np.sin(np.pi * inside) ** 4
+
+    return shape
+
+
+def pitch(signal: Any, rate: float) -> float:
+    """Fundamental frequency (Hz, 100 to 1500) of a steady tone, by autocorrelation.
+
+    The first lag that correlates nearly as well as the best is the period; multiples of
+    it, each refined by a parabola, then sharpen it.
+    """
+    signal = signal - signal.mean()
+    n = len(signal)
+    spectrum = np.fft.rfft(signal, 2 * n)
+    correlation = np.fft.irfft(np.abs(spectrum) ** 2)[: n // 2] / np.arange(n, n - n // 2, -1)
+    first, last = int(rate / 1500), int(rate / 100)
+
+    def peak(lag: int) -> float:
+        left, top, right = correlation[lag - 1 : lag + 2]
+        return lag + 0.5 * (left - right) / (left - 2.0 * top + right)
+
+    inner = correlation[first:last]
+    tops = np.flatnonzero((inner[1:-1] >= inner[:-2]) & (inner[1:-1] > inner[2:])) + 1 + first
+    best = max(correlation[tops])
+    period = peak(int(tops[correlation[tops] > 0.9 * best][0]))
+    for multiple in (4, 16, 64):
+        lag = round(multiple * period)
+        if lag + 3 < len(correlation):
+            lag += int(np.argmax(correlation[lag - 2 : lag + 3])) - 2
+            period = peak(lag) / multiple
+    return rate / period
+
+
+def frequency_near(signal: Any, rate: float, guess: float) -> float:
+    """Frequency (Hz) of the partial next to `guess`, from the phase of two Hann windows."""
+    size = 2 * len(signal) // 3
+    gap = len(signal) - size
+    window = np.hanning(size)
+    time = np.arange(len(signal)) / rate
+    for _ in range(4):
+        turned = signal * np.exp(-2j * np.pi * guess * time)
+        early, late = window @ turned[:size], window @ turned[gap:]
+        guess += float(np.angle(late / early)) / (2.0 * np.pi * gap / rate)
+    return guess
+
+
+def cents(a: Any, b: Any) -> Any:
+    """The interval from b to a."""
+    return 1200.0 * np.log2(np.asarray(a) / np.asarray(b))

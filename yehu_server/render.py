@@ -62,6 +62,7 @@ class Summary:
     notes_out_of_range: int
     unconverged_solves: int
     lost_states: int
+    friction_bound: float
     notes_by_channel: dict[int, int]
 
 
@@ -154,6 +155,7 @@ def render(
         notes_out_of_range=performance.performer.notes_out_of_range,
         unconverged_solves=performance.instrument.unconverged_solves,
         lost_states=performance.instrument.lost_states,
+        friction_bound=performance.instrument.friction_bound,
         notes_by_channel=dict(sorted(performance.midi.notes_by_channel.items())),
     )
 

@@ -19,6 +19,7 @@ from yehu_server import __version__
 from yehu_server.errors import OutputError, ParameterError, ScoreError
 from yehu_server.files import replacing
 from yehu_server.physics import kernel, layout
+from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.energy import stored_energy
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.layout import GHOST, LEDGER, STRINGS
@@ -327,6 +328,7 @@ def simulate(
         "grid_intervals": [int(N) for N in m["N"]],
         "grid_spacing_m": [float(h) for h in m["h"]],
         "bridge_x_m": float(m["bridge_x"]),
+        "friction_bound": friction_bound(m),
         "unconverged_solves": int(state["unconverged"][0]),
         "lost_states": int(state["lost"][0]),
     }

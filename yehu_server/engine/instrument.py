@@ -23,6 +23,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.jit import compiled
 from yehu_server.params.table import SLOT, find
 from yehu_server.physics import kernel
+from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.layout import ITERATIONS, PRESSURE, control_columns, probe_columns
 from yehu_server.physics.quantities import Quantities
@@ -166,6 +167,11 @@ class Instrument:
     def frame(self) -> int:
         """The frame of the next sample."""
         return int(self._gesture["frame"][0])
+
+    @property
+    def friction_bound(self) -> float:
+        """See ``physics.bow.friction_bound``."""
+        return friction_bound(self._model[0])
 
     @property
     def unconverged_solves(self) -> int:

@@ -32,6 +32,17 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
     model["C_h"] = 4.0 * k**2 / Lambda
 
 
+def friction_bound(model: np.void) -> float:
+    """How near friction may come to having several solutions: below 1 it has one.
+
+    The worst case, the bow exactly on a node; a sufficient bound, where bristles are not
+    stretched far beyond what the bow force sustains. Source: docs/physics.md.
+    """
+    k = model["k"]
+    compliance = (model["spread"].max() + model["C_h"]) / (2.0 * k)
+    return float(1.34 * compliance * model["epsilon_0"] * k / 2.0)
+
+
 @compiled
 def choose_string(model: Any, s: Any, F_N: float) -> tuple[int, bool]:
     """Return the string under the bow, by the sign of the force, and whether it is bowed.

@@ -2,7 +2,8 @@
 
 Who owns the bow and the fingers: this player, as long as notes sound. A direct write to
 a parameter marked ``owned`` takes that one over until the next note begins or `release`
-is called; one written with ``hold`` is kept until `release` (decisions/0006).
+is called. Any parameter written with ``hold`` stays as it is until `release`, whatever
+notes and controllers say (decisions/0006).
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ class Performer:
     def write(
         self, address: str, value: float, *, frame: int | None = None, hold: bool = False
     ) -> float:
-        """Set any parameter of the table; return the value accepted.
+        """Set any parameter of the table; return the value it then has.
 
         Errors: ParameterError for an unknown address or a value that is not finite.
         """
@@ -109,6 +110,10 @@ class Performer:
                 if address == "/bow/force":  # raw newtons are heard only without assist
                     self._take_over("/bow/assist", 0.0, frame, hold)
             return self._sink.write(address, accepted, frame=frame)
+        if hold:
+            self._kept.add(address)
+        elif address in self._kept:
+            return self._value[address]
         if self._value[address] == accepted:
             return accepted
         self._value[address] = accepted

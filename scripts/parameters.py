@@ -1,0 +1,42 @@
+"""Write docs/parameters.md from the parameter table.
+
+.venv/bin/python scripts/parameters.py
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from yehu_server.params.spec import Place
+from yehu_server.params.table import TABLE
+
+TARGET = Path(__file__).resolve().parent.parent / "docs" / "parameters.md"
+
+
+def page() -> str:
+    """The page as text."""
+    lines = [
+        "# Parameters",
+        "",
+        "Written by `scripts/parameters.py` from `yehu_server/params/table.py`.",
+        "",
+        "`render --set ADDRESS=VALUE` holds any of them; mappings move those under `/playing`.",
+    ]
+    for place, title in (
+        (Place.PLAYER, "What the player goes by"),
+        (Place.ENGINE, "What the player moves, or you do directly"),
+    ):
+        lines += ["", f"## {title}", "", "| address | range | default | unit | what |"]
+        lines.append("|---|---|---|---|---|")
+        for param in TABLE:
+            if param.place is place:
+                unit = "" if param.unit == "1" else param.unit
+                lines.append(
+                    f"| `{param.address}` | {param.lo:g} to {param.hi:g} | {param.default:g} "
+                    f"| {unit} | {param.doc} |"
+                )
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    TARGET.write_text(page(), encoding="utf-8")

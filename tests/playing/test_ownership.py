@@ -1,0 +1,150 @@
+"""Who owns the bow and the fingers: the player, or who writes to them directly."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from yehu_server.errors import ParameterError
+from yehu_server.playing.performer import Key
+
+
+def key(note: int) -> Key:
+    return Key(0, note)
+
+
+@pytest.mark.parametrize(
+    ("address", "value", "players"),
+    [
+        ("/bow/speed", 0.11, 0.33),
+        ("/bow/side", 0.5, 1.0),
+        ("/bow/pressure", 1.1, 0.77),
+        ("/bow/assist", 0.3, 0.9),
+        ("/finger/1/position", 0.2, 0.06),
+        ("/finger/1/press", 4.0, 2.2),
+    ],
+)
+def test_a_direct_write_takes_one_parameter_over_until_the_next_note(
+    player, listener, address, value, players
+):
+    player.note_on(key(75))
+    assert player.write(address, value) == value
+    player.write("/playing/speed", 0.33)
+    player.write("/playing/pressure", 0.77)
+    player.write("/playing/assist", 0.9)
+    player.write("/playing/press", 2.2)
+    player.write("/playing/bend", -4.0)  # moves the finger, and the bow to the F string
+    player.write("/playing/bend", 0.0)
+    assert listener[address] == value
+    player.note_on(key(71))
+    assert listener[address] == pytest.approx(players)
+
+
+def test_a_direct_write_leaves_the_other_parameters_to_the_player(player, listener):
+    player.note_on(key(75))
+    player.write("/bow/speed", 0.11)
+    player.write("/playing/press", 2.2)
+    player.write("/playing/bend", 1.0)
+    player.write("/playing/pressure", 0.9)
+    assert listener["/finger/1/press"] == 2.2
+    assert listener["/finger/1/position"] == pytest.approx(0.04)
+    assert listener["/bow/pressure"] == 0.9
+    assert listener["/bow/speed"] == 0.11
+
+
+def test_a_direct_write_outlives_the_end_of_the_note(player, listener):
+    player.note_on(key(75))
+    player.write("/bow/speed", 0.11)
+    player.note_off(key(75))
+    assert listener["/bow/speed"] == 0.11
+
+
+def test_a_direct_write_on_an_idle_instrument_just_moves_it(player, listener):
+    player.write("/bow/speed", -0.3)
+    assert listener["/bow/speed"] == -0.3
+
+
+def test_release_gives_the_bow_back_to_the_player(player, listener):
+    player.note_on(key(75))
+    player.write("/bow/speed", 0.11)
+    player.release()
+    player.write("/playing/speed", 0.33)
+    assert listener["/bow/speed"] == 0.33
+
+
+def test_a_held_write_stays_through_notes_until_release(player, listener):
+    player.write("/bow/speed", 0.11, hold=True)
+    for note in (66, 80):
+        player.note_on(key(note))
+        assert listener["/bow/speed"] == 0.11
+        player.note_off(key(note))
+        assert listener["/bow/speed"] == 0.11
+    player.release()
+    player.note_on(key(66))
+    assert abs(listener["/bow/speed"]) == 0.2
+
+
+def test_newtons_written_are_newtons_heard_until_the_next_note(player, listener):
+    player.note_on(key(75))
+    player.write("/bow/force", 0.9)
+    assert (listener["/bow/force"], listener["/bow/assist"]) == (0.9, 0.0)
+    player.write("/playing/assist", 0.8)  # assist limits the player, never a direct write
+    assert listener["/bow/assist"] == 0.0
+    player.note_on(key(76))
+    assert listener["/bow/assist"] == 0.8
+
+
+def test_newtons_held_are_heard_through_notes(player, listener):
+    player.write("/bow/force", 0.9, hold=True)
+    player.note_on(key(75))
+    assert (listener["/bow/force"], listener["/bow/assist"]) == (0.9, 0.0)
+
+
+def test_the_next_note_takes_the_level_back_too(player, listener):
+    player.write("/playing/volume", 0.5)
+    player.note_on(key(75))
+    player.write("/output/level", 1.0)
+    player.write("/playing/volume", 0.25)
+    assert listener["/output/level"] == 1.0
+    player.note_on(key(76))
+    assert listener["/output/level"] == pytest.approx(0.0625)
+
+
+@pytest.mark.parametrize("address", ["/bow/position", "/output/gain"])
+def test_what_the_player_never_moves_stays_as_written(player, listener, address):
+    player.write(address, 0.3)
+    player.note_on(key(75))
+    assert [move.value for move in listener.of(address)] == [0.3]
+
+
+# ---------------------------------------------------------------- refusals
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, True, "0.3", None])
+@pytest.mark.parametrize("address", ["/bow/speed", "/playing/speed"])
+def test_what_is_no_finite_number_is_refused_and_changes_nothing(player, listener, address, value):
+    with pytest.raises(ParameterError, match=address):
+        player.write(address, value)
+    assert listener.moves == []
+    player.note_on(key(75))
+    assert listener["/bow/speed"] == 0.2
+
+
+def test_a_value_out_of_range_is_clamped_and_returned(player, listener):
+    assert player.write("/bow/speed", 99.0) == 2.0
+    assert listener["/bow/speed"] == 2.0
+    assert player.write("/playing/speed", 99.0) == 0.6
+    assert player.value("/playing/speed") == 0.6
+
+
+def test_an_unknown_parameter_is_refused_by_name(player):
+    with pytest.raises(ParameterError, match="/bow/sped"):
+        player.write("/bow/sped", 0.1)
+    with pytest.raises(ParameterError, match="/bow/sped"):
+        player.value("/bow/sped")
+
+
+def test_the_player_does_not_claim_to_hold_what_the_engine_holds(player):
+    with pytest.raises(ParameterError, match="/bow/speed"):
+        player.value("/bow/speed")

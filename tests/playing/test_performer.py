@@ -1,0 +1,367 @@
+"""What a player does with notes: strings, fingers, strokes, variation, level."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.performer import Key, Performer
+
+
+def key(note: int, channel: int = 0) -> Key:
+    return Key(channel, note)
+
+
+# ---------------------------------------------------------------- strings and fingers
+
+
+@pytest.mark.parametrize("note", range(66, 72))
+def test_a_note_below_c5_is_stopped_on_the_f_string(player, listener, note):
+    player.note_on(key(note))
+    assert listener.where() == ("F", note - 65)
+
+
+@pytest.mark.parametrize("note", range(73, 90))
+def test_a_note_above_c5_is_stopped_on_the_c_string(player, listener, note):
+    player.note_on(key(note))
+    assert listener.where() == ("C", note - 72)
+
+
+@pytest.mark.parametrize(("note", "string"), [(65, "F"), (72, "C")])
+@pytest.mark.parametrize("before", [None, 70, 80])
+def test_f4_and_c5_are_open_strings(player, listener, note, string, before):
+    if before is not None:
+        player.note_on(key(before))
+    player.note_on(key(note))
+    assert listener.where() == (string, None)
+
+
+def test_a_finger_high_on_the_f_string_stays_there_for_a_near_note(player, listener):
+    player.note_on(key(71))  # 6 cm up the neck; 74 is at 9 cm here and 2 cm on the C string
+    player.note_on(key(74))
+    assert listener.where() == ("F", 9)
+
+
+def test_a_finger_low_on_the_f_string_crosses_to_the_c_string(player, listener):
+    player.note_on(key(66))  # 1 cm up the neck; 74 is at 9 cm here and 2 cm on the C string
+    player.note_on(key(74))
+    assert listener.where() == ("C", 2)
+
+
+def test_a_finger_that_is_up_has_no_way_to_go(player, listener):
+    player.note_on(key(71))
+    player.note_on(key(65))
+    player.note_on(key(74))
+    assert listener.where() == ("C", 2)
+
+
+def test_a_finger_on_the_c_string_stays_on_it(player, listener):
+    player.note_on(key(84))
+    player.note_on(key(77))  # on the F string the finger would not have to move at all
+    assert listener.where() == ("C", 5)
+
+
+def test_no_note_is_played_on_the_f_string_where_the_finger_would_crowd_the_bow(player, listener):
+    for note in (71, 74, 77, 80, 83):  # up the F string, as far as 18 cm
+        player.note_on(key(note))
+        assert listener.where() == ("F", note - 65)
+    player.note_on(key(86))  # 21 cm there, 14 cm on the C string
+    assert listener.where() == ("C", 14)
+
+
+def test_a_finger_already_down_slides_to_the_next_note_in_the_glide_time(player, listener):
+    player.write("/playing/glide", 70.0)
+    player.note_on(key(66))
+    player.note_on(key(68))
+    first, second = listener.of("/finger/1/position")
+    assert first.ramp_ms == 0.0
+    assert second.ramp_ms == 70.0
+
+
+# ---------------------------------------------------------------- one note at a time
+
+
+def test_the_last_note_wins_and_a_held_one_returns_when_it_ends(player, listener):
+    for note in (66, 68, 70):
+        player.note_on(key(note))
+    assert listener.where() == ("F", 5)
+    player.note_off(key(70))
+    assert listener.where() == ("F", 3)
+    player.note_off(key(68))
+    assert listener.where() == ("F", 1)
+    assert player.sounding == key(66)
+    player.note_off(key(66))
+    assert player.sounding is None
+    assert listener["/bow/speed"] == 0.0
+    assert listener["/bow/side"] == 0.0
+
+
+def test_the_end_of_a_note_that_does_not_sound_changes_nothing(player, listener):
+    player.note_on(key(66))
+    player.note_on(key(70))
+    heard = len(listener.moves)
+    player.note_off(key(66))
+    player.note_off(key(89))
+    assert len(listener.moves) == heard
+    player.note_off(key(70))
+    assert player.sounding is None
+
+
+def test_a_held_note_pressed_again_becomes_the_last_one(player):
+    player.note_on(key(66))
+    player.note_on(key(70))
+    player.note_on(key(66))
+    assert player.sounding == key(66)
+    player.note_off(key(66))
+    assert player.sounding == key(70)
+
+
+def test_keys_of_two_channels_are_two_keys(player):
+    player.note_on(key(66, channel=0))
+    player.note_on(key(66, channel=1))
+    player.note_off(key(66, channel=1))
+    assert player.sounding == key(66, channel=0)
+
+
+def test_all_notes_off_ends_every_note(player, listener):
+    player.note_on(key(66))
+    player.note_on(key(70))
+    player.all_notes_off()
+    assert player.sounding is None
+    assert (listener["/bow/speed"], listener["/bow/side"]) == (0.0, 0.0)
+    assert not listener.silenced
+    player.note_off(key(70))  # does not bring 66 back
+    assert player.sounding is None
+
+
+def test_all_sound_off_silences_the_instrument_at_its_frame(player, listener):
+    player.note_on(key(66))
+    player.all_sound_off(frame=4711)
+    assert player.sounding is None
+    assert listener.silenced == [4711]
+
+
+def test_everything_a_note_moves_happens_at_its_frame(player, listener):
+    player.note_on(key(66), frame=123)
+    assert {move.frame for move in listener.moves} == {123}
+    heard = len(listener.moves)
+    player.note_off(key(66), frame=456)
+    assert {move.frame for move in listener.moves[heard:]} == {456}
+
+
+# ---------------------------------------------------------------- strokes
+
+
+def test_separate_notes_change_the_direction_of_the_bow(player, listener):
+    strokes = []
+    for note in (66, 73, 66, 65):
+        player.note_on(key(note))
+        strokes.append(listener["/bow/speed"])
+        player.note_off(key(note))
+    assert strokes == [0.2, -0.2, 0.2, -0.2]
+
+
+def test_overlapping_notes_share_one_stroke_across_the_strings_too(player, listener):
+    held = None
+    for note in (66, 73, 70, 72):
+        player.note_on(key(note))
+        assert listener["/bow/speed"] == 0.2
+        if held:
+            player.note_off(held)
+        assert listener["/bow/speed"] == 0.2
+        held = key(note)
+
+
+def test_a_held_note_returns_on_the_same_stroke(player, listener):
+    player.note_on(key(66))
+    player.note_off(key(66))
+    player.note_on(key(66))
+    player.note_on(key(70))
+    player.note_off(key(70))
+    assert listener["/bow/speed"] == -0.2
+
+
+def test_the_same_key_struck_again_is_a_new_stroke(player, listener):
+    player.note_on(key(66))
+    player.note_on(key(66))
+    assert listener["/bow/speed"] == -0.2
+
+
+def test_a_stroke_begins_and_ends_in_the_times_set_for_it(player, listener):
+    player.write("/playing/attack", 80.0)
+    player.write("/playing/release", 300.0)
+    player.note_on(key(66))
+    assert listener.of("/bow/speed")[-1].ramp_ms == 80.0
+    player.note_off(key(66))
+    assert listener.of("/bow/speed")[-1].ramp_ms == 300.0
+    assert listener.of("/bow/side")[-1].ramp_ms == 300.0
+
+
+def test_speed_pressure_and_press_reach_the_sounding_note(player, listener):
+    player.note_on(key(66))
+    player.note_off(key(66))
+    player.note_on(key(66))
+    player.write("/playing/speed", 0.3)
+    player.write("/playing/pressure", 0.7)
+    player.write("/playing/press", 3.0)
+    assert listener["/bow/speed"] == -0.3
+    assert listener["/bow/pressure"] == 0.7
+    assert listener["/finger/1/press"] == 3.0
+
+
+def test_the_bow_stays_still_and_the_finger_up_when_no_note_sounds(player, listener):
+    player.write("/playing/speed", 0.3)
+    player.write("/playing/press", 3.0)
+    player.write("/playing/bend", 1.0)
+    assert listener.of("/bow/speed") == []
+    assert all(move.value == 0.0 for move in listener.of("/finger/1/press"))
+    assert listener.of("/finger/1/position") == []
+
+
+def test_pressing_harder_does_not_close_an_open_string(player, listener):
+    player.note_on(key(65))
+    player.write("/playing/press", 5.0)
+    assert listener["/finger/1/press"] == 0.0
+
+
+# ---------------------------------------------------------------- bending
+
+
+def test_a_bend_moves_the_finger_along_its_string(player, listener):
+    player.note_on(key(75))
+    for bend in (1.5, -2.0, 0.01, 0.0):
+        player.write("/playing/bend", bend)
+        assert listener.where() == ("C", round(3 + bend, 6))
+
+
+def test_an_open_string_bent_up_is_stopped_and_open_again_when_it_comes_back(player, listener):
+    player.note_on(key(65))
+    player.write("/playing/bend", 1.0)
+    assert listener.where() == ("F", 1)
+    player.write("/playing/bend", 0.0)
+    assert listener.where() == ("F", None)
+
+
+def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string(player, listener):
+    player.note_on(key(73))
+    player.write("/playing/bend", -2.0)
+    assert listener.where() == ("F", 6)
+    assert listener["/bow/speed"] == 0.2
+
+
+def test_a_bend_below_the_open_f_string_stops_at_it(player, listener):
+    player.note_on(key(66))
+    player.write("/playing/bend", -7.0)
+    assert listener.where() == ("F", None)
+
+
+def test_a_note_begun_with_the_wheel_moved_starts_bent(player, listener):
+    player.write("/playing/bend", 0.5)
+    player.note_on(key(75))
+    assert listener.where() == ("C", 3.5)
+
+
+# ---------------------------------------------------------------- out of range
+
+
+def by_octaves(note: int) -> int:
+    while note < 65:
+        note += 12
+    while note > 89:
+        note -= 12
+    return note
+
+
+@pytest.mark.parametrize(
+    ("policy", "expected"),
+    [
+        (RangePolicy.TRANSPOSE, by_octaves),
+        (RangePolicy.CLAMP, lambda note: 65 if note < 65 else min(note, 89)),
+        (RangePolicy.SKIP, lambda note: note if 65 <= note <= 89 else None),
+    ],
+)
+def test_notes_out_of_range_go_where_the_policy_says(listener, ruler, policy, expected):
+    above = {"F": 65, "C": 72}
+    for note in range(128):
+        player = Performer(listener, ruler, policy)
+        player.write("/playing/variation", 0.0)
+        heard = len(listener.moves)
+        player.note_on(key(note))
+        outside = not 65 <= note <= 89
+        assert player.notes_out_of_range == outside
+        assert player.notes_played == (expected(note) is not None)
+        if expected(note) is None:
+            assert player.sounding is None
+            assert len(listener.moves) == heard
+        else:
+            string, stop = listener.where()
+            assert above[string] + (stop or 0) == expected(note)
+            player.note_off(key(note))
+        assert player.sounding is None
+
+
+def test_notes_are_counted_once_each(player):
+    for note in (40, 66, 66, 100, 89):
+        player.note_on(key(note))
+        player.note_off(key(note))
+    assert player.notes_played == 5
+    assert player.notes_out_of_range == 2
+
+
+# ---------------------------------------------------------------- variation
+
+
+def phrase(listener, ruler, variation: float, seed: int) -> list:
+    player = Performer(listener, ruler, seed=seed)
+    player.write("/playing/variation", variation)
+    for _ in range(4):
+        player.note_on(key(75))
+        player.note_off(key(75))
+    heard, listener.moves = listener.moves, []
+    return heard
+
+
+def test_without_variation_every_note_is_the_same_but_for_its_stroke(listener, ruler):
+    heard = phrase(listener, ruler, 0.0, 1)
+    assert heard == phrase(listener, ruler, 0.0, 2)
+    assert {abs(move.value) for move in heard if move.address == "/bow/speed"} == {0.2, 0.0}
+    assert {move.value for move in heard if move.address == "/bow/pressure"} == {0.4}
+    assert {move.value for move in heard if move.address == "/finger/1/position"} == {0.03}
+
+
+def test_one_seed_plays_the_same_and_another_differently(listener, ruler):
+    assert phrase(listener, ruler, 0.5, 1) == phrase(listener, ruler, 0.5, 1)
+    assert phrase(listener, ruler, 0.5, 1) != phrase(listener, ruler, 0.5, 2)
+
+
+@pytest.mark.parametrize("address", ["/bow/speed", "/bow/pressure", "/finger/1/position"])
+def test_with_variation_no_two_notes_are_alike_and_all_are_close(listener, ruler, address):
+    heard = phrase(listener, ruler, 0.25, 3)
+    values = [abs(move.value) for move in heard if move.address == address and move.value]
+    nominal = {"/bow/speed": 0.2, "/bow/pressure": 0.4, "/finger/1/position": 0.03}[address]
+    assert len(set(values)) == 4
+    assert all(math.isclose(value, nominal, rel_tol=0.15) for value in values)
+
+
+def test_a_bend_keeps_the_variation_of_its_note(listener, ruler):
+    player = Performer(listener, ruler, seed=5)
+    player.write("/playing/variation", 1.0)
+    player.note_on(key(75))
+    before = listener["/finger/1/position"]
+    player.write("/playing/bend", 1.0)
+    player.write("/playing/bend", 0.0)
+    assert listener["/finger/1/position"] == before
+
+
+# ---------------------------------------------------------------- level
+
+
+def test_volume_and_expression_multiply_and_loudness_is_their_square(player, listener):
+    player.write("/playing/volume", 0.5)
+    assert listener["/output/level"] == pytest.approx(0.25)
+    player.write("/playing/expression", 0.5)
+    assert listener["/output/level"] == pytest.approx(0.0625)
+    player.write("/playing/volume", 1.0)
+    assert listener["/output/level"] == pytest.approx(0.25)

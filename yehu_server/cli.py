@@ -196,6 +196,7 @@ def _add_reporting(parser: argparse.ArgumentParser) -> None:
 
 
 def _render(arguments: argparse.Namespace) -> int:
+    from yehu_server.files import check_target
     from yehu_server.params.table import assignment
     from yehu_server.physics.grid import check_rate
     from yehu_server.playing.fingering import RangePolicy
@@ -204,6 +205,7 @@ def _render(arguments: argparse.Namespace) -> int:
     from yehu_server.score.smf import concatenate, read_score
 
     check_rate(arguments.rate)
+    check_target(arguments.output, arguments.midi)
     channels = arguments.channel
     options = Options(
         rate=arguments.rate,
@@ -241,9 +243,11 @@ def _render(arguments: argparse.Namespace) -> int:
 def _simulate(arguments: argparse.Namespace) -> int:
     import time
 
+    from yehu_server.files import check_target
     from yehu_server.simulate import read_gesture, simulate
 
     gesture = read_gesture(arguments.gesture)
+    check_target(arguments.output, [arguments.gesture])
     start = time.perf_counter()
     with _progress(arguments, "simulating") as progress:
         result = simulate(

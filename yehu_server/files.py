@@ -5,10 +5,34 @@ from __future__ import annotations
 import contextlib
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from yehu_server.errors import OutputError
+
+
+def check_target(target: Path, inputs: Iterable[Path] = ()) -> None:
+    """Refuse a target that could not be written, or would overwrite one of the inputs.
+
+    Errors: OutputError where the folder is missing or not writable, or the target is not a
+    regular file.
+    """
+    folder = target.parent
+    try:
+        if not folder.exists():
+            raise OutputError(f"{target}: the folder {folder} does not exist")
+        if not folder.is_dir():
+            raise OutputError(f"{target}: {folder} is not a folder")
+        if target.is_dir():
+            raise OutputError(f"{target}: is a folder; name a file")
+        if target.exists() and not stat.S_ISREG(target.stat().st_mode):
+            raise OutputError(f"{target}: is not a regular file")
+        if any(path.exists() and target.exists() and path.samefile(target) for path in inputs):
+            raise OutputError(f"{target}: would overwrite what is read")
+    except OSError as error:
+        raise OutputError(f"{target}: cannot write: {error.strerror}") from error
+    if not os.access(folder, os.W_OK):
+        raise OutputError(f"{target}: the folder {folder} is not writable")
 
 
 @contextlib.contextmanager
@@ -17,18 +41,10 @@ def replacing(target: Path) -> Iterator[Path]:
 
     Whatever ends the block early (an error, an interrupt) removes the partial file and
     leaves an older `target` as it was.
-    Errors: OutputError where the folder is missing or not writable, the target is not a
-    regular file, or writing fails (a full disk).
+    Errors: OutputError as `check_target`, or where writing fails (a full disk).
     """
+    check_target(target)
     folder = target.parent
-    if not folder.exists():
-        raise OutputError(f"{target}: the folder {folder} does not exist")
-    if not folder.is_dir():
-        raise OutputError(f"{target}: {folder} is not a folder")
-    if target.is_dir():
-        raise OutputError(f"{target}: is a folder; name a file")
-    if target.exists() and not stat.S_ISREG(target.stat().st_mode):
-        raise OutputError(f"{target}: is not a regular file")
     partial = folder / f".{target.name}.{os.getpid()}.part"
     try:
         partial.touch()

@@ -235,7 +235,7 @@ class Simulation:
     meta: Mapping[str, Any]
 
     def save(self, target: Path) -> None:
-        """Write a compressed-free ``.npz``; ``meta`` is JSON text within it.
+        """Write an uncompressed ``.npz``; ``meta`` is JSON text within it.
 
         Errors: OutputError.
         """

@@ -142,14 +142,16 @@ def pitch(signal: Any, rate: float) -> float:
 
 
 def frequency_near(signal: Any, rate: float, guess: float) -> float:
-    """Frequency (Hz) of the partial next to `guess`, from the phase of two Hann windows."""
+    """Frequency (Hz) of the partial next to `guess`, from the phase of two Hann windows.
+
+    They lie ever further apart, so that the phase between them is never off by a turn.
+    """
     size = 2 * len(signal) // 3
-    gap = len(signal) - size
     window = np.hanning(size)
     time = np.arange(len(signal)) / rate
-    for _ in range(4):
+    for gap in (len(signal) // 24, len(signal) // 6, len(signal) - size, len(signal) - size):
         turned = signal * np.exp(-2j * np.pi * guess * time)
-        early, late = window @ turned[:size], window @ turned[gap:]
+        early, late = window @ turned[:size], window @ turned[gap : gap + size]
         guess += float(np.angle(late / early)) / (2.0 * np.pi * gap / rate)
     return guess
 

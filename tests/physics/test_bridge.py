@@ -89,18 +89,20 @@ def test_a_hammer_moves_the_bridge_by_the_sum_of_its_modes(rate):
     assert np.abs(simulated - expected).max() < 1e-12 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize(("rate", "tolerance"), [(44100.0, 0.012), (176400.0, 0.012 / 16)])
-def test_a_hammer_moves_the_bridge_as_eleven_oscillators_do(rate, tolerance):
+@pytest.mark.parametrize("rate", [44100.0, 176400.0])
+def test_a_hammer_moves_the_bridge_as_eleven_oscillators_do(rate):
     """Against the closed form, to second order in the step.
 
-    Pre-warping holds the frequencies and stiffens a mode by (omega k)^2/6: 3.1 % of the
-    highest at 44.1 kHz, which carries a third of the motion; sixteen times less at four
-    times the rate.
+    Pre-warping holds a mode's frequency and stiffens it by (omega k)^2/6, 3 % of the
+    highest mode at 44.1 kHz; the slow modes, which carry the sum, leave 0.1 %.
     """
     frames = round(0.05 * rate)
-    time = np.arange(frames + 1) / rate
-    expected = ode_responses(time).sum(axis=1)
-    simulated = struck(kernel.prepare(YEHU, rate), frames).sum(axis=1)
+    expected = ode_responses(np.arange(frames + 1) / rate)
+    simulated = struck(kernel.prepare(YEHU, rate), frames)
+    error = np.abs(simulated - expected).max(axis=0) / np.abs(expected).max(axis=0)
+    assert np.all(error < (OMEGA / rate) ** 2 / 5.0)
+    expected, simulated = expected.sum(axis=1), simulated.sum(axis=1)
+    tolerance = 1e-3 * (44100.0 / rate) ** 2
     assert np.abs(simulated - expected).max() < tolerance * np.abs(expected).max()
 
 
@@ -121,14 +123,6 @@ def test_without_the_weight_of_strings_the_whole_model_moves_as_the_modes_do():
     assert error < 2e-3 * np.abs(expected).max()
 
 
-def test_the_radiated_sound_of_a_strike_follows_the_force_on_the_bridge_only():
-    """The hammer is not a string: what radiates is f_c1 + f_c2."""
-    run = play(lambda t: {"hammer": hammer(t)}, 0.01)
-    forces = run.probes[:, layout.BRIDGE_FORCE_1] + run.probes[:, layout.BRIDGE_FORCE_2]
-    assert np.array_equal(run["bridge_force"], forces)
-    assert abs(run["bridge_force"][0]) < 0.2
-
-
 @pytest.mark.parametrize("string", [0, 1], ids=["F4", "C5"])
 def test_a_plucked_string_moves_the_other_through_the_bridge(string):
     model = kernel.prepare(YEHU, 44100.0)
@@ -138,27 +132,19 @@ def test_a_plucked_string_moves_the_other_through_the_bridge(string):
     assert run["constraint_residual"].max() <= 1e-15
 
 
-def test_a_bridge_force_is_newtons_third_law():
-    """With one sample of pull on string 1 the modes get what the string loses."""
-    model = kernel.prepare(YEHU, 44100.0)
-    state = shaped(model, 0, bump(0.02, 0.299, 3e-4))
-    k, rho_A = 1.0 / 44100.0, YEHU.string_1.rho * math.pi * YEHU.string_1.r**2
-    run = play({}, 40 * k, state=state)
-    now, before = int(state["level"][0]), (int(state["level"][0]) + 2) % layout.LEVELS
-    momentum = 0.0
-    for i, string in enumerate(YEHU.strings):
-        rho_A = string.rho * math.pi * string.r**2
-        travel = state["u"][0, now, i] - state["u"][0, before, i]
-        N = int(model["N"][0, i])
-        momentum += rho_A * float(model["h"][0, i]) * travel[2 : N + 1].sum() / k
-    assert math.isfinite(momentum)
-    q = state["q"][0]
-    travel = (q[now] - q[before])[: len(M)] / k
-    # M q'' = -f_c, less spring and damper: sum up 40 samples of the heaviest mode by hand.
+def test_what_pulls_the_strings_pushes_the_modes():
+    """Newton's third law: the probed bridge force, put into eq. (41), moves the bridge."""
+    rate, k = 44100.0, 1.0 / 44100.0
+    model = kernel.prepare(YEHU, rate)
+    run = play({}, 0.01, state=shaped(model, 0, bump(0.02, 0.28, 3e-4)))
     stiffness = M * (2.0 / k * np.tan(OMEGA * k / 2.0)) ** 2
-    y = np.zeros((42, len(M)))
-    for n, force in enumerate(run["bridge_force"]):
-        whole = M / k**2 + stiffness / 4.0 + R / (2.0 * k)
-        rest = M * (y[n] - 2.0 * y[n + 1]) / k**2 + stiffness * (2.0 * y[n + 1] + y[n]) / 4.0
-        y[n + 2] = (-force - rest + R * y[n] / (2.0 * k)) / whole
-    assert travel == pytest.approx((y[-1] - y[-2]) / k, rel=1e-9)
+    whole = M / k**2 + stiffness / 4.0 + R / (2.0 * k)
+    q_prev, q = np.zeros(len(M)), np.zeros(len(M))
+    expected = []
+    for force in run["bridge_force"]:
+        rest = M * (q_prev - 2.0 * q) / k**2 + stiffness * (2.0 * q + q_prev) / 4.0
+        q_next = (-force - rest + R * q_prev / (2.0 * k)) / whole
+        expected.append((q_next - q_prev).sum() / (2.0 * k))
+        q_prev, q = q, q_next
+    error = np.abs(run["bridge_velocity"] - expected).max()
+    assert error < 1e-9 * np.abs(expected).max()

@@ -1,12 +1,16 @@
-"""An instrument that only listens, and a neck that is easy to reckon with."""
+"""An instrument that only listens, a neck easy to reckon with, and a keyboard to play on."""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
+import mido
 import pytest
 
+from yehu_server.params.spec import Curve
+from yehu_server.playing.mapping import Bind, Mapping
+from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Performer
 
 ENGINE = {
@@ -77,6 +81,41 @@ class Ruler:
         return self.position(string, pitch) <= 0.19
 
 
+class Midi:
+    """A keyboard: methods send messages, on channel 1 unless told."""
+
+    def __init__(self, player: MidiPlayer) -> None:
+        self._player = player
+
+    def send(self, kind: str, **fields) -> None:
+        self._player.receive(mido.Message(kind, **fields))
+
+    def on(self, note: int, velocity: int = 64, channel: int = 1) -> None:
+        self.send("note_on", note=note, velocity=velocity, channel=channel - 1)
+
+    def off(self, note: int, channel: int = 1) -> None:
+        self.send("note_off", note=note, channel=channel - 1)
+
+    def cc(self, control: int, value: int, channel: int = 1) -> None:
+        self.send("control_change", control=control, value=value, channel=channel - 1)
+
+    def bend(self, pitch: int, channel: int = 1) -> None:
+        self.send("pitchwheel", pitch=pitch, channel=channel - 1)
+
+    def touch(self, value: int, channel: int = 1) -> None:
+        self.send("aftertouch", value=value, channel=channel - 1)
+
+    def rpn(self, msb: int, lsb: int, *data: tuple[int, int], channel: int = 1) -> None:
+        for control, value in ((101, msb), (100, lsb), *data):
+            self.cc(control, value, channel)
+
+
+@pytest.fixture
+def listener_type() -> type[Listener]:
+    """For whoever needs many."""
+    return Listener
+
+
 @pytest.fixture
 def listener() -> Listener:
     return Listener()
@@ -93,3 +132,23 @@ def player(listener, ruler) -> Performer:
     performer = Performer(listener, ruler)
     performer.write("/playing/variation", 0.0)
     return performer
+
+
+@pytest.fixture
+def mapping() -> Mapping:
+    """The roles of the shipped keyboard mapping, with figures of our own."""
+    binds = (
+        Bind("bend", "/playing/bend"),
+        Bind("pressure", "/playing/press", (1.5, 5.0)),
+        Bind("poly-pressure", "/playing/press", (1.5, 5.0)),
+        Bind("cc 1", "/playing/speed", (0.08, 0.35), Curve.EXP),
+        Bind("velocity", "/playing/pressure", (0.3, 0.55)),
+        Bind("cc 7", "/playing/volume"),
+        Bind("cc 11", "/playing/expression"),
+    )
+    return Mapping("test", binds)
+
+
+@pytest.fixture
+def midi(player, mapping) -> Midi:
+    return Midi(MidiPlayer(player, mapping))

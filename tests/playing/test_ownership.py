@@ -118,6 +118,23 @@ def test_what_the_player_never_moves_stays_as_written(player, listener, address)
     assert [move.value for move in listener.of(address)] == [0.3]
 
 
+def test_a_held_wish_stays_whatever_controllers_say_until_release(player, listener):
+    player.write("/playing/speed", 0.3, hold=True)
+    assert player.write("/playing/speed", 0.1) == 0.3
+    player.note_on(key(75))
+    assert listener["/bow/speed"] == 0.3
+    player.release()
+    player.write("/playing/speed", 0.1)
+    assert listener["/bow/speed"] == 0.1
+
+
+def test_a_held_wish_can_be_set_anew(player, listener):
+    player.write("/playing/pressure", 0.3, hold=True)
+    player.write("/playing/pressure", 0.6, hold=True)
+    player.note_on(key(75))
+    assert listener["/bow/pressure"] == 0.6
+
+
 # ---------------------------------------------------------------- refusals
 
 

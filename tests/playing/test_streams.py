@@ -1,0 +1,151 @@
+"""Whatever comes in, in whatever order, no note sticks."""
+
+from __future__ import annotations
+
+import math
+
+import mido
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.mapping import load
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.performer import Key, Performer
+
+CHANNELS = (0, 1, 9)
+ours = settings(max_examples=300, deadline=None, derandomize=True, database=None)
+
+channels = st.sampled_from(CHANNELS)
+data = st.integers(0, 127)
+some_keys = st.integers(62, 92) | st.sampled_from([70, 71, 72, 73])
+
+
+def notes_on(keys):
+    return st.builds(
+        lambda channel, note, velocity: mido.Message(
+            "note_on", channel=channel, note=note, velocity=velocity
+        ),
+        channels,
+        keys,
+        data,
+    )
+
+
+def notes_off(keys):
+    return st.builds(
+        lambda channel, note: mido.Message("note_off", channel=channel, note=note), channels, keys
+    )
+
+
+on, off = notes_on(some_keys), notes_off(some_keys)
+pedal = st.builds(
+    lambda channel, value: mido.Message("control_change", channel=channel, control=64, value=value),
+    channels,
+    st.sampled_from([0, 127]),
+)
+control = st.builds(
+    lambda channel, control, value: mido.Message(
+        "control_change", channel=channel, control=control, value=value
+    ),
+    channels,
+    st.sampled_from([1, 6, 7, 11, 20, 38, 64, 96, 97, 98, 99, 100, 101, *range(120, 128)]),
+    data,
+)
+wheel = st.builds(
+    lambda channel, pitch: mido.Message("pitchwheel", channel=channel, pitch=pitch),
+    channels,
+    st.integers(-8192, 8191),
+)
+pressure = st.builds(
+    lambda channel, value: mido.Message("aftertouch", channel=channel, value=value), channels, data
+)
+poly = st.builds(
+    lambda channel, note, value: mido.Message("polytouch", channel=channel, note=note, value=value),
+    channels,
+    some_keys,
+    data,
+)
+program = st.builds(
+    lambda channel: mido.Message("program_change", channel=channel, program=3), channels
+)
+anything = st.one_of(on, on, off, off, pedal, control, wheel, pressure, poly, program)
+
+
+def let_everything_go():
+    for channel in CHANNELS:
+        for note in range(128):
+            yield mido.Message("note_off", channel=channel, note=note)
+        yield mido.Message("control_change", channel=channel, control=64, value=0)
+
+
+@pytest.mark.parametrize("policy", RangePolicy)
+def test_no_note_sticks_once_all_keys_and_pedals_are_up(listener_type, policy):
+    @ours
+    @given(st.lists(anything, max_size=60), st.integers(0, 3))
+    def holds(stream, seed):
+        listener = listener_type()
+        player = Performer(listener, policy=policy, seed=seed)
+        player.write("/playing/variation", 1.0)
+        midi = MidiPlayer(player, load("keyboard"))
+        listener.write("/bow/speed", 0.0)
+        listener.write("/bow/side", 0.0)
+        for message in stream:
+            midi.receive(message)
+            sounds = player.sounding is not None
+            assert (listener["/bow/side"] != 0.0) == sounds
+            assert (listener["/bow/speed"] != 0.0) == sounds
+            assert all(math.isfinite(move.value) for move in listener.moves)
+        for message in let_everything_go():
+            midi.receive(message)
+        assert player.sounding is None
+        assert listener["/bow/speed"] == 0.0
+        assert listener["/bow/side"] == 0.0
+
+    holds()
+
+
+class Keyboard:
+    """What should sound, reckoned apart: the key last struck of those held by hand or pedal."""
+
+    def __init__(self) -> None:
+        self.order: list[Key] = []
+        self.down: set[Key] = set()
+        self.pedals: set[int] = set()
+
+    def hear(self, message: mido.Message) -> None:
+        if message.channel == 9:
+            return
+        if message.type == "control_change":
+            {0: self.pedals.discard, 127: self.pedals.add}[message.value](message.channel)
+        else:
+            key = Key(message.channel, message.note)
+            self.down.discard(key)
+            if message.type == "note_on" and message.velocity > 0:
+                self.down.add(key)
+                if key in self.order:
+                    self.order.remove(key)
+                self.order.append(key)
+        self.order = [k for k in self.order if k in self.down or k.channel in self.pedals]
+
+    @property
+    def sounding(self) -> Key | None:
+        return self.order[-1] if self.order else None
+
+
+def test_the_last_key_struck_of_those_hand_or_pedal_hold_is_the_one_that_sounds(listener_type):
+    few = st.sampled_from([66, 73, 80])
+
+    @ours
+    @given(st.lists(st.one_of(notes_on(few), notes_off(few), pedal), max_size=40))
+    def holds(stream):
+        player = Performer(listener_type())
+        midi = MidiPlayer(player, load("keyboard"))
+        expected = Keyboard()
+        for message in stream:
+            midi.receive(message)
+            expected.hear(message)
+            assert player.sounding == expected.sounding
+
+    holds()

@@ -47,7 +47,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         code: int = arguments.run(arguments)
     except YehuError as error:
-        print(f"yehu-server: {error}", file=sys.stderr)
+        line = str(error).replace("\n", "\\n")
+        print(f"yehu-server: {line}", file=sys.stderr)
         return 2
     except MemoryError:
         print("yehu-server: not enough memory", file=sys.stderr)
@@ -279,7 +280,7 @@ def _quantities(path: Path | None) -> Any:
         data = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
     except OSError as error:
         raise ParameterError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ParameterError(f"{path}: not an instrument file ({error})") from error
     try:
         return override(Quantities(), data)

@@ -45,7 +45,7 @@ def replacing(target: Path) -> Iterator[Path]:
     """
     check_target(target)
     folder = target.parent
-    partial = folder / f".{target.name}.{os.getpid()}.part"
+    partial = folder / f".yehu-server-{os.getpid()}.part"
     try:
         partial.touch()
         yield partial

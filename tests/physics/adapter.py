@@ -87,11 +87,14 @@ def control_row(controls: ref.RefControls) -> Any:
     return np.array([[*bow, *fingers]])
 
 
-def step_kernel(model: Any, record: Any, controls: ref.RefControls) -> dict[str, Any]:
-    """Advance the kernel by one sample; return the next state and the forces by name."""
+def step_kernel(model: Any, record: Any, controls: ref.RefControls, ledger: Any) -> dict[str, Any]:
+    """Advance the kernel by one sample; return the next state and the forces by name.
+
+    `ledger` [shape=(1, columns)] gets the sample's energy row.
+    """
     fingers = len(controls.x_f)
     probe = np.zeros((1, layout.probe_columns(fingers)))
-    kernel.advance(model, record, control_row(controls), probe, np.zeros((0, 0)))
+    kernel.advance(model, record, control_row(controls), probe, ledger)
     s = record[0]
     now = int(s["level"])
     N = model["N"][0]

@@ -81,7 +81,8 @@ def take(g: Any, event: Any, silence_frames: int) -> None:
     """Apply one event: set a parameter going towards its target. Real time: safe."""
     index = event.index
     if index == SILENCE:
-        g.silence_in = silence_frames
+        if g.silence_in == 0:
+            g.silence_in = silence_frames
         return
     g.target[index] = event.target
     if event.ramp <= 0:

@@ -69,6 +69,7 @@ def play_out(o: Any, probe: Array, gain: float) -> float:
     """One sample of output from one row of probes; a lost state is faded, not cut."""
     if probe[ITERATIONS] < 0:
         o.ghost = o.last
+        o.pressure, o.swing = 0.0, 0.0
     o.ghost *= o.decay
     # A finger's press pulls at the bridge for as long as it lasts: not a sound.
     o.swing = probe[PRESSURE] - o.pressure + o.blocker * o.swing
@@ -126,6 +127,7 @@ def process(
             out[done + n] = play_out(o, o.probes[n], o.gain[n])
         if silenced:
             kernel.come_to_rest(model, state[0])
+            o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
         done += frames
     return used
 

@@ -56,9 +56,13 @@ class Param:
         """Return `value` clamped to the range. Errors: ParameterError unless finite."""
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ParameterError(f"{self.address}: expected a number, got {value!r}")
-        if not math.isfinite(value):
-            raise ParameterError(f"{self.address}: {value} is not finite")
-        return min(max(float(value), self.lo), self.hi)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise ParameterError(f"{self.address}: {number} is not finite")
+        return min(max(number, self.lo), self.hi)
 
     def from_unit(self, unit: float) -> float:
         """Map 0..1 over the whole range, along the parameter's curve."""

@@ -44,5 +44,5 @@ def check_rate(rate: float) -> None:
     """Refuse a sample rate (Hz) outside 22,050 to 192,000. Errors: ParameterError."""
     if not LOWEST_RATE <= rate <= HIGHEST_RATE:
         raise ParameterError(
-            f"sample rate: {rate:g} Hz is not within {LOWEST_RATE:g} to {HIGHEST_RATE:g} Hz"
+            f"sample rate: {rate} Hz is not within {LOWEST_RATE:g} to {HIGHEST_RATE:g} Hz"
         )

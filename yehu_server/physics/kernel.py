@@ -59,7 +59,7 @@ from yehu_server.physics.string import advance_strings, prepare_strings, support
 
 Array = Any
 
-LOST_FORCE = 1e6  # N; no bridge force of a sound state comes near
+LOST_SIZE = 1e6  # N, m/s, m: nothing of a sound state comes near
 
 
 def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
@@ -202,15 +202,9 @@ def step(m: Any, s: Any, control: Array) -> None:
 
 @compiled
 def measure(m: Any, s: Any, probe: Array) -> None:
-    """Write the probes of one sample, and catch a lost state."""
+    """Radiate, write the probes of one sample, and catch a lost state."""
     next_, prev = s.level, (s.level + 1) % LEVELS
     bridge_force = s.f_c[0] + s.f_c[1]
-    if not abs(bridge_force) < LOST_FORCE:  # also true of NaN
-        come_to_rest(m, s)
-        s.lost += 1
-        probe[:] = 0.0
-        probe[ITERATIONS] = -1.0
-        return
     bridge_travel = 0.0
     for mode in range(MAX_MODES):
         bridge_travel += s.q[next_, mode] - s.q[prev, mode]
@@ -226,3 +220,16 @@ def measure(m: Any, s: Any, probe: Array) -> None:
         probe[at] = s.U[next_, j]
         for i in range(STRINGS):
             probe[at + 1 + i] = s.f_f[STRINGS * j + i]
+
+    size = abs(bridge_travel)  # of whatever one bad number would reach first
+    for column in range(probe.shape[0]):
+        size += abs(probe[column])
+    for i in range(STRINGS):
+        size += abs(s.z[i]) + abs(s.zeta[next_, i])
+    for p in range(STRINGS * m.fingers):
+        size += abs(s.Psi[p])
+    if not size < LOST_SIZE:  # also true of NaN
+        come_to_rest(m, s)
+        s.lost += 1
+        probe[:] = 0.0
+        probe[ITERATIONS] = -1.0

@@ -125,7 +125,7 @@ def read_body(path: Path = BODY_FILE) -> Body:
         )
     except OSError as error:
         raise ParameterError(f"body file {path}: {error.strerror}") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         raise ParameterError(f"body file {path}: not a body file ({error!r})") from error
     figures = (
         *body.frequency_hz,

@@ -44,11 +44,18 @@ class Fingering:
         return 1.0 if self.string == 0 else -1.0
 
 
-def choose(pitch: float, hand: float | None, intonation: Intonation) -> Fingering:
+@dataclass(frozen=True)
+class Stopped(Fingering):
+    """A fingering with the finger down."""
+
+    position: float
+
+
+def choose(pitch: float, hand: Fingering | None, intonation: Intonation) -> Fingering:
     """Finger a pitch (fractional MIDI note).
 
-    Below C5 there is only the F string; from C5 up the C string, unless the finger, down
-    at `hand` (m), would have a shorter way to the pitch on the F string.
+    Below C5 there is only the F string; from C5 up the C string, unless the finger is down
+    on the F string (`hand`) and has a shorter way to the pitch there.
     """
     for string, note in enumerate(OPEN_NOTES):
         if abs(pitch - note) < OPEN_WITHIN:
@@ -56,11 +63,10 @@ def choose(pitch: float, hand: float | None, intonation: Intonation) -> Fingerin
     if pitch < OPEN_NOTES[1]:
         return _stop(0, pitch, intonation)
     near, far = _stop(1, pitch, intonation), _stop(0, pitch, intonation)
-    if hand is not None and near.position is not None and far.position is not None:
-        nearer = abs(far.position - hand) < abs(near.position - hand)
-        if nearer and intonation.reaches(0, pitch):
-            return far
-    return near
+    if hand is None or hand.string != 0 or hand.position is None:
+        return near
+    nearer = abs(far.position - hand.position) < abs(near.position - hand.position)
+    return far if nearer and intonation.reaches(0, pitch) else near
 
 
 def stay(pitch: float, string: int, intonation: Intonation) -> Fingering:
@@ -71,5 +77,5 @@ def stay(pitch: float, string: int, intonation: Intonation) -> Fingering:
     return _stop(string if pitch > open_note else 0, pitch, intonation)
 
 
-def _stop(string: int, pitch: float, intonation: Intonation) -> Fingering:
-    return Fingering(string, intonation.position(string, pitch))
+def _stop(string: int, pitch: float, intonation: Intonation) -> Stopped:
+    return Stopped(string, intonation.position(string, pitch))

@@ -5,7 +5,6 @@ The format is described in mappings/README.md.
 
 from __future__ import annotations
 
-import math
 import re
 import tomllib
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from yehu_server.params.spec import Curve, Place
 from yehu_server.params.table import find
 
 SOURCES = ("bend", "pressure", "poly-pressure", "velocity")
-_CC = re.compile(r"cc (\d{1,3})")
+_CC = re.compile(r"cc (0|[1-9][0-9]{0,2})")
 DEFAULT = "keyboard"
 
 
@@ -77,7 +76,7 @@ def load(name_or_path: str) -> Mapping:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise MappingError(f"{path}: {error.strerror}") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
         raise MappingError(f"{path}: not a mapping file ({error})") from error
     unknown = set(data) - {"name", "bind"}
     if unknown:
@@ -131,6 +130,6 @@ def _span(value: Any, lo: float, hi: float) -> tuple[float, float] | None:
     if not numbers or len(value) != 2:
         raise ParameterError(f"span: expected [from, to], got {value!r}")
     for end in value:
-        if not math.isfinite(end) or not lo <= end <= hi:
+        if not lo <= end <= hi:  # also refuses NaN
             raise ParameterError(f"span: {end} is not within {lo:g} to {hi:g}")
     return float(value[0]), float(value[1])

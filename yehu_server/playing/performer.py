@@ -9,6 +9,7 @@ notes and controllers say (decisions/0006).
 from __future__ import annotations
 
 import random
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -59,6 +60,12 @@ class Performer:
         What happens to notes out of range.
     seed : int
         Of the variation between notes; the same seed plays the same.
+
+    Attributes
+    ----------
+    expression : callable
+        Asked at the beginning of each note, with its key, for parameters of the player that
+        this note is to have: how a channel's bend and touch come with its notes.
     """
 
     def __init__(
@@ -80,6 +87,7 @@ class Performer:
         self._direction = -1.0  # so that the first stroke is a down-bow, v_b > 0
         self._taken: set[str] = set()
         self._kept: set[str] = set()
+        self.expression: Callable[[Key], Mapping[str, float]] = lambda _key: {}
         self.notes_played = 0
         self.notes_out_of_range = 0
 
@@ -128,8 +136,7 @@ class Performer:
         elif address == "/playing/assist":
             self._move("/bow/assist", accepted, frame)
         elif address in ("/playing/volume", "/playing/expression"):
-            level = (self._value["/playing/volume"] * self._value["/playing/expression"]) ** 2
-            self._move("/output/level", level, frame)
+            self._set_level(frame)
         return accepted
 
     def release(self) -> None:
@@ -153,28 +160,39 @@ class Performer:
 
     def note_off(self, key: Key, *, frame: int | None = None) -> None:
         """End a note; the last one still held comes back, legato."""
-        if self._held.pop(key, None) is None or key != self._sounding:
+        self.notes_off([key], frame=frame)
+
+    def notes_off(self, keys: Iterable[Key], *, frame: int | None = None) -> None:
+        """End several notes at once."""
+        for key in keys:
+            self._held.pop(key, None)
+        if self._sounding is None or self._sounding in self._held:
             return
         if self._held:
             self._start(next(reversed(self._held)), frame, legato=True)
         else:
             self._stop(frame)
 
-    def all_notes_off(self, *, frame: int | None = None) -> None:
-        """End every note, as if all keys were let go."""
-        self._held.clear()
-        if self._sounding is not None:
-            self._stop(frame)
+    def all_notes_off(self, *, frame: int | None = None, channel: int | None = None) -> None:
+        """End every note, or every note of one channel, as if the keys were let go."""
+        ending = [key for key in self._held if channel in (None, key.channel)]
+        self.notes_off(ending, frame=frame)
 
-    def all_sound_off(self, *, frame: int | None = None) -> None:
-        """End every note and what still rings, at once."""
-        self.all_notes_off(frame=frame)
-        self._sink.silence(frame=frame)
+    def all_sound_off(self, *, frame: int | None = None, channel: int | None = None) -> None:
+        """The same, and what still rings ends at once, unless another channel's note sounds."""
+        self.all_notes_off(frame=frame, channel=channel)
+        if self._sounding is None:
+            self._fingering = None  # the hand comes off
+            for address in ("/bow/speed", "/bow/side", "/finger/1/press"):
+                self._move(address, 0.0, frame, LANDING_MS)
+            self._sink.silence(frame=frame)
 
     def _start(self, key: Key, frame: int | None, *, legato: bool) -> None:
-        hand = self._fingering.position if self._fingering else None
         was = self._fingering
         self._sounding = key
+        for address, wish in self.expression(key).items():
+            if address not in self._kept:
+                self._value[address] = find(address).accept(wish)
         self._deviation = (
             self._chance.gauss(0.0, 1.0),
             self._chance.gauss(0.0, 1.0),
@@ -182,12 +200,12 @@ class Performer:
         )
         if not legato:
             self._direction = -self._direction
-        self._place(
-            choose(self._pitch, hand, self._intonation), frame, self._value["/playing/glide"]
-        )
+        fingering = choose(self._pitch, was, self._intonation)
+        self._place(fingering, frame, self._value["/playing/glide"])
         crossing = legato and was is not None and was.side != self._side
         attack = self._value["/playing/attack"]
         self._move("/bow/assist", self._value["/playing/assist"], frame)
+        self._set_level(frame)
         self._lean(frame)
         self._move("/bow/side", self._side, frame, CROSSING_MS if crossing else attack / 4.0)
         self._draw(frame, self._value["/playing/glide"] if legato else attack)
@@ -211,6 +229,10 @@ class Performer:
 
     def _varied(self, which: int, spread: float) -> float:
         return self._value["/playing/variation"] * spread * self._deviation[which]
+
+    def _set_level(self, frame: int | None) -> None:
+        level = (self._value["/playing/volume"] * self._value["/playing/expression"]) ** 2
+        self._move("/output/level", level, frame)
 
     def _lean(self, frame: int | None) -> None:
         pressure = self._value["/playing/pressure"] * (1.0 + self._varied(1, VARIED_SHARE))

@@ -1,0 +1,134 @@
+"""Sound files: what they hold is what was written, or there is none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import soundfile
+
+from yehu_server.audio import file as audio
+from yehu_server.audio.file import check_format, sound_file
+from yehu_server.errors import OutputError
+
+STEP = {"16": 2.0**-15, "24": 2.0**-23, "float": 2.0**-23}
+MATRIX = [("wav", "16"), ("wav", "24"), ("wav", "float"), ("flac", "16"), ("flac", "24")]
+
+matrix = pytest.mark.parametrize(("kind", "subtype"), MATRIX)
+
+
+def noise(frames: int) -> np.ndarray:
+    return np.random.default_rng(1).uniform(-1.0, 1.0, frames).astype(np.float32)
+
+
+def write(target, samples, kind="wav", subtype="24", rate=44100):
+    with sound_file(target, rate, kind, subtype) as file:
+        for part in np.array_split(samples, 7):
+            file.write(part)
+    return file
+
+
+@matrix
+def test_a_file_holds_what_was_written(tmp_path, kind, subtype):
+    target = tmp_path / "sound"
+    samples = noise(10_000)
+    write(target, samples, kind, subtype, rate=48000)
+    info = soundfile.info(target)
+    assert info.format == kind.upper()
+    assert info.subtype == {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}[subtype]
+    assert (info.channels, info.samplerate, info.frames) == (1, 48000, 10_000)
+    read, _ = soundfile.read(target)
+    np.testing.assert_allclose(read, samples, rtol=0, atol=STEP[subtype])
+    assert list(tmp_path.iterdir()) == [target]
+
+
+@matrix
+def test_peak_and_rms_are_those_of_the_file(tmp_path, kind, subtype):
+    target = tmp_path / "sound"
+    file = write(target, 0.5 * noise(10_000), kind, subtype)
+    read, _ = soundfile.read(target)
+    assert file.peak == pytest.approx(np.abs(read).max(), abs=STEP[subtype])
+    assert file.rms == pytest.approx(np.sqrt(np.mean(read**2)), abs=STEP[subtype])
+
+
+@matrix
+def test_full_scale_does_not_wrap_around(tmp_path, kind, subtype):
+    target = tmp_path / "sound"
+    write(target, np.array([1.0, -1.0, 1.0, 0.0], np.float32), kind, subtype)
+    read, _ = soundfile.read(target)
+    np.testing.assert_allclose(read, [1.0, -1.0, 1.0, 0.0], atol=STEP[subtype])
+
+
+def test_a_file_of_no_samples_is_still_a_file(tmp_path):
+    target = tmp_path / "sound.wav"
+    file = write(target, noise(0))
+    assert soundfile.info(target).frames == 0
+    assert (file.peak, file.rms) == (0.0, 0.0)
+
+
+def test_a_format_that_cannot_hold_a_subtype_says_so(tmp_path):
+    with pytest.raises(OutputError, match=r"flac.*float.*16 or 24"):
+        check_format("flac", "float")
+    with (
+        pytest.raises(OutputError, match="flac"),
+        sound_file(tmp_path / "x", 44100, "flac", "float"),
+    ):
+        pass
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError, OSError, SystemExit])
+def test_whatever_ends_the_writing_early_leaves_an_older_file_and_nothing_else(tmp_path, error):
+    target = tmp_path / "sound.wav"
+    target.write_bytes(b"older")
+
+    def interrupted():
+        with sound_file(target, 44100, "wav", "24") as file:
+            file.write(noise(10_000))
+            raise error
+
+    with pytest.raises((error, OutputError)):
+        interrupted()
+    assert target.read_bytes() == b"older"
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def test_the_target_appears_only_when_it_is_whole(tmp_path):
+    target = tmp_path / "sound.wav"
+    with sound_file(target, 44100, "wav", "24") as file:
+        file.write(noise(100_000))
+        assert not target.exists()
+        (partial,) = tmp_path.iterdir()
+        assert partial.name.startswith(".")
+    assert list(tmp_path.iterdir()) == [target]
+
+
+@pytest.mark.parametrize(("subtype", "bytes_each"), [("16", 2), ("24", 3), ("float", 4)])
+def test_a_wav_file_longer_than_its_sizes_can_say_is_refused(
+    tmp_path, monkeypatch, subtype, bytes_each
+):
+    assert audio.WAV_LIMIT <= 2**32
+    monkeypatch.setattr(audio, "WAV_LIMIT", 1000 * bytes_each)
+    write(tmp_path / "just.wav", noise(1000), subtype=subtype)
+    with pytest.raises(OutputError, match=r"long\.wav.*FLAC"):
+        write(tmp_path / "long.wav", noise(1001), subtype=subtype)
+    write(tmp_path / "long.flac", noise(1001), "flac")
+    assert {path.name for path in tmp_path.iterdir()} == {"just.wav", "long.flac"}
+
+
+def test_where_a_file_cannot_go_is_said(tmp_path):
+    (tmp_path / "file").write_text("")
+    for target, wrong in (
+        (tmp_path / "none" / "x.wav", "does not exist"),
+        (tmp_path / "file" / "x.wav", "not a folder"),
+        (tmp_path, "is a folder"),
+    ):
+        with pytest.raises(OutputError, match=wrong), sound_file(target, 44100, "wav", "24"):
+            pass
+
+
+def test_a_device_is_not_replaced_by_a_file(tmp_path):
+    link = tmp_path / "null.wav"
+    link.symlink_to("/dev/null")
+    with pytest.raises(OutputError, match="regular"), sound_file(link, 44100, "wav", "24"):
+        pass
+    assert link.is_symlink()

@@ -1,0 +1,207 @@
+"""From player-level targets to physical controls: ramps, bow force, bow and hand positions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.params.table import ENGINE, SLOT
+from yehu_server.physics.layout import F_N, FINGER_CONTROLS, V_B, X_B
+
+RATE = 44100
+BRIDGE_X = 0.30  # m
+
+every = pytest.mark.parametrize("param", ENGINE, ids=lambda param: param.address)
+
+
+def run(instrument: Instrument, frames: int) -> np.ndarray:
+    out = np.zeros(frames, np.float32)
+    instrument.process(out)
+    return out
+
+
+def value(instrument: Instrument, address: str) -> float:
+    return float(instrument._gesture["value"][0, SLOT[address]])
+
+
+def controls(instrument: Instrument) -> np.ndarray:
+    """The controls of one more frame."""
+    run(instrument, 1)
+    return instrument._output["controls"][0, 0].copy()
+
+
+@pytest.fixture
+def instrument() -> Instrument:
+    return Instrument(RATE)
+
+
+# ---------------------------------------------------------------- ramps
+
+
+@every
+def test_every_parameter_starts_at_its_default(instrument, param):
+    assert value(instrument, param.address) == param.default
+
+
+@every
+def test_a_ramp_goes_straight_and_ends_exactly_on_its_target(instrument, param):
+    start = param.default
+    target = param.lo + 0.7310585786300049 * (param.hi - param.lo)
+    instrument.write(param.address, target, ramp_ms=1e3 * 337 / RATE)
+    run(instrument, 100)
+    assert value(instrument, param.address) == pytest.approx(start + (target - start) * 100 / 337)
+    run(instrument, 236)
+    assert value(instrument, param.address) != target
+    run(instrument, 1)
+    assert value(instrument, param.address) == target
+    run(instrument, 500)
+    assert value(instrument, param.address) == target
+
+
+@every
+def test_a_write_that_names_no_ramp_takes_the_parameters_own_smoothing(instrument, param):
+    frames = round(param.smooth_ms * 1e-3 * RATE)
+    instrument.write(param.address, param.hi if param.default < param.hi else param.lo)
+    run(instrument, frames - 1)
+    assert value(instrument, param.address) not in {param.lo, param.hi}
+    run(instrument, 1)
+    assert value(instrument, param.address) in {param.lo, param.hi}
+
+
+def test_a_write_without_a_ramp_acts_on_its_frame(instrument):
+    instrument.write("/bow/speed", 0.3, frame=100, ramp_ms=0.0)
+    run(instrument, 100)
+    assert value(instrument, "/bow/speed") == 0.0
+    run(instrument, 1)
+    assert value(instrument, "/bow/speed") == 0.3
+
+
+def test_a_ramp_begins_on_its_frame(instrument):
+    instrument.write("/bow/speed", 0.3, frame=100, ramp_ms=1e3 * 10 / RATE)
+    run(instrument, 101)
+    assert value(instrument, "/bow/speed") == pytest.approx(0.03)
+
+
+def test_a_write_for_a_frame_that_has_passed_acts_at_once(instrument):
+    run(instrument, 100)
+    instrument.write("/bow/speed", 0.3, frame=7, ramp_ms=0.0)
+    run(instrument, 1)
+    assert value(instrument, "/bow/speed") == 0.3
+
+
+def test_writes_of_one_frame_apply_in_the_order_written(instrument):
+    for speed in (0.3, 0.1, 0.2):
+        instrument.write("/bow/speed", speed, frame=50, ramp_ms=0.0)
+    run(instrument, 51)
+    assert value(instrument, "/bow/speed") == 0.2
+
+
+def test_a_later_write_starts_from_where_the_ramp_has_come(instrument):
+    instrument.write("/bow/speed", 1.0, ramp_ms=1e3 * 100 / RATE)
+    instrument.write("/bow/speed", -0.5, frame=50, ramp_ms=1e3 * 100 / RATE)
+    speeds = []
+    for _ in range(150):
+        run(instrument, 1)
+        speeds.append(value(instrument, "/bow/speed"))
+    assert speeds[49] == pytest.approx(0.5)
+    assert max(np.abs(np.diff(speeds))) < 0.0101  # neither ramp is steeper than 1/100
+    assert speeds[-1] == -0.5
+
+
+# ---------------------------------------------------------------- the bow
+
+
+def schelleng(string: int, speed: float, beta: float) -> float:
+    """F_max = 2 Z v / (beta (mu_S - mu_C)), from the paper's table 1 and data set."""
+    tension, density, radius = [(50.61, 1250.0, 0.55e-3), (64.29, 1350.0, 0.40e-3)][string]
+    impedance = math.sqrt(tension * density * math.pi * radius**2)
+    return 2.0 * impedance * speed / (beta * (1.0207 - 0.5071))
+
+
+@pytest.mark.parametrize(("side", "string"), [(1.0, 0), (-1.0, 1)])
+@pytest.mark.parametrize("speed", [0.02, -0.02])
+def test_bow_force_is_the_asked_share_of_schellengs_limit(instrument, side, string, speed):
+    for address, target in (
+        ("/bow/side", side),
+        ("/bow/speed", speed),
+        ("/bow/pressure", 0.5),
+        ("/bow/position", 0.1),
+    ):
+        instrument.write(address, target, ramp_ms=0.0)
+    row = controls(instrument)
+    # A slow bow: fast ones are given a little more.
+    assert row[F_N] == pytest.approx(side * 0.5 * schelleng(string, 0.02, 0.1), rel=0.01)
+    assert row[V_B] == speed
+
+
+def test_bow_force_rises_with_speed_and_vanishes_without(instrument):
+    forces = []
+    for speed in (0.0, 0.05, 0.1, 0.2, 0.35):
+        instrument.write("/bow/side", 1.0, ramp_ms=0.0)
+        instrument.write("/bow/speed", speed, ramp_ms=0.0)
+        forces.append(controls(instrument)[F_N])
+    assert forces[0] == 0.0
+    assert all(np.diff(forces) > 0.0)
+    # It stays between what 0.3 of the limit and the whole limit are, at every speed.
+    for speed, force in zip((0.05, 0.1, 0.2, 0.35), forces[1:], strict=True):
+        assert 0.3 < force / schelleng(0, speed, 0.13) < 1.0
+
+
+def test_without_assist_the_force_is_in_newtons_whatever_the_speed(instrument):
+    for address, target in (("/bow/assist", 0.0), ("/bow/force", 0.7), ("/bow/side", -1.0)):
+        instrument.write(address, target, ramp_ms=0.0)
+    for speed in (0.0, 0.3):
+        instrument.write("/bow/speed", speed, ramp_ms=0.0)
+        assert controls(instrument)[F_N] == -0.7
+
+
+def test_the_side_fades_the_force_and_lifts_the_bow_at_zero(instrument):
+    instrument.write("/bow/assist", 0.0, ramp_ms=0.0)
+    instrument.write("/bow/force", 0.8, ramp_ms=0.0)
+    for side in (1.0, 0.5, 0.0, -0.25):
+        instrument.write("/bow/side", side, ramp_ms=0.0)
+        assert controls(instrument)[F_N] == pytest.approx(0.8 * side)
+
+
+def test_the_bow_keeps_its_share_of_the_sounding_length(instrument):
+    instrument.write("/bow/position", 0.1, ramp_ms=0.0)
+    assert controls(instrument)[X_B] == pytest.approx(BRIDGE_X - 0.1 * BRIDGE_X)
+    instrument.write("/finger/1/position", 0.12, ramp_ms=0.0)
+    instrument.write("/finger/1/press", 1.5, ramp_ms=0.0)
+    run(instrument, RATE // 5)
+    stopped = BRIDGE_X - 0.12
+    assert controls(instrument)[X_B] == pytest.approx(BRIDGE_X - 0.1 * stopped, abs=1e-6)
+    instrument.write("/finger/1/press", 0.0, ramp_ms=0.0)
+    run(instrument, RATE // 5)
+    assert controls(instrument)[X_B] == pytest.approx(BRIDGE_X - 0.1 * BRIDGE_X, abs=1e-6)
+
+
+def test_the_bow_moves_smoothly_when_a_finger_lands(instrument):
+    instrument.write("/finger/1/position", 0.15, ramp_ms=0.0)
+    instrument.write("/finger/1/press", 1.5, ramp_ms=0.0)
+    places = [controls(instrument)[X_B] for _ in range(2000)]
+    assert max(np.abs(np.diff(places))) < 1e-4  # m a sample: below 5 m/s
+
+
+# ---------------------------------------------------------------- the hand
+
+
+def test_a_pressed_finger_is_where_it_is_put(instrument):
+    instrument.write("/finger/1/position", 0.12, ramp_ms=0.0)
+    instrument.write("/finger/1/press", 1.5, ramp_ms=0.0)
+    row = controls(instrument)
+    assert (row[FINGER_CONTROLS], row[FINGER_CONTROLS + 1]) == (0.12, 1.5)
+
+
+def test_a_finger_that_is_up_waits_near_the_loop(instrument):
+    assert controls(instrument)[FINGER_CONTROLS] < 0.02
+    instrument.write("/finger/1/position", 0.12, ramp_ms=0.0)
+    instrument.write("/finger/1/press", 1.5, ramp_ms=0.0)
+    run(instrument, 100)
+    instrument.write("/finger/1/press", 0.0, ramp_ms=0.0)
+    assert controls(instrument)[FINGER_CONTROLS] == 0.12  # it leaves the string first
+    run(instrument, RATE // 10)
+    assert controls(instrument)[FINGER_CONTROLS] < 0.02

@@ -1,0 +1,86 @@
+"""The way out: gain, level, the limiter."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from yehu_server.engine.instrument import Instrument, limit
+
+RATE = 44100
+KNEE = 10.0 ** (-3.0 / 20.0)
+
+ours = settings(max_examples=300, deadline=None, derandomize=True, database=None)
+sizes = st.floats(-1e300, 1e300)
+
+
+@ours
+@given(st.floats(-KNEE, KNEE))
+def test_the_limiter_leaves_what_is_below_minus_3_dbfs(x):
+    assert limit(x) == x
+
+
+@ours
+@given(sizes | st.floats(-3.0, 3.0))
+def test_the_limiter_is_odd_and_never_exceeds_full_scale(x):
+    assert abs(limit(x)) <= 1.0
+    assert limit(-x) == -limit(x)
+    assert abs(np.float32(limit(x))) <= 1.0
+
+
+@ours
+@given(st.tuples(sizes, sizes) | st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)))
+def test_the_limiter_keeps_the_order_of_sizes(pair):
+    low, high = sorted(pair)
+    assert limit(low) <= limit(high)
+
+
+def test_the_limiter_has_no_corner():
+    x = np.linspace(0.6, 1.5, 9001)
+    y = np.array([limit(value) for value in x])
+    slopes = np.diff(y) / np.diff(x)
+    assert slopes.max() < 1.0 + 1e-9
+    assert np.abs(np.diff(slopes)).max() < 1e-3
+    assert (np.diff(slopes) < 1e-9).all()  # it only ever bends down
+
+
+def test_the_limiter_takes_the_infinite():
+    assert limit(math.inf) == 1.0
+    assert limit(-math.inf) == -1.0
+
+
+def bowed(gain_db: float = 0.0, level: float = 1.0) -> np.ndarray:
+    instrument = Instrument(RATE)
+    instrument.write("/output/gain", gain_db, ramp_ms=0.0)
+    instrument.write("/output/level", level, ramp_ms=0.0)
+    instrument.write("/bow/side", 1.0)
+    instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
+    out = np.zeros(RATE // 2, np.float32)
+    instrument.process(out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def soft() -> np.ndarray:
+    out = bowed(gain_db=-12.0)
+    assert 0.001 < np.abs(out).max() < 0.3
+    return out
+
+
+@pytest.mark.parametrize(
+    ("gain_db", "level", "factor"),
+    [(-6.0, 1.0, 10 ** (6 / 20)), (-12.0, 0.25, 0.25), (-12.0, 0.0, 0.0), (-60.0, 1.0, 10**-2.4)],
+)
+def test_gain_is_in_decibels_and_level_in_amplitude(soft, gain_db, level, factor):
+    np.testing.assert_allclose(bowed(gain_db, level), factor * soft, rtol=1e-5, atol=1e-9)
+
+
+def test_a_loud_instrument_is_bent_and_not_clipped(soft):
+    loud = bowed(gain_db=24.0)
+    assert KNEE < np.abs(loud).max() <= 1.0
+    expected = [limit(10 ** (36 / 20) * float(x)) for x in soft]
+    np.testing.assert_allclose(loud, expected, atol=1e-5)

@@ -1,0 +1,143 @@
+"""The parameter table, walked row by row."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from yehu_server.errors import ParameterError
+from yehu_server.params.spec import Curve, Param, Place
+from yehu_server.params.table import ENGINE, TABLE, assignment, find
+
+rows = pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
+
+
+# ---------------------------------------------------------------- every row
+
+
+@rows
+def test_a_row_is_complete_and_its_default_is_in_its_range(param: Param):
+    assert param.address.startswith("/")
+    assert param.address == param.address.lower().strip().rstrip("/")
+    assert param.lo < param.hi
+    assert param.lo <= param.default <= param.hi
+    assert param.curve is not Curve.EXP or param.lo > 0.0
+    assert param.smooth_ms >= 0.0
+    assert param.unit
+    assert param.doc.endswith(".")
+
+
+@rows
+def test_the_default_is_accepted_as_it_is(param: Param):
+    assert param.accept(param.default) == param.default
+
+
+@rows
+def test_what_is_beyond_the_range_is_clamped(param: Param):
+    assert param.accept(param.hi * 2.0 + 1.0) == param.hi
+    assert param.accept(param.lo - 1e300) == param.lo
+    assert isinstance(param.accept(1), float)
+
+
+@rows
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, True, False, "1", None, [1.0]])
+def test_what_is_no_finite_number_is_refused_by_address(param: Param, value):
+    with pytest.raises(ParameterError, match=param.address):
+        param.accept(value)
+
+
+def test_a_number_too_large_to_be_one_here_is_refused():
+    with pytest.raises(ParameterError, match="not finite"):
+        find("/bow/force").accept(10**400)
+
+
+@rows
+def test_zero_to_one_is_the_whole_range_and_nothing_beyond(param: Param):
+    steps = [param.from_unit(n / 100) for n in range(101)]
+    assert steps == sorted(steps)
+    assert steps[0] == param.lo
+    assert steps[-1] == param.hi
+    assert param.from_unit(-1.0) == param.lo
+    assert param.from_unit(2.0) == param.hi
+
+
+@rows
+def test_each_row_is_found_by_its_address(param: Param):
+    assert find(param.address) is param
+
+
+@rows
+def test_each_row_can_be_set_by_a_word(param: Param):
+    assert assignment(f"{param.address}={param.default!r}") == (param.address, param.default)
+    assert assignment(f"{param.address}={param.lo!r}") == (param.address, param.lo)
+    assert assignment(f"{param.address}={param.hi!r}") == (param.address, param.hi)
+
+
+def test_no_address_stands_twice():
+    addresses = [param.address for param in TABLE]
+    assert len(set(addresses)) == len(addresses)
+
+
+def test_the_engine_holds_its_rows_in_the_order_of_the_table():
+    assert tuple(param for param in TABLE if param.place is Place.ENGINE) == ENGINE
+    assert all(param.place is Place.ENGINE for param in TABLE if param.owned)
+
+
+# ---------------------------------------------------------------- finding and setting
+
+
+@pytest.mark.parametrize(
+    ("wrong", "meant"),
+    [
+        ("/bow/sped", "/bow/speed"),
+        ("bow/force", "/bow/force"),
+        ("/playing/pres", "/playing/press"),
+        ("/finger/position", "/finger/1/position"),
+    ],
+)
+def test_a_near_miss_is_told_what_was_meant(wrong, meant):
+    with pytest.raises(ParameterError, match=rf"'{wrong}'.*did you mean {meant}\?"):
+        find(wrong)
+
+
+def test_what_is_like_nothing_is_told_no_more_than_that():
+    with pytest.raises(ParameterError) as caught:
+        find("zzzzz")
+    assert str(caught.value) == "unknown parameter 'zzzzz'"
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("/bow/position", "ADDRESS=VALUE"),
+        ("", "ADDRESS=VALUE"),
+        ("/bow/position=", "not a number"),
+        ("/bow/position=x", "'x'"),
+        ("/bow/position=0.1=0.2", "not a number"),
+        ("/bow/position=nan", "not finite"),
+        ("/bow/position=inf", "not finite"),
+        ("/bow/position=0.6", "0.04 to 0.5"),
+        ("/bow/force=-1", "0 to 5 N"),
+        ("/bow/positio=0.1", "/bow/position"),
+        ("=0.1", "unknown"),
+    ],
+)
+def test_a_setting_that_makes_no_sense_is_refused(text, wrong):
+    with pytest.raises(ParameterError, match=wrong):
+        assignment(text)
+
+
+def test_a_setting_may_have_blanks_around_its_words():
+    assert assignment(" /bow/position = 0.1 ") == ("/bow/position", 0.1)
+
+
+# ---------------------------------------------------------------- curves
+
+
+def test_curves_keep_their_ends_and_the_middle_each_has():
+    for curve, middle in ((Curve.LIN, 2.5), (Curve.EXP, 2.0), (Curve.S, 2.5)):
+        assert curve.bend(0.0, 1.0, 4.0) == 1.0
+        assert curve.bend(0.5, 1.0, 4.0) == pytest.approx(middle)
+        assert curve.bend(1.0, 1.0, 4.0) == 4.0
+    assert Curve.S.bend(0.25, 0.0, 1.0) == pytest.approx(0.15625)

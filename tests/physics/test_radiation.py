@@ -1,0 +1,107 @@
+"""From bridge force to sound: 25 measured sections, at any sample rate."""
+
+import json
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from yehu_server.errors import ParameterError
+from yehu_server.physics import kernel
+from yehu_server.physics.quantities import Body, Quantities
+from yehu_server.physics.radiation import prepare_radiation, radiate
+
+RADIATION = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())["radiation"]
+MEASURED_RATE = 44100.0
+RATES = (22050.0, 32000.0, 48000.0, 64000.0, 88200.0, 96000.0, 176400.0, 192000.0)
+
+
+def measured_response(frequency_hz):
+    """The published filter, Pa/N: its sections one by one, as `section_form` says."""
+    delay = np.exp(-2j * np.pi * frequency_hz / MEASURED_RATE)
+    total = np.full(len(frequency_hz), RADIATION["direct_gain"], complex)
+    for b_0, b_1, a_1, a_2 in RADIATION["sections"]:
+        total += (b_0 + b_1 * delay) / (1.0 + a_1 * delay + a_2 * delay**2)
+    return total
+
+
+def impulse_response(model, frames):
+    """Pressure after a bridge force of 1 N for one sample, by the run-time filter."""
+    state = kernel.at_rest(model)
+    model, state = model[0], state[0]
+    return np.array([radiate(model, state, 1.0 if n == 0 else 0.0) for n in range(frames)])
+
+
+@pytest.fixture(scope="module", params=RATES, ids=lambda rate: f"{rate:.0f}")
+def heard(request):
+    """Rate, frequencies and gain over the measured one (dB), from the filter's own impulse."""
+    rate = request.param
+    # The slowest section dies down by a factor e in 17 ms.
+    size = 2 ** int(np.ceil(np.log2(0.3 * rate)))
+    impulse = impulse_response(kernel.prepare(Quantities(), rate), size)
+    assert np.abs(impulse[-size // 8 :]).max() < 1e-6 * np.abs(impulse).max()
+    frequency_hz = np.fft.rfftfreq(size, 1.0 / rate)
+    known = np.minimum(frequency_hz, MEASURED_RATE / 2.0)
+    gain_db = 20.0 * np.log10(np.abs(np.fft.rfft(impulse)) / np.abs(measured_response(known)))
+    return rate, frequency_hz, gain_db
+
+
+def test_at_the_measured_rate_the_filter_is_the_measured_one():
+    model = kernel.prepare(Quantities(), MEASURED_RATE)[0]
+    sections = np.array(RADIATION["sections"])
+    n = len(sections)
+    for column, name in enumerate(("b_0", "b_1", "a_1", "a_2")):
+        assert np.array_equal(model[name][:n], sections[:, column])
+        assert not model[name][n:].any()
+    assert model["taps"][0] == RADIATION["direct_gain"]
+    assert not model["taps"][1:].any()
+
+
+def test_the_running_filter_rings_as_its_formula():
+    """Impulse response of each section by its own recursion, summed, plus the direct gain."""
+    frames = 3000
+    expected = np.zeros(frames)
+    expected[0] = RADIATION["direct_gain"]
+    for b_0, b_1, a_1, a_2 in RADIATION["sections"]:
+        y = np.zeros(frames + 2)  # two samples of silence first
+        for n in range(frames):
+            x, x_before = float(n == 0), float(n == 1)
+            y[n + 2] = b_0 * x + b_1 * x_before - a_1 * y[n + 1] - a_2 * y[n]
+        expected += y[2:]
+    impulse = impulse_response(kernel.prepare(Quantities(), MEASURED_RATE), frames)
+    assert np.abs(impulse - expected).max() < 1e-13 * np.abs(expected).max()
+
+
+def test_the_direct_taps_delay_by_one_sample_each():
+    model = kernel.prepare(Quantities(), MEASURED_RATE)
+    for name in ("b_0", "b_1", "a_1", "a_2"):
+        model[name] = 0.0
+    model["taps"] = np.arange(1.0, 9.0)
+    assert impulse_response(model, 10).tolist() == [1, 2, 3, 4, 5, 6, 7, 8, 0, 0]
+
+
+def test_every_rate_sounds_like_the_measured_body(heard):
+    rate, frequency_hz, gain_db = heard
+    band = (frequency_hz >= 100.0) & (frequency_hz <= min(16e3, 0.45 * rate))
+    assert np.abs(gain_db[band]).max() < 0.5
+
+
+def test_no_rate_shouts_where_nobody_measured(heard):
+    """Beyond 22.05 kHz: against the measured response there."""
+    rate, frequency_hz, gain_db = heard
+    assert gain_db[frequency_hz > min(16e3, 0.45 * rate)].max() < 6.0
+
+
+def test_every_section_stays_stable_at_every_rate(heard):
+    rate, _, _ = heard
+    model = kernel.prepare(Quantities(), rate)[0]
+    for a_1, a_2 in zip(model["a_1"], model["a_2"], strict=True):
+        assert np.abs(np.roots([1.0, a_1, a_2])).max() < 1.0
+
+
+def test_a_body_with_too_many_sections_is_refused():
+    body = Quantities().body
+    sections = body.sections * 2
+    crowded = Body(**{**body.__dict__, "sections": sections})
+    with pytest.raises(ParameterError, match="radiation sections"):
+        prepare_radiation(kernel.prepare(Quantities(), MEASURED_RATE)[0], crowded)

@@ -1,0 +1,187 @@
+"""Mapping files: what they may say, and how their errors read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from yehu_server.errors import MappingError
+from yehu_server.params.spec import Curve
+from yehu_server.playing.mapping import Bind, load
+
+ROOT = Path(__file__).resolve().parents[2]
+BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
+
+
+@pytest.fixture
+def read(tmp_path):
+    def from_text(text: str | bytes):
+        path = tmp_path / "mine.toml"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return load(str(path))
+
+    return from_text
+
+
+# ---------------------------------------------------------------- what ships
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "mappings").glob("*.toml")), ids=lambda p: p.stem)
+def test_every_shipped_mapping_loads_by_its_name(path):
+    mapping = load(path.stem)
+    assert mapping.name == path.stem
+    assert mapping.binds
+    assert mapping == load(str(path))
+
+
+@pytest.mark.parametrize(
+    ("source", "target"),
+    [
+        ("bend", "/playing/bend"),
+        ("pressure", "/playing/press"),
+        ("poly-pressure", "/playing/press"),
+        ("cc 1", "/playing/speed"),
+        ("velocity", "/playing/pressure"),
+        ("cc 7", "/playing/volume"),
+        ("cc 11", "/playing/expression"),
+    ],
+)
+def test_the_keyboard_mapping_gives_each_controller_its_role(source, target):
+    (bind,) = load("keyboard").of(source)
+    assert bind.target == target
+    if source != "bend":
+        assert bind.apply(0.0) < bind.apply(0.5) < bind.apply(1.0)
+
+
+# ---------------------------------------------------------------- how far and along which curve
+
+
+def test_a_span_is_spread_over_the_whole_way_of_the_controller():
+    bind = Bind("cc 4", "/playing/pressure", (0.3, 0.7))
+    assert [bind.apply(unit) for unit in (0.0, 0.25, 1.0)] == pytest.approx([0.3, 0.4, 0.7])
+
+
+def test_a_span_from_high_to_low_inverts():
+    bind = Bind("cc 4", "/playing/pressure", (0.7, 0.3))
+    assert [bind.apply(unit) for unit in (0.0, 0.25, 1.0)] == pytest.approx([0.7, 0.6, 0.3])
+
+
+def test_an_exp_curve_goes_by_equal_ratios_either_way():
+    up = Bind("cc 4", "/playing/pressure", (0.1, 0.9), Curve.EXP)
+    assert [up.apply(unit) for unit in (0.0, 0.5, 1.0)] == pytest.approx([0.1, 0.3, 0.9])
+    down = Bind("cc 4", "/playing/pressure", (0.9, 0.1), Curve.EXP)
+    assert [down.apply(unit) for unit in (0.0, 0.5, 1.0)] == pytest.approx([0.9, 0.3, 0.1])
+
+
+def test_an_s_curve_is_gentle_at_both_ends_and_even_about_the_middle():
+    bind = Bind("cc 4", "/playing/volume", None, Curve.S)
+    assert [bind.apply(unit) for unit in (0.0, 0.5, 1.0)] == pytest.approx([0.0, 0.5, 1.0])
+    assert 0.0 < bind.apply(0.01) < 0.001
+    assert bind.apply(0.3) + bind.apply(0.7) == pytest.approx(1.0)
+
+
+def test_without_a_span_the_way_is_the_targets_whole_range(read):
+    (bind,) = read(BIND).binds
+    assert (bind.apply(0.0), bind.apply(1.0)) == pytest.approx((0.1, 1.0))
+
+
+def test_without_a_curve_the_targets_own_is_taken(read):
+    (bind,) = read('[[bind]]\nsource = "cc 4"\ntarget = "/playing/speed"\n').binds
+    assert bind.apply(0.5) == pytest.approx((0.03 * 0.6) ** 0.5)
+
+
+def test_one_source_may_move_several_targets(read):
+    mapping = read(BIND + BIND.replace("pressure", "volume"))
+    assert [bind.target for bind in mapping.of("cc 4")] == ["/playing/pressure", "/playing/volume"]
+    assert mapping.of("cc 5") == ()
+
+
+def test_a_mapping_without_a_name_has_its_files(read):
+    assert read(BIND).name == "mine"
+    assert read('name = "yours"\n').name == "yours"
+
+
+def test_a_file_needs_no_toml_ending(tmp_path):
+    path = tmp_path / "pedal"
+    path.write_text(BIND)
+    assert len(load(str(path)).binds) == 1
+
+
+# ---------------------------------------------------------------- what is wrong
+
+
+GOOD = '[[bind]]\nsource = "cc 1"\ntarget = "/playing/speed"\n'
+
+
+@pytest.mark.parametrize(
+    ("bind", "wrong"),
+    [
+        ('source = "cc 128"\ntarget = "/playing/press"', "cc 128"),
+        ('source = "cc 01"\ntarget = "/playing/press"', "cc 01"),  # would never be heard
+        ('source = "cc \\uff11"\ntarget = "/playing/press"', "cc"),  # a full-width digit
+        ('source = "CC 1"\ntarget = "/playing/press"', "CC 1"),
+        ('source = "cc"\ntarget = "/playing/press"', "cc"),
+        ('source = "breath"\ntarget = "/playing/press"', "breath"),
+        ('source = 4\ntarget = "/playing/press"', "source"),
+        ('target = "/playing/press"', "source"),
+        ('source = "cc 4"', "target"),
+        ('source = "cc 4"\ntarget = "/playing/pres"', "/playing/press"),
+        ('source = "cc 4"\ntarget = "/bow/force"', "/bow/force"),
+        ('source = "cc 4"\ntarget = "/playing/press"\nspeed = 1', "speed"),
+        ('source = "cc 4"\ntarget = "/playing/press"\ncurve = "log"', "log"),
+        ('source = "cc 4"\ntarget = "/playing/press"\ncurve = 3', "3"),
+        ('source = "cc 4"\ntarget = "/playing/press"\nspan = [1.0]', "span"),
+        ('source = "cc 4"\ntarget = "/playing/press"\nspan = 1.0', "span"),
+        ('source = "cc 4"\ntarget = "/playing/press"\nspan = [1.0, "2"]', "span"),
+        ('source = "cc 4"\ntarget = "/playing/press"\nspan = [1.0, true]', "span"),
+        ('source = "cc 4"\ntarget = "/playing/press"\nspan = [1.0, 60.0]', "60"),
+        ('source = "cc 4"\ntarget = "/playing/press"\nspan = [nan, 2.0]', "nan"),
+        ('source = "cc 4"\ntarget = "/playing/press"\nspan = [1.0, inf]', "inf"),
+        pytest.param(
+            'source = "cc 4"\ntarget = "/playing/press"\nspan = [1, 1' + "0" * 400 + "]",
+            "span",
+            id="too large",
+        ),
+        ('source = "cc 4"\ntarget = "/playing/volume"\ncurve = "exp"', "exp"),
+        ('source = "cc 4"\ntarget = "/playing/volume"\ncurve = "exp"\nspan = [0.5, 0.0]', "exp"),
+    ],
+)
+def test_an_error_names_the_file_the_bind_and_what_is_wrong(read, bind, wrong):
+    with pytest.raises(MappingError) as caught:
+        read(f"{GOOD}[[bind]]\n{bind}\n")
+    message = str(caught.value)
+    assert "mine.toml: bind 2: " in message
+    assert wrong in message
+    assert message.isprintable()
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        (b"\xff\xfe\x00", "not a mapping file"),
+        ("{", "not a mapping file"),
+        (BIND + BIND.replace("[[bind]]", "[bind]"), "not a mapping file"),
+        pytest.param("a = " + "[" * 20_000, "not a mapping file", id="nested too deep"),
+        ("names = 1", "names"),
+        ("bind = 3", "[[bind]]"),
+        ("[bind]\nsource = 1", "[[bind]]"),
+        ("bind = [1]", "bind 1"),
+    ],
+)
+def test_a_file_that_is_no_mapping_says_so(read, text, wrong):
+    with pytest.raises(MappingError, match=r"mine\.toml") as caught:
+        read(text)
+    assert wrong in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+def test_an_unknown_name_lists_what_ships():
+    with pytest.raises(MappingError, match=r"'keybord'.*keyboard"):
+        load("keybord")
+
+
+def test_a_missing_file_and_a_folder_are_named(tmp_path):
+    for path in (tmp_path / "none.toml", tmp_path):
+        with pytest.raises(MappingError, match=path.name):
+            load(str(path))

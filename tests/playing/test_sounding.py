@@ -1,0 +1,133 @@
+"""What is heard when a player plays: notes that speak, in tune, and end."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pitch import cents, hertz, pitch_of
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.playing.performer import Key, Performer
+
+RATE = 44100
+
+
+def run(instrument: Instrument, seconds: float) -> np.ndarray:
+    out = np.zeros(round(seconds * instrument.rate), np.float32)
+    instrument.process(out)
+    return out
+
+
+def level(samples: np.ndarray) -> float:
+    """RMS in dB of full scale."""
+    return 10.0 * math.log10(max(float(np.mean(np.square(samples, dtype=np.float64))), 1e-24))
+
+
+def player_at(rate: float, seed: int = 0) -> tuple[Performer, Instrument]:
+    instrument = Instrument(rate)
+    return Performer(instrument, seed=seed), instrument
+
+
+# ---------------------------------------------------------------- the estimator itself
+
+
+@pytest.mark.parametrize("rate", [22050, 44100, 96000])
+@pytest.mark.parametrize("note", [65, 69.3, 72, 77, 83, 89])
+@pytest.mark.parametrize("first", [1, 2])  # with and without a fundamental
+def test_the_estimator_hears_synthetic_tones_to_half_a_cent(rate, note, first):
+    frequency = hertz(note)
+    time = np.arange(rate // 4) / rate
+    partials = range(first, max(first + 2, min(12, int(0.45 * rate / frequency))))
+    chance = np.random.default_rng(1)
+    tone = sum(
+        np.sin(2.0 * np.pi * n * frequency * time + chance.uniform(0.0, 6.0)) / n for n in partials
+    )
+    noisy = tone + 1e-3 * chance.standard_normal(len(time))
+    assert abs(cents(pitch_of(noisy, rate), frequency)) < 0.5
+
+
+def test_the_estimator_hears_no_pitch_in_noise():
+    noise = np.random.default_rng(1).standard_normal(RATE // 2)
+    assert math.isnan(pitch_of(noise, RATE))
+
+
+# ---------------------------------------------------------------- notes
+
+
+@pytest.mark.parametrize("note", range(65, 90))
+@pytest.mark.parametrize("rate", [44100, 48000])
+def test_every_note_is_heard_in_tune_without_any_controller(note, rate):
+    player, instrument = player_at(rate)
+    player.note_on(Key(0, note))
+    out = run(instrument, 1.0)[rate // 2 :]
+    assert abs(cents(pitch_of(out, rate), hertz(note))) < 35.0
+    assert level(out) > -40.0
+
+
+@pytest.mark.parametrize("note", range(66, 90, 2))
+def test_every_note_speaks_within_a_fifth_of_a_second(note):
+    player, instrument = player_at(RATE)
+    player.note_on(Key(0, note))
+    out = run(instrument, 0.5)
+    assert abs(cents(pitch_of(out[RATE // 5 :], RATE), hertz(note))) < 50.0
+
+
+@pytest.mark.parametrize("note", [66, 71, 74, 80, 86])
+@pytest.mark.parametrize("bend", [-1.5, 0.5, 2.0])
+def test_a_bend_is_heard_as_far_as_it_says(note, bend):
+    player, instrument = player_at(RATE)
+    player.note_on(Key(0, note))
+    run(instrument, 0.4)
+    player.write("/playing/bend", bend)
+    out = run(instrument, 0.8)[RATE // 3 :]
+    expected = max(note + bend, 65)  # nothing is below the open F string
+    assert abs(cents(pitch_of(out, RATE), hertz(expected))) < 35.0
+
+
+def test_legato_turns_reach_every_note():
+    player, instrument = player_at(RATE)
+    held = None
+    for note in (66, 70, 74, 77, 72, 79, 84, 73, 65):
+        player.note_on(Key(0, note))
+        if held:
+            player.note_off(held)
+        held = Key(0, note)
+        out = run(instrument, 0.7)[RATE // 3 :]
+        assert abs(cents(pitch_of(out, RATE), hertz(note))) < 50.0, note
+
+
+def test_a_faster_bow_and_a_higher_level_are_louder():
+    levels = []
+    for speed, volume in ((0.1, 1.0), (0.2, 1.0), (0.2, 0.7)):
+        player, instrument = player_at(RATE)
+        player.write("/playing/speed", speed)
+        player.write("/playing/volume", volume)
+        player.note_on(Key(0, 75))
+        levels.append(level(run(instrument, 1.0)[RATE // 2 :]))
+    slow, fast, fast_but_low = levels
+    assert fast > slow + 2.0
+    assert fast_but_low < fast - 2.0
+
+
+@pytest.mark.parametrize("note", [65, 70, 72, 80])
+def test_a_note_ends(note):
+    player, instrument = player_at(RATE)
+    player.note_on(Key(0, note))
+    loud = level(run(instrument, 0.5)[RATE // 4 :])
+    player.note_off(Key(0, note))
+    assert level(run(instrument, 3.0)[-RATE // 2 :]) < loud - 50.0
+
+
+@pytest.mark.parametrize("note", [65, 70, 72, 80])
+def test_all_sound_off_is_silence_within_five_milliseconds(note):
+    player, instrument = player_at(RATE)
+    player.note_on(Key(0, note))
+    run(instrument, 0.5)
+    player.all_sound_off()
+    out = run(instrument, 0.5)[round(0.005 * RATE) + 1 :]
+    assert np.abs(out).max() < 1e-3  # -60 dBFS
+    player.note_on(Key(0, note))  # and the next note speaks
+    out = run(instrument, 1.0)[RATE // 2 :]
+    assert abs(cents(pitch_of(out, RATE), hertz(note))) < 35.0

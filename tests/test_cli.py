@@ -1,0 +1,558 @@
+"""The command line: words, help, bad input, full disks, interrupts."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import mido
+import numpy as np
+import pytest
+import soundfile
+
+import yehu_server
+from yehu_server import cli
+
+ROOT = Path(__file__).resolve().parents[1]
+EXAMPLE = {
+    "duration": 0.05,
+    "controls": {"bow_force": 0.5, "bow_velocity": [[0, 0.0], [0.03, 0.2]]},
+}
+COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
+# As a disk with 64 kB left; what is compiled must be so before.
+FULL_DISK = (
+    "import resource; from yehu_server.render import warm_up; warm_up();"
+    "resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));" + COMMAND
+)
+
+
+@pytest.fixture(autouse=True)
+def _signals():
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+@pytest.fixture
+def command(capsys):
+    """Run a command line in this process: its exit code, stdout and stderr."""
+
+    def run(*words: object) -> tuple[int, str, str]:
+        try:
+            code = cli.main([str(word) for word in words])
+        except SystemExit as end:
+            code = end.code
+        out, err = capsys.readouterr()
+        return code, out, err
+
+    return run
+
+
+def start(*words: object, code: str = COMMAND, **options) -> subprocess.Popen:
+    """Run a command line in a process of its own, which an interrupt reaches."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(
+        [sys.executable, "-c", code, *(str(word) for word in words)],
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | options,
+    )
+
+
+@pytest.fixture
+def tune(tmp_path) -> Path:
+    return midi_file(tmp_path / "tune.mid", seconds=0.4)
+
+
+@pytest.fixture
+def gesture(tmp_path) -> Path:
+    path = tmp_path / "gesture.json"
+    path.write_text(json.dumps(EXAMPLE))
+    return path
+
+
+@pytest.fixture
+def out(tmp_path) -> Path:
+    """An empty folder for results."""
+    folder = tmp_path / "out"
+    folder.mkdir()
+    return folder
+
+
+def midi_file(path: Path, seconds: float) -> Path:
+    file = mido.MidiFile(ticks_per_beat=500)  # at 120 bpm, a tick is a millisecond
+    track = mido.MidiTrack()
+    file.tracks.append(track)
+    track.append(mido.Message("note_on", note=70))
+    track.append(mido.Message("note_off", note=70, time=round(1000 * seconds)))
+    file.save(path)
+    return path
+
+
+def is_one_line(text: str) -> bool:
+    return text.endswith("\n") and text[:-1].isprintable() and len(text) > 10
+
+
+# ---------------------------------------------------------------- help
+
+
+@pytest.mark.parametrize("words", [("--help",), ("-h",)])
+def test_help_names_the_commands(command, words):
+    code, out, err = command(*words)
+    assert (code, err) == (0, "")
+    assert "render" in out
+    assert "simulate" in out
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        (
+            "render",
+            """-o --rate --format --subtype --channel --tail --gain-db --normalize --mapping
+            --set --seed --json --quiet --range 44100 wav flac 24 float transpose clamp skip""",
+        ),
+        ("simulate", "-o --energy --strings"),
+    ],
+)
+def test_each_command_has_help_with_examples(command, name, expected):
+    code, out, err = command(name, "--help")
+    assert (code, err) == (0, "")
+    assert "examples:" in out
+    assert f"yehu-server {name} " in out
+    for word in expected.split():
+        assert word in out
+
+
+def test_the_version_is_told(command):
+    assert command("--version") == (0, f"yehu-server {yehu_server.__version__}\n", "")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        (),
+        ("rendr",),
+        ("--rate", "44100"),
+        ("render",),
+        ("render", "tune.mid"),
+        ("render", "-o", "x.wav"),
+        ("simulate",),
+        ("simulate", "g.json"),
+        ("simulate", "one.json", "two.json", "-o", "x.npz"),
+    ],
+)
+def test_a_call_that_is_not_complete_gets_one_line(command, words):
+    code, out, err = command(*words)
+    assert (code, out) == (2, "")
+    assert is_one_line(err)
+    assert "--help" in err
+
+
+# ---------------------------------------------------------------- what is said when all is well
+
+
+@pytest.mark.parametrize("name", ["render", "simulate"])
+def test_quiet_says_nothing(command, tune, gesture, out, name):
+    source, target = (tune, "x.wav") if name == "render" else (gesture, "x.npz")
+    assert command(name, source, "-o", out / target, "--quiet") == (0, "", "")
+    assert (out / target).exists()
+
+
+@pytest.mark.parametrize("extra", [(), ("--quiet",)])
+@pytest.mark.parametrize("name", ["render", "simulate"])
+def test_json_is_one_object_on_stdout_and_nothing_else(command, tune, gesture, out, name, extra):
+    source, target = (tune, "x.wav") if name == "render" else (gesture, "x.npz")
+    code, stdout, err = command(name, source, "-o", out / target, "--json", *extra)
+    assert (code, err) == (0, "")
+    assert stdout.endswith("}\n")
+    assert isinstance(json.loads(stdout), dict)
+
+
+@pytest.mark.parametrize("name", ["render", "simulate"])
+def test_a_person_is_told_what_came_of_it_and_sees_no_bar_in_a_pipe(
+    command, tune, gesture, out, name
+):
+    source, target = (tune, "x.wav") if name == "render" else (gesture, "x.npz")
+    code, stdout, err = command(name, source, "-o", out / target)
+    assert (code, err) == (0, "")
+    assert str(out / target) in stdout
+    if name == "render":
+        assert "channels: 1 (1 notes)" in stdout
+        assert "out of range" not in stdout
+
+
+def test_a_person_is_told_of_notes_out_of_range(command, tmp_path, out):
+    path = tmp_path / "low.mid"
+    path.write_bytes(midi_file(path, 0.1).read_bytes().replace(b"\x90\x46", b"\x90\x20"))
+    _, stdout, _ = command("render", path, "-o", out / "x.wav")
+    assert "1 notes were out of range" in stdout
+
+
+def test_a_terminal_gets_a_progress_bar_and_a_pipe_its_summary(tmp_path, out):
+    tune = midi_file(tmp_path / "tune.mid", seconds=20.0)
+    ours, theirs = pty.openpty()
+    process = start("render", tune, "-o", out / "x.wav", stderr=theirs)
+    os.close(theirs)
+    seen = b""
+    try:
+        while chunk := os.read(ours, 4096):
+            seen += chunk
+    except OSError:  # a terminal nobody writes to any more
+        pass
+    os.close(ours)
+    stdout, _ = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert b"rendering" in seen
+    assert "rendering" not in stdout
+    assert stdout.count("\n") == 2
+
+
+# ---------------------------------------------------------------- bad input
+
+
+def test_what_is_no_midi_file_is_refused_in_one_line(command, tmp_path, out):
+    (tmp_path / "empty.mid").write_bytes(b"")
+    (tmp_path / "text.mid").write_text("O Yehu, play!")
+    (tmp_path / "noise.mid").write_bytes(bytes(range(256)))
+    for name, wrong in (
+        ("none.mid", "none.mid"),
+        ("none\nsuch.mid", "such.mid"),
+        (".", str(tmp_path)),
+        ("empty.mid", "empty"),
+        ("text.mid", "not a MIDI file"),
+        ("noise.mid", "not a MIDI file"),
+    ):
+        code, stdout, err = command("render", tmp_path / name, "-o", out / "x.wav")
+        assert (code, stdout) == (2, "")
+        assert is_one_line(err)
+        assert wrong in err
+        assert not list(out.iterdir())
+
+
+def test_one_bad_file_among_good_ones_is_named(command, tune, tmp_path, out):
+    code, _, err = command("render", tune, tmp_path / "none.mid", tune, "-o", out / "x.wav")
+    assert code == 2
+    assert is_one_line(err)
+    assert "none.mid" in err
+    assert not list(out.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong"),
+    [
+        (("--rate", "0"), "0 Hz"),
+        (("--rate", "8000"), "8000"),
+        (("--rate", "-44100"), "44100"),
+        (("--rate", "1000000000"), "1e+09"),
+        (("--rate", "1e9"), "1e9"),
+        (("--rate", "nan"), "nan"),
+        (("--rate", "fast"), "fast"),
+        (("--rate", "1" + "0" * 400), "rate"),
+        (("--rate", "1" + "0" * 5000), "rate"),
+        (("--rate",), "--rate"),
+        (("--tail", "-1"), "--tail"),
+        (("--tail", "nan"), "--tail"),
+        (("--tail", "inf"), "--tail"),
+        (("--tail", "1e9"), "--tail"),
+        (("--gain-db", "nan"), "--gain-db"),
+        (("--gain-db", "25"), "--gain-db"),
+        (("--gain-db", "loud"), "--gain-db"),
+        (("--channel", "0"), "--channel"),
+        (("--channel", "17"), "--channel"),
+        (("--channel", "x"), "--channel"),
+        (("--format", "mp3"), "--format"),
+        (("--subtype", "32"), "--subtype"),
+        (("--format", "flac", "--subtype", "float"), "flac"),
+        (("--range", "wrap"), "--range"),
+        (("--seed", "1.5"), "--seed"),
+        (("--speed", "2"), "--speed"),
+        (("--norm",), "--norm"),
+        (("--set", "/bow/sped=0.1"), "/bow/speed"),
+        (("--set", "/bow/position"), "ADDRESS=VALUE"),
+        (("--set", "/bow/position=x"), "/bow/position"),
+        (("--set", "/bow/position=nan"), "/bow/position"),
+        (("--set", "/bow/position=inf"), "/bow/position"),
+        (("--set", "/bow/position=0.9"), "0.04 to 0.5"),
+        (("--set", "/bow/position=1" + "0" * 400), "/bow/position"),
+        (("--set", "bow\nposition=0.1"), "position"),
+        (("--mapping", "none"), "none"),
+        (("--mapping", "none.toml"), "none.toml"),
+        (("--instrument", "none.toml"), "none.toml"),
+    ],
+)
+def test_a_wrong_option_of_render_gets_one_line_and_no_file(command, tune, out, words, wrong):
+    code, stdout, err = command("render", tune, "-o", out / "x.wav", *words)
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert wrong in err
+    assert not list(out.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "wrong"),
+    [
+        ("x.toml", "T = ", "not an instrument file"),
+        ("x.json", "{", "not an instrument file"),
+        ("x.toml", b"\xff\xfe", "not an instrument file"),
+        pytest.param("x.json", "[" * 100_000, "not an instrument file", id="deep json"),
+        pytest.param("x.toml", "a = " + "[" * 20_000, "not an instrument file", id="deep toml"),
+        ("x.json", "[]", "instrument"),
+        ("x.toml", "tension = 1", "'tension'"),
+        ("x.toml", "[string_1]\nT = nan", "T"),
+        ("x.toml", "[string_1]\nT = 1e9", "T"),
+        ("x.toml", '[string_1]\nT = "tight"', "T"),
+        ("x.toml", "bridge_x = 0.38", "bridge_x"),
+        ("x.toml", "[bow]\nmu_S = 0.1", "mu_S"),
+        ("x.toml", 'body = "none.json"', "none.json"),
+    ],
+)
+def test_a_wrong_instrument_file_gets_one_line(command, tune, tmp_path, out, name, content, wrong):
+    path = tmp_path / name
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    code, stdout, err = command("render", tune, "-o", out / "x.wav", "--instrument", path)
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert wrong in err
+    assert name in err
+    assert not list(out.iterdir())
+
+
+def test_an_instrument_the_grid_cannot_hold_gets_one_line(command, tune, tmp_path, out):
+    path = tmp_path / "x.toml"
+    path.write_text("[string_1]\nr = 5e-3\nE = 1e12")
+    code, stdout, err = command("render", tune, "-o", out / "x.wav", "--instrument", path)
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert "grid" in err
+    assert not list(out.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("content", "wrong"),
+    [
+        (None, "gesture.json"),
+        (b"", "not a gesture file"),
+        (b"MThd", "not a gesture file"),
+        (b"[" * 100_000, "not a gesture file"),
+        (b'{"duration": NaN}', "duration"),
+        (b'{"duration": 0}', "duration"),
+        (b'{"duration": 1e9}', "duration"),
+        (b'{"sample_rate": 8000}', "rate"),
+        (b'{"controls": {"bow_force": [[0, NaN]]}}', "bow_force"),
+        (b'{"controls": {"bow_force": [[0, 1e999]]}}', "bow_force"),
+        (b'{"controls": {"bow_farce": 1}}', "bow_farce"),
+        (b'{"controls": {"bow\\nforce": 1}}', "force"),
+        (b'{"instrument": {"string_1": {"r": 5e-3, "E": 1e12}}}', "grid"),
+        (b'{"duration": 3600}', "GiB"),
+    ],
+)
+def test_a_wrong_gesture_gets_one_line_and_no_file(command, tmp_path, out, content, wrong):
+    path = tmp_path / "gesture.json"
+    if content is not None:
+        path.write_bytes(content)
+    code, stdout, err = command("simulate", path, "-o", out / "x.npz")
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert wrong in err
+    assert not list(out.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong"),
+    [
+        (("--strings", "0"), "--strings"),
+        (("--strings", "-3"), "--strings"),
+        (("--strings", "some"), "--strings"),
+        (("--rate", "44100"), "--rate"),
+        (("--energ",), "--energ"),
+    ],
+)
+def test_a_wrong_option_of_simulate_gets_one_line_and_no_file(command, gesture, out, words, wrong):
+    code, stdout, err = command("simulate", gesture, "-o", out / "x.npz", *words)
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert wrong in err
+    assert not list(out.iterdir())
+
+
+def test_a_folder_is_no_gesture(command, tmp_path, out):
+    code, _, err = command("simulate", tmp_path, "-o", out / "x.npz")
+    assert code == 2
+    assert is_one_line(err)
+
+
+def test_a_name_with_a_line_break_is_still_one_line(command, tune, tmp_path, out):
+    for words in (
+        ("simulate", tmp_path / "no\nsuch.json", "-o", out / "x.npz"),
+        ("render", tune, "-o", tmp_path / "no\nsuch" / "x.wav"),
+        ("render", tune, "-o", out / "x.wav", "--instrument", tmp_path / "no\nsuch.toml"),
+        ("render", tune, "-o", out / "x.wav", "--mapping", tmp_path / "no\nsuch.toml"),
+        ("render", tune, "-o", out / "x.wav", "--no\nsuch"),
+    ):
+        code, _, err = command(*words)
+        assert code == 2
+        assert is_one_line(err), words
+        assert "such" in err
+
+
+# ---------------------------------------------------------------- where results go
+
+
+@pytest.fixture(params=["render", "simulate"])
+def into(request, command, tune, gesture):
+    """Run a good command into a target."""
+    source = tune if request.param == "render" else gesture
+
+    def run(target: Path) -> tuple[int, str, str]:
+        return command(request.param, source, "-o", target)
+
+    return run
+
+
+def test_an_output_folder_that_does_not_exist_is_named_and_not_made(into, tmp_path):
+    code, stdout, err = into(tmp_path / "none" / "x")
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert str(tmp_path / "none") in err
+    assert not (tmp_path / "none").exists()
+
+
+def test_an_output_that_is_a_folder_is_left_as_it_is(into, out):
+    code, stdout, err = into(out)
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert out.is_dir()
+    assert not list(out.iterdir())
+
+
+def test_an_output_below_a_file_is_refused(into, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    code, stdout, err = into(tmp_path / "file" / "x")
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+def test_an_output_folder_that_is_read_only_is_refused(into, out):
+    out.chmod(0o500)
+    if os.access(out, os.W_OK):
+        pytest.skip("this user may write everywhere")
+    code, stdout, err = into(out / "x")
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert "ermission" in err
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="no /proc here")
+def test_an_output_folder_where_nobody_may_write_is_refused(into):
+    code, stdout, err = into(Path("/proc/x"))
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert "/proc/x" in err
+
+
+def test_a_name_too_long_for_the_disk_is_refused(into, out):
+    code, stdout, err = into(out / ("x" * 300))
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert not list(out.iterdir())
+
+
+def test_an_older_result_is_replaced(into, out):
+    (out / "x").write_text("older")
+    code, _, _ = into(out / "x")
+    assert code == 0
+    assert (out / "x").read_bytes()[:4] in {b"RIFF", b"PK\x03\x04"}
+    assert len(list(out.iterdir())) == 1
+
+
+def test_an_output_that_cannot_be_written_is_found_before_anything_is_compiled(
+    command, tune, tmp_path, monkeypatch
+):
+    # The first run on a machine says that it compiles, and takes a while: not before this.
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "fresh"))
+    code, _, err = command("render", tune, "-o", tmp_path / "none" / "x.wav")
+    assert code == 2
+    assert is_one_line(err)
+
+
+# ---------------------------------------------------------------- full disks and interrupts
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("x.wav",),
+        ("x.wav", "--subtype", "float"),
+        ("x.flac",),
+        ("x.wav", "--normalize"),
+        ("x.npz",),
+    ],
+    ids=" ".join,
+)
+def test_a_full_disk_is_told_in_one_line_and_an_older_file_stays(tmp_path, out, words):
+    name, *options = words
+    if name.endswith("npz"):
+        source = tmp_path / "gesture.json"
+        source.write_text(json.dumps(EXAMPLE | {"duration": 3.0}))
+        first = "simulate"
+    else:
+        source = midi_file(tmp_path / "tune.mid", seconds=3.0)
+        first = "render"
+    (out / name).write_text("older")
+    process = start(first, source, "-o", out / name, *options, code=FULL_DISK)
+    stdout, err = process.communicate(timeout=60)
+    assert (process.returncode, stdout) == (2, "")
+    assert is_one_line(err)
+    assert name in err or str(out) in err
+    assert (out / name).read_text() == "older"
+    assert len(list(out.iterdir())) == 1
+
+
+@pytest.mark.parametrize(
+    ("signum", "options"),
+    [(signal.SIGINT, ()), (signal.SIGTERM, ()), (signal.SIGTERM, ("--normalize",))],
+)
+def test_an_interrupted_rendering_leaves_no_file(tmp_path, out, signum, options):
+    tune = midi_file(tmp_path / "tune.mid", seconds=1800.0)
+    handled = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);" + COMMAND
+    process = start("render", tune, "-o", out / "x.wav", *options, code=handled)
+    deadline = time.monotonic() + 60.0
+    while not any(out.iterdir()):  # it is rendering once its partial file is there
+        assert process.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    time.sleep(0.2)
+    process.send_signal(signum)
+    stdout, err = process.communicate(timeout=30)
+    assert process.returncode != 0
+    assert stdout == ""
+    assert is_one_line(err)
+    assert not list(out.iterdir())
+
+
+def test_a_simulation_without_memory_says_so(command, gesture, out, monkeypatch):
+    def no_memory(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr("yehu_server.simulate.simulate", no_memory)
+    code, stdout, err = command("simulate", gesture, "-o", out / "x.npz")
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert not list(out.iterdir())
+
+
+def test_a_whole_run_in_a_process_of_its_own(tune, out):
+    process = start("render", tune, "-o", out / "x.wav", "--json")
+    stdout, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    sound, rate = soundfile.read(out / "x.wav")
+    assert json.loads(stdout)["duration_s"] == len(sound) / rate
+    assert np.abs(sound).max() > 0.01

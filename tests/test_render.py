@@ -1,0 +1,493 @@
+"""MIDI files into sound files: `yehu-server render`, read back from what it wrote."""
+
+from __future__ import annotations
+
+import json
+import math
+import signal
+from dataclasses import replace
+from pathlib import Path
+
+import mido
+import numpy as np
+import pytest
+import soundfile
+from pitch import cents, hertz, pitch_of
+
+from yehu_server.cli import main
+from yehu_server.render import Options, Performance, render
+from yehu_server.score.smf import concatenate, read_score
+
+ROOT = Path(__file__).resolve().parents[1]
+TUNE = ROOT / "examples" / "shi_bei_jiu.mid"
+STEP = {"16": 2.0**-15, "24": 2.0**-23, "float": 2.0**-23}
+QUIET = 1e-4  # 80 dB under full scale
+
+SCORE_S = 0.75
+PHRASE = (  # start and length in s, note, velocity
+    (0.0, 0.3, 66, 40),
+    (0.25, 0.2, 69, 100),
+    (0.5, 0.25, 76, 80),
+)
+
+
+def notes(*events: tuple, channel: int = 1) -> list[tuple[float, mido.Message]]:
+    messages = []
+    for start, length, note, velocity in events:
+        of = {"channel": channel - 1, "note": note}
+        messages.append((start, mido.Message("note_on", velocity=velocity, **of)))
+        messages.append((start + length, mido.Message("note_off", **of)))
+    return messages
+
+
+def cc(time: float, control: int, value: int, channel: int = 1) -> tuple[float, mido.Message]:
+    return time, mido.Message("control_change", control=control, value=value, channel=channel - 1)
+
+
+@pytest.fixture
+def midi(tmp_path):
+    """Write messages at their times (s) to a MIDI file; it lasts until the last one."""
+
+    def write(*messages: tuple[float, mido.Message], name: str = "tune.mid") -> Path:
+        file = mido.MidiFile(ticks_per_beat=500)  # at 120 bpm, a tick is a millisecond
+        track = mido.MidiTrack()
+        file.tracks.append(track)
+        now = 0
+        for time, message in sorted(messages, key=lambda pair: pair[0]):
+            track.append(message.copy(time=round(1000 * time) - now))
+            now = round(1000 * time)
+        file.save(tmp_path / name)
+        return tmp_path / name
+
+    return write
+
+
+@pytest.fixture
+def phrase(midi) -> Path:
+    bends = [(0.1 * n, mido.Message("pitchwheel", pitch=1000 * n)) for n in range(1, 7)]
+    return midi(*notes(*PHRASE), *bends, cc(0.1, 1, 90), cc(0.2, 11, 100), cc(0.55, 64, 127))
+
+
+@pytest.fixture(autouse=True)
+def _signals():
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+@pytest.fixture
+def play(tmp_path, capsys):
+    """Render with `--json`; return the summary and the samples of the file."""
+
+    def run(*arguments, target: str = "out.wav") -> tuple[dict, np.ndarray]:
+        path = tmp_path / target
+        words = [str(word) for word in arguments]
+        assert main(["render", *words, "-o", str(path), "--json"]) == 0
+        return json.loads(capsys.readouterr().out), soundfile.read(path)[0]
+
+    return run
+
+
+def samples(path: Path, **options) -> np.ndarray:
+    """What a score sounds like, before it becomes a file."""
+    blocks = Performance(read_score(path), Options(**options)).blocks()
+    return np.concatenate(list(blocks))
+
+
+def rms(sound: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(sound, dtype=np.float64))))
+
+
+# ---------------------------------------------------------------- the tune that ships
+
+
+def test_shi_bei_jiu_is_played_from_its_first_note_to_its_last(play):
+    summary, sound = play(TUNE)
+    assert summary["notes_played"] == 198
+    assert summary["notes_out_of_range"] == 0
+    assert summary["unconverged_solves"] == 0
+    assert summary["lost_states"] == 0
+    assert summary["channels"] == {"1": 198}
+    assert 27.0 < summary["duration_s"] < 33.0
+    assert rms(sound) > 0.01
+    assert np.abs(sound).max() <= 1.0
+    # It never falls silent for longer than a rest, before its tail.
+    seconds = sound[: 27 * 44100].reshape(27, 44100)
+    assert all(rms(second) > 0.003 for second in seconds)
+
+
+# ---------------------------------------------------------------- the summary
+
+
+MATRIX = [("wav", "16"), ("wav", "24"), ("wav", "float"), ("flac", "16"), ("flac", "24")]
+
+
+@pytest.mark.parametrize(("kind", "subtype"), MATRIX)
+def test_the_summary_says_what_the_file_holds(play, tmp_path, phrase, kind, subtype):
+    words = (phrase, "--format", kind, "--subtype", subtype, "--rate", 48000)
+    summary, sound = play(*words, target="out")
+    info = soundfile.info(tmp_path / "out")
+    assert info.format == kind.upper()
+    assert info.subtype == {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}[subtype]
+    assert info.samplerate == 48000
+    assert info.channels == 1
+    assert summary["duration_s"] == info.frames / 48000
+    assert summary["peak"] == pytest.approx(np.abs(sound).max(), abs=STEP[subtype])
+    assert summary["rms"] == pytest.approx(rms(sound), abs=STEP[subtype])
+    assert summary["rms"] > 0.01
+
+
+def test_the_summary_has_every_figure_promised(play, phrase):
+    summary, _ = play(phrase)
+    promised = {
+        "duration_s": float,
+        "real_time_factor": float,
+        "peak": float,
+        "rms": float,
+        "notes_played": int,
+        "notes_out_of_range": int,
+        "unconverged_solves": int,
+        "lost_states": int,
+    }
+    assert {name: type(summary[name]) for name in promised} == promised
+    assert summary["real_time_factor"] > 0.0
+    assert summary["notes_played"] == 3
+
+
+def test_the_usual_file_is_a_wav_of_24_bits_at_44100_hz(play, tmp_path, phrase):
+    play(phrase)
+    info = soundfile.info(tmp_path / "out.wav")
+    assert (info.format, info.subtype, info.samplerate) == ("WAV", "PCM_24", 44100)
+
+
+@pytest.mark.parametrize(
+    ("target", "words", "kind"),
+    [
+        ("a.wav", (), "WAV"),
+        ("a.flac", (), "FLAC"),
+        ("a.FLAC", (), "FLAC"),
+        ("a", (), "WAV"),
+        ("a.flac", ("--format", "wav"), "WAV"),
+        ("a.wav", ("--format", "flac"), "FLAC"),
+    ],
+)
+def test_the_format_is_asked_for_or_goes_by_the_ending(play, tmp_path, midi, target, words, kind):
+    play(midi(*notes((0, 0.1, 70, 64))), "--tail", 0, *words, target=target)
+    assert soundfile.info(tmp_path / target).format == kind
+
+
+# ---------------------------------------------------------------- the same again
+
+
+@pytest.mark.parametrize(("kind", "subtype"), MATRIX)
+def test_rendering_twice_gives_the_same_file(play, tmp_path, phrase, kind, subtype):
+    words = (phrase, "--format", kind, "--subtype", subtype)
+    _, once = play(*words, target="once")
+    _, twice = play(*words, target="twice")
+    np.testing.assert_array_equal(once, twice)
+    if subtype != "float":  # such a header holds a time stamp
+        assert (tmp_path / "once").read_bytes() == (tmp_path / "twice").read_bytes()
+
+
+@pytest.mark.parametrize("block", [1, 64, 333, 10**6])
+def test_the_block_size_within_is_not_heard(phrase, block):
+    expected = samples(phrase)
+    assert rms(expected) > 0.01
+    np.testing.assert_array_equal(samples(phrase, block=block), expected)
+    fixed = samples(phrase, block=block, tail_s=0.1)
+    np.testing.assert_array_equal(fixed, expected[: len(fixed)])
+
+
+def test_the_seed_changes_the_performance_and_only_by_its_chance(phrase):
+    usual = samples(phrase)
+    np.testing.assert_array_equal(samples(phrase, seed=0), usual)
+    other = samples(phrase, seed=1)
+    assert not np.array_equal(other[:10_000], usual[:10_000])
+    still = (("/playing/variation", 0.0),)
+    np.testing.assert_array_equal(
+        samples(phrase, seed=0, settings=still), samples(phrase, seed=1, settings=still)
+    )
+
+
+def test_the_seed_is_a_word_on_the_command_line(play, phrase):
+    _, usual = play(phrase)
+    _, same = play(phrase, "--seed", 0)
+    _, other = play(phrase, "--seed", 7)
+    np.testing.assert_array_equal(same, usual)
+    assert not np.array_equal(other[:10_000], usual[:10_000])
+
+
+# ---------------------------------------------------------------- levels
+
+
+@pytest.mark.parametrize(("kind", "subtype"), [("wav", "float"), ("wav", "16"), ("flac", "24")])
+@pytest.mark.parametrize("gain_db", [-30, 0, 24])
+def test_normalize_puts_the_peak_at_minus_1_dbfs(play, phrase, kind, subtype, gain_db):
+    words = ("--normalize", "--format", kind, "--subtype", subtype, "--gain-db", gain_db)
+    summary, sound = play(phrase, *words)
+    assert 20.0 * math.log10(np.abs(sound).max()) == pytest.approx(-1.0, abs=0.01)
+    assert summary["peak"] == pytest.approx(np.abs(sound).max(), abs=STEP[subtype])
+    assert summary["rms"] == pytest.approx(rms(sound), abs=STEP[subtype])
+
+
+def test_normalize_changes_nothing_but_the_level(play, phrase):
+    _, usual = play(phrase, "--subtype", "float")
+    _, scaled = play(phrase, "--subtype", "float", "--normalize")
+    factor = np.abs(scaled).max() / np.abs(usual).max()
+    np.testing.assert_allclose(scaled, factor * usual, rtol=1e-5, atol=1e-9)
+
+
+def test_normalize_leaves_silence_as_it_is(play, midi):
+    summary, sound = play(midi(cc(0.1, 20, 1)), "--normalize")
+    assert not sound.any()
+    assert (summary["peak"], summary["rms"], summary["notes_played"]) == (0.0, 0.0, 0)
+
+
+def test_gain_is_in_decibels(play, phrase):
+    words = ("--tail", 0, "--subtype", "float", "--gain-db")
+    _, low = play(phrase, *words, -26)
+    _, high = play(phrase, *words, -20)
+    np.testing.assert_allclose(high, 10 ** (6 / 20) * low, rtol=1e-5, atol=1e-9)
+    _, by_address = play(phrase, "--set", "/output/gain=-20", *words[:-1])
+    np.testing.assert_allclose(by_address[4410:], high[4410:], rtol=1e-5, atol=1e-9)
+
+
+@pytest.mark.parametrize("subtype", ["16", "24", "float"])
+def test_the_limiter_keeps_a_loud_rendering_within_full_scale(play, phrase, subtype):
+    summary, sound = play(phrase, "--gain-db", 24, "--subtype", subtype)
+    assert 0.9 < np.abs(sound).max() <= 1.0
+    assert summary["peak"] <= 1.0
+    # Bent, not folded over: no sample jumps from one end to the other.
+    assert np.abs(np.diff(sound)).max() < 1.0
+
+
+# ---------------------------------------------------------------- the tail
+
+
+@pytest.mark.parametrize("tail", [0, 0.5, 1.25])
+@pytest.mark.parametrize("rate", [44100, 48000])
+def test_a_tail_asked_for_is_exactly_as_long(play, midi, tail, rate):
+    summary, sound = play(midi(*notes((0, 0.4, 70, 64))), "--tail", tail, "--rate", rate)
+    assert len(sound) == round((0.4 + tail) * rate)
+    assert summary["duration_s"] == len(sound) / rate
+
+
+@pytest.mark.parametrize("rate", [22050, 44100, 96000])
+def test_the_usual_tail_ends_when_the_sound_has(play, midi, rate):
+    _, sound = play(midi(*notes((0, 0.4, 72, 64))), "--rate", rate, "--subtype", "float")
+    tail = sound[round(0.4 * rate) :]
+    assert len(tail) < 5 * rate
+    assert np.abs(tail[-round(0.19 * rate) :]).max() < QUIET
+    loud = np.flatnonzero(np.abs(tail) >= QUIET)
+    assert len(tail) - loud[-1] < 0.25 * rate  # and no later
+    assert np.abs(tail[: rate // 10]).max() > 100 * QUIET  # it does ring on
+
+
+def test_a_sound_that_does_not_end_is_left_after_five_seconds(play, midi):
+    words = ("--set", "/bow/side=1", "--set", "/bow/speed=0.2")
+    summary, sound = play(midi(*notes((0, 0.1, 65, 64))), *words)
+    assert summary["duration_s"] == pytest.approx(5.1, abs=0.02)
+    assert np.abs(sound[-4410:]).max() > 100 * QUIET
+
+
+def test_a_note_the_score_does_not_end_ends_with_it(play, midi):
+    held = midi(notes((0, 0.5, 70, 64))[0], cc(0.5, 64, 127), cc(0.5, 20, 0))
+    summary, _ = play(held)
+    assert summary["duration_s"] < 5.0
+
+
+# ---------------------------------------------------------------- channels
+
+
+@pytest.fixture
+def duet(midi) -> Path:
+    first = notes((0.0, 0.2, 66, 64), (0.4, 0.2, 70, 64), channel=1)
+    third = notes((0.2, 0.2, 77, 64), channel=3)
+    drums = notes((0.0, 0.6, 84, 127), (0.1, 0.1, 84, 127), (0.3, 0.1, 84, 127), channel=10)
+    return midi(*first, *third, *drums)
+
+
+@pytest.mark.parametrize(
+    ("words", "channels"),
+    [
+        ((), {"1": 2, "3": 1}),
+        (("--channel", 3), {"3": 1}),
+        (("--channel", 3, "--channel", 1), {"1": 2, "3": 1}),
+        (("--channel", 10), {"10": 3}),
+        (("--channel", 16), {}),
+    ],
+)
+def test_all_channels_but_the_tenth_play_unless_some_are_chosen(play, duet, words, channels):
+    summary, sound = play(duet, *words)
+    assert summary["channels"] == channels
+    assert summary["notes_played"] == sum(channels.values())
+    assert sound.any() == bool(channels)
+
+
+def test_the_other_channels_are_not_heard_at_all(play, duet, midi):
+    _, chosen = play(duet, "--channel", 3, "--tail", 0.5)
+    alone = midi(*notes((0.2, 0.2, 77, 64), channel=3), cc(0.6, 20, 0), name="alone.mid")
+    _, expected = play(alone, "--tail", 0.5)
+    np.testing.assert_array_equal(chosen, expected)
+
+
+# ---------------------------------------------------------------- settings, mapping, instrument
+
+
+def test_a_setting_is_heard(phrase):
+    usual = samples(phrase)
+    near = samples(phrase, settings=(("/bow/position", 0.06),))
+    assert not np.allclose(near[:20_000], usual[:20_000], atol=1e-3)
+
+
+def test_a_setting_is_held_whatever_notes_and_controllers_say(play, midi):
+    settings = ("--set", "/playing/pressure=0.45", "--set", "/playing/speed=0.2")
+    firm = midi(cc(0, 1, 127), *notes((0, 0.4, 70, 127)), name="firm.mid")
+    faint = midi(cc(0, 1, 0), *notes((0, 0.4, 70, 1)), name="faint.mid")
+    assert not np.array_equal(samples(firm), samples(faint))
+    np.testing.assert_array_equal(play(firm, *settings)[1], play(faint, *settings)[1])
+
+
+def test_a_setting_of_the_bow_is_held_through_all_notes(play, midi):
+    # A lifted bow plays nothing, however many notes there are.
+    _, sound = play(
+        midi(*notes(*((0.2 * n, 0.1, 65, 64) for n in range(5)))), "--set", "/bow/side=0"
+    )
+    assert np.abs(sound).max() < QUIET
+
+
+def test_a_mapping_file_says_what_controllers_do(play, midi, tmp_path):
+    mapping = tmp_path / "mine.toml"
+    mapping.write_text('[[bind]]\nsource = "cc 4"\ntarget = "/playing/volume"\nspan = [1.0, 0.0]\n')
+    tune = midi(cc(0, 4, 127), cc(0, 7, 0), *notes((0, 0.4, 70, 64)))
+    assert not play(tune, "--tail", 1)[1][2000:].any()  # CC7
+    assert not play(tune, "--tail", 1, "--mapping", mapping)[1][2000:].any()  # CC4, inverted
+    tune = midi(cc(0, 4, 0), cc(0, 7, 0), *notes((0, 0.4, 70, 64)))
+    assert rms(play(tune, "--tail", 1, "--mapping", mapping)[1]) > 0.001
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("slack.toml", "[string_1]\nT = 40.0\n"),
+        ("slack.json", '{"string_1": {"T": 40.0}}'),
+    ],
+)
+def test_an_instrument_file_changes_the_instrument(play, midi, tmp_path, name, text):
+    (tmp_path / name).write_text(text)
+    tune = midi(*notes((0, 1.0, 65, 64)))
+    _, usual = play(tune, "--tail", 0)
+    _, slack = play(tune, "--tail", 0, "--instrument", tmp_path / name)
+    fall = cents(pitch_of(slack[22050:], 44100), pitch_of(usual[22050:], 44100))
+    assert fall == pytest.approx(600.0 * math.log2(40.0 / 50.61), abs=25.0)
+
+
+# ---------------------------------------------------------------- range
+
+
+@pytest.mark.parametrize(
+    ("policy", "note", "fitted"),
+    [
+        ("transpose", 53, 65),
+        ("transpose", 90, 78),
+        ("transpose", 127, 79),
+        ("transpose", 0, 72),
+        ("clamp", 20, 65),
+        ("clamp", 100, 89),
+        ("clamp", 70, 70),
+    ],
+)
+def test_a_note_out_of_range_sounds_where_the_policy_puts_it(play, midi, policy, note, fitted):
+    words = ("--range", policy, "--tail", 0.2)
+    summary, sound = play(midi(*notes((0, 0.3, note, 64))), *words)
+    assert summary["notes_out_of_range"] == (note != fitted)
+    _, expected = play(midi(*notes((0, 0.3, fitted, 64))), "--tail", 0.2)
+    np.testing.assert_array_equal(sound, expected)
+
+
+def test_skipped_notes_are_counted_but_not_played(play, midi):
+    summary, sound = play(midi(*notes((0, 0.3, 64, 64), (0.3, 0.3, 90, 64))), "--range", "skip")
+    assert summary["notes_out_of_range"] == 2
+    assert summary["notes_played"] == 0
+    assert summary["channels"] == {}
+    assert not sound.any()
+
+
+def test_transposing_is_the_usual_policy(play, midi):
+    summary, _ = play(midi(*notes((0, 0.1, 20, 64), (0.2, 0.1, 66, 64))), "--tail", 0)
+    assert (summary["notes_played"], summary["notes_out_of_range"]) == (2, 1)
+
+
+# ---------------------------------------------------------------- several files, other rates
+
+
+def test_several_files_play_one_after_another(play, midi):
+    first = midi(*notes((0, 0.6, 77, 64)), name="1.mid")
+    second = midi(*notes((0, 0.6, 80, 64)), name="2.mid")
+    summary, sound = play(first, second, first, "--tail", 0.1)
+    assert len(sound) == round(1.9 * 44100)
+    assert summary["notes_played"] == 3
+    for start, note in ((0.0, 77), (0.6, 80), (1.2, 77)):
+        part = sound[round((start + 0.25) * 44100) : round((start + 0.55) * 44100)]
+        assert abs(cents(pitch_of(part, 44100), hertz(note))) < 35.0
+
+
+def test_a_pedal_or_fade_at_the_end_of_one_file_does_not_reach_the_next(midi):
+    plain = midi(*notes((0, 0.4, 77, 64)), name="plain.mid")
+    bent = mido.Message("pitchwheel", pitch=8191)
+    ends = [cc(0.4, 64, 127), cc(0.4, 11, 0), cc(0.4, 1, 127), (0.4, bent)]
+    moved = midi(*notes((0, 0.4, 77, 64)), *ends, name="moved.mid")
+
+    def second_half(path: Path) -> np.ndarray:
+        score = concatenate([read_score(path), read_score(plain)])
+        sound = np.concatenate(list(Performance(score, Options()).blocks()))
+        return sound[round(0.6 * 44100) : round(0.75 * 44100)]
+
+    expected, heard = second_half(plain), second_half(moved)
+    assert abs(cents(pitch_of(heard, 44100), pitch_of(expected, 44100))) < 10.0
+    assert rms(heard) == pytest.approx(rms(expected), rel=0.2)
+
+
+@pytest.mark.parametrize("rate", [22050, 32000, 48000, 96000, 192000])
+def test_other_rates_play_the_same_tune(play, tmp_path, midi, rate):
+    tune = midi(*notes((0, 0.6, 74, 64)))
+    summary, sound = play(tune, "--rate", rate, "--tail", 0.1)
+    assert soundfile.info(tmp_path / "out.wav").samplerate == rate
+    assert len(sound) == round(0.7 * rate)
+    assert summary["lost_states"] == 0
+    part = sound[round(0.25 * rate) : round(0.55 * rate)]
+    assert abs(cents(pitch_of(part, rate), hertz(74))) < 35.0
+    _, usual = play(tune, "--tail", 0.1)
+    assert rms(part) == pytest.approx(rms(usual[11025:24255]), rel=0.4)
+
+
+# ---------------------------------------------------------------- modes heard
+
+
+def test_all_sound_off_is_heard_as_silence(midi):
+    sound = samples(midi(*notes((0, 1.0, 70, 64)), cc(0.5, 120, 0)), tail_s=0.0)
+    assert rms(sound[11025:22050]) > 0.01
+    assert np.abs(sound[22050 + 222 :]).max() < 1e-3
+
+
+def test_volume_zero_is_silence(midi):
+    sound = samples(midi(*notes((0, 1.0, 70, 64)), cc(0.5, 7, 0)), tail_s=0.0)
+    assert rms(sound[11025:22050]) > 0.01
+    assert not sound[22050 + 2205 :].any()
+
+
+# ---------------------------------------------------------------- progress
+
+
+def test_progress_is_told_in_seconds_up_to_the_end(phrase, tmp_path):
+    told = []
+    summary = render(
+        read_score(phrase),
+        tmp_path / "out.wav",
+        replace(Options(), tail_s=0.5),
+        lambda done, total: told.append((done, total)),
+    )
+    assert {total for _, total in told} == {SCORE_S}
+    done = [value for value, _ in told]
+    assert done == sorted(done)
+    assert done[-1] == pytest.approx(summary.duration_s)

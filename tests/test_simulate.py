@@ -1,0 +1,463 @@
+"""Gestures in physical units: `yehu-server simulate`, read back from its arrays."""
+
+from __future__ import annotations
+
+import json
+import math
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pitch import cents, pitch_of
+from scipy.signal import lfilter
+
+from yehu_server.cli import main
+from yehu_server.errors import OutputError, ParameterError, ScoreError
+from yehu_server.simulate import gesture_from, read_gesture, simulate
+
+BODY = Path(__file__).resolve().parents[1] / "yehu_server" / "physics" / "body.json"
+ISSUE = {
+    "sample_rate": 44100,
+    "duration": 2.0,
+    "instrument": {"bow": {"epsilon_0": 31860.0}},
+    "controls": {
+        "bow_force": [[0, 0.0], [0.02, 0.7]],
+        "bow_velocity": [[0, 0.0], [0.03, 0.3]],
+        "bow_position": [[0, 0.255]],
+        "finger_position": [[0, 0.1]],
+        "press_force": [[0, 0.0], [1.0, 0.5]],
+    },
+    "pluck": {"string": 1, "position": 0.1, "amplitude": 0.001},
+    "hammer": [[0.0, 0.0], [0.0005, 5.0], [0.001, 0.0]],
+}
+SCALARS = (
+    "bridge_force",
+    "bridge_force_1",
+    "bridge_force_2",
+    "bridge_velocity",
+    "pressure",
+    "finger_displacement",
+    "friction_force",
+    "relative_velocity",
+    "iterations",
+    "time",
+)
+LOSSES = (
+    "loss_strings",
+    "loss_bridge",
+    "loss_finger",
+    "loss_hair",
+    "loss_friction",
+    "loss_bow_lift",
+    "loss_contact_reset",
+)
+PLUCK = {"string": 1, "position": 0.1, "amplitude": 0.001}
+
+
+@pytest.fixture(autouse=True)
+def _signals():
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+def run(gesture: dict, **options) -> dict:
+    return dict(simulate(gesture_from(gesture), **options).arrays)
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory) -> dict:
+    """The gesture of the issue, through the command, as `np.load` gives it back."""
+    folder = tmp_path_factory.mktemp("simulate")
+    (folder / "gesture.json").write_text(json.dumps(ISSUE))
+    words = [str(folder / "gesture.json"), "-o", str(folder / "run.npz")]
+    assert main(["simulate", *words, "--energy", "--strings", "100", "--quiet"]) == 0
+    assert {path.name for path in folder.iterdir()} == {"gesture.json", "run.npz"}
+    with np.load(folder / "run.npz", allow_pickle=False) as file:
+        return dict(file)
+
+
+# ---------------------------------------------------------------- what is kept
+
+
+def test_every_promised_signal_has_one_finite_value_a_sample(kept):
+    for name in SCALARS:
+        assert kept[name].shape == (88200,), name
+        assert np.isfinite(kept[name]).all(), name
+        assert kept[name].any(), name
+    assert kept["contact_force"].shape == (88200, 2)
+    assert kept["contact_force"].any(axis=0).all()
+    assert np.issubdtype(kept["iterations"].dtype, np.integer)
+
+
+def test_time_runs_from_zero_in_samples(kept):
+    np.testing.assert_allclose(kept["time"], np.arange(88200) / 44100, rtol=0, atol=1e-12)
+
+
+def test_the_bridge_feels_both_strings(kept):
+    both = kept["bridge_force_1"] + kept["bridge_force_2"]
+    np.testing.assert_allclose(kept["bridge_force"], both, rtol=0, atol=1e-12)
+
+
+def test_pressure_is_the_bridge_force_through_the_measured_filter(kept):
+    radiation = json.loads(BODY.read_text())["radiation"]
+    force = kept["bridge_force"]
+    expected = radiation["direct_gain"] * force
+    for b0, b1, a1, a2 in radiation["sections"]:
+        expected = expected + lfilter([b0, b1], [1.0, a1, a2], force)
+    scale = np.abs(expected).max()
+    np.testing.assert_allclose(kept["pressure"], expected, rtol=0, atol=1e-9 * scale)
+
+
+def test_the_meta_data_tell_what_was_run(kept):
+    meta = json.loads(str(kept["meta"]))
+    assert meta["sample_rate"] == 44100
+    assert meta["frames"] == 88200
+    assert meta["bridge_x_m"] == 0.30
+    assert meta["unconverged_solves"] == 0
+    assert meta["lost_states"] == 0
+    assert meta["version"]
+    assert len(meta["grid_intervals"]) == len(meta["grid_spacing_m"]) == 2
+    for intervals, spacing in zip(meta["grid_intervals"], meta["grid_spacing_m"], strict=True):
+        assert intervals * spacing == pytest.approx(0.38)
+
+
+def test_the_energy_ledger_is_kept_and_closes(kept):
+    for name in ("energy", "power_in", "energy_error", *LOSSES):
+        assert kept[name].shape == (88200,), name
+        assert np.isfinite(kept[name]).all(), name
+    assert (kept["energy"] >= 0.0).all()
+    flow = np.abs(kept["power_in"]).max()
+    assert flow > 0.01
+    assert np.abs(kept["energy_error"]).max() <= 1e-9 * flow
+    # The error is what the other columns leave: dE/dt - power in + losses.
+    change = np.diff(kept["energy"]) * 44100
+    lost = sum(kept[name][1:] for name in LOSSES)
+    left = change - kept["power_in"][1:] + lost
+    assert np.abs(left).max() <= 1e-9 * flow
+
+
+def test_the_strings_are_kept_as_often_as_asked(kept):
+    meta = json.loads(str(kept["meta"]))
+    assert kept["strings_time"].tolist() == kept["time"][::100].tolist()
+    for i, intervals in enumerate(meta["grid_intervals"]):
+        shapes, x = kept[f"string_{i + 1}"], kept[f"x_{i + 1}"]
+        assert shapes.shape == (882, intervals + 1)
+        assert not shapes[:, [0, -1]].any()  # held at both ends
+        assert shapes[1:].any()
+        assert (x[0], x[-1]) == (0.0, pytest.approx(0.38))
+        assert np.diff(x) == pytest.approx(0.38 / intervals)
+
+
+@pytest.mark.parametrize(("every", "frames", "shapes"), [(1, 50, 50), (7, 50, 8), (100, 50, 1)])
+def test_string_shapes_begin_with_the_first_sample(every, frames, shapes):
+    arrays = run({"duration": frames / 44100, "pluck": PLUCK}, strings_every=every)
+    assert len(arrays["string_1"]) == len(arrays["strings_time"]) == shapes
+    assert arrays["string_1"][0].max() == pytest.approx(0.001, rel=0.1)
+
+
+def test_keeping_more_does_not_change_the_run():
+    gesture = ISSUE | {"duration": 0.3}
+    plain, all_kept = run(gesture), run(gesture, energy=True, strings_every=13)
+    for name in (*SCALARS, "contact_force"):
+        np.testing.assert_array_equal(plain[name], all_kept[name])
+    assert not set(plain) & {"energy", "power_in", "energy_error", *LOSSES, "string_1", "x_1"}
+
+
+def test_the_same_gesture_gives_the_same_run():
+    gesture = ISSUE | {"duration": 0.2}
+    once, twice = run(gesture), run(gesture)
+    for name, array in once.items():
+        np.testing.assert_array_equal(array, twice[name])
+
+
+# ---------------------------------------------------------------- controls
+
+
+def test_controls_are_straight_between_their_points_and_constant_outside():
+    arrays = run(
+        {
+            "sample_rate": 44100,
+            "duration": 0.01,
+            "controls": {
+                "bow_force": [[0.001, 0.2], [0.003, 0.6], [0.004, -0.1]],
+                "bow_velocity": 0.25,
+                "press_force": [[0.002, 0.0], [0.002, 0.5]],
+            },
+        }
+    )
+    force = arrays["bow_force"]
+    times = arrays["time"]
+    for n, time in enumerate(times):
+        if time <= 0.001:
+            expected = 0.2
+        elif time <= 0.003:
+            expected = 0.2 + 0.4 * (time - 0.001) / 0.002
+        elif time <= 0.004:
+            expected = 0.6 - 0.7 * (time - 0.003) / 0.001
+        else:
+            expected = -0.1
+        assert force[n] == pytest.approx(expected, abs=1e-12)
+    assert (arrays["bow_velocity"] == 0.25).all()
+    assert (arrays["press_force"] == np.where(times < 0.002, 0.0, 0.5)).all()
+    assert (arrays["bow_position"] == 0.255).all()  # the usual values
+    assert (arrays["finger_position"] == 0.1).all()
+
+
+def test_nothing_asked_for_is_a_second_of_rest():
+    arrays = run({})
+    assert len(arrays["time"]) == 44100
+    for name in ("bridge_force", "bridge_velocity", "pressure", "contact_force", "friction_force"):
+        assert not arrays[name].any()
+    np.testing.assert_allclose(arrays["finger_displacement"], 0.5e-3, rtol=0, atol=1e-15)
+
+
+def test_the_sign_of_the_bow_force_chooses_the_string():
+    power = {}
+    for force in (0.5, -0.5):
+        controls = {"bow_force": force, "bow_velocity": [[0, 0.0], [0.03, 0.2]]}
+        arrays = run({"duration": 0.5, "controls": controls})
+        power[force] = [np.var(arrays[f"bridge_force_{string}"][11025:]) for string in (1, 2)]
+        assert np.abs(arrays["friction_force"]).max() > 0.1
+    assert power[0.5][0] > 10.0 * power[0.5][1]
+    assert power[-0.5][1] > 10.0 * power[-0.5][0]
+
+
+def test_pressing_brings_the_finger_down_onto_both_strings():
+    arrays = run({"duration": 0.3, "controls": {"press_force": [[0, 0.0], [0.05, 1.0]]}})
+    assert arrays["finger_displacement"][0] == pytest.approx(0.5e-3, rel=1e-3)
+    assert arrays["finger_displacement"][-1] < 0.0
+    assert (arrays["contact_force"][-1] > 0.0).all()
+    assert arrays["contact_force"][-1].sum() == pytest.approx(1.0, rel=0.05)  # it holds the press
+
+
+@pytest.mark.parametrize("rate", [22050, 48000, 96000.0, 192000])
+def test_other_rates_run_the_same_gesture(rate):
+    gesture = ISSUE | {"sample_rate": rate, "duration": 0.2}
+    arrays = run(gesture, energy=True)
+    assert len(arrays["time"]) == round(0.2 * rate)
+    flow = np.abs(arrays["power_in"]).max()
+    assert np.abs(arrays["energy_error"]).max() <= 1e-9 * flow
+
+
+# ---------------------------------------------------------------- pluck and hammer
+
+
+def plucked(seconds: float = 1.0, **more) -> dict:
+    return run({"duration": seconds, "pluck": PLUCK, **more})
+
+
+def pitch(arrays: dict) -> float:
+    return pitch_of(arrays["bridge_force"][4410:22050], 44100)
+
+
+def test_a_plucked_string_starts_as_a_triangle_at_rest_up_to_the_bridge():
+    arrays = run({"duration": 0.001, "pluck": PLUCK}, strings_every=1)
+    x, shape = arrays["x_1"], arrays["string_1"][0]
+    triangle = np.interp(x, [0.0, 0.1, 0.3], [0.0, 0.001, 0.0])
+    away = (x < 0.27) | (x > 0.33)  # but for what ties it to the bridge
+    np.testing.assert_allclose(shape[away], triangle[away], rtol=0, atol=1e-12)
+    assert not arrays["string_2"][0].any()
+    np.testing.assert_allclose(arrays["string_1"][1], shape, rtol=0, atol=2e-4)
+
+
+def test_a_plucked_string_sounds_at_its_pitch_and_dies_away():
+    arrays = plucked(2.0)
+    assert abs(cents(pitch(arrays), 349.23)) < 35.0
+    force = arrays["bridge_force"]
+    assert np.abs(force[-22050:]).max() < 0.3 * np.abs(force[:22050]).max()
+
+
+def test_the_second_string_can_be_plucked_too():
+    arrays = run({"duration": 1.0, "pluck": {"string": 2, "position": 0.1, "amplitude": 0.001}})
+    assert abs(cents(pitch(arrays), 523.25)) < 35.0
+
+
+def test_without_bow_and_finger_energy_only_falls():
+    arrays = run({"duration": 0.5, "pluck": PLUCK}, energy=True)
+    energy = arrays["energy"]
+    assert energy[0] > 0.0
+    assert (np.diff(energy) <= 1e-9 * energy[0]).all()
+
+
+def test_the_bridge_answers_the_hammer_in_proportion():
+    def struck(force: float) -> np.ndarray:
+        hammer = [[0.0, 0.0], [0.0005, force], [0.001, 0.0]]
+        return run({"duration": 0.05, "hammer": hammer})["bridge_velocity"]
+
+    once, twice = struck(0.2), struck(0.4)
+    assert np.abs(once).max() > 1e-3
+    np.testing.assert_allclose(twice, 2.0 * once, rtol=0, atol=1e-9 * np.abs(once).max())
+
+
+def test_a_hammer_that_comes_later_is_felt_later_and_not_before():
+    late = [[0.01, 0.0], [0.0105, 5.0], [0.011, 0.0]]
+    velocity = run({"duration": 0.02, "hammer": late})["bridge_velocity"]
+    assert not velocity[:440].any()
+    assert np.abs(velocity[441:]).max() > 1e-3
+
+
+def test_a_hammer_is_lifted_before_and_after_its_curve():
+    one = run({"duration": 0.05, "hammer": [[0.001, 5.0], [0.002, 5.0]]})["bridge_velocity"]
+    curve = [[0.001, 0.0], [0.001, 5.0], [0.002, 5.0], [0.002, 0.0]]
+    other = run({"duration": 0.05, "hammer": curve})["bridge_velocity"]
+    assert not one[:40].any()
+    np.testing.assert_allclose(one, other, rtol=0, atol=0.05 * np.abs(other).max())
+
+
+# ---------------------------------------------------------------- the instrument
+
+
+def test_no_changes_are_the_measured_instrument():
+    np.testing.assert_array_equal(
+        plucked(0.1)["bridge_force"], plucked(0.1, instrument={})["bridge_force"]
+    )
+
+
+def test_a_tighter_string_sounds_higher_by_the_root_of_its_tension():
+    usual = pitch(plucked())
+    tight = pitch(plucked(instrument={"string_1": {"T": 1.1 * 50.61}}))
+    assert cents(tight, usual) == pytest.approx(600.0 * math.log2(1.1), abs=10.0)
+
+
+@pytest.mark.parametrize("bridge_x", [0.297, 0.302, 0.304])
+def test_the_bridge_is_where_it_is_said_to_be_between_nodes_too(bridge_x):
+    # The nodes are some 11 mm apart: rounded to one, all these would sound the same or jump.
+    usual = pitch(plucked())
+    moved = pitch(plucked(instrument={"bridge_x": bridge_x}))
+    assert cents(moved, usual) == pytest.approx(-1200.0 * math.log2(bridge_x / 0.30), abs=6.0)
+
+
+def test_other_rosin_bows_differently():
+    controls = {"bow_force": 0.5, "bow_velocity": [[0, 0.0], [0.03, 0.2]]}
+    forces = [
+        run({"duration": 0.1, "controls": controls, "instrument": {"bow": {"epsilon_0": value}}})
+        for value in (31860.0, 20000.0)
+    ]
+    usual = run({"duration": 0.1, "controls": controls})
+    np.testing.assert_array_equal(forces[0]["bridge_force"], usual["bridge_force"])
+    assert not np.allclose(forces[1]["bridge_force"], usual["bridge_force"], atol=1e-3)
+
+
+# ---------------------------------------------------------------- what is refused
+
+
+def control(name: str, value: object) -> dict:
+    return {"controls": {name: value}}
+
+
+@pytest.mark.parametrize(
+    ("gesture", "wrong"),
+    [
+        ([], "gesture"),
+        (3, "gesture"),
+        (None, "gesture"),
+        ({"rate": 44100}, "'rate'"),
+        ({"sample_rate": 22049}, "sample rate"),
+        ({"sample_rate": 192001}, "sample rate"),
+        ({"sample_rate": math.nan}, "sample_rate"),
+        ({"sample_rate": math.inf}, "sample_rate"),
+        ({"sample_rate": 10**400}, "sample_rate"),
+        ({"sample_rate": "44100"}, "sample_rate"),
+        ({"sample_rate": None}, "sample_rate"),
+        ({"sample_rate": True}, "sample_rate"),
+        ({"duration": 0}, "duration"),
+        ({"duration": -1}, "duration"),
+        ({"duration": 1e-6}, "duration"),
+        ({"duration": 3601}, "duration"),
+        ({"duration": 1e300}, "duration"),
+        ({"duration": math.nan}, "duration"),
+        ({"duration": math.inf}, "duration"),
+        ({"duration": "2"}, "duration"),
+        ({"instrument": []}, "instrument"),
+        ({"instrument": {"bows": {}}}, "'bows'"),
+        ({"instrument": {"bow": {"epsilon_7": 1}}}, "'epsilon_7'"),
+        ({"instrument": {"bow": {"epsilon_0": math.nan}}}, "epsilon_0"),
+        ({"instrument": {"bow": {"epsilon_0": 1e300}}}, "epsilon_0"),
+        ({"instrument": {"bow": {"epsilon_0": "3e4"}}}, "epsilon_0"),
+        ({"instrument": {"bow": {"xi": 0.5}}}, "xi"),
+        ({"instrument": {"bow": {"xi": [0.5, 1.0]}}}, "xi"),
+        ({"instrument": {"bow": 3}}, "bow"),
+        ({"instrument": {"string_1": {"T": -5}}}, "T"),
+        ({"instrument": {"bridge_x": 0.5}}, "bridge_x"),
+        ({"instrument": {"body": "/no/such/body.json"}}, "body"),
+        ({"controls": []}, "controls"),
+        ({"controls": None}, "controls"),
+        (control("bow_pressure", 0.5), "'bow_pressure'"),
+        (control("bow_force", math.nan), "bow_force"),
+        (control("bow_force", [[0, math.inf]]), "bow_force"),
+        (control("bow_force", [[math.nan, 0.5]]), "bow_force"),
+        (control("bow_force", [[0, 0.5], [0.2, 0.6], [0.1, 0.7]]), "bow_force"),
+        (control("bow_force", 51), "bow_force"),
+        (control("bow_force", -51), "bow_force"),
+        (control("bow_force", []), "bow_force"),
+        (control("bow_force", [0, 0.5]), "bow_force"),
+        (control("bow_force", [[0]]), "bow_force"),
+        (control("bow_force", [[0, 1, 2]]), "bow_force"),
+        (control("bow_force", [[0, "1"]]), "bow_force"),
+        (control("bow_force", [[0, True]]), "bow_force"),
+        (control("bow_force", {"0": 1}), "bow_force"),
+        (control("bow_force", True), "bow_force"),
+        (control("bow_force", None), "bow_force"),
+        (control("bow_velocity", 11), "bow_velocity"),
+        (control("bow_position", 0.0), "bow_position"),
+        (control("bow_position", 0.31), "bow_position"),
+        (control("finger_position", 0.39), "finger_position"),
+        (control("finger_position", -0.1), "finger_position"),
+        (control("press_force", -0.1), "press_force"),
+        (control("press_force", 101), "press_force"),
+        ({"pluck": 3}, "pluck"),
+        ({"pluck": {"string": 3}}, "pluck.string"),
+        ({"pluck": {"string": 1.5}}, "pluck.string"),
+        ({"pluck": {"strings": 1}}, "'strings'"),
+        ({"pluck": {"position": 0.3}}, "pluck.position"),
+        ({"pluck": {"position": 0.4}}, "pluck.position"),
+        ({"pluck": {"position": math.nan}}, "pluck.position"),
+        ({"pluck": {"amplitude": 1.0}}, "pluck.amplitude"),
+        ({"hammer": "hard"}, "hammer"),
+        ({"hammer": [[0, 1e5]]}, "hammer"),
+        ({"hammer": [[0, math.nan]]}, "hammer"),
+    ],
+)
+def test_a_gesture_that_makes_no_sense_is_refused_by_name(gesture, wrong):
+    with pytest.raises(ParameterError) as caught:
+        gesture_from(gesture)
+    assert wrong in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+def test_what_would_not_fit_into_memory_is_refused_before_it_runs():
+    with pytest.raises(OutputError, match="GiB"):
+        simulate(gesture_from({"duration": 3600, "sample_rate": 192000}))
+
+
+@pytest.mark.parametrize(
+    ("content", "wrong"),
+    [
+        (b"", "not a gesture file"),
+        (b"bow harder", "not a gesture file"),
+        (b"\xff\xfe{}", "not a gesture file"),
+        (b'{"duration": 1', "not a gesture file"),
+        (b"[" * 100_000, "not a gesture file"),
+        (b'{"duration": ' + b"9" * 5000 + b"}", "gesture"),
+        (b"[]", "gesture"),
+        (b'{"duration": NaN}', "duration"),
+        (b'{"controls": {"bow_force": [[0, Infinity]]}}', "bow_force"),
+        (b'{"controls": {"bow_force": [[0, -Infinity]]}}', "bow_force"),
+    ],
+)
+def test_a_file_that_is_no_gesture_says_so_with_its_name(tmp_path, content, wrong):
+    path = tmp_path / "gesture.json"
+    path.write_bytes(content)
+    with pytest.raises((ParameterError, ScoreError)) as caught:
+        read_gesture(path)
+    assert str(path) in str(caught.value)
+    assert wrong in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+def test_a_missing_file_and_a_folder_are_named(tmp_path):
+    for path in (tmp_path / "none.json", tmp_path):
+        with pytest.raises(ScoreError, match=path.name):
+            read_gesture(path)

@@ -26,14 +26,14 @@ def page() -> str:
         (Place.PLAYER, "What the player goes by"),
         (Place.ENGINE, "What the player moves, or you do directly"),
     ):
-        lines += ["", f"## {title}", "", "| address | range | default | unit | what |"]
+        lines += ["", f"## {title}", "", "| address | symbol | range | default | what |"]
         lines.append("|---|---|---|---|---|")
         for param in TABLE:
             if param.place is place:
-                unit = "" if param.unit == "1" else param.unit
+                symbol = param.symbol.replace("|", "\\|")
                 lines.append(
-                    f"| `{param.address}` | {param.lo:g} to {param.hi:g} | {param.default:g} "
-                    f"| {unit} | {param.doc} |"
+                    f"| `{param.address}` | {symbol} | {param.range_text} | {param.default:g} "
+                    f"| {param.doc} |"
                 )
     return "\n".join(lines) + "\n"
 

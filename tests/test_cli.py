@@ -250,7 +250,7 @@ def test_one_bad_file_among_good_ones_is_named(command, tune, tmp_path, out):
         (("--rate", "0"), "0 Hz"),
         (("--rate", "8000"), "8000"),
         (("--rate", "-44100"), "44100"),
-        (("--rate", "1000000000"), "1e+09"),
+        (("--rate", "1000000000"), "22050 to 192000"),
         (("--rate", "1e9"), "1e9"),
         (("--rate", "nan"), "nan"),
         (("--rate", "fast"), "fast"),

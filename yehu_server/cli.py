@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server import __version__
-from yehu_server.errors import ParameterError, YehuError
+from yehu_server.errors import YehuError
 
 RENDER_EXAMPLES = """\
 examples:
@@ -37,13 +37,16 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong and leave with code 2."""
-        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        line = message.replace("\n", "\\n")
+        self.exit(2, f"{self.prog}: {line} (see {self.prog} --help)\n")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; return its exit code: 0, 2 for bad input, 130 when interrupted."""
     arguments = _parser().parse_args(argv)
-    signal.signal(signal.SIGTERM, _interrupt)
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), _interrupt)
     try:
         code: int = arguments.run(arguments)
     except YehuError as error:
@@ -98,9 +101,7 @@ def _add_render(commands: Any) -> None:
         metavar="HZ",
         help="sample rate, 22050 to 192000 (default: 44100)",
     )
-    parser.add_argument(
-        "--format", choices=("wav", "flac"), help="default: by the ending of OUT, else wav"
-    )
+    parser.add_argument("--format", choices=("wav", "flac"), help="default: by the ending of OUT")
     parser.add_argument(
         "--subtype",
         choices=("16", "24", "float"),
@@ -118,7 +119,7 @@ def _add_render(commands: Any) -> None:
         "--tail",
         type=_seconds,
         metavar="SECONDS",
-        help="how long to go on after the last event, up to 600 "
+        help="how long to go on after the end of the score, up to 600 "
         "(default: until 80 dB under full scale, at most 5 s)",
     )
     parser.add_argument(
@@ -197,9 +198,11 @@ def _add_reporting(parser: argparse.ArgumentParser) -> None:
 
 
 def _render(arguments: argparse.Namespace) -> int:
+    from yehu_server.audio.file import format_of
     from yehu_server.files import check_target
     from yehu_server.params.table import assignment
     from yehu_server.physics.grid import check_rate
+    from yehu_server.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.fingering import RangePolicy
     from yehu_server.playing.mapping import load
     from yehu_server.render import Options, render, warm_up
@@ -210,7 +213,7 @@ def _render(arguments: argparse.Namespace) -> int:
     channels = arguments.channel
     options = Options(
         rate=arguments.rate,
-        format_name=arguments.format or ("flac" if _ending(arguments) == ".flac" else "wav"),
+        format_name=arguments.format or format_of(arguments.output),
         subtype=arguments.subtype,
         channels=frozenset(channels) if channels is not None else None,
         tail_s=arguments.tail,
@@ -220,7 +223,7 @@ def _render(arguments: argparse.Namespace) -> int:
         settings=tuple(assignment(text) for text in arguments.set),
         seed=arguments.seed,
         policy=RangePolicy(arguments.range),
-        quantities=_quantities(arguments.instrument),
+        quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
     )
     score = concatenate([read_score(path) for path in arguments.midi])
     for warning in score.warnings:
@@ -250,7 +253,7 @@ def _simulate(arguments: argparse.Namespace) -> int:
     gesture = read_gesture(arguments.gesture)
     check_target(arguments.output, [arguments.gesture])
     start = time.perf_counter()
-    with _progress(arguments, "simulating") as progress:
+    with _compiling(arguments), _progress(arguments, "simulating") as progress:
         result = simulate(
             gesture,
             energy=arguments.energy,
@@ -266,26 +269,6 @@ def _simulate(arguments: argparse.Namespace) -> int:
 
         print(simulate_report(arguments.output, result))
     return 0
-
-
-def _quantities(path: Path | None) -> Any:
-    from yehu_server.physics.quantities import Quantities, override
-
-    if path is None:
-        return Quantities()
-    import tomllib
-
-    try:
-        text = path.read_text(encoding="utf-8")
-        data = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
-    except OSError as error:
-        raise ParameterError(f"{path}: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:
-        raise ParameterError(f"{path}: not an instrument file ({error})") from error
-    try:
-        return override(Quantities(), data)
-    except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
 
 
 @contextlib.contextmanager
@@ -315,12 +298,8 @@ def _progress(arguments: argparse.Namespace, what: str) -> Iterator[Any]:
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=None)
+        task = bar.add_task(what, total=0.0)
         yield lambda done, total: bar.update(task, completed=min(done, total), total=total)
-
-
-def _ending(arguments: argparse.Namespace) -> str:
-    return str(arguments.output.suffix).lower()
 
 
 def _whole(text: str) -> int:
@@ -328,6 +307,13 @@ def _whole(text: str) -> int:
         return int(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
+
+
+def _natural(text: str) -> int:
+    value = _whole(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{value} is below 0")
+    return value
 
 
 def _positive(text: str) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import secrets
 import stat
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -44,12 +45,11 @@ def replacing(target: Path) -> Iterator[Path]:
     Errors: OutputError as `check_target`, or where writing fails (a full disk).
     """
     check_target(target)
-    folder = target.parent
-    partial = folder / f".yehu-server-{os.getpid()}.part"
+    partial = target.resolve().parent / f".yehu-server-{secrets.token_hex(8)}.part"
     try:
-        partial.touch()
+        partial.touch(exist_ok=False)
         yield partial
-        partial.replace(target)
+        partial.replace(target.resolve())
     except OSError as error:
         raise OutputError(f"{target}: cannot write: {error.strerror or error}") from error
     finally:

@@ -17,6 +17,7 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Performer
@@ -73,7 +74,12 @@ class Performance:
         self._score = score
         self._options = options
         self.instrument = Instrument(float(options.rate), options.quantities)
-        self.performer = Performer(self.instrument, policy=options.policy, seed=options.seed)
+        self.performer = Performer(
+            self.instrument,
+            Intonation(options.quantities),
+            policy=options.policy,
+            seed=options.seed,
+        )
         self.midi = MidiPlayer(self.performer, options.mapping, _set(options.channels))
         self.instrument.write("/output/gain", options.gain_db, ramp_ms=0.0)
         for address, value in options.settings:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import resource
+
 import numpy as np
 import pytest
 import soundfile
@@ -58,11 +60,10 @@ def test_full_scale_does_not_wrap_around(tmp_path, kind, subtype):
     np.testing.assert_allclose(read, [1.0, -1.0, 1.0, 0.0], atol=STEP[subtype])
 
 
-def test_a_file_of_no_samples_is_still_a_file(tmp_path):
-    target = tmp_path / "sound.wav"
-    file = write(target, noise(0))
-    assert soundfile.info(target).frames == 0
-    assert (file.peak, file.rms) == (0.0, 0.0)
+def test_a_file_of_no_samples_is_not_made(tmp_path):
+    with pytest.raises(OutputError, match="nothing to write"):
+        write(tmp_path / "sound.wav", noise(0))
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_format_that_cannot_hold_a_subtype_says_so(tmp_path):
@@ -113,6 +114,24 @@ def test_a_wav_file_longer_than_its_sizes_can_say_is_refused(
         write(tmp_path / "long.wav", noise(1001), subtype=subtype)
     write(tmp_path / "long.flac", noise(1001), "flac")
     assert {path.name for path in tmp_path.iterdir()} == {"just.wav", "long.flac"}
+
+
+@pytest.mark.parametrize(("kind", "subtype"), MATRIX)
+def test_a_disk_that_is_full_only_for_the_last_samples_is_told(tmp_path, kind, subtype):
+    target = tmp_path / "sound"
+    samples = noise(9999)
+    write(target, samples, kind, subtype)
+    short = target.stat().st_size - 10
+    target.write_bytes(b"older")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (short, hard))
+    try:
+        with pytest.raises(OutputError, match="full"):
+            write(target, samples, kind, subtype)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert target.read_bytes() == b"older"
+    assert list(tmp_path.iterdir()) == [target]
 
 
 def test_where_a_file_cannot_go_is_said(tmp_path):

@@ -7,13 +7,26 @@ import numpy as np
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.physics import kernel
+from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Body, Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
 
 RADIATION = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())["radiation"]
 MEASURED_RATE = 44100.0
-RATES = (22050.0, 32000.0, 48000.0, 64000.0, 88200.0, 96000.0, 176400.0, 192000.0)
+RATES = (
+    22050.0,
+    23400.0,
+    25550.0,
+    32000.0,
+    34200.0,
+    37600.0,
+    48000.0,
+    64000.0,
+    88200.0,
+    96000.0,
+    176400.0,
+    192000.0,
+)
 
 
 def measured_response(frequency_hz):
@@ -76,8 +89,9 @@ def test_the_direct_taps_delay_by_one_sample_each():
     model = kernel.prepare(Quantities(), MEASURED_RATE)
     for name in ("b_0", "b_1", "a_1", "a_2"):
         model[name] = 0.0
-    model["taps"] = np.arange(1.0, 9.0)
-    assert impulse_response(model, 10).tolist() == [1, 2, 3, 4, 5, 6, 7, 8, 0, 0]
+    taps = layout.MAX_TAPS
+    model["taps"] = np.arange(1.0, taps + 1.0)
+    assert impulse_response(model, taps + 2).tolist() == [*range(1, taps + 1), 0, 0]
 
 
 def test_every_rate_sounds_like_the_measured_body(heard):

@@ -14,6 +14,8 @@ from physics.adapter import kernel_state, reference_params, step_kernel, step_re
 from physics.runs import play, rows
 
 from yehu_server.physics import kernel, layout
+from yehu_server.physics.bow import friction_bound
+from yehu_server.physics.friction import solve_friction
 from yehu_server.physics.quantities import Quantities
 
 YEHU = Quantities()
@@ -249,3 +251,37 @@ def test_the_first_200_samples_of_a_start_are_the_references(F_N, fingers):
     for i in range(layout.STRINGS):
         end = record["u"][0, now, i, layout.GHOST : layout.GHOST + params.strings[i].N + 1]
         assert np.abs(end - state.u[i]).max() <= 1e-8 * np.abs(state.u[i]).max()
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_the_friction_bound_is_that_of_a_bow_on_a_node(rate):
+    """1.34 compliance epsilon_0 k/2, the compliance taken from the reference's own step."""
+    params, prepared = models(rate)
+    bounds = []
+    for F_N, string in zip((0.7, -0.7), params.strings, strict=True):
+        controls = ref.RefControls(
+            v_b=0.3,
+            F_N=F_N,
+            x_b=10.0 * string.h,
+            f_hammer=0.0,
+            x_f=np.array([0.05]),
+            press=np.zeros(1),
+        )
+        _, outputs = ref.step(params, ref.rest_state(params, 1), controls)
+        bounds.append(1.34 * outputs.scalar_I * params.eps0 * params.k / 2.0)
+    assert friction_bound(prepared[1][0]) == pytest.approx(max(bounds), rel=1e-9)
+
+
+def test_below_that_bound_friction_has_one_solution_and_the_solver_finds_it():
+    params, prepared = models(44100.0)
+    model = prepared[1][0]
+    rng = np.random.default_rng(31)
+    for _ in range(150):
+        F_N, string = 10.0 ** rng.uniform(-1.0, 0.7), int(rng.integers(2))
+        compliance = rng.uniform(0.2, 1.0) / (1.34 * params.eps0 * params.k / 2.0)
+        z = rng.uniform(-1.0, 1.0) * params.mu_S * F_N / params.eps0
+        free = rng.uniform(-1.0, 1.0) * 10.0 ** rng.uniform(-3.0, 0.5)
+        law = ref.Friction(params=params, F_N=F_N, xi=float(params.xi[string]), z=z)
+        expected = law.solve(free, compliance)  # raises where there are several
+        found = solve_friction(free, compliance, z, F_N, rng.uniform(-5.0, 5.0), model, string)
+        assert abs(found[0] - expected) <= 1e-11 * params.mu_S * F_N

@@ -156,11 +156,12 @@ def test_poly_pressure_presses_the_finger_of_its_own_note_only(midi, listener):
     assert listener["/finger/1/press"] == HARDEST
 
 
-def test_poly_pressure_ends_with_its_note(midi, listener):
+@pytest.mark.parametrize("after", [75, 77])
+def test_poly_pressure_ends_with_its_note(midi, listener, after):
     midi.on(75)
     midi.send("polytouch", note=75, value=127)
     midi.off(75)
-    midi.on(77)
+    midi.on(after)
     assert listener["/finger/1/press"] == PRESS
 
 
@@ -180,6 +181,14 @@ def test_the_mod_wheel_draws_the_bow_faster_by_equal_ratios(midi, listener):
         speeds.append(listener["/bow/speed"])
     assert speeds[1] / speeds[0] == pytest.approx(speeds[2] / speeds[1])
     assert speeds[2] / speeds[1] == pytest.approx(speeds[3] / speeds[2])
+
+
+def test_a_bend_does_not_bring_the_velocity_back(midi, player, listener):
+    midi.on(75, velocity=1)
+    player.write("/playing/pressure", 0.9)
+    midi.bend(100)
+    midi.touch(20)
+    assert listener["/bow/pressure"] == 0.9
 
 
 def test_volume_and_expression_set_the_level(midi, listener):
@@ -212,6 +221,13 @@ def test_reset_all_controllers_puts_back_all_but_the_volume(midi, player, listen
     assert player.sounding is None  # the pedal is up
     midi.on(77)
     assert listener.where() == ("C", 5)
+    assert listener["/finger/1/press"] == PRESS
+
+
+def test_reset_all_controllers_ends_poly_pressure(midi, listener):
+    midi.on(75)
+    midi.send("polytouch", note=75, value=127)
+    midi.cc(121, 0)
     assert listener["/finger/1/press"] == PRESS
 
 

@@ -34,6 +34,13 @@ def test_velocity_sets_the_bow_force_and_not_its_speed(midi, listener):
     assert {abs(move.value) for move in listener.of("/bow/speed")} == {0.2}
 
 
+def test_a_note_that_returns_has_its_own_velocity_again(midi, listener):
+    midi.on(75, velocity=127)
+    midi.on(76, velocity=1)
+    midi.off(76)
+    assert listener["/bow/pressure"] == pytest.approx(0.55)
+
+
 def test_all_channels_but_the_tenth_play_on_the_one_instrument(midi, player):
     for channel in range(1, 17):
         midi.on(75, channel=channel)

@@ -144,6 +144,14 @@ def test_all_sound_off_silences_the_instrument_at_its_frame(player, listener):
     assert listener.silenced == [4711]
 
 
+def test_after_all_sound_off_the_hand_is_off_the_strings(player, listener):
+    player.note_on(key(71))
+    player.all_sound_off()
+    assert listener["/finger/1/press"] == 0.0
+    player.note_on(key(74))  # 9 cm up the F string, where the hand no longer is
+    assert listener.where() == ("C", 2)
+
+
 def test_everything_a_note_moves_happens_at_its_frame(player, listener):
     player.note_on(key(66), frame=123)
     assert {move.frame for move in listener.moves} == {123}

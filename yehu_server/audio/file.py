@@ -51,6 +51,16 @@ class SoundWriter:
         return float((self._power / self.frames) ** 0.5) if self.frames else 0.0
 
 
+def format_of(target: Path) -> str:
+    """The format that a file's ending names; WAV without one. Errors: OutputError."""
+    ending = target.suffix.lower().lstrip(".")
+    if ending in ("", "wave"):
+        return "wav"
+    if ending not in FORMATS:
+        raise OutputError(f"{target}: .{ending} is not a format to write; use .wav or .flac")
+    return ending
+
+
 def check_format(format_name: str, subtype: str) -> None:
     """Refuse what a format cannot hold. Errors: OutputError."""
     if not soundfile.check_format(format_name.upper(), SUBTYPES[subtype]):
@@ -85,6 +95,8 @@ def sound_file(target: Path, rate: int, format_name: str, subtype: str) -> Itera
         with file:
             writer = SoundWriter(file, target, limit)
             yield writer
+            if writer.frames == 0 and format_name == "flac":
+                raise OutputError(f"{target}: no samples, and a FLAC file needs some")
         # What libsndfile still buffered is written on closing, where it cannot complain.
         try:
             whole = soundfile.info(partial).frames == writer.frames

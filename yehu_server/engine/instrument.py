@@ -133,7 +133,7 @@ def process(
 
 
 class Instrument:
-    """One yehu, ready to play.
+    """One yehu, ready to play; to be used from one thread.
 
     Parameters
     ----------
@@ -222,6 +222,8 @@ class Instrument:
 
     def process(self, out: Array) -> None:
         """Write the next samples to `out` [shape=(frames,), float32], in full scale."""
+        if len(out) == 0:
+            return
         due = []
         end = self.frame + len(out)
         while self._queue and self._queue[0][0] < end:

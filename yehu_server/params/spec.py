@@ -64,6 +64,12 @@ class Param:
             raise ParameterError(f"{self.address}: {number} is not finite")
         return min(max(number, self.lo), self.hi)
 
+    @property
+    def range_text(self) -> str:
+        """The range and its unit, for reading."""
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.lo:g} to {self.hi:g}{unit}"
+
     def from_unit(self, unit: float) -> float:
         """Map 0..1 over the whole range, along the parameter's curve."""
         return self.curve.bend(min(max(unit, 0.0), 1.0), self.lo, self.hi)

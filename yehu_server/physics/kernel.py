@@ -203,7 +203,7 @@ def step(m: Any, s: Any, control: Array) -> None:
 @compiled
 def measure(m: Any, s: Any, probe: Array) -> None:
     """Radiate, write the probes of one sample, and catch a lost state."""
-    next_, prev = s.level, (s.level + 1) % LEVELS
+    next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     bridge_force = s.f_c[0] + s.f_c[1]
     bridge_travel = 0.0
     for mode in range(MAX_MODES):
@@ -217,7 +217,7 @@ def measure(m: Any, s: Any, probe: Array) -> None:
     probe[ITERATIONS] = s.iterations
     for j in range(m.fingers):
         at = FINGER_PROBES + PROBES_PER_FINGER * j
-        probe[at] = s.U[next_, j]
+        probe[at] = s.U[now, j]
         for i in range(STRINGS):
             probe[at + 1 + i] = s.f_f[STRINGS * j + i]
 

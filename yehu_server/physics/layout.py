@@ -17,7 +17,7 @@ POINTS = MAX_NODES + 1 + 2 * GHOST
 LEVELS = 3  # u[n+1], u[n], u[n-1], taking turns
 MAX_MODES = 16
 MAX_SECTIONS = 32
-MAX_TAPS = 8
+MAX_TAPS = 12
 MAX_FINGERS = 4
 STENCIL = 4  # nodes that one contact touches (cubic interpolation)
 MAX_CONTACTS = MAX_FINGERS * STRINGS + 1  # finger j on string i is contact 2 j + i
@@ -90,7 +90,6 @@ STATE = np.dtype(
         ("q", np.float64, (LEVELS, MAX_MODES)),
         ("zeta", np.float64, (LEVELS, STRINGS)),
         ("z", np.float64, STRINGS),
-        ("bowed_string", np.int64),
         ("v_r", np.float64),
         ("U", np.float64, (LEVELS, MAX_FINGERS)),
         ("Psi", np.float64, MAX_CONTACTS),

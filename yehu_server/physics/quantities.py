@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import tomllib
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import lru_cache
@@ -144,6 +145,8 @@ def read_body(path: Path = BODY_FILE) -> Body:
     for _, _, a1, a2 in body.sections:
         if not (abs(a2) < 1.0 and abs(a1) < 1.0 + a2):
             raise ParameterError(f"body file {path}: a radiation section is unstable")
+        if a1 * a1 >= 4.0 * a2:
+            raise ParameterError(f"body file {path}: a radiation section has real poles")
     return body
 
 
@@ -187,7 +190,7 @@ class Quantities:
         return (self.string_1, self.string_2)
 
 
-def override(base: Quantities, changes: Mapping[str, Any]) -> Quantities:
+def override(base: Quantities, changes: Mapping[str, Any], folder: Path = Path()) -> Quantities:
     """Return `base` with some quantities replaced.
 
     Parameters
@@ -196,13 +199,15 @@ def override(base: Quantities, changes: Mapping[str, Any]) -> Quantities:
         Nested by section, as in a gesture or instrument file:
         ``{"bow": {"epsilon_0": 3e4}, "string_1": {"T": 51.0}, "bridge_x": 0.3}``;
         ``body`` names a body file.
+    folder : Path
+        Where a relative body file is looked for.
 
     Errors: ParameterError for an unknown name, a wrong type, a value out of bounds.
     """
-    return cast("Quantities", _override_section(base, changes, "instrument"))
+    return cast("Quantities", _override_section(base, changes, "instrument", folder))
 
 
-def _override_section(base: Any, changes: Mapping[str, Any], section: str) -> Any:
+def _override_section(base: Any, changes: Mapping[str, Any], section: str, folder: Path) -> Any:
     if not isinstance(changes, Mapping):
         raise ParameterError(f"{section}: expected names and values, got {changes!r}")
     known = {item.name: item for item in fields(base)}
@@ -214,11 +219,11 @@ def _override_section(base: Any, changes: Mapping[str, Any], section: str) -> An
                 f"{section}: unknown quantity {name!r} (known: {', '.join(known)})"
             )
         if name == "body":
-            values[name] = read_body(Path(str(value)))
+            values[name] = read_body(folder / str(value))
         elif "unit" in item.metadata:
             values[name] = _checked(f"{section}.{name}", item, value)
         else:
-            values[name] = _override_section(getattr(base, name), value, name)
+            values[name] = _override_section(getattr(base, name), value, name, folder)
     return replace(base, **values)
 
 
@@ -235,6 +240,29 @@ def _number(name: str, item: Any, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ParameterError(f"{name}: expected a number, got {value!r}")
     lo, hi, unit = item.metadata["lo"], item.metadata["hi"], item.metadata["unit"]
+    unit = "" if unit == "1" else f" {unit}"
     if not lo <= value <= hi:  # also refuses NaN
-        raise ParameterError(f"{name}: {value} is not within {lo} to {hi} {unit}")
+        raise ParameterError(f"{name}: {_short(value)} is not within {lo:g} to {hi:g}{unit}")
     return float(value)
+
+
+def _short(value: float) -> str:
+    text = str(value)
+    return text if len(text) < 30 else f"{text[:12]}..."
+
+
+def read_quantities(path: Path) -> Quantities:
+    """Read an instrument file (TOML, or JSON by its ending) of quantities to change.
+
+    Errors: ParameterError, naming the file.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        data = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
+        return override(Quantities(), data, path.parent)
+    except OSError as error:
+        raise ParameterError(f"{path}: {error.strerror}") from error
+    except (ValueError, RecursionError) as error:
+        raise ParameterError(f"{path}: not an instrument file ({error})") from error
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error

@@ -8,7 +8,9 @@ from enum import Enum
 from yehu_server.playing.intonation import OPEN_NOTES, Intonation
 
 LOWEST_NOTE, HIGHEST_NOTE = 65, 89  # F4 to F6
-OPEN_WITHIN = 0.25  # semitones about an open string that need no finger
+# Semitones about an open string that need no finger: nearer to the loop than 8 mm, which is
+# this much, no finger fits.
+OPEN_WITHIN = 0.45
 
 
 class RangePolicy(Enum):
@@ -60,6 +62,8 @@ def choose(pitch: float, hand: Fingering | None, intonation: Intonation) -> Fing
     for string, note in enumerate(OPEN_NOTES):
         if abs(pitch - note) < OPEN_WITHIN:
             return Fingering(string, None)
+    if pitch < OPEN_NOTES[0]:
+        return Fingering(0, None)  # the lowest there is
     if pitch < OPEN_NOTES[1]:
         return _stop(0, pitch, intonation)
     near, far = _stop(1, pitch, intonation), _stop(0, pitch, intonation)

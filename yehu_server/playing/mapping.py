@@ -16,6 +16,8 @@ from yehu_server.params.spec import Curve, Place
 from yehu_server.params.table import find
 
 SOURCES = ("bend", "pressure", "poly-pressure", "velocity")
+# Data entry, sustain, RPN and NRPN, channel mode messages: see messages.py.
+RESERVED = {6, 38, 64, *range(96, 102), *range(120, 128)}
 _CC = re.compile(r"cc (0|[1-9][0-9]{0,2})")
 DEFAULT = "keyboard"
 
@@ -66,7 +68,8 @@ def load(name_or_path: str) -> Mapping:
     Errors: MappingError, naming the file and the bind.
     """
     path = Path(name_or_path)
-    if path.suffix != ".toml" and not path.exists():
+    is_name = path.suffix == "" and path.name == name_or_path
+    if is_name:
         shipped = mapping_folder() / f"{name_or_path}.toml"
         if not shipped.exists():
             names = ", ".join(sorted(file.stem for file in mapping_folder().glob("*.toml")))
@@ -105,7 +108,9 @@ def _bind(entry: Any) -> Bind:
         raise ParameterError("needs a source and a target")
     controller = _CC.fullmatch(source)
     if source not in SOURCES and not (controller and int(controller[1]) <= 127):
-        raise ParameterError(f"unknown source {source!r} (cc 0-127, {', '.join(SOURCES)})")
+        raise ParameterError(f"unknown source {source!r} (cc 0-119, {', '.join(SOURCES)})")
+    if controller and int(controller[1]) in RESERVED:
+        raise ParameterError(f"{source} has a meaning of its own in MIDI")
     param = find(target)
     if param.place is not Place.PLAYER:
         raise ParameterError(f"{target} is moved by the player; map to one under /playing")

@@ -20,18 +20,22 @@ BEND_RANGE = (0, 0)
 PERCUSSION = 9  # channel 10, counted from 0
 
 # Put back by "reset all controllers"; volume stays, as the recommended practice RP-015 asks.
-KEPT_ON_RESET = "/playing/volume"
+KEPT_ON_RESET = {"/playing/volume"}
+
+
+# When something was moved, as a running number, and to where: 0 to 1.
+Moved = tuple[int, float]
 
 
 @dataclass
 class Channel:
     """What one MIDI channel remembers."""
 
-    bend: float = 0.0  # -1..1
-    bend_range: float = find("/playing/bend_range").default  # semitones
-    pressure: float = 0.0  # 0..1
-    touch: dict[int, float] = field(default_factory=dict)  # poly pressure of notes, 0..1
-    velocity: dict[int, float] = field(default_factory=dict)  # of notes, 0..1
+    moved: dict[str, Moved] = field(default_factory=dict)  # by source
+    touch: dict[int, Moved] = field(default_factory=dict)  # poly pressure, by note
+    velocity: dict[int, Moved] = field(default_factory=dict)  # by note
+    struck_again: dict[int, int] = field(default_factory=dict)  # held notes, at which frame
+    bend_range: float | None = None  # semitones, once RPN 0 has set it
     sustain: bool = False
     let_go: set[Key] = field(default_factory=set)  # keys up, pedal down
     rpn: tuple[int, int] = NULL
@@ -40,8 +44,8 @@ class Channel:
 class MidiPlayer:
     """Feeds MIDI channel messages to a performer, through a mapping.
 
-    Bend, pressure and velocity belong to a channel's notes and are heard while one of them
-    sounds; control changes are heard whatever sounds.
+    What is moved on a channel belongs to its notes: it is heard while one of them sounds, and
+    after it until another channel's note begins.
 
     Parameters
     ----------
@@ -56,50 +60,63 @@ class MidiPlayer:
         performer.expression = self._expression
         self._mapping = mapping
         self._plays = channels if channels is not None else set(range(16)) - {PERCUSSION}
-        self._channels: defaultdict[int, Channel] = defaultdict(
-            lambda: Channel(bend_range=performer.value("/playing/bend_range"))
-        )
-        self._moved: set[str] = set()  # which of bend and pressures have ever been moved
+        self._channels: defaultdict[int, Channel] = defaultdict(Channel)
+        self._heard: Key | None = None  # whose note sounds, or sounded last
+        self._unmoved: dict[str, float] = {}  # targets as they were before anything moved them
+        self._moves = 0
         self.notes_by_channel: Counter[int] = Counter()
 
     def receive(self, message: mido.Message, *, frame: int | None = None) -> None:
-        """Act on one message; others than channel messages are ignored."""
+        """Act on a channel message, or on a system reset; others are ignored."""
+        if message.type == "reset":
+            self._start_anew(frame)
+            return
         if not hasattr(message, "channel") or message.channel not in self._plays:
             return
         channel, kind = message.channel, message.type
-        state = self._channels[channel]
         if kind == "note_on" and message.velocity > 0:
             self._note_on(Key(channel, message.note), message.velocity / 127.0, frame)
         elif kind in ("note_on", "note_off"):
             self._note_off(Key(channel, message.note), frame)
         elif kind == "pitchwheel":
-            state.bend = max(-1.0, message.pitch / 8191.0)
-            self._follow("bend", channel, frame)
+            bend = max(-1.0, message.pitch / 8191.0)
+            self._move("bend", channel, 0.5 * (bend + 1.0), frame)
         elif kind == "aftertouch":
-            state.pressure = message.value / 127.0
-            self._follow("pressure", channel, frame)
+            self._move("pressure", channel, message.value / 127.0, frame)
         elif kind == "polytouch":
-            state.touch[message.note] = message.value / 127.0
+            self._channels[channel].touch[message.note] = self._stamped(message.value / 127.0)
             self._follow("poly-pressure", channel, frame)
         elif kind == "control_change":
             self._control(channel, message.control, message.value, frame)
 
+    def _start_anew(self, frame: int | None) -> None:
+        self._performer.all_notes_off(frame=frame)
+        self._channels.clear()
+        for address, value in self._unmoved.items():
+            self._performer.write(address, value, frame=frame)
+
     def _note_on(self, key: Key, velocity: float, frame: int | None) -> None:
         state = self._channels[key.channel]
+        if self._performer.holds(key) and key not in state.let_go and frame is not None:
+            state.struck_again[key.note] = frame
         state.let_go.discard(key)
-        state.velocity[key.note] = velocity
-        state.touch.pop(key.note, None)
-        played = self._performer.notes_played
-        self._performer.note_on(key, frame=frame)
-        if self._performer.notes_played > played:
+        before, touched = state.velocity.get(key.note), state.touch.pop(key.note, None)
+        state.velocity[key.note] = self._stamped(velocity)
+        self._remember("velocity")
+        if self._performer.note_on(key, frame=frame):
             self.notes_by_channel[key.channel] += 1
+        else:  # not a note of this instrument: what was heard goes on
+            _restore(state.velocity, key.note, before)
+            _restore(state.touch, key.note, touched)
 
     def _note_off(self, key: Key, frame: int | None) -> None:
         state = self._channels[key.channel]
+        if frame is not None and state.struck_again.pop(key.note, None) == frame:
+            return  # the end of the stroke before, which some files write after the new one
         if state.sustain:
             state.let_go.add(key)
         else:
-            self._performer.note_off(key, frame=frame)
+            self._performer.notes_off([key], frame=frame)
 
     def _control(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
@@ -112,8 +129,10 @@ class MidiPlayer:
             state.let_go.clear()
             self._performer.all_sound_off(frame=frame, channel=channel)
         elif control >= ALL_NOTES_OFF:  # the mode messages 124-127 include it
-            state.let_go.clear()
-            self._performer.all_notes_off(frame=frame, channel=channel)
+            if state.sustain:
+                state.let_go.update(self._performer.held(channel))
+            else:
+                self._performer.all_notes_off(frame=frame, channel=channel)
         elif control == RESET_CONTROLLERS:
             self._reset_controllers(channel, frame)
         elif control in (RPN, RPN_FINE):
@@ -123,23 +142,25 @@ class MidiPlayer:
         elif control in (DATA_ENTRY, DATA_ENTRY_FINE, INCREMENT, DECREMENT):
             self._data_entry(channel, control, value, frame)
         else:
-            self._move(f"cc {control}", value / 127.0, frame)
+            self._move(f"cc {control}", channel, value / 127.0, frame)
 
     def _reset_controllers(self, channel: int, frame: int | None) -> None:
         self._control(channel, SUSTAIN, 0, frame)
         state = self._channels[channel]
-        state.bend, state.pressure, state.rpn = 0.0, 0.0, NULL
+        state.rpn = NULL
         state.touch.clear()
-        self._follow("bend", channel, frame)
         for bind in self._mapping.binds:
-            if bind.source.startswith("cc ") and bind.target != KEPT_ON_RESET:
-                self._performer.write(bind.target, find(bind.target).default, frame=frame)
+            if bind.target not in KEPT_ON_RESET:
+                state.moved.pop(bind.source, None)
+        for source in dict.fromkeys(bind.source for bind in self._mapping.binds):
+            if source != "velocity":
+                self._follow(source, channel, frame)
 
     def _data_entry(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
         if state.rpn != BEND_RANGE:
             return
-        semitones, cents = divmod(round(state.bend_range * 100.0), 100)
+        semitones, cents = divmod(round(self._bend_range(state) * 100.0), 100)
         if control == DATA_ENTRY:
             semitones = value
         elif control == DATA_ENTRY_FINE:
@@ -150,37 +171,65 @@ class MidiPlayer:
         state.bend_range = limits.accept(semitones + cents / 100.0)
         self._follow("bend", channel, frame)
 
+    def _bend_range(self, state: Channel) -> float:
+        asked = self._performer.value("/playing/bend_range")
+        if state.bend_range is None or self._performer.keeps("/playing/bend_range"):
+            return asked
+        return state.bend_range
+
+    def _move(self, source: str, channel: int, place: float, frame: int | None) -> None:
+        self._channels[channel].moved[source] = self._stamped(place)
+        self._follow(source, channel, frame)
+
+    def _stamped(self, place: float) -> Moved:
+        self._moves += 1
+        return self._moves, place
+
+    def _remember(self, source: str) -> None:
+        for bind in self._mapping.of(source):
+            self._unmoved.setdefault(bind.target, self._performer.value(bind.target))
+
     def _follow(self, source: str, channel: int, frame: int | None) -> None:
         """Let the sounding note follow what its channel just did."""
-        self._moved.add(source)
-        sounding = self._performer.sounding
-        if sounding is not None and sounding.channel == channel:
-            for address, value in self._expression(sounding, struck=False).items():
-                self._performer.write(address, value, frame=frame)
+        self._remember(source)
+        heard = self._performer.sounding or self._heard
+        if heard is None or heard.channel == channel:
+            asked = self._asked(channel, heard.note if heard is not None else -1)
+            for bind in self._mapping.of(source):
+                self._performer.write(bind.target, asked[bind.target], frame=frame)
 
-    def _expression(self, key: Key, *, struck: bool = True) -> dict[str, float]:
-        """What a key's channel asks of its note; velocity only as it is `struck`.
+    def _expression(self, key: Key) -> dict[str, float]:
+        """What a note that begins, or comes back, is to have of its channel."""
+        self._heard = key
+        return self._asked(key.channel, key.note)
 
-        Sources that no channel ever moved are left out: their targets keep what was set
-        otherwise. Of two pressures on one target the firmer counts.
+    def _asked(self, channel: int, note: int) -> dict[str, float]:
+        """Values of all targets that were ever moved, for a note of this channel.
+
+        Of several sources of one target the one moved last counts; where this channel moved
+        none, the target is as it was before any channel did.
         """
-        state = self._channels[key.channel]
-        touch = state.touch.get(key.note, 0.0)
-        places = {"bend": 0.5 * (state.bend + 1.0), "pressure": state.pressure}
-        places |= {"poly-pressure": touch, "velocity": state.velocity.get(key.note, 1.0)}
-        asked: dict[str, tuple[float, float]] = {}
+        state = self._channels[channel]
+        asked = {address: (0, value) for address, value in self._unmoved.items()}
         for bind in self._mapping.binds:
-            moved = bind.source in self._moved or (bind.source == "velocity" and struck)
-            if not moved:
+            if bind.source == "poly-pressure":
+                moved = state.touch.get(note)
+            elif bind.source == "velocity":
+                moved = state.velocity.get(note)
+            else:
+                moved = state.moved.get(bind.source)
+            if moved is None or moved[0] < asked.get(bind.target, (0, 0.0))[0]:
                 continue
-            place = places[bind.source]
+            when, place = moved
             value = bind.apply(place)
             if bind.source == "bend" and bind.span is None and bind.target == "/playing/bend":
-                value = state.bend * state.bend_range
-            if bind.target not in asked or place >= asked[bind.target][0]:
-                asked[bind.target] = (place, value)
+                value = (2.0 * place - 1.0) * self._bend_range(state)
+            asked[bind.target] = (when, value)
         return {address: value for address, (_, value) in asked.items()}
 
-    def _move(self, source: str, unit: float, frame: int | None) -> None:
-        for bind in self._mapping.of(source):
-            self._performer.write(bind.target, bind.apply(unit), frame=frame)
+
+def _restore(moved: dict[int, Moved], note: int, before: Moved | None) -> None:
+    if before is None:
+        moved.pop(note, None)
+    else:
+        moved[note] = before

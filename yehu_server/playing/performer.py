@@ -85,6 +85,7 @@ class Performer:
         self._sounding: Key | None = None
         self._fingering: Fingering | None = None
         self._direction = -1.0  # so that the first stroke is a down-bow, v_b > 0
+        self._began: int | None = None  # the frame of the stroke of the bow
         self._taken: set[str] = set()
         self._kept: set[str] = set()
         self.expression: Callable[[Key], Mapping[str, float]] = lambda _key: {}
@@ -144,19 +145,39 @@ class Performer:
         self._taken.clear()
         self._kept.clear()
 
-    def note_on(self, key: Key, *, frame: int | None = None) -> None:
-        """Begin a note: legato where another sounds, else with a new stroke of the bow."""
+    def keeps(self, address: str) -> bool:
+        """Whether a parameter was written with ``hold``."""
+        return address in self._kept
+
+    def holds(self, key: Key) -> bool:
+        """Whether a key is held."""
+        return key in self._held
+
+    def held(self, channel: int) -> list[Key]:
+        """The held keys of one channel, in the order pressed."""
+        return [key for key in self._held if key.channel == channel]
+
+    def note_on(self, key: Key, *, frame: int | None = None) -> bool:
+        """Begin a note: legato where another sounds, else with a new stroke of the bow.
+
+        Keys struck at one frame are one stroke, of the last of them.
+        Returns whether there is such a note.
+        """
         note = self._policy.fit(key.note)
         if note != key.note:
             self.notes_out_of_range += 1
         if note is None:
-            return
+            return False
         self.notes_played += 1
         self._taken.clear()
         legato = self._sounding is not None and self._sounding != key
+        at_once = legato and frame is not None and frame == self._began
         self._held.pop(key, None)
         self._held[key] = note
-        self._start(key, frame, legato=legato)
+        self._start(key, frame, legato=legato, at_once=at_once)
+        if not legato:
+            self._began = frame
+        return True
 
     def note_off(self, key: Key, *, frame: int | None = None) -> None:
         """End a note; the last one still held comes back, legato."""
@@ -187,7 +208,7 @@ class Performer:
                 self._move(address, 0.0, frame, LANDING_MS)
             self._sink.silence(frame=frame)
 
-    def _start(self, key: Key, frame: int | None, *, legato: bool) -> None:
+    def _start(self, key: Key, frame: int | None, *, legato: bool, at_once: bool = False) -> None:
         was = self._fingering
         self._sounding = key
         for address, wish in self.expression(key).items():
@@ -201,14 +222,15 @@ class Performer:
         if not legato:
             self._direction = -self._direction
         fingering = choose(self._pitch, was, self._intonation)
-        self._place(fingering, frame, self._value["/playing/glide"])
-        crossing = legato and was is not None and was.side != self._side
+        self._place(fingering, frame, 0.0 if at_once else self._value["/playing/glide"])
+        slurred = legato and not at_once
+        crossing = slurred and was is not None and was.side != self._side
         attack = self._value["/playing/attack"]
         self._move("/bow/assist", self._value["/playing/assist"], frame)
         self._set_level(frame)
         self._lean(frame)
         self._move("/bow/side", self._side, frame, CROSSING_MS if crossing else attack / 4.0)
-        self._draw(frame, self._value["/playing/glide"] if legato else attack)
+        self._draw(frame, self._value["/playing/glide"] if slurred else attack)
 
     def _stop(self, frame: int | None) -> None:
         self._sounding = None

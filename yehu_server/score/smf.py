@@ -24,6 +24,7 @@ MAX_BYTES = 64 * 2**20
 MAX_EVENTS = 1_000_000  # messages and tempo changes; each takes some 0.5 kB in memory
 MAX_TRACKS = 65_535  # as many as a header can announce
 MAX_DURATION_H = 24
+MAX_REST_S = 30  # between the last message and the end of a track
 
 DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
 TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop-frame video
@@ -31,7 +32,6 @@ TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
 END_OF_TRACK, SET_TEMPO = 0x2F, 0x51
 SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
-RESET_ALL_CONTROLLERS = 121
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,8 @@ class Score:
     events : tuple of ScoreEvent
         Sorted by time; at equal times, in the order of the tracks, then of the file.
     duration_s : float
-        Up to the last event or end-of-track of the longest track.
+        Up to the last event or end-of-track of the longest track, but not more than 30 s
+        beyond the last event.
     name : str
         The file's name, without folder and extension.
     warnings : tuple of str
@@ -101,37 +102,18 @@ def read_score(path: str | os.PathLike[str]) -> Score:
 def concatenate(scores: Sequence[Score]) -> Score:
     """Play several scores one after another, each when the one before has lasted its time.
 
-    Notes still sounding at the end of a score end there, and its channels' controllers
-    are reset (CC 121) before the next, so that no pedal, bend or fade reaches across.
+    Between two stands a system reset, so that no note, pedal, bend or fade reaches across.
     """
     events: list[ScoreEvent] = []
     start = 0.0
     for number, score in enumerate(scores, start=1):
         events += (ScoreEvent(start + event.time_s, event.message) for event in score.events)
         start += score.duration_s
-        events += (ScoreEvent(start, message) for message in _note_offs(score))
         if number < len(scores):
-            events += (ScoreEvent(start, message) for message in _resets(score))
+            events.append(ScoreEvent(start, mido.Message("reset")))
     names = " + ".join(score.name for score in scores)
     warnings = (f"{score.name}: {warning}" for score in scores for warning in score.warnings)
     return Score(tuple(events), start, names, tuple(warnings))
-
-
-def _note_offs(score: Score) -> Iterator[mido.Message]:
-    sounding: dict[tuple[int, int], int] = {}
-    for message in (event.message for event in score.events):
-        if message.type in ("note_on", "note_off"):
-            key = message.channel, message.note
-            step = 1 if message.type == "note_on" and message.velocity > 0 else -1
-            sounding[key] = max(sounding.get(key, 0) + step, 0)
-    for (channel, note), count in sounding.items():
-        for _ in range(count):
-            yield mido.Message("note_off", channel=channel, note=note)
-
-
-def _resets(score: Score) -> Iterator[mido.Message]:
-    for channel in sorted({event.message.channel for event in score.events}):
-        yield mido.Message("control_change", channel=channel, control=RESET_ALL_CONTROLLERS)
 
 
 # ---------------------------------------------------------------- the file
@@ -184,9 +166,9 @@ def _parse(data: bytes) -> Score:
         found[f"unknown format {file_format}, read as format 1"] += 1
 
     if file_format == 2:
-        score = concatenate([_play_together([track], division) for track in tracks])
+        score = concatenate([_play_together([track], division, found) for track in tracks])
     else:
-        score = _play_together(tracks, division)
+        score = _play_together(tracks, division, found)
     times = (f" ({count} times)" if count > 1 else "" for count in found.values())
     return replace(score, warnings=tuple(map(str.__add__, found, times)))
 
@@ -340,10 +322,14 @@ class _Clock:
         return self._units(tick) / self._units_per_second
 
 
-def _play_together(tracks: Sequence[_Track], division: int) -> Score:
+def _play_together(tracks: Sequence[_Track], division: int, found: Counter[str]) -> Score:
     # Sorting is stable: at one tick, the order of the tracks and within them stays.
     tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
     messages = sorted((pair for track in tracks for pair in track.messages), key=itemgetter(0))
     clock = _Clock(division, tempos)
     events = tuple(ScoreEvent(clock.seconds(tick), message) for tick, message in messages)
-    return Score(events, clock.seconds(max(track.end for track in tracks)))
+    end_s = clock.seconds(max(track.end for track in tracks))
+    latest_s = (events[-1].time_s if events else 0.0) + MAX_REST_S
+    if end_s > latest_s:
+        found[f"silence at the end cut to {MAX_REST_S} s"] += 1
+    return Score(events, min(end_s, latest_s))

@@ -274,10 +274,13 @@ def _simulate(arguments: argparse.Namespace) -> int:
 @contextlib.contextmanager
 def _compiling(arguments: argparse.Namespace) -> Iterator[None]:
     """Say why the first use takes a while."""
-    from yehu_server.jit import cache_folder
+    from yehu_server.jit import IS_CACHED, cache_folder
 
-    folder = cache_folder()
-    if not arguments.quiet and not (folder.is_dir() and any(folder.iterdir())):
+    if arguments.quiet:
+        pass
+    elif not IS_CACHED:
+        print(f"yehu-server: compiling; {cache_folder()} is not writable", file=sys.stderr)
+    elif not any(cache_folder().rglob("*.nbi")):
         print("yehu-server: compiling for this machine, once ...", file=sys.stderr)
     yield
 

@@ -1,8 +1,9 @@
-"""Writing results: whole or not at all."""
+"""Reading what is small; writing results whole or not at all."""
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import secrets
 import stat
@@ -10,6 +11,17 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from yehu_server.errors import OutputError
+
+MAX_TEXT_BYTES = 64 * 2**20
+
+
+def read_text(path: Path) -> str:
+    """Read a text file of reasonable size. Errors: OSError, UnicodeDecodeError."""
+    with path.open("rb") as file:
+        data = file.read(MAX_TEXT_BYTES + 1)  # bounded, as some devices never end
+    if len(data) > MAX_TEXT_BYTES:
+        raise OSError(errno.EFBIG, os.strerror(errno.EFBIG))
+    return data.decode("utf-8")
 
 
 def check_target(target: Path, inputs: Iterable[Path] = ()) -> None:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import ParamSpec, TypeVar, cast
@@ -37,10 +39,30 @@ def source_hash() -> str:
 def cache_folder() -> Path:
     """Where compiled code is kept; ``NUMBA_CACHE_DIR`` moves it."""
     root = os.environ.get("NUMBA_CACHE_DIR") or user_cache_dir("yehu-server", appauthor=False)
-    return Path(root) / f"compiled-{source_hash()}"
+    return Path(root) / f"{FOLDER}{source_hash()}"
 
 
+def _open_cache() -> bool:
+    """Make the cache folder and drop what older sources left; return whether it is writable.
+
+    numba would otherwise fall back on folders beside the sources, which no hash guards.
+    """
+    folder = cache_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        os.utime(folder)
+        for other in folder.parent.glob(f"{FOLDER}*"):
+            if time.time() - other.stat().st_mtime > UNUSED_AFTER_S:
+                shutil.rmtree(other, ignore_errors=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
+
+
+FOLDER = "compiled-"
+UNUSED_AFTER_S = 14 * 24 * 3600.0
 numba.config.CACHE_DIR = str(cache_folder())
+IS_CACHED = _open_cache()  # else everything is compiled anew at each start
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -51,6 +73,6 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """
     # Without forced inlining, arrays cross calls as ten words each: a fifth of the time.
     jit = numba.njit(
-        cache=True, nogil=True, error_model="numpy", fastmath=FASTMATH, forceinline=True
+        cache=IS_CACHED, nogil=True, error_model="numpy", fastmath=FASTMATH, forceinline=True
     )
     return cast("Callable[P, R]", jit(function))

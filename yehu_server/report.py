@@ -56,7 +56,7 @@ def simulate_report(target: Path, result: Simulation) -> str:
 
 
 def _friction_notice(bound: float) -> list[str]:
-    # The measured instrument at 44.1 kHz is at 1.04, without trouble.
+    # The measured instrument at 44.1 kHz is at 1.02, without trouble.
     if bound < NOTABLE_BOUND:
         return []
     return [f"note: at this rate and epsilon_0 friction may have several solutions ({bound:.1f})"]

@@ -17,7 +17,7 @@ import numpy as np
 
 from yehu_server import __version__
 from yehu_server.errors import OutputError, ParameterError, ScoreError
-from yehu_server.files import replacing
+from yehu_server.files import read_text, replacing
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.energy import stored_energy
@@ -101,7 +101,7 @@ def read_gesture(path: Path) -> Gesture:
     Errors: ScoreError or ParameterError, naming the file and what is wrong in it.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except OSError as error:
         raise ScoreError(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -134,8 +134,9 @@ def gesture_from(data: Any) -> Gesture:
         for name, value in _names(data.get("controls", {}), "controls", tuple(CONTROLS)).items()
     }
     shortest = min(string.L for string in quantities.strings)
-    _stays_within(curves, "bow_position", quantities.bridge_x, "the bridge")
-    _stays_within(curves, "finger_position", shortest, "the string's end")
+    ends = (("bow_position", quantities.bridge_x, "bridge"), ("finger_position", shortest, "stub"))
+    for name, end, what in ends:
+        _stays_within(curves.get(name, ((0.0, CONTROLS[name].default),)), name, end, what)
     pluck = None
     if data.get("pluck") is not None:
         fields = _names(data["pluck"], "pluck", ("string", "position", "amplitude"))
@@ -197,11 +198,11 @@ def _curve(value: Any, where: str, lo: float, hi: float, unit: str) -> Curve:
     return tuple(points)
 
 
-def _stays_within(curves: Mapping[str, Curve], name: str, end: float, what: str) -> None:
-    for _, position in curves.get(name, ()):
+def _stays_within(curve: Curve, name: str, end: float, what: str) -> None:
+    for _, position in curve:
         if not 0.0 < position < end:
             raise ParameterError(
-                f"{name}: {position} m is not between the loop (0) and {what} ({end} m)"
+                f"{name}: {position} m is not between the loop (0) and the {what} ({end} m)"
             )
 
 

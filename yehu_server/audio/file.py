@@ -95,8 +95,8 @@ def sound_file(target: Path, rate: int, format_name: str, subtype: str) -> Itera
         with file:
             writer = SoundWriter(file, target, limit)
             yield writer
-            if writer.frames == 0 and format_name == "flac":
-                raise OutputError(f"{target}: no samples, and a FLAC file needs some")
+            if writer.frames == 0:
+                raise OutputError(f"{target}: there is nothing to write")
         # What libsndfile still buffered is written on closing, where it cannot complain.
         try:
             whole = soundfile.info(partial).frames == writer.frames

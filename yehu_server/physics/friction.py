@@ -88,7 +88,8 @@ def solve_friction(
     f_b, z_bar, v_r : float, N, m, m/s
     iterations : int
     converged : bool
-        Whether the residual fell below 2e-13 m/s (relative above 1 m/s).
+        Whether the residual fell below 2e-13 m/s (relative above 1 m/s), or below 2e-10
+        where the bracket is down to neighbouring numbers.
 
     Real time: safe; at most 100 evaluations of the law.
     """

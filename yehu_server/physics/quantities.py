@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from yehu_server.errors import ParameterError
+from yehu_server.files import read_text
 
 BODY_FILE = Path(__file__).with_name("body.json")
 
@@ -110,7 +111,7 @@ def read_body(path: Path = BODY_FILE) -> Body:
     Source: the format is described in docs/physics.md; figures [YehuData].
     """
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(read_text(path))
         modes = data["bridge_modes"]
         radiation = data["radiation"]
         body = Body(
@@ -257,7 +258,7 @@ def read_quantities(path: Path) -> Quantities:
     Errors: ParameterError, naming the file.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
         data = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
         return override(Quantities(), data, path.parent)
     except OSError as error:

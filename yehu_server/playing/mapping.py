@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import MappingError, ParameterError
+from yehu_server.files import read_text
 from yehu_server.params.spec import Curve, Place
 from yehu_server.params.table import find
 
@@ -76,7 +77,7 @@ def load(name_or_path: str) -> Mapping:
             raise MappingError(f"no mapping {name_or_path!r} (shipped: {names}; or name a file)")
         path = shipped
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(read_text(path))
     except OSError as error:
         raise MappingError(f"{path}: {error.strerror}") from error
     except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:

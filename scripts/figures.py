@@ -23,8 +23,9 @@ from yehu_server.physics import kernel
 from yehu_server.physics.bridge import advance_bridge
 from yehu_server.physics.quantities import Quantities
 from yehu_server.render import Options, Performance
+from yehu_server.score.gesture import Gesture, gesture_from
 from yehu_server.score.smf import read_score
-from yehu_server.simulate import Gesture, gesture_from, simulate
+from yehu_server.simulate import simulate
 
 ROOT = Path(__file__).resolve().parent.parent
 BLUE, RED, GREY = "#1f5fa8", "#c03a2b", "0.6"

@@ -14,7 +14,8 @@ from scipy.signal import lfilter
 
 from yehu_server.cli import main
 from yehu_server.errors import OutputError, ParameterError, ScoreError
-from yehu_server.simulate import gesture_from, read_gesture, simulate
+from yehu_server.score.gesture import gesture_from, read_gesture
+from yehu_server.simulate import simulate
 
 BODY = Path(__file__).resolve().parents[1] / "yehu_server" / "physics" / "body.json"
 ISSUE = {

@@ -248,7 +248,8 @@ def _simulate(arguments: argparse.Namespace) -> int:
     import time
 
     from yehu_server.files import check_target
-    from yehu_server.simulate import read_gesture, simulate
+    from yehu_server.score.gesture import read_gesture
+    from yehu_server.simulate import simulate
 
     gesture = read_gesture(arguments.gesture)
     check_target(arguments.output, [arguments.gesture])

@@ -12,7 +12,8 @@ from physics.runs import bump, play, shaped
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.bridge import advance_bridge
 from yehu_server.physics.quantities import Quantities, StringQuantities
-from yehu_server.simulate import Gesture, simulate
+from yehu_server.score.gesture import Gesture
+from yehu_server.simulate import simulate
 
 YEHU = Quantities()
 MODES = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())["bridge_modes"]

@@ -9,7 +9,8 @@ from physics.runs import bump, cents, pitch, play, rows, shaped
 from yehu_server.errors import ParameterError
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities, override
-from yehu_server.simulate import Gesture, simulate
+from yehu_server.score.gesture import Gesture
+from yehu_server.simulate import simulate
 
 YEHU = Quantities()
 RATE = 44100.0

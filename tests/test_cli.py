@@ -184,15 +184,15 @@ def test_a_person_is_told_what_came_of_it_and_sees_no_bar_in_a_pipe(
     assert (code, err) == (0, "")
     assert str(out / target) in stdout
     if name == "render":
-        assert "channels: 1 (1 notes)" in stdout
-        assert "out of range" not in stdout
+        assert "channels: 1 (1 note)" in stdout
+        assert "outside" not in stdout
 
 
 def test_a_person_is_told_of_notes_out_of_range(command, tmp_path, out):
     path = tmp_path / "low.mid"
     path.write_bytes(midi_file(path, 0.1).read_bytes().replace(b"\x90\x46", b"\x90\x20"))
     _, stdout, _ = command("render", path, "-o", out / "x.wav")
-    assert "1 notes were out of range" in stdout
+    assert "1 note outside F4 to F6, moved by octaves" in stdout
 
 
 def test_a_terminal_gets_a_progress_bar_and_a_pipe_its_summary(tmp_path, out):

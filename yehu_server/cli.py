@@ -235,6 +235,7 @@ def _render(arguments: argparse.Namespace) -> int:
     if arguments.json:
         fields = dict(vars(summary))
         by_channel = fields.pop("notes_by_channel")
+        fields["policy"] = summary.policy.value
         fields["channels"] = {str(channel + 1): notes for channel, notes in by_channel.items()}
         print(json.dumps(fields))
     elif not arguments.quiet:

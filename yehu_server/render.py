@@ -61,6 +61,7 @@ class Summary:
     rms: float
     notes_played: int
     notes_out_of_range: int
+    policy: RangePolicy
     unconverged_solves: int
     lost_states: int
     friction_bound: float
@@ -159,6 +160,7 @@ def render(
         rms=file.rms,
         notes_played=performance.performer.notes_played,
         notes_out_of_range=performance.performer.notes_out_of_range,
+        policy=options.policy,
         unconverged_solves=performance.instrument.unconverged_solves,
         lost_states=performance.instrument.lost_states,
         friction_bound=performance.instrument.friction_bound,

@@ -7,10 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
+from yehu_server.playing.fingering import RangePolicy
 from yehu_server.render import Summary
 from yehu_server.simulate import Simulation
 
 NOTABLE_BOUND = 1.2
+FATE = {
+    RangePolicy.TRANSPOSE: "moved by octaves",
+    RangePolicy.CLAMP: "played as the nearest there is",
+    RangePolicy.SKIP: "left out",
+}
 
 
 def decibels(level: float) -> str:
@@ -18,20 +24,27 @@ def decibels(level: float) -> str:
     return f"{20.0 * math.log10(level):.1f} dBFS" if level > 0.0 else "silence"
 
 
+def counted(number: int, thing: str) -> str:
+    """A number of things, in words."""
+    return f"{number} {thing}" + ("" if number == 1 else "s")
+
+
 def render_report(target: Path, summary: Summary) -> str:
     """A few lines on a rendering."""
     pace = f"{summary.duration_s:.1f} s, {summary.real_time_factor:.0f} x real time"
     lines = [f"{target}: {pace}, peak {decibels(summary.peak)}, rms {decibels(summary.rms)}"]
     heard = ", ".join(
-        f"{channel + 1} ({notes} notes)" for channel, notes in summary.notes_by_channel.items()
+        f"{channel + 1} ({counted(notes, 'note')})"
+        for channel, notes in summary.notes_by_channel.items()
     )
     lines.append(f"channels: {heard}" if heard else "no notes to play")
     if summary.notes_out_of_range:
-        lines.append(f"{summary.notes_out_of_range} notes were out of range (F4 to F6)")
+        notes = counted(summary.notes_out_of_range, "note")
+        lines.append(f"{notes} outside F4 to F6, {FATE[summary.policy]}")
     if summary.unconverged_solves:
-        lines.append(f"{summary.unconverged_solves} friction solves did not converge")
+        lines.append(f"{counted(summary.unconverged_solves, 'friction solve')} did not converge")
     if summary.lost_states:
-        lines.append(f"the model was lost and put back to rest {summary.lost_states} times")
+        lines.append(f"lost state, put back to rest: {counted(summary.lost_states, 'time')}")
     lines += _friction_notice(summary.friction_bound)
     return "\n".join(lines)
 

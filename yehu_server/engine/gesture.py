@@ -20,7 +20,7 @@ from yehu_server.physics.quantities import Quantities
 Array = Any
 
 SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
-FORCE, PRESSURE, ASSIST = SLOT["/bow/force"], SLOT["/bow/pressure"], SLOT["/bow/assist"]
+FORCE, SHARE, ASSIST = SLOT["/bow/force"], SLOT["/bow/pressure"], SLOT["/bow/assist"]
 POSITION = SLOT["/bow/position"]
 FINGER, PRESS = SLOT["/finger/1/position"], SLOT["/finger/1/press"]
 GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
@@ -122,7 +122,7 @@ def write_controls(g: Any, control: Array) -> None:
     string = 0 if side >= 0.0 else 1
     limit = g.schelleng[string] * abs(speed) / beta
     assist = g.value[ASSIST]
-    share = g.value[PRESSURE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
+    share = g.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
     force = assist * share * limit + (1.0 - assist) * g.value[FORCE]
     control[F_N] = side * force
     control[V_B] = speed

@@ -11,8 +11,9 @@ import os
 import shutil
 import time
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
-from typing import ParamSpec, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
 from platformdirs import user_cache_dir
@@ -76,3 +77,33 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
         cache=IS_CACHED, nogil=True, error_model="numpy", fastmath=FASTMATH, forceinline=True
     )
     return cast("Callable[P, R]", jit(function))
+
+
+class Native:
+    """A function compiled on its first use, to be called by address, from C or by ctypes."""
+
+    def __init__(self, signature: str, function: Callable[..., Any]) -> None:
+        self._signature = signature
+        self._function = function
+
+    @cached_property
+    def compiled(self) -> Any:
+        """numba's object for it, with ``inspect_llvm()``."""
+        return numba.cfunc(
+            self._signature, nopython=True, cache=IS_CACHED, error_model="numpy", fastmath=FASTMATH
+        )(self._function)
+
+    @cached_property
+    def call(self) -> Callable[..., Any]:
+        """The function for Python, which runs without the GIL."""
+        return cast("Callable[..., Any]", self.compiled.ctypes)
+
+    @property
+    def address(self) -> int:
+        """The function's address, for C."""
+        return int(self.compiled.address)
+
+
+def native(signature: str) -> Callable[[Callable[..., Any]], Native]:
+    """Compile a function to be called by address; see `Native`."""
+    return lambda function: Native(signature, function)

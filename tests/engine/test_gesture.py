@@ -24,13 +24,13 @@ def run(instrument: Instrument, frames: int) -> np.ndarray:
 
 
 def value(instrument: Instrument, address: str) -> float:
-    return float(instrument._gesture["value"][0, SLOT[address]])
+    return float(instrument._rig["gesture"]["value"][0, SLOT[address]])
 
 
 def controls(instrument: Instrument) -> np.ndarray:
     """The controls of one more frame."""
     run(instrument, 1)
-    return instrument._output["controls"][0, 0].copy()
+    return instrument._rig["output"]["controls"][0, 0].copy()
 
 
 @pytest.fixture

@@ -163,7 +163,7 @@ def test_silence_puts_the_model_to_rest():
         instrument.write(address, 0.0, ramp_ms=0.0)
     instrument.silence()
     run(instrument, 0.006)
-    state = instrument._state[0]
+    state = instrument._rig["state"][0]
     assert not state["u"].any()
     assert not state["q"].any()
     assert not state["zeta"].any()
@@ -204,7 +204,7 @@ def test_a_resting_finger_makes_no_sound_of_its_own():
 
 def spoil(instrument: Instrument, where: str, value: float) -> None:
     """Lose a part of the state, as far as it moves."""
-    part = instrument._state[where]
+    part = instrument._rig["state"][where]
     part[...] = np.where(part == 0.0, part, value)
 
 

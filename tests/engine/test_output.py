@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from yehu_server.engine.instrument import Instrument, limit
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.output import limit
 
 RATE = 44100
 KNEE = 10.0 ** (-3.0 / 20.0)

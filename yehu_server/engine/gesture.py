@@ -23,6 +23,7 @@ SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 FORCE, SHARE, ASSIST = SLOT["/bow/force"], SLOT["/bow/pressure"], SLOT["/bow/assist"]
 POSITION = SLOT["/bow/position"]
 FINGER, PRESS = SLOT["/finger/1/position"], SLOT["/finger/1/press"]
+FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
 GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
 SLOTS = len(ENGINE)
 SILENCE = SLOTS  # an event at this index fades the sound out and puts the model to rest
@@ -35,10 +36,6 @@ PARK_AFTER_S = 0.03
 # over F4 to F6: 0.3 is enough at 0.1 m/s, 0.6 at 0.35 m/s.
 FAST_SHARE, FAST = 0.3, 0.35  # m/s
 FOLLOW_S = 0.01  # how fast the bow follows the sounding length
-
-EVENT = np.dtype(
-    [("frame", np.int64), ("index", np.int64), ("target", np.float64), ("ramp", np.int64)]
-)
 
 GESTURE = np.dtype(
     [
@@ -77,20 +74,19 @@ def prepare_gesture(quantities: Quantities, rate: float) -> Any:
 
 
 @compiled
-def take(g: Any, event: Any, silence_frames: int) -> None:
+def take(g: Any, index: int, target: float, ramp: int, silence_frames: int) -> None:
     """Apply one event: set a parameter going towards its target. Real time: safe."""
-    index = event.index
     if index == SILENCE:
         if g.silence_in == 0:
             g.silence_in = silence_frames
         return
-    g.target[index] = event.target
-    if event.ramp <= 0:
-        g.value[index] = event.target
+    g.target[index] = target
+    if ramp <= 0:
+        g.value[index] = target
         g.remaining[index] = 0
     else:
-        g.slope[index] = (event.target - g.value[index]) / event.ramp
-        g.remaining[index] = event.ramp
+        g.slope[index] = (target - g.value[index]) / ramp
+        g.remaining[index] = ramp
 
 
 @compiled
@@ -103,6 +99,12 @@ def move(g: Any) -> None:
                 g.value[index] = g.target[index]
             else:
                 g.value[index] += g.slope[index]
+
+
+@compiled
+def level(g: Any) -> float:
+    """Amplitude at full scale of one pascal at this frame."""
+    return float(g.value[LEVEL] * 10.0 ** (g.value[GAIN] / 20.0) / FULL_SCALE_PRESSURE)
 
 
 @compiled

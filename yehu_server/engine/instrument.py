@@ -1,139 +1,34 @@
-"""The instrument: events in, samples out. The same compiled process live and offline."""
+"""The instrument: events in, samples out. The same compiled callback live and offline."""
 
 from __future__ import annotations
 
-import heapq
-import itertools
-import math
 from typing import Any
 
 import numpy as np
 
-from yehu_server.engine.gesture import (
-    EVENT,
-    GAIN,
-    LEVEL,
-    SILENCE,
-    move,
-    prepare_gesture,
-    take,
-    write_controls,
-)
+from yehu_server.engine import native
+from yehu_server.engine.gesture import SILENCE, prepare_gesture
+from yehu_server.engine.mailbox import EVENT, FORGET, LIVE_BUDGET, RING
+from yehu_server.engine.output import prepare_output
+from yehu_server.engine.telemetry import METERS
 from yehu_server.errors import ParameterError
-from yehu_server.jit import compiled
 from yehu_server.params.table import SLOT, find
 from yehu_server.physics import kernel
 from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.grid import check_rate
-from yehu_server.physics.layout import ITERATIONS, PRESSURE, control_columns, probe_columns
 from yehu_server.physics.quantities import Quantities
 
 Array = Any
 
-CHUNK = 64  # frames run through the kernel at a time
-FADE_S = 0.005
-BLOCKED_HZ = 10.0  # what is slower than this is no sound
-FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
-SOFT_ABOVE = 10.0 ** (-3.0 / 20.0)  # the limiter is transparent below -3 dBFS
-
-OUTPUT = np.dtype(
-    [
-        ("fade", np.int64),  # frames of a fade to silence
-        ("last", np.float64),  # the last sample
-        ("ghost", np.float64),  # what is left of the one before a lost state
-        ("decay", np.float64),
-        ("pressure", np.float64),  # input and output of the DC blocker (Pa)
-        ("swing", np.float64),
-        ("blocker", np.float64),
-        ("controls", np.float64, (CHUNK, control_columns(1))),
-        ("probes", np.float64, (CHUNK, probe_columns(1))),
-        ("gain", np.float64, CHUNK),
-    ],
-    align=True,
-)
-
-
-@compiled
-def limit(x: float) -> float:
-    """Bend what is above -3 dBFS so that nothing exceeds full scale. Odd, smooth, memoryless."""
-    size = abs(x)
-    if size <= SOFT_ABOVE:
-        return x
-    room = 1.0 - SOFT_ABOVE
-    bent = SOFT_ABOVE + room * math.tanh((size - SOFT_ABOVE) / room)
-    return bent if x > 0.0 else -bent
-
-
-@compiled
-def play_out(o: Any, probe: Array, gain: float) -> float:
-    """One sample of output from one row of probes; a lost state is faded, not cut."""
-    if probe[ITERATIONS] < 0:
-        o.ghost = o.last
-        o.pressure, o.swing = 0.0, 0.0
-    o.ghost *= o.decay
-    # A finger's press pulls at the bridge for as long as it lasts: not a sound.
-    o.swing = probe[PRESSURE] - o.pressure + o.blocker * o.swing
-    o.pressure = probe[PRESSURE]
-    o.last = limit(o.swing * gain + o.ghost)
-    return float(o.last)
-
-
-@compiled
-def process(
-    model: Array, state: Array, gesture: Array, output: Array, events: Array, out: Array
-) -> int:
-    """Play one block.
-
-    Parameters
-    ----------
-    model, state : ndarray [shape=(1,)]
-        From ``kernel``; `gesture` from `prepare_gesture`, `output` of dtype OUTPUT.
-    events : ndarray [shape=(events,), dtype=EVENT]
-        In order of frame; those up to the block's last frame are applied, each at its
-        frame, late ones at once.
-    out : ndarray [shape=(frames,), float32]
-        Written, in full scale.
-
-    Returns
-    -------
-    used : int
-        How many events were applied.
-
-    What is heard does not depend on how frames are cut into blocks.
-    Real time: safe; no allocation, no exception, every sample finite.
-    """
-    g, o = gesture[0], output[0]
-    used = 0
-    done = 0
-    while done < len(out):
-        frames = 0
-        silenced = False
-        while frames < CHUNK and done + frames < len(out) and not silenced:
-            while used < len(events) and events[used].frame <= g.frame:
-                take(g, events[used], o.fade)
-                used += 1
-            move(g)
-            write_controls(g, o.controls[frames])
-            gain = g.value[LEVEL] * 10.0 ** (g.value[GAIN] / 20.0) / FULL_SCALE_PRESSURE
-            if g.silence_in > 0:
-                g.silence_in -= 1
-                gain *= g.silence_in / o.fade
-                silenced = g.silence_in == 0
-            o.gain[frames] = gain
-            g.frame += 1
-            frames += 1
-        kernel.advance(model, state, o.controls[:frames], o.probes[:frames], o.probes[:0])
-        for n in range(frames):
-            out[done + n] = play_out(o, o.probes[n], o.gain[n])
-        if silenced:
-            kernel.come_to_rest(model, state[0])
-            o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
-        done += frames
-    return used
+RIG_BYTES = native.RIG.itemsize
+TAPE_FRAMES = native.TAPE
 
 
 class Instrument:
-    """One yehu, ready to play; to be used from one thread.
+    """One yehu, ready to play.
+
+    One thread at a time may post events (`write`, `silence`, `forget`), another play; both
+    may be in other processes, where `memory` is shared between them.
 
     Parameters
     ----------
@@ -141,49 +36,92 @@ class Instrument:
         22,050 to 192,000.
     quantities : Quantities
         The physical instrument; the measured one by default.
+    channels : int
+        How many get the same signal.
+    memory : buffer of RIG_BYTES, optional
+        Where to live. With it the instrument is live: it bounds what one block may cost.
 
     Errors: ParameterError where rate or quantities make no stable model.
     """
 
-    def __init__(self, rate: float, quantities: Quantities | None = None) -> None:
+    def __init__(
+        self,
+        rate: float,
+        quantities: Quantities | None = None,
+        *,
+        channels: int = 1,
+        memory: Any = None,
+    ) -> None:
         check_rate(rate)
         self.rate = rate
         self.quantities = quantities or Quantities()
-        self._model = kernel.prepare(self.quantities, rate)
-        self._output = np.zeros(1, OUTPUT)
-        self._output["fade"] = max(1, round(FADE_S * rate))
-        self._output["decay"] = math.exp(-1.0 / (FADE_S * rate))
-        self._output["blocker"] = math.exp(-2.0 * math.pi * BLOCKED_HZ / rate)
-        self._order = itertools.count()
+        self._rig = (
+            np.zeros(1, native.RIG)
+            if memory is None
+            else np.frombuffer(memory, native.RIG, count=1)
+        )
+        self._address = self._rig.ctypes.data
+        self._rig["model"] = kernel.prepare(self.quantities, rate)
+        self._rig["mail"]["budget"] = RING if memory is None else LIVE_BUDGET
+        prepare_output(self._rig["output"], rate, channels)
+        self._meters = np.zeros(1, METERS)
         self.reset()
 
     def reset(self) -> None:
-        """Put model and parameters back to the start; forget scheduled events."""
-        self._state = kernel.at_rest(self._model)
-        self._gesture = prepare_gesture(self.quantities, self.rate)
-        for name in ("last", "ghost", "pressure", "swing"):
-            self._output[name] = 0.0
-        self._queue: list[tuple[int, int, int, float, int]] = []
+        """Put model and parameters back to the start; forget scheduled events.
+
+        Nobody may play meanwhile.
+        """
+        rig = self._rig
+        rig["state"] = kernel.at_rest(rig["model"])
+        rig["gesture"] = prepare_gesture(self.quantities, self.rate)
+        prepare_output(rig["output"], self.rate, self.channels)
+        rig["mail"]["waiting"] = 0
+        rig["mail"]["drained"] = rig["mail"]["posted"]
+        rig["meters"] = 0
+        rig["meters"]["rate"] = self.rate
+        rig["meters"]["ns_per_frame"] = 1e9 / self.rate
+        rig["published"] = rig["meters"]
+        rig["taped"] = 0
+
+    @property
+    def address(self) -> int:
+        """Where the rig lies: the `userdata` of ``engine.native.callback``."""
+        return int(self._address)
+
+    @property
+    def channels(self) -> int:
+        """How many channels get the signal."""
+        return int(self._rig["output"]["channels"][0])
+
+    @channels.setter
+    def channels(self, channels: int) -> None:
+        self._rig["output"]["channels"] = channels
 
     @property
     def frame(self) -> int:
         """The frame of the next sample."""
-        return int(self._gesture["frame"][0])
+        return int(self._rig["gesture"]["frame"][0])
 
     @property
     def friction_bound(self) -> float:
         """See ``physics.bow.friction_bound``."""
-        return friction_bound(self._model[0])
+        return friction_bound(self._rig["model"][0])
 
     @property
     def unconverged_solves(self) -> int:
         """Friction solves that did not converge, since the start."""
-        return int(self._state["unconverged"][0])
+        return int(self._rig["state"]["unconverged"][0])
 
     @property
     def lost_states(self) -> int:
         """How often the state was lost and put back to rest, since the start."""
-        return int(self._state["lost"][0])
+        return int(self._rig["state"]["lost"][0])
+
+    @property
+    def dropped_events(self) -> int:
+        """Events that found the ring full, since the start."""
+        return int(self._rig["mail"]["dropped"][0, 0])
 
     def frames(self, ms: float) -> int:
         """Milliseconds as a number of frames."""
@@ -209,25 +147,64 @@ class Instrument:
         if slot is None:
             raise ParameterError(f"{address} is not held by the engine")
         ramp = self.frames(param.smooth_ms if ramp_ms is None else ramp_ms)
-        self._schedule(frame, slot, accepted, ramp)
+        self.post(self.frame if frame is None else frame, slot, accepted, ramp)
         return accepted
 
     def silence(self, *, frame: int | None = None) -> None:
         """Fade the sound out within 5 ms and put the model to rest."""
-        self._schedule(frame, SILENCE, 0.0, 0)
+        self.post(self.frame if frame is None else frame, SILENCE, 0.0, 0)
 
-    def _schedule(self, frame: int | None, index: int, target: float, ramp: int) -> None:
-        when = self.frame if frame is None else frame
-        heapq.heappush(self._queue, (when, next(self._order), index, target, ramp))
+    def forget(self) -> None:
+        """Drop what was posted before and is not yet applied."""
+        self.post(0, FORGET, 0.0, 0)
+
+    def post(self, frame: int, index: int, target: float, ramp: int) -> bool:
+        """Post a bare event (``engine.mailbox``); whether there was room for it."""
+        return bool(native.post.call(self._address, frame, index, target, ramp))
 
     def process(self, out: Array) -> None:
-        """Write the next samples to `out` [shape=(frames,), float32], in full scale."""
-        if len(out) == 0:
-            return
-        due = []
-        end = self.frame + len(out)
-        while self._queue and self._queue[0][0] < end:
-            when, _, index, target, ramp = heapq.heappop(self._queue)
-            due.append((when, index, target, ramp))
-        events = np.array(due, dtype=EVENT)
-        process(self._model, self._state, self._gesture, self._output, events, out)
+        """Write the next samples, in full scale.
+
+        Parameters
+        ----------
+        out : ndarray [shape=(frames,) or (frames, channels), float32, contiguous]
+        """
+        if len(out):
+            native.callback.call(None, out.ctypes.data, len(out), None, 0, self._address)
+
+    def meters(self) -> Any:
+        """What the audio side last told of itself: a record of dtype ``telemetry.METERS``.
+
+        Overwritten by the next call.
+        """
+        for _ in range(native.TRIES):
+            if native.read_meters.call(self._address, self._meters.ctypes.data):
+                break
+        return self._meters[0]
+
+    def frame_at(self, time_ns: int) -> float:
+        """The frame that a moment of ``time.monotonic_ns()`` falls on, as blocks are played."""
+        return float(native.frame_at.call(self._address, time_ns))
+
+    def report_events(self) -> None:
+        """Keep what is applied for `applied_events`."""
+        self._rig["mail"]["reporting"] = 1
+
+    def applied_events(self) -> Array:
+        """What was applied since the last call: ndarray [shape=(events,), dtype=EVENT]."""
+        events = np.zeros(RING, EVENT)
+        count = native.read_reports.call(self._address, events.ctypes.data, RING)
+        return events[:count]
+
+    def taped(self, start: int) -> tuple[int, Array]:
+        """What was played from a frame on, as far as the tape still holds it.
+
+        Returns the frame it begins at, and the samples [shape=(frames,), float32]. Only the
+        last `TAPE_FRAMES` are held; who comes too late gets a later beginning.
+        """
+        margin = TAPE_FRAMES // 8  # may be overwritten while we copy
+        end = native.taped.call(self._address)
+        begin = max(start, end - TAPE_FRAMES + margin)
+        tape = self._rig["tape"][0]
+        samples = tape[np.arange(begin, end) % TAPE_FRAMES]
+        return begin, samples

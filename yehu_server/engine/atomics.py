@@ -1,0 +1,69 @@
+"""Loads and stores that two threads, or two processes, may do at once. Compiled.
+
+What was written before a `store_release` is seen by whoever reads its value with
+`load_acquire`. On x86 these are plain moves, on ARM ``stlr`` and ``ldar``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+WORD = 8  # bytes
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def at(_context: Any, base: Any, offset: Any) -> Any:
+    """The address `offset` bytes after `base`."""
+
+    def generate(_codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return builder.gep(arguments[0], [arguments[1]])
+
+    return types.voidptr(types.voidptr, types.int64), generate
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def load_acquire(_context: Any, base: Any, offset: Any) -> Any:
+    """The 64-bit whole number `offset` bytes after `base`."""
+
+    def generate(_codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return builder.load_atomic(_word(builder, arguments), "acquire", WORD)
+
+    return types.int64(types.voidptr, types.int64), generate
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def store_release(_context: Any, base: Any, offset: Any, value: Any) -> Any:
+    """Store a 64-bit whole number `offset` bytes after `base`."""
+
+    def generate(_codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        builder.store_atomic(arguments[2], _word(builder, arguments), "release", WORD)
+
+    return types.void(types.voidptr, types.int64, types.int64), generate
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def fence_release(_context: Any) -> Any:
+    """Let no later store pass an earlier one."""
+
+    def generate(_codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        builder.fence("release")
+
+    return types.void(), generate
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def fence_acquire(_context: Any) -> Any:
+    """Let no later load pass an earlier one."""
+
+    def generate(_codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        builder.fence("acquire")
+
+    return types.void(), generate
+
+
+def _word(builder: Any, arguments: Any) -> Any:
+    return builder.bitcast(builder.gep(arguments[0], [arguments[1]]), ir.IntType(64).as_pointer())

@@ -1,0 +1,288 @@
+"""The C callback, and the other calls into the instrument that need no Python. Compiled.
+
+All that an instrument is lies in one record, the rig, so that one address reaches it: the
+audio device's `userdata`, here or in another process. Live and offline sound come from the
+same compiled callback.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import carray
+
+from yehu_server.engine.atomics import (
+    at,
+    fence_acquire,
+    fence_release,
+    load_acquire,
+    store_release,
+)
+from yehu_server.engine.gesture import GESTURE, level, move, take, write_controls
+from yehu_server.engine.mailbox import (
+    APPLIED_AT_ONCE,
+    EVENT,
+    FORGET,
+    HEAP,
+    LINE,
+    MAIL,
+    RING,
+    WAITING,
+    leave,
+    wait,
+)
+from yehu_server.engine.output import CHUNK, OUTPUT, fall_silent, play_out
+from yehu_server.engine.processor import (
+    flush_denormals,
+    monotonic_ns,
+    restore_denormals,
+    thread_cpu_ns,
+)
+from yehu_server.engine.telemetry import METERS, account, close_window, hear, tell_time
+from yehu_server.jit import compiled, native
+from yehu_server.physics import kernel
+from yehu_server.physics.layout import MODEL, STATE
+
+Array = Any
+
+TAPE = 1 << 19  # the last samples, for who records: 10 s at 48 kHz
+STALL_NS = 20_000_000
+TRIES = 100
+
+RIG = np.dtype(
+    [
+        ("model", MODEL),
+        ("state", STATE),
+        ("gesture", GESTURE),
+        ("output", OUTPUT),
+        ("mail", MAIL),
+        ("meters", METERS),
+        ("version", np.int64, LINE),
+        ("published", METERS),
+        ("taped", np.int64, LINE),
+        ("ring", EVENT, RING),
+        ("heap", WAITING, HEAP),
+        ("reports", EVENT, RING),
+        ("tape", np.float32, TAPE),
+    ],
+    align=True,
+)
+
+
+def _offset(field: str, inside: str = "") -> int:
+    fields: Any = RIG.fields
+    kind, start = fields[field][:2]
+    return int(start + (kind.fields[inside][1] if inside else 0))
+
+
+MODEL_AT, STATE_AT, GESTURE_AT = _offset("model"), _offset("state"), _offset("gesture")
+OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
+VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
+RING_AT, HEAP_AT, REPORTS_AT = _offset("ring"), _offset("heap"), _offset("reports")
+TAPE_AT = _offset("tape")
+POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
+REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
+
+
+@compiled
+def drain(rig: Any, mail: Any, frame: int) -> None:
+    """Move what was posted into the heap, as far as the callback's budget goes."""
+    ring = carray(at(rig, RING_AT), (RING,), EVENT)
+    heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
+    posted = load_acquire(rig, POSTED_AT)
+    drained = mail.drained[0]
+    end = min(posted, drained + mail.budget)
+    while drained < end and mail.waiting < HEAP:
+        event = ring[drained & (RING - 1)]
+        if event.index == FORGET:
+            mail.waiting = 0
+        else:
+            mail.late += 1 if event.frame < frame else 0
+            wait(heap, mail.waiting, event.frame, event.index, event.target, event.ramp, drained)
+            mail.waiting += 1
+        drained += 1
+    store_release(rig, DRAINED_AT, drained)
+
+
+@compiled
+def apply(rig: Any, mail: Any, g: Any, fade: int) -> None:
+    """Apply what is due at this frame, and report it."""
+    heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
+    for _ in range(APPLIED_AT_ONCE):
+        if mail.waiting == 0 or heap[0].frame > g.frame:
+            return
+        event = heap[0]
+        take(g, event.index, event.target, event.ramp, fade)
+        if mail.reporting != 0:
+            report(rig, mail, g.frame, event.index, event.target, event.ramp)
+        mail.applied += 1
+        leave(heap, mail.waiting)
+        mail.waiting -= 1
+
+
+@compiled
+def report(rig: Any, mail: Any, frame: int, index: int, target: float, ramp: int) -> None:
+    """Tell who captures what was applied, and when."""
+    reported = mail.reported[0]
+    if reported - load_acquire(rig, READ_AT) >= RING:
+        mail.unreported += 1
+        return
+    entry = carray(at(rig, REPORTS_AT), (RING,), EVENT)[reported & (RING - 1)]
+    entry.frame, entry.index, entry.target, entry.ramp = frame, index, target, ramp
+    store_release(rig, REPORTED_AT, reported + 1)
+
+
+@compiled
+def play(rig: Any, out: Array) -> None:
+    """Play one block into `out` [shape=(frames, channels), float32], in full scale.
+
+    What is heard does not depend on how frames are cut into blocks.
+    Real time: safe; no allocation, no exception, every sample finite.
+    """
+    model = carray(at(rig, MODEL_AT), (1,), MODEL)
+    state = carray(at(rig, STATE_AT), (1,), STATE)
+    g = carray(at(rig, GESTURE_AT), (1,), GESTURE)[0]
+    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    tape = carray(at(rig, TAPE_AT), (TAPE,), np.float32)
+    done = 0
+    while done < out.shape[0]:
+        drain(rig, mail, g.frame)
+        first = g.frame
+        frames = 0
+        silenced = False
+        while frames < CHUNK and done + frames < out.shape[0] and not silenced:
+            apply(rig, mail, g, o.fade)
+            move(g)
+            write_controls(g, o.controls[frames])
+            gain = level(g)
+            if g.silence_in > 0:
+                g.silence_in -= 1
+                gain *= g.silence_in / o.fade
+                silenced = g.silence_in == 0
+            o.gain[frames] = gain
+            g.frame += 1
+            frames += 1
+        kernel.advance(model, state, o.controls[:frames], o.probes[:frames], o.probes[:0])
+        for n in range(frames):
+            sample: Any = np.float32(play_out(o, o.probes[n], o.gain[n]))
+            tape[(first + n) & (TAPE - 1)] = sample
+            hear(t, sample)
+            for channel in range(out.shape[1]):
+                out[done + n, channel] = sample
+        if silenced:
+            kernel.come_to_rest(model, state[0])
+            fall_silent(o)
+        close_window(t, model[0], state[0])
+        done += frames
+
+
+@native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)")
+def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig: Any) -> int:
+    """Fill one block of output: PortAudio's own signature (PaStreamCallback).
+
+    Parameters
+    ----------
+    output : pointer to float32 [shape=(frames, channels)]
+    rig : pointer to a record of dtype RIG
+
+    Real time: safe; no Python, no lock, no allocation, no exception.
+    """
+    started_ns, cpu_ns = monotonic_ns(), thread_cpu_ns()
+    mode = flush_denormals()
+    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    state = carray(at(rig, STATE_AT), (1,), STATE)[0]
+    g = carray(at(rig, GESTURE_AT), (1,), GESTURE)[0]
+    channels = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0].channels
+    t.running = 1
+    block: Any = np.int64(frames)
+    tell_time(t, g.frame, started_ns, block)
+    publish(rig)  # at once, so that what comes in now is stamped by this block
+    play(rig, carray(output, (block, channels), np.float32))
+    t.unconverged, t.lost = state.unconverged, state.lost
+    t.late_events, t.applied = mail.late, mail.applied
+    t.waiting, t.unreported = mail.waiting, mail.unreported
+    restore_denormals(mode)
+    account(t, thread_cpu_ns() - cpu_ns, flags)
+    t.running = 0
+    store_release(rig, TAPED_AT, g.frame)
+    publish(rig)
+    return 0
+
+
+@compiled
+def publish(rig: Any) -> None:
+    """Copy the meters out, so that readers see all of a block or nothing of it."""
+    version = load_acquire(rig, VERSION_AT)
+    store_release(rig, VERSION_AT, version + 1)
+    fence_release()
+    carray(at(rig, PUBLISHED_AT), (1,), METERS)[0] = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    store_release(rig, VERSION_AT, version + 2)
+
+
+@native("int64(voidptr, voidptr)")
+def read_meters(rig: Any, into: Any) -> int:
+    """Copy the published meters; return 0 where a write came between (try again)."""
+    version = load_acquire(rig, VERSION_AT)
+    carray(into, (1,), METERS)[0] = carray(at(rig, PUBLISHED_AT), (1,), METERS)[0]
+    fence_acquire()
+    return 1 if version % 2 == 0 and load_acquire(rig, VERSION_AT) == version else 0
+
+
+@native("float64(voidptr, int64)")
+def frame_at(rig: Any, time_ns: int) -> float:
+    """The frame that a moment of the monotonic clock falls on, by the last callback's time.
+
+    While no callback comes, time stands still `STALL_NS` after the last block.
+    """
+    published = carray(at(rig, PUBLISHED_AT), (1,), METERS)[0]
+    frame, elapsed_ns, ns_per_frame = 0, 0, 1.0
+    for _ in range(TRIES):
+        version = load_acquire(rig, VERSION_AT)
+        frame, elapsed_ns = published.frame, time_ns - published.due_ns
+        ns_per_frame, block = published.ns_per_frame, published.block
+        elapsed_ns = min(elapsed_ns, STALL_NS + int(block * ns_per_frame))
+        fence_acquire()
+        if version % 2 == 0 and load_acquire(rig, VERSION_AT) == version:
+            break
+    return frame + elapsed_ns / ns_per_frame
+
+
+@native("int64(voidptr, int64, int64, float64, int64)")
+def post(rig: Any, frame: int, index: int, target: float, ramp: int) -> int:
+    """Post one event; return 0 where the ring is full and the event was dropped.
+
+    One thread at a time may post.
+    """
+    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    posted = mail.posted[0]
+    if posted - load_acquire(rig, DRAINED_AT) >= RING:
+        mail.dropped[0] += 1
+        return 0
+    entry = carray(at(rig, RING_AT), (RING,), EVENT)[posted & (RING - 1)]
+    entry.frame, entry.index, entry.target, entry.ramp = frame, index, target, ramp
+    store_release(rig, POSTED_AT, posted + 1)
+    return 1
+
+
+@native("int64(voidptr, voidptr, int64)")
+def read_reports(rig: Any, into: Any, room: int) -> int:
+    """Move reports of applied events to an array of EVENT; return how many."""
+    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    reports = carray(at(rig, REPORTS_AT), (RING,), EVENT)
+    events = carray(into, (room,), EVENT)
+    read = mail.read[0]
+    count = int(min(load_acquire(rig, REPORTED_AT) - read, room))
+    for i in range(count):
+        events[i] = reports[(read + i) & (RING - 1)]
+    store_release(rig, READ_AT, read + count)
+    return count
+
+
+@native("int64(voidptr)")
+def taped(rig: Any) -> int:
+    """How many frames have been played and are on the tape."""
+    return int(load_acquire(rig, TAPED_AT))

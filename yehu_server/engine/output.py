@@ -1,0 +1,76 @@
+"""From the model's probes to samples: DC blocker, gain, limiter, and a fade for lost states."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.jit import compiled
+from yehu_server.physics.layout import ITERATIONS, PRESSURE, control_columns, probe_columns
+
+Array = Any
+
+CHUNK = 64  # frames run through the kernel at a time
+FADE_S = 0.005
+BLOCKED_HZ = 10.0  # what is slower than this is no sound
+SOFT_ABOVE = 10.0 ** (-3.0 / 20.0)  # the limiter is transparent below -3 dBFS
+
+OUTPUT = np.dtype(
+    [
+        ("channels", np.int64),  # of the device; all get the same signal
+        ("fade", np.int64),  # frames of a fade to silence
+        ("last", np.float64),  # the last sample
+        ("ghost", np.float64),  # what is left of the one before a lost state
+        ("decay", np.float64),
+        ("pressure", np.float64),  # input and output of the DC blocker (Pa)
+        ("swing", np.float64),
+        ("blocker", np.float64),
+        ("controls", np.float64, (CHUNK, control_columns(1))),
+        ("probes", np.float64, (CHUNK, probe_columns(1))),
+        ("gain", np.float64, CHUNK),
+    ],
+    align=True,
+)
+
+
+def prepare_output(output: Any, rate: float, channels: int) -> None:
+    """Set the coefficients of a record of dtype OUTPUT [shape=(1,)], in place."""
+    output["channels"] = channels
+    output["fade"] = max(1, round(FADE_S * rate))
+    output["decay"] = math.exp(-1.0 / (FADE_S * rate))
+    output["blocker"] = math.exp(-2.0 * math.pi * BLOCKED_HZ / rate)
+    for name in ("last", "ghost", "pressure", "swing"):
+        output[name] = 0.0
+
+
+@compiled
+def limit(x: float) -> float:
+    """Bend what is above -3 dBFS so that nothing exceeds full scale. Odd, smooth, memoryless."""
+    size = abs(x)
+    if size <= SOFT_ABOVE:
+        return x
+    room = 1.0 - SOFT_ABOVE
+    bent = SOFT_ABOVE + room * math.tanh((size - SOFT_ABOVE) / room)
+    return bent if x > 0.0 else -bent
+
+
+@compiled
+def play_out(o: Any, probe: Array, gain: float) -> float:
+    """One sample of output from one row of probes; a lost state is faded, not cut."""
+    if probe[ITERATIONS] < 0:
+        o.ghost = o.last
+        o.pressure, o.swing = 0.0, 0.0
+    o.ghost *= o.decay
+    # A finger's press pulls at the bridge for as long as it lasts: not a sound.
+    o.swing = probe[PRESSURE] - o.pressure + o.blocker * o.swing
+    o.pressure = probe[PRESSURE]
+    o.last = limit(o.swing * gain + o.ghost)
+    return float(o.last)
+
+
+@compiled
+def fall_silent(o: Any) -> None:
+    """Forget what the filters hold, as the model is put to rest. Real time: safe."""
+    o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0

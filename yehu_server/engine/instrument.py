@@ -172,6 +172,15 @@ class Instrument:
         if len(out):
             native.callback.call(None, out.ctypes.data, len(out), None, 0, self._address)
 
+    def recover(self) -> None:
+        """Mend what a process left that was killed while it played. Nobody may play meanwhile."""
+        rig = self._rig
+        rig["version"][0, 0] += rig["version"][0, 0] % 2
+        if rig["meters"]["running"][0]:
+            rig["meters"]["running"] = 0
+            kernel.come_to_rest(rig["model"], rig["state"][0])
+            rig["state"]["lost"] += 1
+
     def meters(self) -> Any:
         """What the audio side last told of itself: a record of dtype ``telemetry.METERS``.
 

@@ -26,7 +26,9 @@ WINDOW_S = 1.0 / 60.0
 LOAD_BINS = 128  # of a sixty-fourth of the deadline each
 BINS_PER_DEADLINE = 64
 LOOP_HZ = 0.3  # bandwidth of the delay-locked loop
-ASTRAY_NS = 50_000_000  # from here on the loop starts anew
+ASTRAY_NS = 50_000_000  # so far off, the loop starts anew at once;
+ASTRAY_S = 0.1  # after so long, where it is off by more than LATE_BLOCKS
+LATE_BLOCKS = 2
 LOAD_MEMORY_S = 1.0
 UNDERRUN = 4  # paOutputUnderflow
 
@@ -39,9 +41,11 @@ METERS = np.dtype(
         ("due_ns", np.int64),
         ("ns_per_frame", np.float64),
         ("block", np.int64),  # frames of the last callback
+        ("error_ns", np.int64),  # how late the last callback began
+        ("astray", np.int64),  # callbacks in a row that were far from due
         # How the callback fares.
         ("callbacks", np.int64),
-        ("late_callbacks", np.int64),  # begun more than a block after they were due
+        ("late_callbacks", np.int64),  # begun LATE_BLOCKS or more after they were due
         ("missed", np.int64),  # took more CPU time than the block lasts
         ("underruns", np.int64),  # as the device reports them
         ("load", np.float64),  # CPU time over the deadline, mean of a second
@@ -94,15 +98,18 @@ def tell_time(t: Any, frame: int, started_ns: int, frames: int) -> None:
     """Follow the callback's starts with the delay-locked loop."""
     due = t.due_ns + int(t.block * t.ns_per_frame)
     error = started_ns - due
-    if t.callbacks == 0 or abs(error) > ASTRAY_NS:
-        t.due_ns = started_ns
+    late = LATE_BLOCKS * t.block * 1e9 / t.rate
+    if t.callbacks > 0 and error - t.error_ns > late:
+        t.late_callbacks += 1
+    t.astray = t.astray + 1 if abs(error) > late else 0
+    is_lost = abs(error) > ASTRAY_NS or t.astray * t.block > ASTRAY_S * t.rate
+    if t.callbacks == 0 or is_lost:
+        t.due_ns, t.error_ns, t.astray = started_ns, 0, 0
         t.ns_per_frame = 1e9 / t.rate
-        t.late_callbacks += 1 if t.callbacks > 0 and error > 0 else 0
     else:
         turn = 2.0 * math.pi * LOOP_HZ * t.block / t.rate
-        t.due_ns = due + int(math.sqrt(2.0) * turn * error)
+        t.due_ns, t.error_ns = due + int(math.sqrt(2.0) * turn * error), error
         t.ns_per_frame += turn * turn * error / max(t.block, 1)
-        t.late_callbacks += 1 if error > t.block * t.ns_per_frame else 0
     t.frame = frame
     t.block = frames
     t.callbacks += 1

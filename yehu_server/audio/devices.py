@@ -1,0 +1,120 @@
+"""Audio outputs: what there is, and which one is meant."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import ctypes.util
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from yehu_server.errors import DeviceError
+
+CLIENT_NAME = b"yehu-server"  # among JACK's clients
+NO_PORTAUDIO = "PortAudio is not installed (Debian: sudo apt-get install libportaudio2)"
+
+
+@dataclass(frozen=True)
+class AudioDevice:
+    """An output that PortAudio knows."""
+
+    index: int  # changes from start to start: never for people
+    name: str
+    host_api: str
+    channels: int
+    rate: float  # Hz; what it runs at by default
+    latency_ms: float
+    is_default: bool
+
+    @property
+    def full_name(self) -> str:
+        """Name and host API: what `choose` finds it by, whatever comes and goes."""
+        return f"{self.name}, {self.host_api}"
+
+
+@contextlib.contextmanager
+def quiet() -> Iterator[None]:
+    """Keep off the terminal what sound systems print when they are asked for devices."""
+    sys.stderr.flush()
+    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
+
+
+def load_portaudio() -> Any:
+    """Import sounddevice, which starts PortAudio. Errors: DeviceError without PortAudio."""
+    name = ctypes.util.find_library("portaudio")
+    if name is not None:
+        try:
+            ctypes.CDLL(name).PaJack_SetClientName(CLIENT_NAME)
+        except (OSError, AttributeError):
+            pass  # built without JACK
+    try:
+        import sounddevice
+    except OSError as error:
+        raise DeviceError(NO_PORTAUDIO) from error
+    return sounddevice
+
+
+def outputs(sounddevice: Any) -> list[AudioDevice]:
+    """Every output there is, the default one marked."""
+    apis = sounddevice.query_hostapis()
+    default = default_index(sounddevice)
+    return [
+        AudioDevice(
+            index=device["index"],
+            name=device["name"],
+            host_api=apis[device["hostapi"]]["name"],
+            channels=device["max_output_channels"],
+            rate=device["default_samplerate"],
+            latency_ms=1e3 * device["default_low_output_latency"],
+            is_default=device["index"] == default,
+        )
+        for device in sounddevice.query_devices()
+        if device["max_output_channels"] > 0
+    ]
+
+
+def default_index(sounddevice: Any) -> int:
+    """PortAudio's default output, or the first host API's that has one; -1 for none."""
+    index = int(sounddevice.default.device[1])
+    apis = sounddevice.query_hostapis()
+    candidates = [index, *(api["default_output_device"] for api in apis)]
+    return next((candidate for candidate in candidates if candidate >= 0), -1)
+
+
+def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
+    """The output that is meant: by its full name, its name, or words that both hold.
+
+    Parameters
+    ----------
+    wanted : str, optional
+        Such as ``"hifi"`` or ``"system, JACK"``; the default output without it.
+
+    Errors: DeviceError where none or several fit.
+    """
+    if wanted is None:
+        fitting = [device for device in devices if device.is_default]
+        if not fitting:
+            raise DeviceError("there is no audio output")
+        return fitting[0]
+    for exact in (lambda d: d.full_name == wanted, lambda d: d.name == wanted):
+        fitting = [device for device in devices if exact(device)]
+        if len(fitting) == 1:
+            return fitting[0]
+    words = wanted.lower().replace(",", " ").split()
+    fitting = [d for d in devices if all(word in d.full_name.lower() for word in words)]
+    if len(fitting) == 1:
+        return fitting[0]
+    names = "; ".join(device.full_name for device in fitting or devices) or "none"
+    if fitting:
+        raise DeviceError(f"several audio outputs fit {wanted!r}: {names}")
+    raise DeviceError(f"no audio output fits {wanted!r} (there are: {names})")

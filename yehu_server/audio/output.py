@@ -1,0 +1,297 @@
+"""Where live sound goes: an audio device, or the silent clock while there is none.
+
+Exactly one of them plays the instrument at any time. When the device is lost, the clock goes
+on from the same frame within some hundredths of a second, and a fresh process looks for the
+device until it is back.
+"""
+
+from __future__ import annotations
+
+import logging
+import mmap
+import os
+import queue
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from yehu_server.child import Child, Message
+from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.errors import DeviceError
+
+log = logging.getLogger(__name__)
+
+NULL = "null"
+NULL_RATE = 48000.0
+FIRST_LOOK_S = 10.0
+HUNG_AFTER_S = 2.0
+AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
+HOPELESS_S = 0.5  # the silent clock gives up catching up
+
+
+class SharedMemory:
+    """Memory for one instrument, that a child process can map by its file descriptor."""
+
+    def __init__(self) -> None:
+        if hasattr(os, "memfd_create"):
+            self.descriptor = os.memfd_create("yehu-server")
+        else:
+            with tempfile.TemporaryFile() as file:
+                self.descriptor = os.dup(file.fileno())
+        os.ftruncate(self.descriptor, RIG_BYTES)
+        self.buffer = mmap.mmap(self.descriptor, RIG_BYTES)
+
+
+class SilentClock:
+    """Plays the instrument in real time, to nobody."""
+
+    def __init__(self, instrument: Instrument, blocksize: int) -> None:
+        self._instrument = instrument
+        self._block = np.zeros((blocksize, instrument.channels), np.float32)
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="silent clock", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop; when this returns, nothing is played any more."""
+        self._ending.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        period = len(self._block) / self._instrument.rate
+        due = time.monotonic()
+        while not self._ending.is_set():
+            self._instrument.process(self._block)
+            due += period
+            early = due - time.monotonic()
+            if early > 0.0:
+                time.sleep(early)
+            elif early < -HOPELESS_S:
+                due = time.monotonic()
+
+
+@dataclass
+class OutputOptions:
+    """How to open the device; see ``yehu-server serve --help``."""
+
+    device: str | None = None  # None: the system's default
+    rate: float | None = None  # None: the device's own
+    blocksize: int = 128
+    latency: str | float = "low"  # or seconds
+    channels: int = 2
+
+
+@dataclass
+class OutputState:
+    """What plays the instrument now."""
+
+    device: str | None = None  # None: the silent clock
+    latency_ms: float = 0.0
+    losses: int = 0
+    problem: str = field(default="")  # why there is no device
+
+
+class Output:
+    """The instrument's way out.
+
+    Use: `find` the device, make the instrument at its rate in ``memory``, `begin`, `end`.
+
+    Parameters
+    ----------
+    changed : callable
+        Told in a line when the device is there, gone, or back; from another thread.
+    """
+
+    def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:
+        self._options = options
+        self._changed = changed
+        self.memory = SharedMemory()
+        self.state = OutputState()
+        self._events: queue.Queue[Message] = queue.Queue()
+        self._child: Child | None = None
+        self._found: Message | None = None
+        self._clock: SilentClock | None = None
+        self._instrument: Instrument | None = None
+        self._thread = threading.Thread(target=self._supervise, name="audio", daemon=True)
+        self._ending = threading.Event()
+        self._again_after_s = AGAIN_AFTER_S
+
+    def find(self) -> float:
+        """Look for the device; return the rate to run at (Hz).
+
+        Errors: DeviceError where a named device is not there.
+        """
+        if self._options.device == NULL:
+            self.state.problem = "asked for silence"
+            return self._options.rate or NULL_RATE
+        self._look()
+        try:
+            event = self._events.get(timeout=FIRST_LOOK_S)
+        except queue.Empty:
+            event = {"event": "missing", "reason": "the sound system does not answer"}
+        if event["event"] == "found":
+            self._found = event
+            return self._options.rate or float(event["rate"])
+        self.state.problem = event.get("reason", "the sound system crashed")
+        if self._options.device is not None:
+            self._drop_child()
+            raise DeviceError(self.state.problem)
+        return self._options.rate or NULL_RATE
+
+    def begin(self, instrument: Instrument) -> None:
+        """Play an instrument that lives in ``memory``.
+
+        Errors: DeviceError where a named device cannot be opened.
+        """
+        self._instrument = instrument
+        self._start_clock()
+        if self._found is not None:
+            self._open(self._found)
+            started = self._take_up()
+            if not started and self._options.device is not None:
+                self.end()
+                raise DeviceError(self.state.problem)
+        if self._options.device != NULL:
+            self._thread.start()
+
+    def end(self) -> None:
+        """Stop playing."""
+        self._ending.set()
+        if self._thread.is_alive():
+            self._thread.join()
+        self._drop_child(gently=True)
+        self._stop_clock()
+
+    # -- the device's process ----------------------------------------------------------------
+
+    def _look(self) -> None:
+        """Let a fresh process look for the device."""
+        self._events = events = queue.Queue()
+        self._child = Child(
+            "yehu_server.audio.stream", events.put, share=[self.memory.descriptor]
+        )
+        self._child.send("look", device=self._options.device)
+
+    def _open(self, found: Message) -> None:
+        instrument = self._instrument
+        if self._child is None or instrument is None:
+            return
+        instrument_channels = min(self._options.channels, found["channels"])
+        self._child.send(
+            "open",
+            memory=self.memory.descriptor,
+            rate=instrument.rate,
+            blocksize=self._options.blocksize,
+            latency=self._options.latency,
+            channels=instrument_channels,
+        )
+        self._wanted = found
+        self._channels = instrument_channels
+
+    def _take_up(self) -> bool:
+        """Hand the instrument over from the clock to the device, once that is ready."""
+        instrument = self._instrument
+        ready = self._await({"ready", "failed", "gone"})
+        if ready["event"] != "ready" or self._child is None or instrument is None:
+            self._fail(ready)
+            return False
+        self._stop_clock()
+        instrument.channels = self._channels
+        self._child.send("start")
+        started = self._await({"started", "failed", "gone"})
+        if started["event"] != "started":
+            self._fail(started)
+            self._start_clock()
+            return False
+        self._again_after_s = AGAIN_AFTER_S
+        name = self._wanted["name"]
+        self.state = OutputState(name, ready["latency_ms"], self.state.losses)
+        self._changed(f"playing on {name} at {instrument.rate:g} Hz")
+        return True
+
+    def _fail(self, event: Message) -> None:
+        self._drop_child()
+        reason = event.get("reason", "the audio process ended")
+        if reason != self.state.problem:
+            self._changed(f"no sound: {reason}")
+        self.state.problem = reason
+        self._ending.wait(self._again_after_s)
+        self._again_after_s = min(2.0 * self._again_after_s, AGAIN_AFTER_AT_MOST_S)
+
+    def _await(self, kinds: set[str]) -> Message:
+        """The next event of some kinds; none within the time is as bad as the end."""
+        deadline = time.monotonic() + FIRST_LOOK_S
+        while not self._ending.is_set():
+            try:
+                event = self._events.get(timeout=max(0.01, deadline - time.monotonic()))
+            except queue.Empty:
+                return {"event": "gone", "reason": "the audio device does not answer"}
+            if event["event"] in kinds:
+                return event
+        return {"event": "gone"}
+
+    def _drop_child(self, *, gently: bool = False) -> None:
+        child, self._child = self._child, None
+        if child is not None:
+            child.stop() if gently else child.kill()
+
+    def _supervise(self) -> None:
+        """Follow the device as it goes and comes."""
+        heart = (0, time.monotonic())
+        while not self._ending.is_set():
+            try:
+                event = self._events.get(timeout=0.05)
+            except queue.Empty:
+                event = {"event": ""}
+            if event["event"] == "found":
+                self._open(event)
+                self._take_up()
+            elif event["event"] == "failed":
+                self._fail(event)
+            elif event["event"] in ("lost", "gone") or self._has_stopped(heart):
+                self._lose()
+            if self._child is None and not self._ending.is_set():
+                self._look()
+            heart = self._listen_to_heart(heart)
+
+    def _listen_to_heart(self, heart: tuple[int, float]) -> tuple[int, float]:
+        beats = int(self._meters()["callbacks"])
+        return (beats, time.monotonic()) if beats != heart[0] else heart
+
+    def _has_stopped(self, heart: tuple[int, float]) -> bool:
+        on_device = self.state.device is not None
+        return on_device and time.monotonic() - heart[1] > HUNG_AFTER_S
+
+    def _lose(self) -> None:
+        """Go on to the silent clock; the process must be gone before that plays."""
+        device = self.state.device
+        if device is None:
+            self._fail({"event": "gone"})
+            return
+        self._drop_child()
+        if self._instrument is not None:
+            self._instrument.recover()
+        self._start_clock()
+        problem = f"{device} is gone"
+        self.state = OutputState(losses=self.state.losses + 1, problem=problem)
+        self._changed(f"{problem}; on the silent clock until it is back")
+
+    # -- the silent clock ----------------------------------------------------------------------
+
+    def _meters(self) -> Any:
+        assert self._instrument is not None
+        return self._instrument.meters()
+
+    def _start_clock(self) -> None:
+        if self._clock is None and self._instrument is not None:
+            self._clock = SilentClock(self._instrument, self._options.blocksize)
+
+    def _stop_clock(self) -> None:
+        clock, self._clock = self._clock, None
+        if clock is not None:
+            clock.stop()

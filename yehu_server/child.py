@@ -1,0 +1,133 @@
+"""Helper processes that can be replaced.
+
+PortAudio and RtMidi may hang or crash when the sound server under them dies. Each lives in a
+process of its own that speaks lines of JSON: orders in, events out. It ends when its input
+does, so none outlives its parent.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+Message = dict[str, Any]
+
+log = logging.getLogger(__name__)
+
+GOODBYE_S = 1.0
+
+
+class Child:
+    """A helper process, seen from its parent.
+
+    Parameters
+    ----------
+    module : str
+        What to run, as ``python -m``.
+    heard : callable
+        Called with each event, in a thread of its own; lastly with ``{"event": "gone"}``,
+        however the process ended.
+    share : sequence of int
+        File descriptors that the process gets, under the same numbers.
+    """
+
+    def __init__(
+        self, module: str, heard: Callable[[Message], None], share: Sequence[int] = ()
+    ) -> None:
+        self._name = module.rpartition(".")[2]
+        self._heard = heard
+        self._sending = threading.Lock()
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", module],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            pass_fds=share,
+            start_new_session=True,  # Ctrl-C is for the parent
+        )
+        threading.Thread(target=self._listen, name=f"{self._name} events", daemon=True).start()
+        threading.Thread(target=self._overhear, name=f"{self._name} log", daemon=True).start()
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the process runs."""
+        return self._process.poll() is None
+
+    def send(self, order: str, **details: Any) -> None:
+        """Give an order; one that comes too late is lost."""
+        line = json.dumps({"order": order, **details}) + "\n"
+        pipe = self._process.stdin
+        try:
+            with self._sending:
+                if pipe is not None:
+                    pipe.write(line.encode())
+                    pipe.flush()
+        except (OSError, ValueError):
+            log.debug("%s: gone before it got %s", self._name, order)
+
+    def stop(self) -> None:
+        """Let the process end by itself, and make it where it does not."""
+        pipe = self._process.stdin
+        try:
+            with self._sending:
+                if pipe is not None:
+                    pipe.close()
+            self._process.wait(GOODBYE_S)
+        except (OSError, subprocess.TimeoutExpired):
+            pass
+        self.kill()
+
+    def kill(self) -> None:
+        """End the process now; when this returns, it touches nothing any more."""
+        self._process.kill()
+        self._process.wait()
+
+    def _listen(self) -> None:
+        for line in self._process.stdout or ():
+            try:
+                message = json.loads(line)
+            except ValueError:
+                log.debug("%s: %s", self._name, line.decode(errors="replace").rstrip())
+            else:
+                self._heard(message)
+        self._process.wait()
+        self._heard({"event": "gone"})
+
+    def _overhear(self) -> None:
+        for line in self._process.stderr or ():
+            log.debug("%s: %s", self._name, line.decode(errors="replace").rstrip())
+
+
+def _claim_stdout() -> int:
+    """Keep what libraries print out of the conversation."""
+    channel = os.dup(1)
+    os.dup2(2, 1)
+    return channel
+
+
+class Parent:
+    """The other side, seen from the helper process."""
+
+    def __init__(self) -> None:
+        self._channel = _claim_stdout()
+        self._sending = threading.Lock()
+
+    def tell(self, event: str, **details: Any) -> None:
+        """Tell of an event; where nobody listens any more, the process ends."""
+        line = json.dumps({"event": event, **details}) + "\n"
+        try:
+            with self._sending:
+                os.write(self._channel, line.encode())
+        except OSError:
+            os._exit(0)
+
+    def orders(self) -> Iterator[Message]:
+        """The orders as they come, until there will be none."""
+        for line in sys.stdin.buffer:
+            yield json.loads(line)

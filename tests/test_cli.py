@@ -27,7 +27,7 @@ EXAMPLE = {
 COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
 # As a disk with 64 kB left; what is compiled must be so before.
 FULL_DISK = (
-    "import resource; from yehu_server.render import warm_up; warm_up();"
+    "import resource; from yehu_server.engine.native import warm_up; warm_up();"
     "resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));" + COMMAND
 )
 

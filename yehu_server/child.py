@@ -43,7 +43,7 @@ class Child:
         self._name = module.rpartition(".")[2]
         self._heard = heard
         self._sending = threading.Lock()
-        self._process = subprocess.Popen(
+        self._process = subprocess.Popen(  # noqa: S603 - our own module
             [sys.executable, "-m", module],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,

@@ -168,12 +168,6 @@ def render(
     )
 
 
-def warm_up() -> None:
-    """Compile or load from the cache whatever rendering needs."""
-    instrument = Instrument(44100.0)
-    instrument.process(np.zeros(1, np.float32))
-
-
 def _write_normalized(blocks: Iterator[Samples], file: SoundWriter, folder: Path) -> None:
     """Two passes through a scratch file, so that memory does not grow with the score."""
     peak = 0.0

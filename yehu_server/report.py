@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import ipaddress
 import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from yehu_server.audio.devices import AudioDevice
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.render import Summary
+from yehu_server.replay import Replayed
 from yehu_server.simulate import Simulation
 
 NOTABLE_BOUND = 1.2
+NOTE_NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
 FATE = {
     RangePolicy.TRANSPOSE: "moved by octaves",
     RangePolicy.CLAMP: "played as the nearest there is",
@@ -66,6 +71,84 @@ def simulate_report(target: Path, result: Simulation) -> str:
         )
     lines += _friction_notice(meta["friction_bound"])
     return "\n".join(lines)
+
+
+def replay_report(target: Path, result: Replayed) -> str:
+    """A few lines on a replay."""
+    pace = f"{result.duration_s:.1f} s, {result.real_time_factor:.0f} x real time"
+    line = f"{target}: {pace}, peak {decibels(result.peak)}, rms {decibels(result.rms)}"
+    return f"{line}\n{counted(result.events, 'event')}"
+
+
+def devices_report(
+    audio: Sequence[AudioDevice],
+    audio_problem: str,
+    midi_api: str,
+    midi: Sequence[str],
+    midi_problem: str,
+) -> None:
+    """Print tables of audio outputs and MIDI inputs."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    table = Table(title="audio outputs", title_justify="left")
+    for column in ("name", "host API", "channels", "rate", "latency", ""):
+        table.add_column(column, overflow="fold")
+    for device in audio:
+        numbers = (str(device.channels), f"{device.rate:g} Hz", f"{device.latency_ms:.1f} ms")
+        mark = "default" if device.is_default else ""
+        table.add_row(device.name, device.host_api, *numbers, mark)
+    console.print(table if audio else f"no audio outputs{_because(audio_problem)}")
+    table = Table(title=f"MIDI inputs ({midi_api})", title_justify="left")
+    table.add_column("name", overflow="fold")
+    for name in midi:
+        table.add_row(name)
+    console.print(table if midi else f"no MIDI inputs{_because(midi_problem)}")
+
+
+def _because(problem: str) -> str:
+    return f": {problem}" if problem else ""
+
+
+def status_line(status: Mapping[str, float | str]) -> str:
+    """One line on how playing goes."""
+    note, speed = float(status["note"]), float(status["bow_speed"])
+    arrow = "" if speed == 0.0 else (" down" if speed > 0.0 else " up")
+    parts = [
+        str(status["device"]),
+        f"{float(status['peak_db']):6.1f} dBFS",
+        f"note {note_name(note):>7}" if note >= 0.0 else "note    none",
+        f"bow {abs(speed):.2f} m/s{arrow}",
+        f"load {100.0 * float(status['load']):.0f} %",
+        f"missed {status['missed_deadlines']}",
+        f"under-runs {status['underruns']}",
+        f"MIDI {status['midi_ports'] or 'none'}",
+    ]
+    if status["recording"]:
+        parts.append(f"recording {status['recording']}")
+    return " | ".join(parts)
+
+
+def note_name(pitch: float) -> str:
+    """A fractional MIDI note, such as ``A4+12`` (cents)."""
+    nearest = round(pitch)
+    cents = round(100.0 * (pitch - nearest))
+    name = NOTE_NAMES[nearest % 12] + str(nearest // 12 - 1)
+    return f"{name}{cents:+d}" if cents else name
+
+
+def connect_lines(host: str, port: int, lan: str) -> list[str]:
+    """How others reach the server, in words."""
+    lines = [f"OSC at {host}:{port} (UDP and TCP), such as /yehu/note 67 90"]
+    address = ipaddress.ip_address(host)
+    if address.is_loopback:
+        hint = f"yehu-server serve --osc {lan}:{port} --osc-allow {lan}/24"
+        lines.append(f"for a phone on this network: {hint}")
+    else:
+        where = lan if address.is_unspecified else host
+        lines.append(f"on a phone (TouchOSC): host {where}, send port {port}")
+    return lines
 
 
 def _friction_notice(bound: float) -> list[str]:

@@ -53,10 +53,8 @@ def load_portaudio() -> Any:
     """Import sounddevice, which starts PortAudio. Errors: DeviceError without PortAudio."""
     name = ctypes.util.find_library("portaudio")
     if name is not None:
-        try:
+        with contextlib.suppress(OSError, AttributeError):  # without JACK
             ctypes.CDLL(name).PaJack_SetClientName(CLIENT_NAME)
-        except (OSError, AttributeError):
-            pass  # built without JACK
     try:
         import sounddevice
     except OSError as error:
@@ -106,8 +104,9 @@ def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
         if not fitting:
             raise DeviceError("there is no audio output")
         return fitting[0]
-    for exact in (lambda d: d.full_name == wanted, lambda d: d.name == wanted):
-        fitting = [device for device in devices if exact(device)]
+    by_full_name = [device for device in devices if device.full_name == wanted]
+    by_name = [device for device in devices if device.name == wanted]
+    for fitting in (by_full_name, by_name):
         if len(fitting) == 1:
             return fitting[0]
     words = wanted.lower().replace(",", " ").split()

@@ -171,9 +171,9 @@ class Output:
 
     def _look(self) -> None:
         """Let a fresh process look for the device."""
-        self._events = events = queue.Queue()
+        self._events = queue.Queue()
         self._child = Child(
-            "yehu_server.audio.stream", events.put, share=[self.memory.descriptor]
+            "yehu_server.audio.stream", self._events.put, share=[self.memory.descriptor]
         )
         self._child.send("look", device=self._options.device)
 
@@ -284,8 +284,7 @@ class Output:
     # -- the silent clock ----------------------------------------------------------------------
 
     def _meters(self) -> Any:
-        assert self._instrument is not None
-        return self._instrument.meters()
+        return self._instrument.meters() if self._instrument is not None else {"callbacks": 0}
 
     def _start_clock(self) -> None:
         if self._clock is None and self._instrument is not None:

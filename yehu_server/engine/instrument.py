@@ -8,7 +8,7 @@ import numpy as np
 
 from yehu_server.engine import native
 from yehu_server.engine.gesture import SILENCE, prepare_gesture
-from yehu_server.engine.mailbox import EVENT, FORGET, LIVE_BUDGET, RING
+from yehu_server.engine.mailbox import EVENT, LIVE_BUDGET, RING
 from yehu_server.engine.output import prepare_output
 from yehu_server.engine.telemetry import METERS
 from yehu_server.errors import ParameterError
@@ -27,7 +27,7 @@ TAPE_FRAMES = native.TAPE
 class Instrument:
     """One yehu, ready to play.
 
-    One thread at a time may post events (`write`, `silence`, `forget`), another play; both
+    One thread at a time may post events (`write`, `silence`), another play; both
     may be in other processes, where `memory` is shared between them.
 
     Parameters
@@ -65,6 +65,7 @@ class Instrument:
         self._rig["mail"]["budget"] = RING if memory is None else LIVE_BUDGET
         prepare_output(self._rig["output"], rate, channels)
         self._meters = np.zeros(1, METERS)
+        self.rests: list[int] = []  # frames at which `recover` had to put the model to rest
         self.reset()
 
     def reset(self) -> None:
@@ -154,10 +155,6 @@ class Instrument:
         """Fade the sound out within 5 ms and put the model to rest."""
         self.post(self.frame if frame is None else frame, SILENCE, 0.0, 0)
 
-    def forget(self) -> None:
-        """Drop what was posted before and is not yet applied."""
-        self.post(0, FORGET, 0.0, 0)
-
     def post(self, frame: int, index: int, target: float, ramp: int) -> bool:
         """Post a bare event (``engine.mailbox``); whether there was room for it."""
         return bool(native.post.call(self._address, frame, index, target, ramp))
@@ -172,14 +169,18 @@ class Instrument:
         if len(out):
             native.callback.call(None, out.ctypes.data, len(out), None, 0, self._address)
 
+    def come_to_rest(self) -> None:
+        """Put the model to rest at once. Nobody may play meanwhile."""
+        kernel.come_to_rest(self._rig["model"], self._rig["state"][0])
+
     def recover(self) -> None:
         """Mend what a process left that was killed while it played. Nobody may play meanwhile."""
         rig = self._rig
         rig["version"][0, 0] += rig["version"][0, 0] % 2
         if rig["meters"]["running"][0]:
             rig["meters"]["running"] = 0
-            kernel.come_to_rest(rig["model"], rig["state"][0])
-            rig["state"]["lost"] += 1
+            self.come_to_rest()
+            self.rests.append(self.frame)
 
     def meters(self) -> Any:
         """What the audio side last told of itself: a record of dtype ``telemetry.METERS``.

@@ -23,7 +23,6 @@ from yehu_server.engine.gesture import GESTURE, level, move, take, write_control
 from yehu_server.engine.mailbox import (
     APPLIED_AT_ONCE,
     EVENT,
-    FORGET,
     HEAP,
     LINE,
     MAIL,
@@ -95,12 +94,9 @@ def drain(rig: Any, mail: Any, frame: int) -> None:
     end = min(posted, drained + mail.budget)
     while drained < end and mail.waiting < HEAP:
         event = ring[drained & (RING - 1)]
-        if event.index == FORGET:
-            mail.waiting = 0
-        else:
-            mail.late += 1 if event.frame < frame else 0
-            wait(heap, mail.waiting, event.frame, event.index, event.target, event.ramp, drained)
-            mail.waiting += 1
+        mail.late += 1 if event.frame < frame else 0
+        wait(heap, mail.waiting, event.frame, event.index, event.target, event.ramp, drained)
+        mail.waiting += 1
         drained += 1
     store_release(rig, DRAINED_AT, drained)
 
@@ -286,3 +282,9 @@ def read_reports(rig: Any, into: Any, room: int) -> int:
 def taped(rig: Any) -> int:
     """How many frames have been played and are on the tape."""
     return int(load_acquire(rig, TAPED_AT))
+
+
+def warm_up() -> None:
+    """Compile, or load from the cache, all that playing needs."""
+    for function in (callback, read_meters, frame_at, post, read_reports, taped):
+        _ = function.address

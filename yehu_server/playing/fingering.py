@@ -20,7 +20,7 @@ class RangePolicy(Enum):
     CLAMP = "clamp"
     SKIP = "skip"
 
-    def fit(self, note: int) -> int | None:
+    def fit(self, note: float) -> float | None:
         """Return the note to play instead of `note`, or None for none."""
         if LOWEST_NOTE <= note <= HIGHEST_NOTE:
             return note

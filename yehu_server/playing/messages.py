@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import mido
 
+from yehu_server.params.spec import Place
 from yehu_server.params.table import find
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
@@ -17,6 +18,7 @@ NRPN_FINE, NRPN, RPN_FINE, RPN = 98, 99, 100, 101
 ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
 NULL = (127, 127)
 BEND_RANGE = (0, 0)
+CHANNELS = 16  # of a port
 PERCUSSION = 9  # channel 10, counted from 0
 
 # Put back by "reset all controllers"; volume stays, as the recommended practice RP-015 asks.
@@ -32,9 +34,9 @@ class Channel:
     """What one MIDI channel remembers."""
 
     moved: dict[str, Moved] = field(default_factory=dict)  # by source
-    touch: dict[int, Moved] = field(default_factory=dict)  # poly pressure, by note
-    velocity: dict[int, Moved] = field(default_factory=dict)  # by note
-    struck_again: dict[int, int] = field(default_factory=dict)  # held notes, at which frame
+    touch: dict[float, Moved] = field(default_factory=dict)  # poly pressure, by note
+    velocity: dict[float, Moved] = field(default_factory=dict)  # by note
+    struck_again: dict[float, int] = field(default_factory=dict)  # held notes, at which frame
     bend_range: float | None = None  # semitones, once RPN 0 has set it
     sustain: bool = False
     let_go: set[Key] = field(default_factory=set)  # keys up, pedal down
@@ -62,22 +64,25 @@ class MidiPlayer:
         self._plays = channels if channels is not None else set(range(16)) - {PERCUSSION}
         self._channels: defaultdict[int, Channel] = defaultdict(Channel)
         self._heard: Key | None = None  # whose note sounds, or sounded last
-        self._unmoved: dict[str, float] = {}  # targets as they were before anything moved them
+        self._set: dict[str, Moved] = {}  # targets as they were before, or as `write` left them
         self._moves = 0
         self.notes_by_channel: Counter[int] = Counter()
 
-    def receive(self, message: mido.Message, *, frame: int | None = None) -> None:
-        """Act on a channel message, or on a system reset; others are ignored."""
+    def receive(self, message: mido.Message, *, frame: int | None = None, port: int = 0) -> None:
+        """Act on a channel message, or on a system reset; others are ignored.
+
+        Channels of different ports are different channels.
+        """
         if message.type == "reset":
             self._start_anew(frame)
             return
         if not hasattr(message, "channel") or message.channel not in self._plays:
             return
-        channel, kind = message.channel, message.type
+        channel, kind = CHANNELS * port + message.channel, message.type
         if kind == "note_on" and message.velocity > 0:
-            self._note_on(Key(channel, message.note), message.velocity / 127.0, frame)
+            self.note_on(Key(channel, message.note), message.velocity / 127.0, frame)
         elif kind in ("note_on", "note_off"):
-            self._note_off(Key(channel, message.note), frame)
+            self.note_off(Key(channel, message.note), frame)
         elif kind == "pitchwheel":
             bend = max(-1.0, message.pitch / 8191.0)
             self._move("bend", channel, 0.5 * (bend + 1.0), frame)
@@ -89,13 +94,28 @@ class MidiPlayer:
         elif kind == "control_change":
             self._control(channel, message.control, message.value, frame)
 
+    def write(self, address: str, value: float, *, frame: int | None = None) -> float:
+        """Set a parameter for all channels, until a controller moves it; see `Performer.write`."""
+        accepted = self._performer.write(address, value, frame=frame)
+        if find(address).place is Place.PLAYER:
+            self._set[address] = self._stamped(accepted)
+        return accepted
+
+    def let_go_of(self, port: int, *, frame: int | None = None) -> None:
+        """End the notes of a port that is gone, and forget what was moved on it."""
+        for channel in range(CHANNELS * port, CHANNELS * (port + 1)):
+            if channel in self._channels:
+                self._performer.all_notes_off(frame=frame, channel=channel)
+                del self._channels[channel]
+
     def _start_anew(self, frame: int | None) -> None:
         self._performer.all_notes_off(frame=frame)
         self._channels.clear()
-        for address, value in self._unmoved.items():
+        for address, (_, value) in self._set.items():
             self._performer.write(address, value, frame=frame)
 
-    def _note_on(self, key: Key, velocity: float, frame: int | None) -> None:
+    def note_on(self, key: Key, velocity: float, frame: int | None) -> None:
+        """Begin a note, struck with a velocity of 0 to 1."""
         state = self._channels[key.channel]
         if self._performer.holds(key) and key not in state.let_go and frame is not None:
             state.struck_again[key.note] = frame
@@ -109,7 +129,8 @@ class MidiPlayer:
             _restore(state.velocity, key.note, before)
             _restore(state.touch, key.note, touched)
 
-    def _note_off(self, key: Key, frame: int | None) -> None:
+    def note_off(self, key: Key, frame: int | None) -> None:
+        """End a note, unless the channel's pedal keeps it."""
         state = self._channels[key.channel]
         if frame is not None and state.struck_again.pop(key.note, None) == frame:
             return  # the end of the stroke before, which some files write after the new one
@@ -187,7 +208,7 @@ class MidiPlayer:
 
     def _remember(self, source: str) -> None:
         for bind in self._mapping.of(source):
-            self._unmoved.setdefault(bind.target, self._performer.value(bind.target))
+            self._set.setdefault(bind.target, (0, self._performer.value(bind.target)))
 
     def _follow(self, source: str, channel: int, frame: int | None) -> None:
         """Let the sounding note follow what its channel just did."""
@@ -203,14 +224,14 @@ class MidiPlayer:
         self._heard = key
         return self._asked(key.channel, key.note)
 
-    def _asked(self, channel: int, note: int) -> dict[str, float]:
+    def _asked(self, channel: int, note: float) -> dict[str, float]:
         """Values of all targets that were ever moved, for a note of this channel.
 
-        Of several sources of one target the one moved last counts; where this channel moved
-        none, the target is as it was before any channel did.
+        Of several sources of one target the one moved last counts, a direct write among them;
+        where this channel moved none, the target is as it was before any channel did.
         """
         state = self._channels[channel]
-        asked = {address: (0, value) for address, value in self._unmoved.items()}
+        asked = dict(self._set)
         for bind in self._mapping.binds:
             if bind.source == "poly-pressure":
                 moved = state.touch.get(note)
@@ -228,7 +249,7 @@ class MidiPlayer:
         return {address: value for address, (_, value) in asked.items()}
 
 
-def _restore(moved: dict[int, Moved], note: int, before: Moved | None) -> None:
+def _restore(moved: dict[float, Moved], note: float, before: Moved | None) -> None:
     if before is None:
         moved.pop(note, None)
     else:

@@ -34,12 +34,16 @@ class Sink(Protocol):
 
 @dataclass(frozen=True)
 class Key:
-    """What identifies a held note: where it came from and which key it is."""
+    """What identifies a held note: where it came from and which key it is.
+
+    `channel` is any number that tells sources apart; `note` may lie between the keys.
+    """
 
     channel: int
-    note: int
+    note: float
 
 
+SILENCED = ("/bow/speed", "/bow/side", "/finger/1/press")
 # A finger that is up may be put elsewhere at once; one that is down slides.
 BEND_RAMP_MS = find("/playing/bend").smooth_ms
 LANDING_MS = 5.0
@@ -81,16 +85,22 @@ class Performer:
         self._chance = random.Random(seed)  # noqa: S311 - for music, not secrets
         self._deviation = (0.0, 0.0, 0.0)  # of this note: speed, pressure, pitch; normal
         self._value = {p.address: p.default for p in TABLE if p.place is Place.PLAYER}
-        self._held: dict[Key, int] = {}  # in the order pressed; values are fitted notes
+        self._held: dict[Key, float] = {}  # in the order pressed; values are fitted notes
         self._sounding: Key | None = None
         self._fingering: Fingering | None = None
         self._direction = -1.0  # so that the first stroke is a down-bow, v_b > 0
         self._began: int | None = None  # the frame of the stroke of the bow
         self._taken: set[str] = set()
         self._kept: set[str] = set()
+        self._by_hand = False  # the bow is drawn by `draw`
         self.expression: Callable[[Key], Mapping[str, float]] = lambda _key: {}
         self.notes_played = 0
         self.notes_out_of_range = 0
+
+    @property
+    def pitch(self) -> float | None:
+        """The pitch (fractional MIDI note) that the finger aims at while a note sounds."""
+        return None if self._sounding is None else self._pitch
 
     @property
     def sounding(self) -> Key | None:
@@ -144,6 +154,7 @@ class Performer:
         """Give every parameter that was taken over back to the player."""
         self._taken.clear()
         self._kept.clear()
+        self._by_hand = False
 
     def keeps(self, address: str) -> bool:
         """Whether a parameter was written with ``hold``."""
@@ -170,6 +181,7 @@ class Performer:
             return False
         self.notes_played += 1
         self._taken.clear()
+        self._by_hand = False
         legato = self._sounding is not None and self._sounding != key
         at_once = legato and frame is not None and frame == self._began
         self._held.pop(key, None)
@@ -204,9 +216,47 @@ class Performer:
         self.all_notes_off(frame=frame, channel=channel)
         if self._sounding is None:
             self._fingering = None  # the hand comes off
-            for address in ("/bow/speed", "/bow/side", "/finger/1/press"):
+            self._by_hand = False
+            self._taken -= set(SILENCED)
+            for address in SILENCED:
                 self._move(address, 0.0, frame, LANDING_MS)
             self._sink.silence(frame=frame)
+
+    def slide(self, pitch: float, *, frame: int | None = None) -> float:
+        """Move the finger to a pitch (fractional MIDI note); return the one it takes.
+
+        The sounding note goes there; without one, the finger waits there for the bow.
+        """
+        pitch = RangePolicy.CLAMP.fit(pitch) or pitch
+        if self._sounding is not None:
+            self._held[self._sounding] = pitch
+            self._follow_bend(frame)
+            return pitch
+        fingering = choose(pitch, self._fingering, self._intonation)
+        self._place(fingering, frame, BEND_RAMP_MS)
+        if self._by_hand:
+            self._sink.write("/bow/side", self._side, frame=frame, ramp_ms=CROSSING_MS)
+        return pitch
+
+    def draw(self, speed: float, force: float, *, frame: int | None = None) -> tuple[float, float]:
+        """Draw the bow by hand: m/s and newtons, on the string that the finger or note chose.
+
+        Takes the bow over as direct writes do; no speed and no force lifts it.
+        Returns speed and force accepted.
+        """
+        speed = self.write("/bow/speed", speed, frame=frame)
+        force = self.write("/bow/force", force, frame=frame)
+        self._by_hand = speed != 0.0 or force != 0.0
+        side = (self._side or 1.0) if self._by_hand else 0.0
+        self.write("/bow/side", side, frame=frame)
+        return speed, force
+
+    def lift(self, *, frame: int | None = None) -> None:
+        """Lift the bow where it is drawn by hand, and take it back."""
+        if self._by_hand:
+            for address in ("/bow/speed", "/bow/side"):
+                self._sink.write(address, 0.0, frame=frame)
+        self.release()
 
     def _start(self, key: Key, frame: int | None, *, legato: bool, at_once: bool = False) -> None:
         was = self._fingering

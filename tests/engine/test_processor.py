@@ -1,0 +1,280 @@
+"""The processor's clocks, and denormal numbers, which the audio thread counts as zero."""
+
+from __future__ import annotations
+
+import platform
+import threading
+import time
+
+import llvmlite.binding as llvm
+import numba
+import numpy as np
+import pytest
+from llvmlite import ir
+
+from yehu_server.engine import processor
+from yehu_server.engine.instrument import Instrument
+from yehu_server.physics.layout import GHOST
+
+RATE = 22050
+SMALLEST = np.finfo(np.float64).smallest_normal
+MOVING = ["u", "q", "zeta", "z", "s_1", "s_2", "history"]  # what a ringing instrument holds
+
+knows_how = pytest.mark.skipif(
+    platform.machine() not in processor.X86 | processor.ARM,
+    reason="denormals are left alone on this processor",
+)
+
+
+@numba.njit
+def flush():
+    return processor.flush_denormals()
+
+
+@numba.njit
+def restore(mode):
+    processor.restore_denormals(mode)
+
+
+@numba.njit
+def monotonic_ns():
+    return processor.monotonic_ns()
+
+
+@numba.njit
+def thread_cpu_ns():
+    return processor.thread_cpu_ns()
+
+
+def keeps_denormals() -> tuple[bool, bool]:
+    """Whether this thread keeps a result that is denormal, and an operand."""
+    small, large = np.array([SMALLEST, 5e-324]), np.array([0.125, 2.0**60])
+    product = small * large
+    return bool(product.view(np.int64)[0]), bool(product.view(np.int64)[1])
+
+
+def control() -> int:
+    """How this thread calculates, without the flags of what has happened."""
+    mode = flush()
+    restore(mode)
+    return mode & ~0x3F if platform.machine() in processor.X86 else mode
+
+
+# ---------------------------------------------------------------- clocks
+
+
+def test_the_clock_is_pythons_own():
+    monotonic_ns()
+    for _ in range(100):
+        before, now, after = time.monotonic_ns(), monotonic_ns(), time.monotonic_ns()
+        assert before <= now <= after
+
+
+def test_the_threads_clock_counts_what_it_computes_and_not_what_it_waits():
+    thread_cpu_ns()
+    before, now, after = time.thread_time_ns(), thread_cpu_ns(), time.thread_time_ns()
+    assert before <= now <= after
+    time.sleep(0.05)
+    assert thread_cpu_ns() - now < 40e6
+
+
+# ---------------------------------------------------------------- the mode of a thread
+
+
+@knows_how
+def test_denormals_count_as_zero_from_flush_to_restore():
+    assert keeps_denormals() == (True, True)
+    mode = flush()
+    try:
+        flushed = keeps_denormals()
+    finally:
+        restore(mode)
+    assert flushed == (False, False)
+    assert keeps_denormals() == (True, True)
+
+
+@knows_how
+def test_flush_and_restore_may_be_nested():
+    outer = flush()
+    try:
+        restore(flush())
+        assert keeps_denormals() == (False, False)
+    finally:
+        restore(outer)
+    assert keeps_denormals() == (True, True)
+
+
+@knows_how
+def test_flush_is_for_one_thread():
+    seen, go = [], threading.Event()
+    other = threading.Thread(target=lambda: (go.wait(), seen.append(keeps_denormals())))
+    other.start()
+    mode = flush()
+    try:
+        go.set()
+        other.join()
+        seen.append(keeps_denormals())
+    finally:
+        restore(mode)
+    assert seen == [(True, True), (False, False)]
+
+
+@knows_how
+@pytest.mark.parametrize("is_flushed", [False, True])
+def test_a_block_leaves_the_threads_mode_as_it_was(is_flushed):
+    instrument, out = Instrument(RATE), np.zeros(256, np.float32)
+    instrument.write("/bow/side", 1.0)
+    instrument.write("/bow/speed", 0.2)
+    instrument.process(out)
+    mode = flush()
+    try:
+        if not is_flushed:
+            restore(mode)
+        before = control()
+        for _ in range(10):
+            instrument.process(out)
+        instrument.silence()
+        instrument.process(out)
+        after = control()
+        kept = keeps_denormals()
+    finally:
+        restore(mode)
+    assert after == before
+    assert kept == (not is_flushed, not is_flushed)
+
+
+# ---------------------------------------------------------------- what it is for
+
+
+def denormals(instrument: Instrument) -> int:
+    """How many numbers of the state are denormal."""
+    state = instrument._rig["state"][0]
+    return sum(
+        int(((part != 0.0) & (np.abs(part) < SMALLEST)).sum())
+        for part in (np.asarray(state[name]) for name in MOVING)
+    )
+
+
+def run(instrument: Instrument, frames: int) -> np.ndarray:
+    out = np.zeros(frames, np.float32)
+    instrument.process(out)
+    return out
+
+
+def ringing() -> Instrument:
+    """An instrument that has been bowed and is left to ring."""
+    instrument = Instrument(RATE)
+    instrument.write("/bow/side", 1.0)
+    instrument.write("/bow/speed", 0.2)
+    assert np.abs(run(instrument, RATE // 4)).max() > 0.001
+    instrument.write("/bow/side", 0.0, ramp_ms=0.0)
+    instrument.write("/bow/speed", 0.0, ramp_ms=0.0)
+    run(instrument, RATE // 10)
+    return instrument
+
+
+def scale(instrument: Instrument, factor: float) -> None:
+    for name in MOVING:
+        instrument._rig["state"][name] *= factor
+
+
+@knows_how
+def test_a_string_of_denormals_is_at_rest_after_one_turn_of_its_levels():
+    instrument = Instrument(RATE)
+    model, state = instrument._rig["model"][0], instrument._rig["state"]
+    for i in range(2):
+        state["u"][0, :, i, GHOST + 1 : GHOST + model["N"][i]] = 0.5 * SMALLEST
+    state["q"][0, :, : model["modes"]] = -0.25 * SMALLEST
+    assert denormals(instrument) > 50
+    run(instrument, 4)
+    for name in MOVING:
+        assert not np.asarray(state[name]).any()
+
+
+@knows_how
+def test_a_string_that_dies_away_never_holds_a_denormal():
+    instrument = ringing()
+    scale(instrument, 1e-295)  # as after minutes
+    assert denormals(instrument) == 0
+    sizes = []
+    for _ in range(60):
+        run(instrument, RATE // 10)
+        assert denormals(instrument) == 0
+        sizes.append(float(np.abs(instrument._rig["state"]["u"]).max()))
+    assert sizes[0] > 1e-300  # it rang at first
+    assert sizes[-1] < 100.0 * SMALLEST  # and came to where denormals would be
+
+
+@knows_how
+def test_a_string_too_soft_to_hear_takes_no_longer_than_one_that_sounds():
+    def cost(factor: float) -> float:
+        instrument = ringing()
+        scale(instrument, factor)
+        out, times = np.zeros(RATE // 20, np.float32), []
+        for _ in range(10):
+            start = time.thread_time_ns()
+            instrument.process(out)
+            times.append(time.thread_time_ns() - start)
+        return min(times)
+
+    assert cost(1e-305) < 3.0 * cost(1.0)
+
+
+# ---------------------------------------------------------------- other processors
+
+
+def assembly(monkeypatch: pytest.MonkeyPatch, machine: str, triple: str) -> str:
+    """A function of flush and restore as a machine's assembly."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    try:
+        target = llvm.Target.from_triple(triple)
+    except RuntimeError as error:
+        pytest.skip(f"this LLVM does not compile for {triple}: {error}")
+    monkeypatch.setattr(platform, "machine", lambda: machine)
+    word = ir.IntType(64)
+    module = ir.Module()
+    for name, returns, arguments in [("flush", word, []), ("restore", ir.VoidType(), [word])]:
+        function = ir.Function(module, ir.FunctionType(returns, arguments), name)
+        builder = ir.IRBuilder(function.append_basic_block())
+        intrinsic = getattr(processor, f"{name}_denormals")
+        _, generate = intrinsic._defn(None, *arguments)
+        result = generate(None, builder, None, function.args)
+        if returns == word:
+            builder.ret(result)
+        else:
+            builder.ret_void()
+    code = llvm.parse_assembly(str(module))
+    code.triple = triple
+    code.verify()
+    return target.create_target_machine(opt=2).emit_assembly(code).lower()
+
+
+@pytest.mark.parametrize(
+    ("machine", "triple"),
+    [("aarch64", "aarch64-unknown-linux-gnu"), ("arm64", "arm64-apple-macosx11.0.0")],
+)
+def test_on_arm_they_set_the_flush_bit_of_fpcr_and_write_it_back(monkeypatch, machine, triple):
+    code = assembly(monkeypatch, machine, triple)
+    assert code.count("mrs") == 1
+    assert code.count("msr\tfpcr") == 2
+    assert f"#0x{1 << 24:x}" in code or f"#{1 << 24}" in code
+    assert "mxcsr" not in code
+
+
+@pytest.mark.parametrize(
+    ("machine", "triple"),
+    [("x86_64", "x86_64-unknown-linux-gnu"), ("AMD64", "x86_64-pc-windows-msvc")],
+)
+def test_on_x86_they_set_two_bits_of_mxcsr_and_write_it_back(monkeypatch, machine, triple):
+    code = assembly(monkeypatch, machine, triple)
+    assert code.count("stmxcsr") == 1
+    assert code.count("ldmxcsr") == 2
+    assert f"${0x8040}" in code  # FTZ is bit 15, DAZ bit 6
+    assert "fpcr" not in code
+
+
+def test_on_other_processors_they_do_nothing(monkeypatch):
+    code = assembly(monkeypatch, "riscv64", "riscv64-unknown-linux-gnu")
+    for word in ("mxcsr", "fpcr", "fcsr", "call"):
+        assert word not in code

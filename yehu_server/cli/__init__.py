@@ -1,0 +1,57 @@
+"""The command line: words to calls. Each command has a module of its name."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from yehu_server import __version__
+from yehu_server.cli import devices, render, replay, serve, simulate
+from yehu_server.cli.arguments import Parser
+from yehu_server.cli.config import expand
+from yehu_server.errors import YehuError
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command; return its exit code: 0, 2 for bad input, 130 when interrupted."""
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), _interrupt)
+    try:
+        parser = _parser()
+        words = expand(sys.argv[1:] if argv is None else argv, parser)
+        arguments = parser.parse_args(words)
+        code: int = arguments.run(arguments)
+    except YehuError as error:
+        line = str(error).replace("\n", "\\n")
+        print(f"yehu-server: {line}", file=sys.stderr)
+        return 2
+    except MemoryError:
+        print("yehu-server: not enough memory", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("yehu-server: interrupted, nothing written", file=sys.stderr)
+        return 130
+    return code
+
+
+def _interrupt(*_: object) -> NoReturn:
+    raise KeyboardInterrupt
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="yehu-server",
+        description="A virtual yehu, the Chinese two-stringed fiddle: its physics, simulated.",
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"yehu-server {__version__}")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for command in (serve, devices, render, replay, simulate):
+        command.add_to(commands)
+    return parser

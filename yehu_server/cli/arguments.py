@@ -1,0 +1,116 @@
+"""What commands share: reading arguments, telling of progress."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NoReturn
+
+
+class Parser(argparse.ArgumentParser):
+    """One clear line for a wrong call, without the usage around it."""
+
+    _source = ""  # where the words come from, if not from the command line
+
+    @classmethod
+    @contextlib.contextmanager
+    def reading(cls, source: Path) -> Iterator[None]:
+        """Name a file in errors."""
+        Parser._source = f"{source}: "
+        try:
+            yield
+        finally:
+            Parser._source = ""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong and leave with code 2."""
+        line = message.replace("\n", "\\n")
+        self.exit(2, f"{self.prog}: {Parser._source}{line} (see {self.prog} --help)\n")
+
+
+def add_reporting(parser: argparse.ArgumentParser) -> None:
+    """Add --json and --quiet."""
+    parser.add_argument("--json", action="store_true", help="print one JSON object when done")
+    parser.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
+
+
+@contextlib.contextmanager
+def compiling(arguments: argparse.Namespace) -> Iterator[None]:
+    """Say why the first use takes a while."""
+    from yehu_server.jit import IS_CACHED, cache_folder
+
+    if arguments.quiet:
+        pass
+    elif not IS_CACHED:
+        print(f"yehu-server: compiling; {cache_folder()} is not writable", file=sys.stderr)
+    elif not any(cache_folder().rglob("*.nbi")):
+        print("yehu-server: compiling for this machine, once ...", file=sys.stderr)
+    yield
+
+
+@contextlib.contextmanager
+def progress_bar(arguments: argparse.Namespace, what: str) -> Iterator[Any]:
+    """A progress bar on a terminal; silence elsewhere."""
+    if arguments.quiet or not sys.stderr.isatty():
+        yield lambda _done, _total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn(what),
+        BarColumn(),
+        TextColumn("{task.completed:.1f} of {task.total:.1f} s"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=0.0)
+        yield lambda done, total: bar.update(task, completed=min(done, total), total=total)
+
+
+def whole(text: str) -> int:
+    """A whole number."""
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
+
+
+def positive(text: str) -> int:
+    """A whole number from 1."""
+    value = whole(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{value} is not 1 or more")
+    return value
+
+
+def channel(text: str) -> int:
+    """A MIDI channel as people count, to 0-15."""
+    value = whole(text)
+    if not 1 <= value <= 16:
+        raise argparse.ArgumentTypeError(f"{value} is not a MIDI channel, 1 to 16")
+    return value - 1
+
+
+def within(text: str, lo: float, hi: float, unit: str) -> float:
+    """A number between bounds."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not lo <= value <= hi:  # also refuses NaN
+        raise argparse.ArgumentTypeError(f"{text} is not within {lo:g} to {hi:g} {unit}")
+    return value
+
+
+def seconds(text: str) -> float:
+    """Seconds, 0 to 600."""
+    return within(text, 0.0, 600.0, "s")
+
+
+def decibels(text: str) -> float:
+    """Decibels, -60 to 24."""
+    return within(text, -60.0, 24.0, "dB")

@@ -1,0 +1,63 @@
+"""Options from a TOML file: any option of a command, by its name without the dashes."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from yehu_server.cli.arguments import Parser
+from yehu_server.errors import ParameterError
+from yehu_server.files import read_text
+
+OPTION = "--config"
+
+
+def as_words(path: Path) -> list[str]:
+    """The file's options as they would be on the command line. Errors: ParameterError."""
+    try:
+        data = tomllib.loads(read_text(path))
+    except OSError as error:
+        raise ParameterError(f"{path}: {error.strerror}") from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        raise ParameterError(f"{path}: not a TOML file ({error})") from error
+    words: list[str] = []
+    for name, value in data.items():
+        option = f"--{name.replace('_', '-')}"
+        if option == OPTION:
+            raise ParameterError(f"{path}: a config file cannot name another")
+        if value is True:
+            words.append(option)
+        elif isinstance(value, dict):  # such as [set]
+            words += [f"{option}={key}={_text(path, name, entry)}" for key, entry in value.items()]
+        elif value is not False:
+            values = value if isinstance(value, list) else [value]
+            words += [f"{option}={_text(path, name, entry)}" for entry in values]
+    return words
+
+
+def _text(path: Path, name: str, value: Any) -> str:
+    if isinstance(value, str | int | float) and not isinstance(value, bool):
+        return str(value)
+    raise ParameterError(f"{path}: {name}: expected a word or a number, got {value!r}")
+
+
+def expand(argv: Sequence[str], parser: Parser) -> list[str]:
+    """Put the options of a ``--config`` file before the command line's own, which so win.
+
+    Errors: as of the parser, naming the file.
+    """
+    words = list(argv)
+    for place, word in enumerate(words):
+        if word == OPTION and place + 1 < len(words):
+            path = Path(words[place + 1])
+        elif word.startswith(f"{OPTION}="):
+            path = Path(word.removeprefix(f"{OPTION}="))
+        else:
+            continue
+        from_file = [words[0], *as_words(path)]
+        with Parser.reading(path):
+            parser.parse_args(from_file)
+        return [*from_file, *words[1:]]
+    return words

@@ -1,0 +1,56 @@
+"""``yehu-server devices``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+EXAMPLES = """\
+examples:
+  yehu-server devices
+  yehu-server serve --audio-device "system, JACK" --midi-in keystep
+
+Any words that only one device has will do as its name.
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "devices",
+        help="the audio outputs and MIDI inputs there are",
+        description="List the audio outputs and MIDI inputs that serve can use.",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    from yehu_server.audio.devices import load_portaudio, outputs, quiet
+    from yehu_server.control.midi_process import list_inputs
+    from yehu_server.errors import DeviceError
+
+    audio, audio_problem = [], ""
+    with quiet():
+        try:
+            audio = outputs(load_portaudio())
+        except DeviceError as error:
+            audio_problem = str(error)
+        api, midi, midi_problem = list_inputs()
+    if arguments.json:
+        fields = ("full_name", "name", "host_api", "channels", "rate", "latency_ms", "is_default")
+        rows = [{field: getattr(device, field) for field in fields} for device in audio]
+        found = {"audio": rows, "audio_problem": audio_problem}
+        print(json.dumps({**found, "midi": midi, "midi_api": api, "midi_problem": midi_problem}))
+    else:
+        from yehu_server.report import devices_report
+
+        devices_report(audio, audio_problem, api, midi, midi_problem)
+    return 0

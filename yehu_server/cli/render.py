@@ -1,0 +1,167 @@
+"""``yehu-server render``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from yehu_server.cli.arguments import (
+    add_reporting,
+    channel,
+    compiling,
+    decibels,
+    progress_bar,
+    seconds,
+    whole,
+)
+
+EXAMPLES = """\
+examples:
+  yehu-server render tune.mid -o tune.wav
+  yehu-server render tune.mid -o tune.flac --rate 48000 --normalize
+  yehu-server render suite-1.mid suite-2.mid -o suite.wav --channel 1
+  yehu-server render tune.mid -o close.wav --set /bow/position=0.08 --gain-db 6
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "render",
+        help="MIDI files into a sound file",
+        description="Play MIDI files on the instrument, one after another, into a sound file.",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("midi", nargs="+", type=Path, metavar="IN.mid", help="what to play")
+    parser.add_argument(
+        "-o", "--output", required=True, type=Path, metavar="OUT", help="the sound file to write"
+    )
+    parser.add_argument(
+        "--rate",
+        type=whole,
+        default=44100,
+        metavar="HZ",
+        help="sample rate, 22050 to 192000 (default: 44100)",
+    )
+    parser.add_argument("--format", choices=("wav", "flac"), help="default: by the ending of OUT")
+    parser.add_argument(
+        "--subtype",
+        choices=("16", "24", "float"),
+        default="24",
+        help="how samples are stored (default: 24 bits)",
+    )
+    parser.add_argument(
+        "--channel",
+        type=channel,
+        action="append",
+        metavar="N",
+        help="play only this MIDI channel, 1 to 16; may be repeated (default: all but 10)",
+    )
+    parser.add_argument(
+        "--tail",
+        type=seconds,
+        metavar="SECONDS",
+        help="how long to go on after the end of the score, up to 600 "
+        "(default: until 80 dB under full scale, at most 5 s)",
+    )
+    parser.add_argument(
+        "--gain-db",
+        type=decibels,
+        default=0.0,
+        metavar="DB",
+        help="gain before the limiter, -60 to 24 (default: 0)",
+    )
+    parser.add_argument(
+        "--normalize", action="store_true", help="scale the result to a peak of -1 dBFS"
+    )
+    parser.add_argument(
+        "--mapping",
+        default="keyboard",
+        metavar="FILE",
+        help="what controllers do: a shipped mapping's name or a file (default: keyboard)",
+    )
+    parser.add_argument(
+        "--instrument",
+        type=Path,
+        metavar="FILE",
+        help="a TOML or JSON file of physical quantities to change",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="ADDRESS=VALUE",
+        help="hold a parameter at a value, such as /bow/position=0.1; may be repeated",
+    )
+    parser.add_argument(
+        "--range",
+        choices=("transpose", "clamp", "skip"),
+        default="transpose",
+        help="what becomes of notes outside F4 to F6 (default: transpose, by octaves)",
+    )
+    parser.add_argument(
+        "--seed",
+        type=whole,
+        default=0,
+        metavar="N",
+        help="of the chance in /playing/variation (default: 0)",
+    )
+    add_reporting(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    from yehu_server.audio.file import format_of
+    from yehu_server.engine.native import warm_up
+    from yehu_server.files import check_target
+    from yehu_server.params.table import assignment
+    from yehu_server.physics.grid import check_rate
+    from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.playing.fingering import RangePolicy
+    from yehu_server.playing.mapping import load
+    from yehu_server.render import Options, render
+    from yehu_server.score.smf import concatenate, read_score
+
+    check_rate(arguments.rate)
+    check_target(arguments.output, arguments.midi)
+    channels = arguments.channel
+    options = Options(
+        rate=arguments.rate,
+        format_name=arguments.format or format_of(arguments.output),
+        subtype=arguments.subtype,
+        channels=frozenset(channels) if channels is not None else None,
+        tail_s=arguments.tail,
+        gain_db=arguments.gain_db,
+        normalize=arguments.normalize,
+        mapping=load(arguments.mapping),
+        settings=tuple(assignment(text) for text in arguments.set),
+        seed=arguments.seed,
+        policy=RangePolicy(arguments.range),
+        quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
+    )
+    score = concatenate([read_score(path) for path in arguments.midi])
+    for warning in score.warnings:
+        print(f"yehu-server: {warning}", file=sys.stderr)
+    with compiling(arguments):
+        warm_up()
+    with progress_bar(arguments, "rendering") as progress:
+        summary = render(score, arguments.output, options, progress)
+    if arguments.json:
+        fields = dict(vars(summary))
+        by_channel = fields.pop("notes_by_channel")
+        fields["policy"] = summary.policy.value
+        fields["channels"] = {str(channel + 1): notes for channel, notes in by_channel.items()}
+        print(json.dumps(fields))
+    elif not arguments.quiet:
+        from yehu_server.report import render_report
+
+        print(render_report(arguments.output, summary))
+    return 0

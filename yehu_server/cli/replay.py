@@ -1,0 +1,78 @@
+"""``yehu-server replay``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from yehu_server.cli.arguments import add_reporting, compiling, progress_bar
+
+EXAMPLES = """\
+examples:
+  yehu-server serve --capture session.jsonl --record session.wav
+  yehu-server replay session.jsonl -o again.wav
+
+The capture file is described in docs/capture.md.
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "replay",
+        help="a captured session into a sound file",
+        description="Render what serve --capture wrote: the same samples, on the same build.",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("capture", type=Path, metavar="CAPTURE", help="what serve --capture wrote")
+    parser.add_argument(
+        "-o", "--output", required=True, type=Path, metavar="OUT", help="the sound file to write"
+    )
+    parser.add_argument("--format", choices=("wav", "flac"), help="default: by the ending of OUT")
+    parser.add_argument(
+        "--subtype",
+        choices=("16", "24", "float"),
+        help="how samples are stored (default: float in WAV, as recorded; 24 in FLAC)",
+    )
+    add_reporting(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    from yehu_server.audio.file import format_of
+    from yehu_server.audio.recorder import SUBTYPES
+    from yehu_server.engine.native import warm_up
+    from yehu_server.files import check_target
+    from yehu_server.replay import replay
+    from yehu_server.score.capture import read_capture
+
+    check_target(arguments.output, [arguments.capture])
+    format_name = arguments.format or format_of(arguments.output)
+    capture = read_capture(arguments.capture)
+    for warning in capture.warnings:
+        print(f"yehu-server: {arguments.capture}: {warning}", file=sys.stderr)
+    with compiling(arguments):
+        warm_up()
+    with progress_bar(arguments, "replaying") as progress:
+        result = replay(
+            capture,
+            arguments.output,
+            format_name=format_name,
+            subtype=arguments.subtype or SUBTYPES[format_name],
+            progress=progress,
+        )
+    if arguments.json:
+        print(json.dumps(vars(result)))
+    elif not arguments.quiet:
+        from yehu_server.report import replay_report
+
+        print(replay_report(arguments.output, result))
+    return 0

@@ -1,0 +1,347 @@
+"""``yehu-server serve``."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import logging
+import signal
+import socket
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from yehu_server.cli.arguments import compiling, positive, whole, within
+
+EXAMPLES = """\
+examples:
+  yehu-server serve
+  yehu-server serve --midi-in keystep --audio-device "hifi, ALSA" --latency 0.01
+  yehu-server serve --osc 192.168.1.5:9000 --osc-allow 192.168.1.0/24
+  yehu-server serve --record take.wav --capture take.jsonl
+
+The OSC messages are described in docs/osc.md. Ctrl-C ends it.
+"""
+
+LEVELS = ("debug", "info", "warning", "error")
+REFRESHES_PER_SECOND = 10
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "serve",
+        help="play live, by MIDI and OSC",
+        description="Play the instrument live, by MIDI and OSC.",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    _add_audio(parser.add_argument_group("audio"))
+    _add_midi(parser.add_argument_group("MIDI"))
+    _add_osc(parser.add_argument_group("OSC"))
+    _add_playing(parser.add_argument_group("playing"))
+    _add_running(parser.add_argument_group("running"))
+
+
+def _add_audio(group: Any) -> None:
+    group.add_argument(
+        "--audio-device",
+        metavar="NAME",
+        help="words of the output's name and host API (see yehu-server devices), or null for a "
+        "silent clock (default: the system's output)",
+    )
+    group.add_argument(
+        "--rate", type=_rate, metavar="HZ", help="sample rate (default: the device's)"
+    )
+    group.add_argument(
+        "--blocksize", type=_blocksize, default=128, metavar="FRAMES", help="default: 128"
+    )
+    group.add_argument(
+        "--latency",
+        type=_latency,
+        default="low",
+        metavar="low|high|SECONDS",
+        help="how much the device may buffer (default: low)",
+    )
+    group.add_argument(
+        "--channels",
+        type=positive,
+        default=2,
+        metavar="N",
+        help="all get the same signal (default: 2, or what the device has)",
+    )
+
+
+def _add_midi(group: Any) -> None:
+    group.add_argument(
+        "--midi-in",
+        action="append",
+        default=[],
+        metavar="PATTERN",
+        help="open inputs with these words in their name; may be repeated (default: all but "
+        "through ports)",
+    )
+    group.add_argument("--virtual-midi", metavar="NAME", help="also be a MIDI input of this name")
+    group.add_argument(
+        "--midi-api",
+        choices=("alsa", "jack", "core", "windows", "none"),
+        help="the MIDI system (default: the first there is)",
+    )
+
+
+def _add_osc(group: Any) -> None:
+    group.add_argument(
+        "--osc",
+        default="127.0.0.1:9000",
+        metavar="HOST:PORT",
+        help="where to listen, UDP and TCP (default: 127.0.0.1:9000; this machine only)",
+    )
+    group.add_argument(
+        "--osc-allow",
+        action="append",
+        default=[],
+        metavar="CIDR",
+        help="hear only senders of this network, such as 192.168.1.0/24; may be repeated",
+    )
+
+
+def _add_playing(group: Any) -> None:
+    group.add_argument(
+        "--mapping",
+        default="keyboard",
+        metavar="FILE",
+        help="what controllers do: a shipped mapping's name or a file (default: keyboard)",
+    )
+    group.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="ADDRESS=VALUE",
+        help="hold a parameter at a value, such as /bow/position=0.1; may be repeated",
+    )
+    group.add_argument(
+        "--range",
+        choices=("transpose", "clamp", "skip"),
+        default="transpose",
+        help="what becomes of notes outside F4 to F6 (default: transpose, by octaves)",
+    )
+    group.add_argument(
+        "--seed",
+        type=whole,
+        default=0,
+        metavar="N",
+        help="of the chance in /playing/variation (default: 0)",
+    )
+    group.add_argument(
+        "--jitter-buffer",
+        type=_jitter,
+        metavar="MS",
+        help="delay of what comes in, so that it keeps its rhythm (default: one block)",
+    )
+
+
+def _add_running(group: Any) -> None:
+    group.add_argument(
+        "--record", type=Path, metavar="OUT", help="record everything to a WAV or FLAC file"
+    )
+    group.add_argument(
+        "--capture", type=Path, metavar="FILE", help="write every event, for yehu-server replay"
+    )
+    group.add_argument(
+        "--recordings",
+        type=Path,
+        metavar="FOLDER",
+        help="where /yehu/record/start writes (default: yehu-server in your music folder)",
+    )
+    group.add_argument("--duration", type=_duration, metavar="SECONDS", help="end by itself")
+    group.add_argument(
+        "--config",
+        type=Path,
+        metavar="FILE",
+        help="a TOML file of any of these options, such as rate = 48000; the command line wins",
+    )
+    group.add_argument("--log-level", choices=LEVELS, default="info", help="default: info")
+    group.add_argument("--json-log", action="store_true", help="log lines of JSON")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    ended = threading.Event()
+    code = 0
+
+    def end(number: int, _frame: Any) -> None:
+        if ended.is_set() and number == signal.SIGINT:
+            raise KeyboardInterrupt  # the second Ctrl-C does not wait
+        ended.set()
+
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), end)
+    _set_up_log(arguments)
+    with compiling(arguments):
+        _serve(arguments, ended)
+    return code
+
+
+def _serve(arguments: argparse.Namespace, ended: threading.Event) -> None:
+    from yehu_server.report import connect_lines
+    from yehu_server.server import Server
+
+    say = logging.getLogger("yehu_server").info
+    server = Server(_options(arguments), say)
+    if server.output.state.problem and arguments.audio_device != "null":
+        say(f"{server.output.state.problem}: playing on a silent clock")
+    server.start()
+    try:
+        for line in connect_lines(server.osc.host, server.osc.port, lan_address()):
+            say(line)
+        buffer_kb = server.osc.traffic.buffer_bytes // 1000
+        say(f"the system grants OSC a buffer of {buffer_kb} kB; Ctrl-C ends")
+        with _status_line(server):
+            _wait(ended, arguments.duration)
+    finally:
+        server.stop()
+
+
+def _wait(ended: threading.Event, duration_s: float | None) -> None:
+    deadline = None if duration_s is None else time.monotonic() + duration_s
+    while deadline is None or time.monotonic() < deadline:
+        left = 0.5 if deadline is None else min(0.5, max(0.0, deadline - time.monotonic()))
+        if ended.wait(left):
+            return
+
+
+def _options(arguments: argparse.Namespace) -> Any:
+    from yehu_server.audio.output import OutputOptions
+    from yehu_server.control.ports import MidiOptions
+    from yehu_server.control.sockets import Allowed, parse_address
+    from yehu_server.params.table import assignment
+    from yehu_server.physics.grid import check_rate
+    from yehu_server.playing.fingering import RangePolicy
+    from yehu_server.playing.mapping import load
+    from yehu_server.server import ServeOptions
+
+    if arguments.rate is not None:
+        check_rate(arguments.rate)
+    options = ServeOptions(
+        output=OutputOptions(
+            device=arguments.audio_device,
+            rate=arguments.rate,
+            blocksize=arguments.blocksize,
+            latency=arguments.latency,
+            channels=arguments.channels,
+        ),
+        midi=MidiOptions(arguments.midi_in, arguments.virtual_midi, arguments.midi_api)
+        if arguments.midi_api != "none"
+        else None,
+        osc=parse_address(arguments.osc, "127.0.0.1", 9000),
+        allowed=Allowed(arguments.osc_allow),
+        mapping=load(arguments.mapping),
+        settings=tuple(assignment(text) for text in arguments.set),
+        seed=arguments.seed,
+        policy=RangePolicy(arguments.range),
+        jitter_ms=arguments.jitter_buffer,
+        record=arguments.record,
+        capture=arguments.capture,
+    )
+    if arguments.recordings is not None:
+        options.recordings = arguments.recordings
+    return options
+
+
+def lan_address() -> str:
+    """The address of this machine on its network; nothing is sent to find it."""
+    with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.connect(("192.0.2.1", 9))  # a network that is for documentation only
+        return str(probe.getsockname()[0])
+    return "0.0.0.0"  # noqa: S104 - all there is to say without a network
+
+
+# ---------------------------------------------------------------- on the terminal
+
+
+class _Handler(logging.Handler):
+    """Writes lines to stderr as it is now: a status line may have taken its place."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        with contextlib.suppress(OSError, ValueError):
+            sys.stderr.write(self.format(record) + "\n")
+            sys.stderr.flush()
+
+
+class _JsonFormatter(logging.Formatter):
+    def format(self, record: logging.LogRecord) -> str:
+        fields = {
+            "time": self.formatTime(record, "%Y-%m-%dT%H:%M:%S%z"),
+            "level": record.levelname.lower(),
+            "logger": record.name,
+            "message": record.getMessage(),
+        }
+        if record.exc_info:
+            fields["exception"] = self.formatException(record.exc_info)
+        return json.dumps(fields)
+
+
+def _set_up_log(arguments: argparse.Namespace) -> None:
+    handler = _Handler()
+    plain = logging.Formatter("yehu-server: %(message)s")
+    handler.setFormatter(_JsonFormatter() if arguments.json_log else plain)
+    logging.basicConfig(handlers=[handler], level=arguments.log_level.upper(), force=True)
+    arguments.quiet = arguments.json_log or arguments.log_level in ("warning", "error")
+
+
+@contextlib.contextmanager
+def _status_line(server: Any) -> Iterator[None]:
+    """A line that shows how playing goes, on a terminal."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+    from rich.live import Live
+    from rich.text import Text
+
+    from yehu_server.report import status_line
+
+    with Live(
+        get_renderable=lambda: Text(
+            status_line(server.status()), no_wrap=True, overflow="ellipsis"
+        ),
+        refresh_per_second=REFRESHES_PER_SECOND,
+        console=Console(stderr=True),
+        transient=True,
+    ):
+        yield
+
+
+# ---------------------------------------------------------------- reading arguments
+
+
+def _rate(text: str) -> float:
+    return within(text, 22050, 192000, "Hz")
+
+
+def _blocksize(text: str) -> int:
+    frames = whole(text)
+    if not 1 <= frames <= 8192:
+        raise argparse.ArgumentTypeError(f"{frames} is not within 1 to 8192 frames")
+    return frames
+
+
+def _latency(text: str) -> str | float:
+    return text if text in ("low", "high") else within(text, 0.0, 5.0, "s, low or high")
+
+
+def _jitter(text: str) -> float:
+    return within(text, 0.0, 1000.0, "ms")
+
+
+def _duration(text: str) -> float:
+    return within(text, 0.0, 1e9, "s")

@@ -1,0 +1,75 @@
+"""``yehu-server simulate``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from yehu_server.cli.arguments import add_reporting, compiling, positive, progress_bar
+
+EXAMPLES = """\
+examples:
+  yehu-server simulate gesture.json -o run.npz --energy
+  yehu-server simulate gesture.json -o run.npz --strings 100
+
+The gesture file is described in docs/simulate.md.
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "simulate",
+        help="a gesture in physical units into arrays",
+        description="Run the physical model through a gesture file and keep every signal.",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("gesture", type=Path, metavar="GESTURE.json", help="what bow and finger do")
+    parser.add_argument(
+        "-o", "--output", required=True, type=Path, metavar="OUT.npz", help="the arrays to write"
+    )
+    parser.add_argument("--energy", action="store_true", help="keep the energy ledger too")
+    parser.add_argument(
+        "--strings",
+        type=positive,
+        default=0,
+        metavar="EVERY",
+        help="keep the strings' shapes every so many samples",
+    )
+    add_reporting(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    import time
+
+    from yehu_server.files import check_target
+    from yehu_server.score.gesture import read_gesture
+    from yehu_server.simulate import simulate
+
+    gesture = read_gesture(arguments.gesture)
+    check_target(arguments.output, [arguments.gesture])
+    start = time.perf_counter()
+    with compiling(arguments), progress_bar(arguments, "simulating") as progress:
+        result = simulate(
+            gesture,
+            energy=arguments.energy,
+            strings_every=arguments.strings,
+            progress=progress,
+        )
+    result.save(arguments.output)
+    elapsed = time.perf_counter() - start
+    if arguments.json:
+        print(json.dumps({**result.meta, "elapsed_s": elapsed}))
+    elif not arguments.quiet:
+        from yehu_server.report import simulate_report
+
+        print(simulate_report(arguments.output, result))
+    return 0

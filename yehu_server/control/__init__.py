@@ -1,0 +1,1 @@
+"""How people reach the instrument live: OSC and MIDI."""

@@ -1,0 +1,139 @@
+"""Who hears back: echoes to whoever sets something, changes to subscribers, few errors.
+
+All of it from the listening port, as one message each and never a bundle, which Pure Data
+does not read.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from yehu_server.control.packets import pack
+from yehu_server.control.sockets import Peer
+
+FLUSH_S = 1.0 / 60.0
+MOST_SUBSCRIBERS = 64
+MOST_KNOWN = 1024
+ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
+
+
+@dataclass
+class Client:
+    """What we keep of one peer."""
+
+    peer: Peer
+    until: float = 0.0  # when its subscription ends (monotonic s)
+    to_tell: dict[str, None] = field(default_factory=dict)  # addresses, in order
+    patience: float = ERRORS_AT_ONCE  # errors it may still be sent
+    complained: float = field(default_factory=time.monotonic)
+
+
+class Clients:
+    """Peers and what they are still to be told.
+
+    Parameters
+    ----------
+    values : callable
+        Gives all parameters' values, by address.
+    prefix : str
+        Put before addresses.
+    """
+
+    def __init__(self, values: Callable[[], dict[str, float]], prefix: str) -> None:
+        self._values = values
+        self._prefix = prefix
+        self._clients: dict[Peer, Client] = {}
+        self._told: dict[str, float] = {}  # values as of the last flush
+        self._flushed = 0.0
+        self._is_waiting = False
+        self.errors_sent = 0
+        self.errors_withheld = 0
+
+    @property
+    def subscribers(self) -> int:
+        """How many hear of changes."""
+        now = time.monotonic()
+        return sum(client.until > now for client in self._clients.values())
+
+    def _client(self, peer: Peer) -> Client:
+        client = self._clients.get(peer)
+        if client is None:
+            if len(self._clients) >= MOST_KNOWN:
+                self._forget_idle()
+            client = self._clients[peer] = Client(peer)
+        return client
+
+    def _forget_idle(self) -> None:
+        now = time.monotonic()
+        self._clients = {
+            peer: client for peer, client in self._clients.items() if client.until > now
+        }
+
+    # -- what they are told ------------------------------------------------------------------
+
+    def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
+        """Let a peer know soon what it has set."""
+        self._client(peer).to_tell.update(dict.fromkeys(addresses))
+        self._is_waiting = True
+
+    def subscribe(self, peer: Peer, seconds: float) -> bool:
+        """Tell a peer of every change for some time; return whether there was room."""
+        if self._client(peer).until <= time.monotonic() and self.subscribers >= MOST_SUBSCRIBERS:
+            return False
+        client = self._client(peer)
+        client.until = time.monotonic() + seconds
+        client.to_tell.update(dict.fromkeys(self._values()))
+        self._is_waiting = True
+        return True
+
+    def unsubscribe(self, peer: Peer) -> None:
+        """Tell a peer no more."""
+        self._client(peer).until = 0.0
+
+    def forget(self, peer: Peer) -> None:
+        """A peer is gone."""
+        self._clients.pop(peer, None)
+
+    def complain(self, peer: Peer, address: str, reason: str) -> None:
+        """Tell a peer of an error, unless it has had many of late."""
+        client = self._client(peer)
+        now = time.monotonic()
+        gained = ERRORS_A_SECOND * (now - client.complained)
+        client.patience = min(client.patience + gained, ERRORS_AT_ONCE)
+        client.complained = now
+        if client.patience < 1.0:
+            self.errors_withheld += 1
+            return
+        client.patience -= 1.0
+        self.errors_sent += 1
+        peer.send(pack(f"{self._prefix}/error", address, reason))
+
+    # -- when --------------------------------------------------------------------------------
+
+    def wait_s(self) -> float | None:
+        """Seconds until there is something to tell."""
+        if not self._is_waiting and not self.subscribers:
+            return None
+        return max(0.0, self._flushed + FLUSH_S - time.monotonic())
+
+    def flush(self) -> None:
+        """Tell everyone what is due, at most 60 times a second."""
+        now = time.monotonic()
+        if now - self._flushed < FLUSH_S or not (self._is_waiting or self.subscribers):
+            return
+        self._flushed = now
+        self._is_waiting = False
+        values = self._values()
+        changed = {address: None for address, v in values.items() if self._told.get(address) != v}
+        self._told = values
+        packets: dict[str, bytes] = {}
+        for client in self._clients.values():
+            if client.until > now:
+                client.to_tell.update(changed)
+            for address in client.to_tell:
+                if address not in packets:
+                    packets[address] = pack(self._prefix + address, values[address])
+                client.peer.send(packets[address])
+            client.to_tell.clear()

@@ -1,0 +1,232 @@
+"""The process that holds the MIDI inputs: ``python -m yehu_server.control.midi_process``.
+
+It opens what is wanted as it comes, stamps each message on arrival, and passes it on. RtMidi
+over JACK crashes when the server dies: then this process ends, and a fresh one takes over.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import ctypes.util
+import os
+import threading
+import time
+from collections.abc import Sequence
+from typing import Any
+
+from yehu_server.child import Message, Parent
+from yehu_server.control.midi_names import is_wanted, stable_names
+
+LOOK_EVERY_S = 0.5
+SYSTEM_EVERY_S = 2.0  # look for a MIDI system, where there is none
+SENSE_EVERY_S = 0.05
+SENSE_WITHIN_S = 0.33  # active sensing: a message at least every 300 ms
+CLIENT = "yehu-server"
+ACTIVE_SENSING, CLOCKS = 0xFE, {0xF8, 0xF9}
+MOST_BYTES = 3  # system exclusive says nothing to us
+
+APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windows": "WINDOWS_MM"}
+
+
+class Input:
+    """One open port."""
+
+    def __init__(self, midi: Any, name: str, parent: Parent) -> None:
+        self.midi = midi
+        self.name = name
+        self._parent = parent
+        self._last = 0.0
+        self._senses = False
+        midi.ignore_types(sysex=True, timing=True, active_sense=False)
+        midi.set_callback(self._receive)
+
+    def _receive(self, event: tuple[Sequence[int], float], _data: Any = None) -> None:
+        at = time.monotonic_ns()
+        data = event[0]
+        self._last = 1e-9 * at
+        if data[0] == ACTIVE_SENSING:
+            self._senses = True
+        elif data[0] not in CLOCKS and len(data) <= MOST_BYTES:
+            self._parent.tell("midi", port=self.name, at=at, bytes=list(data))
+
+    def sense(self) -> None:
+        """Tell when a port that promised to say something regularly has not."""
+        if self._senses and time.monotonic() - self._last > SENSE_WITHIN_S:
+            self._senses = False
+            self._parent.tell("silent", port=self.name)
+
+    def close(self) -> None:
+        """Close the port."""
+        self.midi.cancel_callback()
+        self.midi.close_port()
+
+
+class Inputs:
+    """All inputs, as they come and go."""
+
+    def __init__(self, parent: Parent, order: Message) -> None:
+        self._parent = parent
+        self._patterns: Sequence[str] = order["patterns"]
+        self._virtual: str | None = order["virtual"]
+        self._api = order["api"]
+        self._open: dict[str, Input] = {}
+        self._finder: Any = None  # the one client that asks for names
+        self._problem = ""
+
+    @property
+    def has_system(self) -> bool:
+        """Whether there is a MIDI system to ask."""
+        return self._finder is not None
+
+    def look(self) -> None:
+        """Open what has come, close what is gone."""
+        if self._finder is None and not self._start():
+            return
+        names = self._finder.get_ports()
+        stable = stable_names(names)
+        for name, place in zip(stable, range(len(names)), strict=True):
+            if name not in self._open and is_wanted(name, self._patterns):
+                self._appear(name, names[place])
+        for name in set(self._open) - set(stable) - {self._virtual}:
+            self._parent.tell("vanished", port=name)
+            self._open.pop(name).close()
+
+    def sense(self) -> None:
+        """See `Input.sense`."""
+        for port in list(self._open.values()):
+            port.sense()
+
+    def _start(self) -> bool:
+        finder, problem = open_client(self._api)
+        if finder is None:
+            if problem != self._problem:
+                self._problem = problem
+                self._parent.tell("none", reason=problem)
+            return False
+        self._finder = finder
+        self._api = finder.get_current_api()
+        if self._api == _number("jack"):
+            _end_with_jack()
+        self._parent.tell("system", api=api_name(self._api))
+        if self._virtual is not None:
+            with self._reporting(self._virtual):
+                midi = self._client()
+                midi.open_virtual_port(self._virtual)
+                self._add(self._virtual, midi)
+        return True
+
+    def _appear(self, name: str, full_name: str) -> None:
+        with self._reporting(name):
+            midi = self._client()
+            midi.open_port(midi.get_ports().index(full_name), name=name[:32])
+            self._add(name, midi)
+
+    def _add(self, name: str, midi: Any) -> None:
+        self._parent.tell("appeared", port=name)
+        self._open[name] = Input(midi, name, self._parent)
+
+    def _client(self) -> Any:
+        import rtmidi
+
+        return rtmidi.MidiIn(self._api, name=CLIENT)
+
+    @contextlib.contextmanager
+    def _reporting(self, name: str) -> Any:
+        import rtmidi
+
+        try:
+            yield
+        except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
+            self._parent.tell("refused", port=name, reason=str(error))
+
+
+def open_client(api: str | int | None) -> tuple[Any, str]:
+    """A client of a MIDI system, the first there is or the one named; or why there is none."""
+    import rtmidi
+
+    if isinstance(api, str):
+        wanted = [_number(api)]
+    else:
+        wanted = [api] if api is not None else list(rtmidi.get_compiled_api())
+    problem = "RtMidi knows no MIDI system here"
+    for number in wanted:
+        try:
+            return rtmidi.MidiIn(number, name=CLIENT), ""
+        except (rtmidi.RtMidiError, SystemError) as error:
+            problem = str(error)
+    return None, problem
+
+
+def list_inputs() -> tuple[str, list[str], str]:
+    """The MIDI system, the stable names of its inputs, or why there are none."""
+    client, problem = open_client(None)
+    if client is None:
+        return "", [], problem
+    return api_name(client.get_current_api()), stable_names(client.get_ports()), ""
+
+
+def _number(api: str) -> int:
+    import rtmidi
+
+    return int(getattr(rtmidi, f"API_{APIS[api]}"))
+
+
+def api_name(number: int) -> str:
+    """A MIDI system's name, for reading."""
+    import rtmidi
+
+    return str(rtmidi.get_api_display_name(number))
+
+
+def _end_with_jack() -> None:
+    """End this process when JACK's server dies: nothing RtMidi does after that is safe.
+
+    RtMidi has no word for it, so a client of our own listens for it.
+    """
+    name = ctypes.util.find_library("jack")
+    if name is None:
+        return
+    jack = ctypes.CDLL(name)
+    jack.jack_client_open.restype = ctypes.c_void_p
+    watcher = jack.jack_client_open(f"{CLIENT}-watch".encode(), NO_START_SERVER, None)
+    if watcher:
+        jack.jack_on_shutdown(ctypes.c_void_p(watcher), _ended, None)
+        jack.jack_activate(ctypes.c_void_p(watcher))
+
+
+NO_START_SERVER = 1
+
+
+def _end(_argument: Any) -> None:
+    os._exit(1)
+
+
+_ended = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(_end)
+
+
+def main() -> None:
+    """Serve one parent until it hangs up."""
+    parent = Parent()
+    orders = parent.orders()
+    inputs = Inputs(parent, next(orders))
+    hung_up = threading.Event()
+
+    def listen() -> None:
+        for _ in orders:
+            pass
+        hung_up.set()
+
+    threading.Thread(target=listen, daemon=True).start()
+    looked = -SYSTEM_EVERY_S
+    while not hung_up.wait(SENSE_EVERY_S):
+        inputs.sense()
+        pause = LOOK_EVERY_S if inputs.has_system else SYSTEM_EVERY_S
+        if time.monotonic() - looked > pause:
+            inputs.look()
+            looked = time.monotonic()
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

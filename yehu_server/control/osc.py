@@ -1,0 +1,302 @@
+"""What OSC messages mean: every parameter of the table, and the playing calls.
+
+The protocol is described in docs/osc.md.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from yehu_server.control.clients import Clients
+from yehu_server.control.packets import Message, PacketError, pack, unpack
+from yehu_server.control.patterns import PatternError, is_pattern, matches
+from yehu_server.control.schedule import Schedule, TagClock
+from yehu_server.control.sockets import Peer
+from yehu_server.errors import YehuError
+from yehu_server.params.table import BY_ADDRESS, TABLE, find
+from yehu_server.playing.live import LivePlayer
+
+log = logging.getLogger(__name__)
+
+PREFIX = "/yehu"
+LONGEST_PATTERN = 256
+SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
+
+
+class RefusedError(YehuError):
+    """A message that cannot be done as it is."""
+
+
+class Desk(Protocol):
+    """What the server does beside playing."""
+
+    def status(self) -> Mapping[str, float | str]:
+        """How things stand."""
+
+    def start_recording(self, name: str) -> str:
+        """Record under a plain name; return the file's. Errors: YehuError."""
+
+    def stop_recording(self) -> str:
+        """End the recording; return the file's name. Errors: YehuError."""
+
+
+@dataclass
+class Counts:
+    """What became of messages, since the start."""
+
+    messages: int = 0
+    malformed: int = 0
+    errors: int = 0  # wrong type, unknown address, out of range
+    late_bundles: int = 0
+    scheduled: int = 0
+
+
+@dataclass(frozen=True)
+class Call:
+    """One message to be acted on: its arguments, who sent it, and when it is to be heard."""
+
+    arguments: Sequence[Any]
+    peer: Peer
+    frame: int
+
+    def numbers(self, least: int, most: int | None = None) -> list[float]:
+        """The arguments as finite numbers. Errors: RefusedError."""
+        most = least if most is None else most
+        count = len(self.arguments)
+        if not least <= count <= most:
+            wanted = f"{least}" if least == most else f"{least} to {most}"
+            plural = "" if wanted == "1" else "s"
+            raise RefusedError(f"expected {wanted} argument{plural}, got {count}")
+        return [_number(argument) for argument in self.arguments]
+
+    def word(self) -> str:
+        """The one argument, a string. Errors: RefusedError."""
+        if len(self.arguments) != 1 or not isinstance(self.arguments[0], str):
+            raise RefusedError("expected one string")
+        return self.arguments[0]
+
+
+class OscHandler:
+    """Acts on packets; one thread (``sockets.OscPorts``) calls it."""
+
+    def __init__(self, player: LivePlayer, desk: Desk) -> None:
+        self._player = player
+        self._desk = desk
+        self.counts = Counts()
+        self.clients = Clients(player.values, PREFIX)
+        self._schedule: Schedule[tuple[Message, Peer]] = Schedule()
+        self._tags = TagClock(player)
+        self._calls: dict[str, Callable[[Call], None]] = {
+            "/note": self._note,
+            "/note/off": self._note_off,
+            "/pitch": self._pitch,
+            "/bend": lambda call: self._set(call, "/playing/bend"),
+            "/press": lambda call: self._set(call, "/playing/press"),
+            "/bow": self._bow,
+            "/release": self._release,
+            "/panic": self._panic,
+            "/reset": self._reset,
+            "/get": self._get,
+            "/params": self._params,
+            "/status": self._status,
+            "/subscribe": self._subscribe,
+            "/unsubscribe": self._unsubscribe,
+            "/record/start": self._record_start,
+            "/record/stop": self._record_stop,
+            "/ping": lambda call: call.peer.send(pack(f"{PREFIX}/pong", *call.arguments)),
+        }
+        for param in TABLE:
+            self._calls[param.address] = self._setter(param.address)
+
+    @property
+    def waiting(self) -> int:
+        """Messages that wait for their time."""
+        return len(self._schedule)
+
+    # -- packets -----------------------------------------------------------------------------
+
+    def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
+        """See `sockets.Handler`."""
+        try:
+            messages = unpack(packet)
+        except PacketError as error:
+            self.counts.malformed += 1
+            self.clients.complain(peer, "", f"malformed packet: {error}")
+            return
+        now = time.time()
+        for message in messages:
+            self.counts.messages += 1
+            due_s = message.due_s
+            if due_s is None or due_s <= now:
+                self.counts.late_bundles += 0 if due_s is None else 1
+                self._act(message, peer, self._player.frame_of(arrived_ns))
+            elif self._schedule.add(due_s, (message, peer)):
+                self.counts.scheduled += 1
+            else:
+                self._complain(peer, message.address, "too many messages wait for their time")
+
+    def tick(self) -> None:
+        """See `sockets.Handler`."""
+        for due_s, (message, peer) in self._schedule.due():
+            self._act(message, peer, self._tags.frame_at(due_s))
+        self.clients.flush()
+
+    def wait_s(self) -> float | None:
+        """See `sockets.Handler`."""
+        waits = [
+            wait for wait in (self._schedule.wait_s(), self.clients.wait_s()) if wait is not None
+        ]
+        return min(waits, default=None)
+
+    def gone(self, peer: Peer) -> None:
+        """See `sockets.Handler`."""
+        self.clients.forget(peer)
+
+    def _act(self, message: Message, peer: Peer, frame: int) -> None:
+        call = Call(message.arguments, peer, frame)
+        try:
+            for action in self._actions(message.address):
+                action(call)
+        except YehuError as error:
+            self._complain(peer, message.address, str(error))
+
+    def _actions(self, address: str) -> list[Callable[[Call], None]]:
+        if not address.startswith(PREFIX + "/") and not is_pattern(address):
+            raise RefusedError(f"unknown address (all begin with {PREFIX}/)")
+        action = self._calls.get(address[len(PREFIX) :])
+        if action is not None:
+            return [action]
+        if not is_pattern(address):
+            find(address[len(PREFIX) :])  # names one that is near
+        if len(address) > LONGEST_PATTERN:
+            raise RefusedError("the pattern is too long")
+        try:
+            actions = [
+                act for known, act in self._calls.items() if matches(address, PREFIX + known)
+            ]
+        except PatternError as error:
+            raise RefusedError(str(error)) from error
+        if not actions:
+            raise RefusedError("the pattern fits no address")
+        return actions
+
+    def _complain(self, peer: Peer, address: str, reason: str) -> None:
+        self.counts.errors += 1
+        self.clients.complain(peer, address, reason)
+
+    # -- parameters --------------------------------------------------------------------------
+
+    def _setter(self, address: str) -> Callable[[Call], None]:
+        return lambda call: self._set(call, address)
+
+    def _set(self, call: Call, address: str) -> None:
+        (value,) = call.numbers(1)
+        self._player.write(address, value, frame=call.frame)
+        self.clients.echo(call.peer, [address])
+
+    def _get(self, call: Call) -> None:
+        wanted = call.word().removeprefix(PREFIX)
+        addresses = (
+            [a for a in BY_ADDRESS if matches(wanted, a)] if is_pattern(wanted) else [wanted]
+        )
+        if not addresses:
+            raise RefusedError("the pattern fits no parameter")
+        for address in addresses:
+            call.peer.send(pack(PREFIX + address, self._player.value(address)))
+
+    def _params(self, call: Call) -> None:
+        values = self._player.values()
+        for param in TABLE:
+            value = values[param.address]
+            row = (PREFIX + param.address, value, param.lo, param.hi, param.default)
+            call.peer.send(pack(f"{PREFIX}/param", *row, param.unit, param.doc))
+        call.peer.send(pack(f"{PREFIX}/params", len(TABLE)))
+
+    # -- playing -----------------------------------------------------------------------------
+
+    def _note(self, call: Call) -> None:
+        note, velocity = call.numbers(2)
+        if velocity == 0.0:
+            self._player.note_off(note, frame=call.frame)
+        else:
+            self._player.note_on(note, velocity, frame=call.frame)
+
+    def _note_off(self, call: Call) -> None:
+        self._player.note_off(call.numbers(1, 2)[0], frame=call.frame)
+
+    def _pitch(self, call: Call) -> None:
+        self._player.slide(call.numbers(1)[0], frame=call.frame)
+
+    def _bow(self, call: Call) -> None:
+        speed, force = call.numbers(2)
+        self._player.draw(speed, force, frame=call.frame)
+        self.clients.echo(call.peer, ["/bow/speed", "/bow/force"])
+
+    def _release(self, call: Call) -> None:
+        del call
+        self._player.release()
+
+    def _panic(self, call: Call) -> None:
+        self._schedule.clear()
+        self._player.panic(frame=call.frame)
+
+    def _reset(self, call: Call) -> None:
+        self._schedule.clear()
+        self._player.reset(frame=call.frame)
+        self.clients.echo(call.peer, BY_ADDRESS)
+
+    # -- the desk ----------------------------------------------------------------------------
+
+    def _status(self, call: Call) -> None:
+        for name, value in self._desk.status().items():
+            call.peer.send(pack(f"{PREFIX}/status/{name}", value))
+
+    def _subscribe(self, call: Call) -> None:
+        numbers = call.numbers(0, 2)
+        seconds = numbers[0] if numbers else SUBSCRIBED_S
+        seconds = min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
+        peer = call.peer
+        if len(numbers) == 2:
+            if not 0 < numbers[1] <= 65535 or numbers[1] != int(numbers[1]):
+                raise RefusedError(f"{numbers[1]:g} is not a port")
+            peer = peer.at(int(numbers[1]))
+        if not self.clients.subscribe(peer, seconds):
+            raise RefusedError("there are too many subscribers")
+        peer.send(pack(f"{PREFIX}/subscribed", seconds))
+
+    def _unsubscribe(self, call: Call) -> None:
+        numbers = call.numbers(0, 1)
+        peer = call.peer.at(int(numbers[0])) if numbers else call.peer
+        self.clients.unsubscribe(peer)
+        peer.send(pack(f"{PREFIX}/unsubscribed"))
+
+    def _record_start(self, call: Call) -> None:
+        name = self._desk.start_recording(call.word())
+        call.peer.send(pack(f"{PREFIX}/record/started", name))
+
+    def _record_stop(self, call: Call) -> None:
+        name = self._desk.stop_recording()
+        call.peer.send(pack(f"{PREFIX}/record/stopped", name))
+
+
+def _number(argument: Any) -> float:
+    """A number as clients send it: float, int, or T and F. Errors: RefusedError."""
+    if not isinstance(argument, int | float):
+        raise RefusedError(f"expected a number, got {_kind(argument)}")
+    try:
+        number = float(argument)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise RefusedError(f"{number} is not finite")
+    return number
+
+
+def _kind(argument: Any) -> str:
+    kinds = {str: "a string", bytes: "a blob", type(None): "nil", list: "an array"}
+    return kinds.get(type(argument), f"a {type(argument).__name__}")

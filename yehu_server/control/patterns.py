@@ -1,0 +1,111 @@
+"""OSC address patterns: ``* ? [a-z] [!a-z] {this,that}`` ([OSC] section on matching).
+
+Matched by following all places in the address at once, so that no pattern, however twisted,
+takes longer than its length times the address's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+SPECIAL = frozenset("*?[{")
+
+
+class PatternError(ValueError):
+    """A pattern whose brackets do not close."""
+
+
+@dataclass(frozen=True)
+class One:
+    """One character of a set."""
+
+    fits: Callable[[str], bool]
+
+
+@dataclass(frozen=True)
+class AnyNumber:
+    """Any run of characters within a part of the address."""
+
+
+@dataclass(frozen=True)
+class Either:
+    """One of some words."""
+
+    words: tuple[str, ...]
+
+
+Piece = One | AnyNumber | Either
+
+
+def is_pattern(address: str) -> bool:
+    """Whether an address is to be matched, not looked up."""
+    return not SPECIAL.isdisjoint(address)
+
+
+def matches(pattern: str, address: str) -> bool:
+    """Whether a pattern fits the whole of an address. Errors: PatternError."""
+    places = {0}
+    for piece in _pieces(pattern):
+        places = _after(piece, places, address)
+        if not places:
+            return False
+    return len(address) in places
+
+
+def _after(piece: Piece, places: set[int], address: str) -> set[int]:
+    """Where in the address we may be once `piece` has matched."""
+    if isinstance(piece, Either):
+        return {at + len(w) for at in places for w in piece.words if address.startswith(w, at)}
+    if isinstance(piece, One):
+        return {at + 1 for at in places if at < len(address) and piece.fits(address[at])}
+    reached: set[int] = set()
+    for at in places:
+        end = address.find("/", at)
+        reached.update(range(at, (end if end >= 0 else len(address)) + 1))
+    return reached
+
+
+def _pieces(pattern: str) -> list[Piece]:
+    pieces: list[Piece] = []
+    at = 0
+    while at < len(pattern):
+        char = pattern[at]
+        if char == "*":
+            pieces.append(AnyNumber())
+        elif char == "?":
+            pieces.append(One(lambda c: c != "/"))
+        elif char == "[":
+            end = _closing(pattern, at, "]")
+            pieces.append(One(_set(pattern[at + 1 : end])))
+            at = end
+        elif char == "{":
+            end = _closing(pattern, at, "}")
+            pieces.append(Either(tuple(pattern[at + 1 : end].split(","))))
+            at = end
+        else:
+            pieces.append(Either((char,)))
+        at += 1
+    return pieces
+
+
+def _closing(pattern: str, at: int, bracket: str) -> int:
+    end = pattern.find(bracket, at + 1)
+    if end < 0:
+        raise PatternError(f"{pattern[at]} is never closed")
+    return end
+
+
+def _set(text: str) -> Callable[[str], bool]:
+    negated, text = (True, text[1:]) if text.startswith("!") else (False, text)
+    ranges = []
+    at = 0
+    while at < len(text):
+        is_range = text[at + 1 : at + 2] == "-" and at + 2 < len(text)
+        ranges.append((text[at], text[at + 2] if is_range else text[at]))
+        at += 3 if is_range else 1
+
+    def fits(char: str) -> bool:
+        return char != "/" and any(lo <= char <= hi for lo, hi in ranges) != negated
+
+    return fits

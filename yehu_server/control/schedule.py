@@ -1,0 +1,89 @@
+"""Messages with a time tag, until they are due.
+
+A tag names a moment of the world's clock; the instrument counts frames. The first tag of a
+series ties the two together, and later ones are counted from it at the nominal rate: so
+distances are exact to the frame. Where the device's own pace has led more than a millisecond
+away from that, the tie is made anew.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import time
+from typing import Generic, TypeVar
+
+from yehu_server.playing.live import LivePlayer
+
+AHEAD_S = 0.01  # how long before its time a message is decided on
+STRAY_S = 0.001
+MOST = 1 << 16
+
+
+T = TypeVar("T")
+
+
+class TagClock:
+    """Frames of time tags."""
+
+    def __init__(self, player: LivePlayer) -> None:
+        self._player = player
+        self._tie: tuple[float, int] | None = None  # a moment (s since 1970) and its frame
+
+    def frame_at(self, due_s: float) -> int:
+        """The frame that is played at a moment."""
+        rate = self._player.instrument.rate
+        ahead_s = due_s - time.time()
+        true = self._player.instrument.frame_at(time.monotonic_ns()) + ahead_s * rate
+        if self._tie is not None:
+            moment, frame = self._tie
+            counted = frame + round((due_s - moment) * rate)
+            if abs(counted - true) < STRAY_S * rate:
+                return counted
+        self._tie = (due_s, round(true))
+        return self._tie[1]
+
+
+class Schedule(Generic[T]):
+    """What is to be done when, as far as it has not come.
+
+    Parameters
+    ----------
+    ahead_s : float
+        How long before its time a thing is handed out.
+    """
+
+    def __init__(self, ahead_s: float = AHEAD_S, most: int = MOST) -> None:
+        self._ahead_s = ahead_s
+        self._most = most
+        self._order = itertools.count()
+        self._waiting: list[tuple[float, int, T]] = []
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def add(self, due_s: float, thing: T) -> bool:
+        """Keep a thing until its time (s since 1970); return whether there was room."""
+        if len(self._waiting) >= self._most:
+            return False
+        heapq.heappush(self._waiting, (due_s, next(self._order), thing))
+        return True
+
+    def due(self) -> list[tuple[float, T]]:
+        """What is to be handed out now, with the times it is meant for."""
+        ready = []
+        horizon = time.time() + self._ahead_s
+        while self._waiting and self._waiting[0][0] <= horizon:
+            due_s, _, thing = heapq.heappop(self._waiting)
+            ready.append((due_s, thing))
+        return ready
+
+    def wait_s(self) -> float | None:
+        """Seconds until the next thing is to be handed out."""
+        if not self._waiting:
+            return None
+        return max(0.0, self._waiting[0][0] - self._ahead_s - time.time())
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._waiting.clear()

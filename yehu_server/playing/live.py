@@ -1,0 +1,189 @@
+"""The one way to the instrument while it plays: from MIDI, OSC, or whatever comes next.
+
+Handlers run in threads of their own and take turns here. Nothing below waits for them: they
+stamp what they decide with frames and post it, and the audio side applies it.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import mido
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import ParameterError
+from yehu_server.params.spec import Place
+from yehu_server.params.table import ENGINE, TABLE, find
+from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.intonation import Intonation
+from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.performer import Key, Performer
+
+ELSEWHERE = -1  # the channel of notes that come from no MIDI port
+
+
+class Targets:
+    """Passes the player's moves on to the instrument, and remembers where each went."""
+
+    def __init__(self, instrument: Instrument) -> None:
+        self._instrument = instrument
+        self.values = {param.address: param.default for param in ENGINE}
+
+    def write(
+        self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
+    ) -> float:
+        """See `Instrument.write`."""
+        accepted = self._instrument.write(address, value, frame=frame, ramp_ms=ramp_ms)
+        self.values[address] = accepted
+        return accepted
+
+    def silence(self, *, frame: int | None = None) -> None:
+        """See `Instrument.silence`."""
+        self._instrument.silence(frame=frame)
+
+
+class LivePlayer:
+    """A player that several threads may tell what to do.
+
+    Every call takes the frame at which it shall be heard: that of the message's arrival, by
+    `frame_of`, or that of its time tag. What the player decides keeps its order: a message
+    that comes while a later one is already decided (`control.schedule` looks some
+    milliseconds ahead) is heard no earlier than that. Direct writes need not wait.
+
+    Parameters
+    ----------
+    delay_ms : float
+        From arrival to being heard. Constant, and long enough that the frame has not been
+        played yet, so that messages keep their rhythm.
+    """
+
+    def __init__(
+        self,
+        instrument: Instrument,
+        mapping: Mapping,
+        *,
+        policy: RangePolicy = RangePolicy.TRANSPOSE,
+        seed: int = 0,
+        delay_ms: float,
+    ) -> None:
+        self.instrument = instrument
+        self.delay = instrument.frames(delay_ms)
+        self._turn = threading.RLock()
+        self._targets = Targets(instrument)
+        self._performer = Performer(
+            self._targets, Intonation(instrument.quantities), policy=policy, seed=seed
+        )
+        self._midi = MidiPlayer(self._performer, mapping)
+        self._decided = 0  # the latest frame of a decision
+
+    def frame_of(self, arrived_ns: int | None = None) -> int:
+        """The frame for a message that arrived at a moment of ``time.monotonic_ns()``."""
+        moment = time.monotonic_ns() if arrived_ns is None else arrived_ns
+        return int(self.instrument.frame_at(moment)) + self.delay
+
+    def _in_order(self, frame: int) -> int:
+        self._decided = max(self._decided, frame)
+        return self._decided
+
+    # -- parameters --------------------------------------------------------------------------
+
+    def value(self, address: str) -> float:
+        """Where a parameter is, or is on its way to. Errors: ParameterError."""
+        param = find(address)
+        with self._turn:
+            if param.place is Place.ENGINE:
+                return self._targets.values[address]
+            return self._performer.value(address)
+
+    def values(self) -> dict[str, float]:
+        """All parameters, by address."""
+        with self._turn:
+            return {param.address: self.value(param.address) for param in TABLE}
+
+    def write(self, address: str, value: float, *, frame: int) -> float:
+        """Set a parameter; return the value accepted. Errors: ParameterError."""
+        with self._turn:
+            if find(address).place is Place.PLAYER:
+                frame = self._in_order(frame)
+            return self._midi.write(address, value, frame=frame)
+
+    def hold(self, address: str, value: float) -> float:
+        """Set a parameter for as long as the program runs, from the first frame on."""
+        with self._turn:
+            return self._performer.write(address, value, frame=0, hold=True)
+
+    def release(self) -> None:
+        """Give back to the player what direct writes took over."""
+        with self._turn:
+            self._performer.release()
+
+    # -- notes -------------------------------------------------------------------------------
+
+    @property
+    def pitch(self) -> float | None:
+        """The pitch (fractional MIDI note) that sounds."""
+        with self._turn:
+            return self._performer.pitch
+
+    def receive(self, message: mido.Message, *, frame: int, port: int) -> None:
+        """Act on a MIDI message of one of the ports, counted from 0."""
+        with self._turn:
+            self._midi.receive(message, frame=self._in_order(frame), port=port)
+
+    def let_go_of(self, port: int, *, frame: int) -> None:
+        """End what a port that is gone has left sounding."""
+        with self._turn:
+            self._midi.let_go_of(port, frame=self._in_order(frame))
+
+    def note_on(self, note: float, velocity: float, *, frame: int) -> None:
+        """Begin a note (fractional MIDI note; velocity 0 to 127).
+
+        Errors: ParameterError where one is out of MIDI's range.
+        """
+        key = Key(ELSEWHERE, _within("note", note))
+        with self._turn:
+            self._midi.note_on(key, _within("velocity", velocity) / 127.0, self._in_order(frame))
+
+    def note_off(self, note: float, *, frame: int) -> None:
+        """End a note that `note_on` began."""
+        with self._turn:
+            self._midi.note_off(Key(ELSEWHERE, note), self._in_order(frame))
+
+    def slide(self, pitch: float, *, frame: int) -> float:
+        """See `Performer.slide`. Errors: ParameterError where it is out of MIDI's range."""
+        with self._turn:
+            return self._performer.slide(_within("pitch", pitch), frame=self._in_order(frame))
+
+    def draw(self, speed: float, force: float, *, frame: int) -> tuple[float, float]:
+        """See `Performer.draw`."""
+        with self._turn:
+            return self._performer.draw(speed, force, frame=self._in_order(frame))
+
+    def end_notes(self, *, frame: int) -> None:
+        """End all notes, as if all keys and pedals were let go, and lift a bow drawn by hand."""
+        with self._turn:
+            frame = self._in_order(frame)
+            self._midi.receive(mido.Message("reset"), frame=frame)
+            self._performer.lift(frame=frame)
+
+    def panic(self, *, frame: int) -> None:
+        """End all notes and all sound at once."""
+        with self._turn:
+            self.end_notes(frame=frame)
+            self._performer.all_sound_off(frame=self._decided)
+
+    def reset(self, *, frame: int) -> None:
+        """The same, and put every parameter back to its default."""
+        with self._turn:
+            self.panic(frame=frame)
+            for param in TABLE:
+                self._midi.write(param.address, param.default, frame=self._decided)
+            self._performer.release()
+
+
+def _within(what: str, value: float) -> float:
+    if not 0.0 <= value <= 127.0:  # also refuses NaN
+        raise ParameterError(f"{what}: {value:g} is not within 0 to 127")
+    return value

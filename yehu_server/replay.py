@@ -1,0 +1,75 @@
+"""A captured session into a sound file: the same samples as when it was played."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.audio.file import sound_file
+from yehu_server.engine.instrument import Instrument
+from yehu_server.physics.grid import check_rate
+from yehu_server.score.capture import Capture
+
+BLOCK = 1024  # frames; the ring takes whatever can be applied in them
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """What came of a replay; levels are of full scale."""
+
+    duration_s: float
+    real_time_factor: float
+    peak: float
+    rms: float
+    events: int
+    lost_states: int
+    warnings: list[str]
+
+
+def blocks(capture: Capture, instrument: Instrument) -> Iterator[Any]:
+    """The samples of a capture, block by block [shape=(frames,), float32]."""
+    frames = capture.events["frame"]
+    stops = sorted({*range(0, capture.frames, BLOCK), *capture.rests, capture.frames})
+    for start, stop in pairwise(stops):
+        if start in capture.rests:
+            instrument.come_to_rest()
+        for event in capture.events[np.searchsorted(frames, start) : np.searchsorted(frames, stop)]:
+            instrument.post(*event.item())
+        samples = np.zeros(stop - start, np.float32)
+        instrument.process(samples)
+        yield samples
+
+
+def replay(
+    capture: Capture,
+    target: Path,
+    *,
+    format_name: str,
+    subtype: str,
+    progress: Callable[[float, float], None] | None = None,
+) -> Replayed:
+    """Render a capture to a sound file. Errors: YehuError; nothing is left behind."""
+    check_rate(capture.rate)
+    instrument = Instrument(capture.rate)
+    start = time.perf_counter()
+    with sound_file(target, round(capture.rate), format_name, subtype) as file:
+        for samples in blocks(capture, instrument):
+            file.write(samples)
+            if progress is not None:
+                progress(file.frames / capture.rate, capture.frames / capture.rate)
+    duration_s = file.frames / capture.rate
+    return Replayed(
+        duration_s=duration_s,
+        real_time_factor=duration_s / (time.perf_counter() - start),
+        peak=file.peak,
+        rms=file.rms,
+        events=len(capture.events),
+        lost_states=instrument.lost_states,
+        warnings=capture.warnings,
+    )

@@ -1,0 +1,174 @@
+"""Captured sessions: every event that reached the instrument, with its frame.
+
+The format is described in docs/capture.md: one JSON value a line, so that what was written
+before a crash can be read.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import llvmlite
+import numpy as np
+from llvmlite import binding
+
+from yehu_server import __version__
+from yehu_server.engine.gesture import SILENCE
+from yehu_server.engine.mailbox import EVENT
+from yehu_server.errors import OutputError, ScoreError
+from yehu_server.files import check_target
+from yehu_server.jit import source_hash
+from yehu_server.params.table import ENGINE, SLOT
+
+FORMAT, VERSION = "yehu-server capture", 1
+MOST_BYTES = 1 << 30
+SILENCED = "silence"
+ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: SILENCED}
+INDICES = {address: slot for slot, address in ADDRESSES.items()}
+
+
+def build() -> dict[str, str]:
+    """What the samples depend on beside the events: the same build gives the same bits."""
+    return {
+        "yehu-server": __version__,
+        "sources": source_hash(),
+        "numpy": np.__version__,
+        "llvm": llvmlite.__version__,
+        "machine": platform.machine(),
+        "processor": str(binding.get_host_cpu_name()),
+    }
+
+
+class CaptureWriter:
+    """A capture being written; each call leaves the file readable.
+
+    Errors: OutputError.
+    """
+
+    def __init__(self, target: Path, *, rate: float, seed: int) -> None:
+        check_target(target)
+        self._target = target
+        try:
+            self._file = target.open("w", encoding="utf-8")
+        except OSError as error:
+            raise OutputError(f"{target}: cannot write: {error.strerror}") from error
+        values = {param.address: param.default for param in ENGINE}
+        header = {"format": FORMAT, "version": VERSION, "rate": rate, "seed": seed}
+        self._write([{**header, "build": build(), "values": values}])
+
+    def events(self, events: Any) -> None:
+        """Add events [shape=(events,), dtype=EVENT] as applied."""
+        self._write(
+            [int(e["frame"]), ADDRESSES[int(e["index"])], float(e["target"]), int(e["ramp"])]
+            for e in events
+        )
+
+    def note(self, what: str, frame: int, **details: int) -> None:
+        """Add what else happened: ``rest`` (put to rest from outside), ``lost`` events."""
+        self._write([{what: frame, **details}])
+
+    def close(self, frame: int) -> None:
+        """End the capture at the frame after the last one played."""
+        self._write([{"end": frame}])
+        self._file.close()
+
+    def _write(self, lines: Iterable[Any]) -> None:
+        try:
+            self._file.writelines(json.dumps(line) + "\n" for line in lines)
+            self._file.flush()
+        except OSError as error:
+            raise OutputError(f"{self._target}: cannot write: {error.strerror}") from error
+
+
+@dataclass
+class Capture:
+    """A captured session."""
+
+    rate: float
+    build: dict[str, str]
+    events: Any = field(default_factory=lambda: np.zeros(0, EVENT))  # by frame
+    rests: list[int] = field(default_factory=list)  # frames of rest
+    end: int | None = None  # frames in all
+    lost: int = 0  # events that were not captured
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def frames(self) -> int:
+        """How long it is: where its end is missing, a second after the last event."""
+        last = int(self.events["frame"][-1]) + 1 if len(self.events) else 0
+        return max(last, last + round(self.rate) if self.end is None else self.end)
+
+
+def read_capture(path: Path) -> Capture:
+    """Read a capture, also one that a crash has cut short. Errors: ScoreError."""
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise ScoreError(f"{path}: too large for a capture")
+        lines = path.read_text(encoding="utf-8").split("\n")
+    except OSError as error:
+        raise ScoreError(f"{path}: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ScoreError(f"{path}: not a capture ({error})") from error
+    capture = _header(path, lines[0])
+    events: list[tuple[int, int, float, int]] = []
+    for number, line in enumerate(lines[1:], start=2):
+        try:
+            if line.strip():
+                _take(json.loads(line), capture, events)
+        except (ValueError, TypeError, KeyError, OverflowError) as error:
+            if number == len(lines):  # the line that was being written
+                break
+            raise ScoreError(f"{path}: line {number}: not of a capture ({error})") from error
+    try:
+        capture.events = np.array(events, EVENT)
+    except OverflowError as error:
+        raise ScoreError(f"{path}: a number is too large ({error})") from error
+    frames = capture.events["frame"]
+    if np.any(np.diff(frames) < 0) or np.any(frames < 0):
+        raise ScoreError(f"{path}: events are not in order of frames")
+    if not np.isfinite(capture.events["target"]).all():
+        raise ScoreError(f"{path}: a value is not finite")
+    _warn(capture)
+    return capture
+
+
+def _header(path: Path, line: str) -> Capture:
+    try:
+        header = json.loads(line)
+        if header["format"] != FORMAT:
+            raise ScoreError(f"{path}: not a capture")
+        if header["version"] != VERSION:
+            raise ScoreError(f"{path}: version {header['version']} of the format is not known")
+        if dict(header["values"]) != {param.address: param.default for param in ENGINE}:
+            raise ScoreError(f"{path}: begins with other values than this version has")
+        return Capture(float(header["rate"]), dict(header["build"]))
+    except (ValueError, TypeError, KeyError) as error:
+        raise ScoreError(f"{path}: not a capture") from error
+
+
+def _take(entry: Any, capture: Capture, events: list[tuple[int, int, float, int]]) -> None:
+    if isinstance(entry, list):
+        frame, address, target, ramp = entry
+        events.append((int(frame), INDICES[address], float(target), int(ramp)))
+    elif "end" in entry:
+        capture.end = int(entry["end"])
+    elif "rest" in entry:
+        capture.rests.append(int(entry["rest"]))
+    elif "lost" in entry:
+        capture.lost += int(entry["events"])
+
+
+def _warn(capture: Capture) -> None:
+    if capture.end is None:
+        capture.warnings.append("the session did not end properly; a second is added")
+    if capture.lost:
+        capture.warnings.append(f"{capture.lost} events were not captured: the sound differs")
+    differing = [name for name, value in build().items() if capture.build.get(name) != value]
+    if differing:
+        names = ", ".join(differing)
+        capture.warnings.append(f"captured by another build ({names}): the sound may differ")

@@ -1,0 +1,288 @@
+"""The live composition: instrument, player, audio output, OSC and MIDI.
+
+OSC thread ──┐
+             ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
+MIDI process ┘                              └─> meters, applied events, tape
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import math
+import re
+import sys
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from platformdirs import user_music_path
+
+from yehu_server.audio.output import Output, OutputOptions
+from yehu_server.audio.recorder import Recorder
+from yehu_server.control.osc import OscHandler
+from yehu_server.control.ports import MidiOptions, MidiPorts
+from yehu_server.control.sockets import Address, Allowed, OscPorts
+from yehu_server.engine import native
+from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import OutputError
+from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import DEFAULT, Mapping, load
+from yehu_server.score.capture import CaptureWriter
+
+log = logging.getLogger(__name__)
+
+KEEP_EVERY_S = 0.05
+FADE_MS = 50.0  # after the notes' release
+PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
+# Short turns for Python's threads, so that handlers are not late when one is busy.
+SWITCH_INTERVAL_S = 0.0005
+
+
+@dataclass
+class ServeOptions:
+    """How to serve; see ``yehu-server serve --help``."""
+
+    output: OutputOptions = field(default_factory=OutputOptions)
+    midi: MidiOptions | None = field(default_factory=MidiOptions)  # None: no MIDI
+    osc: Address = ("127.0.0.1", 9000)
+    allowed: Allowed = field(default_factory=Allowed)
+    mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
+    settings: tuple[tuple[str, float], ...] = ()
+    seed: int = 0
+    policy: RangePolicy = RangePolicy.TRANSPOSE
+    jitter_ms: float | None = None  # None: one block
+    record: Path | None = None
+    capture: Path | None = None
+    recordings: Path = field(default_factory=lambda: user_music_path() / "yehu-server")
+
+
+class Server:
+    """A yehu that is played live, from `start` to `stop`.
+
+    Parameters
+    ----------
+    said : callable
+        Told in a line what a player should know: devices that come and go, troubles.
+
+    Errors: DeviceError where a named device or the OSC address cannot be had; OutputError
+    where `record` or `capture` cannot be written.
+    """
+
+    def __init__(self, options: ServeOptions, said: Callable[[str], None] = log.info) -> None:
+        self.options = options
+        self._said = said
+        self._started = time.monotonic()
+        with contextlib.ExitStack() as undo:
+            self.output = Output(options.output, said)
+            undo.callback(self.output.end)
+            rate = self.output.find()
+            native.warm_up()
+            self.instrument = Instrument(rate, memory=self.output.memory.buffer)
+            block_ms = 1e3 * options.output.blocksize / rate
+            self.player = LivePlayer(
+                self.instrument,
+                options.mapping,
+                policy=options.policy,
+                seed=options.seed,
+                delay_ms=block_ms if options.jitter_ms is None else options.jitter_ms,
+            )
+            self.handler = OscHandler(self.player, self)
+            self.osc = OscPorts(*options.osc, options.allowed, self.handler)
+            undo.callback(self.osc.stop)
+            self._capture = self._open_capture()
+            for address, value in options.settings:
+                self.player.hold(address, value)
+            self._recorder: Recorder | None = None
+            if options.record is not None:
+                self._recorder = Recorder(self.instrument, options.record, 0, said)
+                undo.callback(self._recorder.stop)
+            undo.pop_all()
+        self.midi = MidiPorts(self.player, options.midi, said) if options.midi else None
+        self._ending = threading.Event()
+        self._keeper = threading.Thread(target=self._keep, name="keeper", daemon=True)
+        self._rests = 0
+        self._unreported = 0
+        self._troubles: dict[str, int] = {}
+
+    def _open_capture(self) -> CaptureWriter | None:
+        if self.options.capture is None:
+            return None
+        self.instrument.report_events()
+        return CaptureWriter(
+            self.options.capture, rate=self.instrument.rate, seed=self.options.seed
+        )
+
+    def start(self) -> None:
+        """Begin to play. Errors: DeviceError where a named device cannot be opened."""
+        sys.setswitchinterval(SWITCH_INTERVAL_S)
+        try:
+            self.output.begin(self.instrument)
+        except BaseException:
+            self.osc.stop()
+            self._stop_recorder()
+            raise
+        self.osc.start()
+        if self.midi is not None:
+            self.midi.start()
+        self._keeper.start()
+
+    def stop(self) -> None:
+        """End all notes, let them fade, close everything."""
+        if self.midi is not None:
+            self.midi.stop()
+        self.osc.stop()
+        frame = self.player.frame_of()
+        self.player.end_notes(frame=frame)
+        fade_ms = self.player.value("/playing/release") + FADE_MS
+        self._wait_for(frame + self.instrument.frames(fade_ms))
+        self.output.end()
+        self._ending.set()
+        self._keeper.join()
+        if self._capture is not None:
+            self._write_capture(self._capture)
+            with contextlib.suppress(OutputError):
+                self._capture.close(self.instrument.frame)
+        self._stop_recorder()
+
+    def _wait_for(self, frame: int) -> None:
+        """Until a frame is played, or the clock stands still."""
+        patience = time.monotonic() + 1.0 + (frame - self.instrument.frame) / self.instrument.rate
+        while self.instrument.frame < frame and time.monotonic() < patience:
+            time.sleep(0.005)
+
+    # -- what is kept beside playing -----------------------------------------------------------
+
+    def _keep(self) -> None:
+        while not self._ending.wait(KEEP_EVERY_S):
+            if self._capture is not None:
+                self._write_capture(self._capture)
+            self._report_troubles()
+
+    def _write_capture(self, capture: CaptureWriter) -> None:
+        try:
+            for frame in self.instrument.rests[self._rests :]:
+                capture.note("rest", frame)
+                self._rests += 1
+            capture.events(self.instrument.applied_events())
+            meters = self.instrument.meters()
+            unreported = int(meters["unreported"])
+            if unreported > self._unreported:
+                lost = unreported - self._unreported
+                capture.note("lost", int(meters["frame"]), events=lost)
+                self._unreported = unreported
+        except OutputError as error:
+            self._capture = None
+            self._said(f"capture ended: {error}")
+
+    def _report_troubles(self) -> None:
+        meters = self.instrument.meters()
+        troubles = {
+            "the state was lost and put back to rest": int(meters["lost"]),
+            "events found the ring full": self.instrument.dropped_events,
+            "OSC packets were dropped by the system": self.osc.traffic.kernel_drops,
+        }
+        for what, count in troubles.items():
+            if count > self._troubles.get(what, 0):
+                self._said(f"{what} ({count} so far)")
+        self._troubles = troubles
+
+    # -- what OSC may ask for ------------------------------------------------------------------
+
+    def start_recording(self, name: str) -> str:
+        """Record under a plain name, into the recordings folder; return the file's name.
+
+        Errors: OutputError.
+        """
+        if not PLAIN_NAME.fullmatch(name):
+            raise OutputError(f"{name!r} is not a plain name of letters, digits, . _ - and spaces")
+        if self._recorder is not None and self._recorder.is_running:
+            raise OutputError(f"already recording {self._recorder.target.name}")
+        folder = self.options.recordings
+        target = folder / (name if Path(name).suffix in (".wav", ".flac") else f"{name}.wav")
+        if target.exists():
+            raise OutputError(f"{target.name} exists")
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise OutputError(f"{folder}: {error.strerror}") from error
+        self._recorder = Recorder(self.instrument, target, self.instrument.frame, self._said)
+        self._said(f"recording {target}")
+        return target.name
+
+    def stop_recording(self) -> str:
+        """End the recording; return the file's name. Errors: OutputError where none runs."""
+        if self._recorder is None:
+            raise OutputError("nothing is being recorded")
+        name = self._recorder.target.name
+        self._stop_recorder()
+        return name
+
+    def _stop_recorder(self) -> None:
+        recorder, self._recorder = self._recorder, None
+        if recorder is not None:
+            recorder.stop()
+            if recorder.target.exists():
+                self._said(f"{recorder.target}: {recorder.seconds:.1f} s")
+
+    @property
+    def recording(self) -> str:
+        """The name of the file that is being recorded, or nothing."""
+        recorder = self._recorder
+        return recorder.target.name if recorder is not None and recorder.is_running else ""
+
+    def status(self) -> dict[str, float | str]:
+        """How things stand, by plain names; the meanings are in docs/osc.md."""
+        meters = self.instrument.meters()
+        output, traffic, counts = self.output.state, self.osc.traffic, self.handler.counts
+        pitch = self.player.pitch
+        midi = self.midi
+        return {
+            "device": output.device or "silent clock",
+            "problem": output.problem,
+            "rate": self.instrument.rate,
+            "blocksize": self.options.output.blocksize,
+            "latency_ms": output.latency_ms,
+            "delay_ms": 1e3 * self.player.delay / self.instrument.rate,
+            "uptime_s": time.monotonic() - self._started,
+            "frame": int(meters["frame"]),
+            "peak_db": _decibels(meters["peak"]),
+            "rms_db": _decibels(meters["rms"]),
+            "note": -1.0 if pitch is None else pitch,
+            "bow_speed": self.player.value("/bow/speed"),
+            "bow_side": self.player.value("/bow/side"),
+            "load": float(meters["load"]),
+            "worst_load": float(meters["worst_load"]),
+            "missed_deadlines": int(meters["missed"]),
+            "late_callbacks": int(meters["late_callbacks"]),
+            "underruns": int(meters["underruns"]),
+            "device_losses": output.losses,
+            "applied_events": int(meters["applied"]),
+            "late_events": int(meters["late_events"]),
+            "dropped_events": self.instrument.dropped_events,
+            "waiting_events": int(meters["waiting"]),
+            "unconverged_solves": int(meters["unconverged"]),
+            "lost_states": int(meters["lost"]),
+            "osc_packets": traffic.packets,
+            "osc_messages": counts.messages,
+            "osc_malformed": counts.malformed,
+            "osc_errors": counts.errors,
+            "osc_refused": traffic.refused,
+            "osc_dropped": traffic.kernel_drops + traffic.queue_drops,
+            "osc_buffer_bytes": traffic.buffer_bytes,
+            "osc_connections": traffic.connections,
+            "osc_subscribers": self.handler.clients.subscribers,
+            "scheduled": self.handler.waiting,
+            "late_bundles": counts.late_bundles,
+            "midi_ports": "; ".join(midi.connected) if midi else "",
+            "midi_messages": midi.received if midi else 0,
+            "midi_malformed": midi.malformed if midi else 0,
+            "recording": self.recording,
+        }
+
+
+def _decibels(level: float) -> float:
+    return 20.0 * math.log10(max(float(level), 1e-6))

@@ -143,7 +143,8 @@ def connect_lines(host: str, port: int, lan: str) -> list[str]:
     lines = [f"OSC at {host}:{port} (UDP and TCP), such as /yehu/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
-        hint = f"yehu-server serve --osc {lan}:{port} --osc-allow {lan}/24"
+        network = ipaddress.ip_network(f"{lan}/24", strict=False)
+        hint = f"yehu-server serve --osc {lan}:{port} --osc-allow {network}"
         lines.append(f"for a phone on this network: {hint}")
     else:
         where = lan if address.is_unspecified else host

@@ -36,6 +36,9 @@ from yehu_server.score.capture import CaptureWriter
 log = logging.getLogger(__name__)
 
 KEEP_EVERY_S = 0.05
+# A message is heard one block after it arrived, so that its frame is still to be played, and
+# this much later, which is what Python takes to act on it.
+HANDLING_MS = 1.0
 FADE_MS = 50.0  # after the notes' release
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 # Short turns for Python's threads, so that handlers are not late when one is busy.
@@ -54,7 +57,7 @@ class ServeOptions:
     settings: tuple[tuple[str, float], ...] = ()
     seed: int = 0
     policy: RangePolicy = RangePolicy.TRANSPOSE
-    jitter_ms: float | None = None  # None: one block
+    jitter_ms: float | None = None  # None: one block and HANDLING_MS
     record: Path | None = None
     capture: Path | None = None
     recordings: Path = field(default_factory=lambda: user_music_path() / "yehu-server")
@@ -82,7 +85,7 @@ class Server:
             rate = self.output.find()
             native.warm_up()
             self.instrument = Instrument(rate, memory=self.output.memory.buffer)
-            block_ms = 1e3 * options.output.blocksize / rate
+            block_ms = 1e3 * options.output.blocksize / rate + HANDLING_MS
             self.player = LivePlayer(
                 self.instrument,
                 options.mapping,

@@ -3,7 +3,8 @@
 #
 #   setup run          what yehu-server needs: requirements.lock
 #   setup dev          that and what the checks need: requirements-dev.lock
-#   system_packages    the system's own libraries, where they are missing
+#   system_packages [NAMES...]
+#                      the system's own libraries and the ones named, where they are missing
 #
 # A stamp in .venv, written last, holds the hash of what the set-up was made from. A use that
 # finds it right runs nothing else; one that does not, sets up again. An interrupted set-up
@@ -18,6 +19,8 @@ log=$venv/setup.log
 # Python 3.13 and newer.
 debian_packages=(libportaudio2)
 debian_build_packages=(g++ libasound2-dev pkg-config)
+# What only tests need: a JACK server, and real OSC senders.
+debian_test_packages=(jackd2 liblo-tools puredata-core)
 
 # Python 3.12 and 3.11 first, since nothing has to be compiled for them. numba sets the newest.
 python_candidates=(python3.12 python3.11 python3.13 python3.14 python3 python)
@@ -188,7 +191,7 @@ logged() {
 system_packages() {
     [ "$(uname -s)" = Linux ] || return 0
     # shellcheck disable=SC2046
-    set -- $(missing "${debian_packages[@]}")
+    set -- $(missing "${debian_packages[@]}" "$@")
     if [ $# -eq 0 ] || apt_install "$@"; then
         return 0
     elif command -v apt-get >/dev/null; then

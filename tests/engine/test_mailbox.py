@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from yehu_server.engine import native
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
-from yehu_server.engine.mailbox import APPLIED_AT_ONCE, FORGET, HEAP, LINE, LIVE_BUDGET, RING
+from yehu_server.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
 from yehu_server.params.table import SLOT
 
 RATE = 22050
@@ -326,11 +326,8 @@ class Model:
     def post(self, frame: int, index: int) -> float:
         """Post an event, and return the target that tells it from all others."""
         self.order += 1
-        if index == FORGET:
-            self.waiting.clear()
-        else:
-            self.late += frame < self.frame
-            self.waiting.append((frame, self.order, index))
+        self.late += frame < self.frame
+        self.waiting.append((frame, self.order, index))
         return float(self.order)
 
     def play(self, frames: int, start: tuple[float, ...]) -> None:
@@ -353,7 +350,7 @@ def reported(instrument: Instrument) -> list[tuple[int, int, float]]:
 
 
 def postings(frames: int, most: int) -> st.SearchStrategy:
-    event = st.tuples(st.integers(-2, frames), st.sampled_from([*INERT, *INERT, *INERT, FORGET]))
+    event = st.tuples(st.integers(-2, frames), st.sampled_from(INERT))
     # What is posted before a block, and how long that block is.
     return st.lists(st.tuples(st.lists(event, max_size=most), st.integers(1, frames)), max_size=6)
 
@@ -461,36 +458,6 @@ def test_a_live_instrument_takes_in_so_many_events_for_each_64_frames():
     for waiting in (LIVE_BUDGET, 2 * LIVE_BUDGET, 3 * LIVE_BUDGET - 1, 3 * LIVE_BUDGET - 1):
         run(instrument, 64)
         assert instrument.meters()["waiting"] == waiting
-
-
-def test_forget_drops_what_waits_and_not_what_comes_after():
-    instrument = Instrument(RATE)
-    instrument.report_events()
-    post_numbered(instrument, 1, 10)  # applied before
-    post_numbered(instrument, 2, 200)  # waiting in the heap
-    run(instrument, 100)
-    post_numbered(instrument, 3, 150)  # still in the ring
-    post_numbered(instrument, 4, 0)  # and already due
-    instrument.forget()
-    post_numbered(instrument, 5, 150)
-    post_numbered(instrument, 6, 0)
-    run(instrument, 200)
-    assert numbers(instrument.applied_events()).tolist() == [1, 6, 5]
-    assert instrument.meters()["waiting"] == 0
-    assert instrument.meters()["applied"] == 3  # to forget is no event of its own
-
-
-@pytest.mark.xfail(reason="FORGET waits in the ring behind a full heap")
-def test_forget_empties_even_a_full_heap():
-    instrument = Instrument(RATE)
-    instrument.report_events()
-    for number in range(HEAP + 1000):
-        post_numbered(instrument, number, FAR)
-    run(instrument, 64)
-    instrument.forget()
-    post_numbered(instrument, 5)
-    run(instrument, 64)
-    assert numbers(instrument.applied_events()).tolist() == [5]
 
 
 def test_a_reset_leaves_nothing_to_apply():

@@ -262,6 +262,22 @@ def test_what_a_callback_answers_is_to_go_on():
         assert call == 0  # paContinue
 
 
+def test_what_a_process_left_that_died_while_it_played_is_mended():
+    instrument, out = bowed(), np.zeros(4096, np.float32)
+    instrument.process(out)
+    rig = instrument._rig
+    rig["version"][0, 0] += 1  # it died as it wrote the meters,
+    rig["meters"]["running"] = 1  # and some of the state is half a step ahead
+    rig["state"]["u"] = np.nan
+    instrument.recover()
+    instrument.process(out)
+    assert np.isfinite(out).all()
+    assert instrument.lost_states == 0
+    assert native.read_meters.call(instrument.address, instrument._meters.ctypes.data) == 1
+    assert instrument.meters()["callbacks"] == 2
+    assert instrument.meters()["running"] == 0
+
+
 # ---------------------------------------------------------------- the tape
 
 

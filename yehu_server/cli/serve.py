@@ -144,7 +144,7 @@ def _add_playing(group: Any) -> None:
         "--jitter-buffer",
         type=_jitter,
         metavar="MS",
-        help="delay of what comes in, so that it keeps its rhythm (default: one block)",
+        help="delay of what comes in, so that it keeps its rhythm (default: one block and 1 ms)",
     )
 
 

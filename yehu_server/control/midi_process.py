@@ -22,7 +22,7 @@ LOOK_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # look for a MIDI system, where there is none
 SENSE_EVERY_S = 0.05
 SENSE_WITHIN_S = 0.33  # active sensing: a message at least every 300 ms
-CLIENT = "yehu-server"
+CLIENT = "yehu-server MIDI"
 ACTIVE_SENSING, CLOCKS = 0xFE, {0xF8, 0xF9}
 MOST_BYTES = 3  # system exclusive says nothing to us
 
@@ -189,7 +189,7 @@ def _end_with_jack() -> None:
         return
     jack = ctypes.CDLL(name)
     jack.jack_client_open.restype = ctypes.c_void_p
-    watcher = jack.jack_client_open(f"{CLIENT}-watch".encode(), NO_START_SERVER, None)
+    watcher = jack.jack_client_open(f"{CLIENT} watch".encode(), NO_START_SERVER, None)
     if watcher:
         jack.jack_on_shutdown(ctypes.c_void_p(watcher), _ended, None)
         jack.jack_activate(ctypes.c_void_p(watcher))

@@ -64,7 +64,6 @@ class Instrument:
         self._rig["model"] = kernel.prepare(self.quantities, rate)
         self._rig["mail"]["budget"] = RING if memory is None else LIVE_BUDGET
         prepare_output(self._rig["output"], rate, channels)
-        self._meters = np.zeros(1, METERS)
         self.rests: list[int] = []  # frames at which `recover` had to put the model to rest
         self.reset()
 
@@ -183,14 +182,12 @@ class Instrument:
             self.rests.append(self.frame)
 
     def meters(self) -> Any:
-        """What the audio side last told of itself: a record of dtype ``telemetry.METERS``.
-
-        Overwritten by the next call.
-        """
+        """What the audio side last told of itself: a record of dtype ``telemetry.METERS``."""
+        meters = np.zeros(1, METERS)
         for _ in range(native.TRIES):
-            if native.read_meters.call(self._address, self._meters.ctypes.data):
+            if native.read_meters.call(self._address, meters.ctypes.data):
                 break
-        return self._meters[0]
+        return meters[0]
 
     def frame_at(self, time_ns: int) -> float:
         """The frame that a moment of ``time.monotonic_ns()`` falls on, as blocks are played."""

@@ -20,7 +20,8 @@ def page() -> str:
         "",
         "Written by `scripts/parameters.py` from `yehu_server/params/table.py`.",
         "",
-        "`render --set ADDRESS=VALUE` holds any of them; mappings move those under `/playing`.",
+        "`--set ADDRESS=VALUE` of `render` and `serve` holds any of them; OSC sets them at `/yehu`",
+        "and their address; mappings move those under `/playing`.",
     ]
     for place, title in (
         (Place.PLAYER, "What the player goes by"),

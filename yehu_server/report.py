@@ -138,8 +138,8 @@ def note_name(pitch: float) -> str:
     return f"{name}{cents:+d}" if cents else name
 
 
-def connect_lines(host: str, port: int, lan: str) -> list[str]:
-    """How others reach the server, in words."""
+def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]:
+    """How others reach the server, in words; `is_open` where anyone is heard."""
     lines = [f"OSC at {host}:{port} (UDP and TCP), such as /yehu/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
@@ -149,6 +149,8 @@ def connect_lines(host: str, port: int, lan: str) -> list[str]:
     else:
         where = lan if address.is_unspecified else host
         lines.append(f"on a phone (TouchOSC): host {where}, send port {port}")
+        if is_open:
+            lines.append("anyone on this network may play; --osc-allow names who may")
     return lines
 
 

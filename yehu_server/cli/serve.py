@@ -201,7 +201,8 @@ def _serve(arguments: argparse.Namespace, ended: threading.Event) -> None:
         say(f"{server.output.state.problem}: playing on a silent clock")
     server.start()
     try:
-        for line in connect_lines(server.osc.host, server.osc.port, lan_address()):
+        where = (server.osc.host, server.osc.port, lan_address())
+        for line in connect_lines(*where, is_open=not arguments.osc_allow):
             say(line)
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
         say(f"the system grants OSC a buffer of {buffer_kb} kB; Ctrl-C ends")

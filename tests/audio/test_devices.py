@@ -1,0 +1,60 @@
+"""Which audio output is meant."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server.audio.devices import AudioDevice, choose
+from yehu_server.errors import DeviceError
+
+
+def device(index: int, name: str, host_api: str, *, is_default: bool = False) -> AudioDevice:
+    return AudioDevice(index, name, host_api, 2, 48000.0, 5.0, is_default)
+
+
+DEVICES = [
+    device(0, "HiFiBerry DAC: hifi (hw:1,0)", "ALSA"),
+    device(3, "HDMI 0", "ALSA"),
+    device(4, "HDMI 1", "ALSA"),
+    device(7, "system", "JACK Audio Connection Kit", is_default=True),
+    device(8, "HDMI", "OSS"),
+]
+
+
+def test_the_default_is_the_systems():
+    assert choose(DEVICES, None).index == 7
+
+
+@pytest.mark.parametrize(
+    ("wanted", "index"),
+    [
+        ("system", 7),
+        ("system, JACK Audio Connection Kit", 7),
+        ("jack", 7),
+        ("hifi", 0),
+        ("HIFI, alsa", 0),
+        ("HDMI 1", 4),
+        ("hdmi 0 alsa", 3),
+        ("HDMI", 8),  # its whole name, though others have the word
+        ("hdmi oss", 8),
+    ],
+)
+def test_a_device_is_found_by_its_name_or_words_of_it(wanted, index):
+    assert choose(DEVICES, wanted).index == index
+
+
+def test_words_that_fit_several_are_refused_with_their_names():
+    with pytest.raises(DeviceError, match=r"several .* HDMI 0, ALSA; HDMI 1, ALSA"):
+        choose(DEVICES, "hdmi alsa")
+
+
+def test_what_fits_none_is_refused_with_all_names():
+    with pytest.raises(DeviceError, match=r"no audio output fits 'usb' .*HiFiBerry.*system"):
+        choose(DEVICES, "usb")
+
+
+def test_a_machine_without_sound_says_so():
+    with pytest.raises(DeviceError, match="there is no audio output"):
+        choose([], None)
+    with pytest.raises(DeviceError, match="there are: none"):
+        choose([], "hifi")

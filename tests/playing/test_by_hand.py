@@ -1,0 +1,138 @@
+"""Playing without notes: the finger slides to a pitch, the bow is drawn by hand."""
+
+from __future__ import annotations
+
+import mido
+import pytest
+
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.performer import Key
+
+
+def test_the_finger_waits_at_a_pitch_for_the_bow(player, listener):
+    assert player.slide(69.5) == 69.5
+    assert listener["/finger/1/position"] == pytest.approx(0.045)
+    assert listener["/finger/1/press"] == 1.5
+    assert not listener.of("/bow/side")  # nobody bows yet
+    assert player.draw(0.2, 0.7) == (0.2, 0.7)
+    assert (listener["/bow/speed"], listener["/bow/force"]) == (0.2, 0.7)
+    assert listener["/bow/assist"] == 0.0  # raw newtons
+    assert listener["/bow/side"] == 1.0
+
+
+def test_the_bow_follows_the_finger_to_the_other_string(player, listener):
+    player.draw(0.2, 0.7)
+    player.slide(76.0)
+    assert listener["/bow/side"] == -1.0
+    player.slide(67.0)
+    assert listener["/bow/side"] == 1.0
+
+
+def test_a_bow_drawn_by_hand_without_a_finger_plays_the_open_inner_string(player, listener):
+    player.draw(0.2, 0.7)
+    assert listener["/bow/side"] == 1.0
+
+
+def test_no_speed_and_no_force_lift_the_bow(player, listener):
+    player.draw(0.2, 0.7)
+    player.draw(0.0, 0.0)
+    assert listener["/bow/side"] == 0.0
+
+
+def test_lifting_touches_only_a_bow_drawn_by_hand(player, listener):
+    player.note_on(Key(0, 67))
+    moves = len(listener.moves)
+    player.lift()
+    assert len(listener.moves) == moves
+    player.note_off(Key(0, 67))
+    player.draw(0.2, 0.7)
+    player.lift()
+    assert (listener["/bow/speed"], listener["/bow/side"]) == (0.0, 0.0)
+
+
+def test_a_note_takes_the_bow_back(player, listener):
+    player.draw(0.2, 0.7)
+    player.note_on(Key(0, 74))
+    assert listener["/bow/assist"] == 1.0
+    assert listener.where() == ("C", 2.0)
+
+
+def test_a_sounding_note_slides_to_a_pitch(player, listener):
+    player.note_on(Key(0, 67))
+    player.slide(68.25)
+    assert listener.where() == ("F", 3.25)
+    player.note_off(Key(0, 67))
+    assert listener["/bow/speed"] == 0.0
+
+
+def test_a_pitch_beyond_the_instrument_is_played_as_the_nearest(player):
+    assert player.slide(20.0) == 65.0
+    assert player.slide(120.0) == 89.0
+
+
+def test_notes_may_lie_between_the_keys(player, listener):
+    player.note_on(Key(0, 67.5))
+    assert listener.where() == ("F", 2.5)
+    player.note_off(Key(0, 67.5))
+    assert listener["/bow/speed"] == 0.0
+
+
+# ---------------------------------------------------------------- several ports
+
+
+def on(player: MidiPlayer, note: int, port: int) -> None:
+    player.receive(mido.Message("note_on", note=note, velocity=80), port=port)
+
+
+@pytest.fixture
+def ports(player, mapping) -> MidiPlayer:
+    return MidiPlayer(player, mapping)
+
+
+def test_the_same_key_on_two_ports_is_two_notes(ports, player, listener):
+    on(ports, 67, port=0)
+    on(ports, 67, port=1)
+    ports.receive(mido.Message("note_off", note=67), port=1)
+    assert player.holds(Key(0, 67))
+    assert listener["/bow/speed"] != 0.0
+
+
+def test_a_port_that_is_gone_leaves_no_note_and_no_pedal(ports, player, listener):
+    on(ports, 67, port=1)
+    ports.receive(mido.Message("control_change", control=64, value=127), port=1)
+    ports.receive(mido.Message("note_off", note=67), port=1)
+    assert listener["/bow/speed"] != 0.0
+    ports.let_go_of(1)
+    assert player.sounding is None
+    assert listener["/bow/speed"] == 0.0
+
+
+def test_a_port_that_is_gone_leaves_the_others_alone(ports, player):
+    on(ports, 69, port=0)
+    on(ports, 67, port=1)
+    ports.let_go_of(1)
+    assert player.sounding == Key(0, 69)
+
+
+def test_percussion_is_left_out_on_every_port(ports, player):
+    ports.receive(mido.Message("note_on", note=67, velocity=80, channel=9), port=2)
+    assert player.sounding is None
+
+
+# ---------------------------------------------------------------- direct writes among controllers
+
+
+def test_a_direct_write_counts_until_the_controller_moves_again(ports, player):
+    ports.receive(mido.Message("control_change", control=1, value=127))
+    ports.write("/playing/speed", 0.1)
+    on(ports, 67, port=0)
+    assert player.value("/playing/speed") == 0.1
+    ports.receive(mido.Message("control_change", control=1, value=127))
+    assert player.value("/playing/speed") == pytest.approx(0.35)
+
+
+def test_a_direct_write_reaches_notes_of_other_ports(ports, player):
+    ports.receive(mido.Message("control_change", control=1, value=127), port=0)
+    ports.write("/playing/speed", 0.1)
+    on(ports, 67, port=1)
+    assert player.value("/playing/speed") == 0.1

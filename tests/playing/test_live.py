@@ -1,0 +1,149 @@
+"""Several hands at one instrument, in the order of frames."""
+
+from __future__ import annotations
+
+import math
+import threading
+
+import mido
+import numpy as np
+import pytest
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import ParameterError
+from yehu_server.params.table import SLOT, TABLE
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import load
+
+RATE = 48000.0
+INDEX = {slot: address for address, slot in SLOT.items()}
+
+
+@pytest.fixture
+def instrument() -> Instrument:
+    instrument = Instrument(RATE)
+    instrument.report_events()
+    return instrument
+
+
+@pytest.fixture
+def live(instrument) -> LivePlayer:
+    return LivePlayer(instrument, load("keyboard"), delay_ms=3.0)
+
+
+def play(instrument: Instrument, frames: int) -> np.ndarray:
+    out = np.zeros(frames, np.float32)
+    instrument.process(out)
+    return out
+
+
+def applied(instrument: Instrument, frames: int) -> list[tuple[int, str, float]]:
+    play(instrument, frames)
+    events = instrument.applied_events()
+    return [
+        (int(e["frame"]), INDEX.get(int(e["index"]), "silence"), float(e["target"])) for e in events
+    ]
+
+
+def test_a_note_is_heard_at_its_frame(live, instrument):
+    live.note_on(67.0, 90.0, frame=500)
+    assert {frame for frame, _, _ in applied(instrument, 1000)} == {500}
+    assert live.pitch == pytest.approx(67.0, abs=0.5)  # a finger varies
+    live.note_off(67.0, frame=600)
+    assert live.pitch is None
+
+
+def test_what_arrives_is_heard_a_constant_time_later(live, instrument):
+    play(instrument, 480)
+    now = int(instrument.meters()["due_ns"])
+    frames = [live.frame_of(now + ns) for ns in range(0, 10_000_000, 1_000_000)]
+    assert frames[0] == pytest.approx(144, abs=1)  # 3 ms after the block's beginning
+    assert np.diff(frames) == pytest.approx(48, abs=1)
+
+
+def test_a_decision_never_precedes_an_earlier_one(live, instrument):
+    live.note_on(67.0, 90.0, frame=500)  # with a time tag
+    live.receive(mido.Message("note_on", note=72, velocity=90), frame=300, port=0)
+    live.receive(mido.Message("note_off", note=72), frame=350, port=0)
+    live.note_off(67.0, frame=360)
+    assert {frame for frame, _, _ in applied(instrument, 1000)} == {500}
+    assert live.pitch is None
+    assert instrument._rig["gesture"]["target"][0, SLOT["/bow/speed"]] == 0.0
+
+
+def test_direct_writes_to_the_instrument_do_not_wait_for_decisions(live, instrument):
+    live.note_on(67.0, 90.0, frame=500)
+    live.write("/bow/position", 0.2, frame=100)
+    assert (100, "/bow/position", 0.2) in applied(instrument, 1000)
+
+
+def test_every_parameter_is_where_it_was_put(live):
+    for param in TABLE:
+        middle = 0.5 * (param.lo + param.hi)
+        assert live.write(param.address, middle, frame=0) == middle
+        assert live.value(param.address) == middle
+        assert live.write(param.address, param.hi + 1.0, frame=0) == param.hi
+        assert live.values()[param.address] == param.hi
+    live.reset(frame=0)
+    assert live.values() == {param.address: param.default for param in TABLE}
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1.0, 128.0])
+def test_notes_out_of_midis_range_are_refused_and_change_nothing(live, instrument, value):
+    for call in (
+        lambda: live.note_on(value, 90.0, frame=0),
+        lambda: live.note_on(67.0, value, frame=0),
+        lambda: live.slide(value, frame=0),
+    ):
+        with pytest.raises(ParameterError):
+            call()
+    assert not applied(instrument, 100)
+
+
+@pytest.mark.parametrize("ending", ["panic", "reset", "end_notes"])
+def test_nothing_sounds_on_after_the_end(live, instrument, ending):
+    live.receive(mido.Message("control_change", control=64, value=127), frame=0, port=0)
+    live.receive(mido.Message("note_on", note=72, velocity=90), frame=0, port=0)
+    live.receive(mido.Message("note_off", note=72), frame=100, port=0)
+    live.note_on(67.0, 90.0, frame=200)
+    play(instrument, 9600)
+    live.draw(0.2, 1.0, frame=9600)
+    play(instrument, 9600)
+    getattr(live, ending)(frame=19200)
+    tail = play(instrument, 2 * 48000)
+    assert live.pitch is None
+    assert np.abs(tail[-4800:]).max() < 1e-3
+    assert instrument._rig["gesture"]["target"][0, SLOT["/bow/speed"]] == 0.0
+
+
+def test_panic_is_silent_within_ten_milliseconds(live, instrument):
+    live.note_on(67.0, 90.0, frame=0)
+    play(instrument, 9600)
+    live.panic(frame=9600)
+    assert not play(instrument, 4800)[480:].any()
+
+
+def test_a_held_setting_stays_through_notes_and_controllers(live):
+    live.hold("/playing/speed", 0.5)
+    live.receive(mido.Message("control_change", control=1, value=0), frame=0, port=0)
+    live.note_on(67.0, 90.0, frame=0)
+    assert live.value("/playing/speed") == 0.5
+
+
+def test_many_threads_take_turns_without_a_torn_note(live, instrument):
+    def hammer(port: int) -> None:
+        for turn in range(200):
+            note = 65 + (turn * 7 + port) % 24
+            live.receive(mido.Message("note_on", note=note, velocity=90), frame=turn, port=port)
+            live.receive(mido.Message("note_off", note=note), frame=turn, port=port)
+
+    threads = [threading.Thread(target=hammer, args=(port,)) for port in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert live.pitch is None
+    events = applied(instrument, 4096)
+    assert instrument.dropped_events == 0
+    assert [f for f, _, _ in events] == sorted(f for f, _, _ in events)
+    assert events[-1][2] == 0.0  # the bow rests

@@ -1,0 +1,160 @@
+"""Captures: written as things happen, read whatever happened."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from yehu_server.engine.gesture import SILENCE
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.mailbox import EVENT
+from yehu_server.errors import OutputError, ScoreError
+from yehu_server.params.table import SLOT
+from yehu_server.replay import blocks, replay
+from yehu_server.score.capture import CaptureWriter, build, read_capture
+
+RATE = 48000.0
+SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
+
+
+def write(path, events=(), end=None, rests=(), lost=0):
+    writer = CaptureWriter(path, rate=RATE, seed=3)
+    writer.events(np.array(list(events), EVENT))
+    for frame in rests:
+        writer.note("rest", frame)
+    if lost:
+        writer.note("lost", 5, events=lost)
+    if end is not None:
+        writer.close(end)
+    writer._file.close()  # as a crash does
+    return path
+
+
+EVENTS = [(0, SIDE, 1.0, 480), (7, SPEED, 0.1 + 0.2, 960), (9000, SILENCE, 0.0, 0)]
+
+
+def test_what_is_written_is_read_to_the_bit(tmp_path):
+    capture = read_capture(write(tmp_path / "c", EVENTS, end=12345))
+    assert capture.rate == RATE
+    assert [tuple(e) for e in capture.events.tolist()] == EVENTS
+    assert capture.frames == 12345
+    assert capture.warnings == []
+
+
+def test_the_first_line_tells_the_whole_beginning(tmp_path):
+    header = json.loads(write(tmp_path / "c").read_text().splitlines()[0])
+    assert header["seed"] == 3
+    assert header["build"] == build()
+    assert set(header["values"]) == set(SLOT)
+
+
+def test_a_session_that_crashed_can_be_read(tmp_path):
+    path = write(tmp_path / "c", EVENTS)
+    path.write_text(path.read_text()[:-9])  # in the middle of the last line
+    capture = read_capture(path)
+    assert len(capture.events) == 2
+    assert capture.frames == 8 + 48000
+    assert "did not end properly" in capture.warnings[0]
+
+
+def test_lost_events_and_another_build_are_told(tmp_path):
+    path = write(tmp_path / "c", EVENTS, end=9001, lost=4)
+    path.write_text(path.read_text().replace(build()["sources"], "0" * 16))
+    warnings = " ".join(read_capture(path).warnings)
+    assert "4 events" in warnings
+    assert "another build (sources)" in warnings
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "not a capture"),
+        ("{}", "not a capture"),
+        ("[1]", "not a capture"),
+        ("\xff\xfe", "not a capture"),
+        ('{"format": "yehu-server capture", "version": 99}', "version 99"),
+    ],
+)
+def test_what_is_no_capture_is_refused(tmp_path, text, reason):
+    path = tmp_path / "c"
+    path.write_bytes(text.encode("latin-1"))
+    with pytest.raises(ScoreError, match=reason):
+        read_capture(path)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "nonsense",
+        '[1, "/bow/speed", 0.1]',
+        '[1, "/no/such", 0.1, 0]',
+        '[-1, "/bow/speed", 0.1, 0]',
+        '[1, "/bow/speed", NaN, 0]',
+        '[1e300, "/bow/speed", 0.0, 0]',
+        "7",
+    ],
+)
+def test_a_damaged_line_is_named(tmp_path, line):
+    path = write(tmp_path / "c")
+    path.write_text(path.read_text() + line + '\n{"end": 10}\n')
+    with pytest.raises(ScoreError, match=str(path)):
+        read_capture(path)
+
+
+def test_events_out_of_order_are_refused(tmp_path):
+    with pytest.raises(ScoreError, match="order"):
+        read_capture(write(tmp_path / "c", [(5, SPEED, 0.1, 0), (4, SPEED, 0.1, 0)], end=10))
+
+
+def test_a_missing_file_and_a_missing_folder_are_told(tmp_path):
+    with pytest.raises(ScoreError, match="No such file"):
+        read_capture(tmp_path / "none")
+    with pytest.raises(OutputError, match="does not exist"):
+        CaptureWriter(tmp_path / "none" / "c", rate=RATE, seed=0)
+
+
+def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
+    live = Instrument(RATE)
+    live.report_events()
+    live.write("/bow/side", 1.0)
+    live.write("/bow/speed", 0.2)
+    played = np.zeros(30000, np.float32)
+    for start in range(0, 30000, 100):
+        if start == 10000:
+            live.write("/finger/1/press", 1.5)
+        live.process(played[start : start + 100])
+    writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0)
+    writer.events(live.applied_events())
+    writer.close(live.frame)
+    again = np.concatenate(list(blocks(read_capture(tmp_path / "c"), Instrument(RATE))))
+    assert (again == played).all()
+    assert np.abs(played).max() > 0.01
+
+
+def test_a_rest_in_mid_session_is_replayed(tmp_path):
+    live = Instrument(RATE)
+    live.report_events()
+    live.write("/bow/side", 1.0)
+    live.write("/bow/speed", 0.2)
+    played = np.zeros(20000, np.float32)
+    live.process(played[:9000])
+    live._rig["meters"]["running"] = 1  # as if the process was killed inside a block
+    live.recover()
+    live.process(played[9000:])
+    assert live.rests == [9000]
+    writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0)
+    writer.events(live.applied_events())
+    writer.note("rest", 9000)
+    writer.close(live.frame)
+    again = np.concatenate(list(blocks(read_capture(tmp_path / "c"), Instrument(RATE))))
+    assert (again == played).all()
+
+
+def test_a_replay_counts_what_it_did(tmp_path):
+    capture = read_capture(write(tmp_path / "c", EVENTS, end=9600))
+    result = replay(capture, tmp_path / "x.wav", format_name="wav", subtype="float")
+    assert result.events == 3
+    assert result.duration_s == 0.2
+    assert (tmp_path / "x.wav").exists()

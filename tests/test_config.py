@@ -1,0 +1,115 @@
+"""Options of serve, from the command line and from a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from yehu_server import cli
+from yehu_server.cli.config import expand
+from yehu_server.cli.serve import _options
+from yehu_server.report import connect_lines, note_name
+
+
+def options(*words: str):
+    parser = cli._parser()
+    return _options(parser.parse_args(expand(["serve", *words], parser)))
+
+
+@pytest.fixture
+def file(tmp_path) -> Path:
+    return tmp_path / "serve.toml"
+
+
+def test_without_options_this_machine_alone_is_heard():
+    plain = options()
+    assert plain.osc == ("127.0.0.1", 9000)
+    assert (plain.output.blocksize, plain.output.channels) == (128, 2)
+    assert plain.midi is not None
+    assert plain.midi.patterns == []
+
+
+def test_any_option_may_stand_in_the_file(file):
+    file.write_text(
+        'rate = 48000\nmidi-in = ["keystep", "breath"]\nosc = ":9100"\nlatency = 0.01\n'
+        'set = { "/bow/position" = 0.1 }\nosc_allow = ["10.0.0.0/8"]\njitter-buffer = 5\n'
+    )
+    read = options("--config", str(file))
+    assert read.output.rate == 48000
+    assert read.output.latency == 0.01
+    assert read.midi.patterns == ["keystep", "breath"]
+    assert read.osc == ("127.0.0.1", 9100)
+    assert read.settings == (("/bow/position", 0.1),)
+    assert "10.1.2.3" in read.allowed
+    assert "192.168.0.1" not in read.allowed
+    assert read.jitter_ms == 5.0
+
+
+@pytest.mark.parametrize("order", [0, 1])
+def test_the_command_line_wins_wherever_the_file_is_named(file, order):
+    file.write_text("rate = 48000\nblocksize = 64\n")
+    words = [["--rate", "44100"], [f"--config={file}"]]
+    read = options(*words[order], *words[1 - order])
+    assert (read.output.rate, read.output.blocksize) == (44100, 64)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("rate = 'fast'", "'fast' is not a number"),
+        ("rat = 48000", "unrecognized arguments: --rat=48000"),
+        ("rate = [", "not a TOML file"),
+        ("rate = 5", "not within 22050 to 192000 Hz"),
+        ("config = 'other.toml'", "cannot name another"),
+        ("rate = 1979-05-27", "expected a word or a number"),
+        ("blocksize = 0", "0 is not within 1 to 8192 frames"),
+    ],
+)
+def test_an_error_in_the_file_names_it(file, text, reason, capsys):
+    file.write_text(text)
+    try:
+        code = cli.main(["serve", "--config", str(file)])
+    except SystemExit as leaving:
+        code = leaving.code
+    assert code == 2
+    error = capsys.readouterr().err
+    assert reason in error
+    assert str(file) in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--osc", "127.0.0.1:port"], "expected HOST:PORT"),
+        (["--osc", "127.0.0.1:99999"], "expected HOST:PORT"),
+        (["--osc-allow", "everyone"], "is not a network"),
+        (["--set", "/no/such=1"], "unknown parameter"),
+        (["--mapping", "none"], "no mapping 'none'"),
+        (["--config", "/no/such/file.toml"], "No such file"),
+        (["--latency", "soon"], "'soon' is not a number"),
+    ],
+)
+def test_a_wrong_option_is_one_clear_line(words, reason, capsys):
+    try:
+        code = cli.main(["serve", *words])
+    except SystemExit as leaving:
+        code = leaving.code
+    assert code == 2
+    error = capsys.readouterr().err
+    assert reason in error
+    assert error.count("\n") == 1
+
+
+def test_a_phone_is_told_the_exact_line():
+    local = connect_lines("127.0.0.1", 9000, "192.168.1.5", is_open=True)
+    assert "--osc 192.168.1.5:9000 --osc-allow 192.168.1.0/24" in local[1]
+    far = connect_lines("::", 9000, "192.168.1.5", is_open=True)
+    assert "host 192.168.1.5, send port 9000" in far[1]
+    assert "anyone" in far[2]
+    assert len(connect_lines("192.168.1.5", 9000, "192.168.1.5", is_open=False)) == 2
+
+
+def test_pitches_have_names():
+    assert [note_name(p) for p in (65.0, 69.12, 71.98)] == ["F4", "A4+12", "C5-2"]

@@ -7,6 +7,7 @@ does, so none outlives its parent.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import os
@@ -14,7 +15,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import IO, Any
 
 Message = dict[str, Any]
 
@@ -73,35 +74,50 @@ class Child:
 
     def stop(self) -> None:
         """Let the process end by itself, and make it where it does not."""
-        pipe = self._process.stdin
-        try:
-            with self._sending:
-                if pipe is not None:
-                    pipe.close()
+        self._hang_up()
+        with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(GOODBYE_S)
-        except (OSError, subprocess.TimeoutExpired):
-            pass
         self.kill()
 
     def kill(self) -> None:
         """End the process now; when this returns, it touches nothing any more."""
         self._process.kill()
         self._process.wait()
+        self._hang_up()
+
+    def _hang_up(self) -> None:
+        pipe = self._process.stdin
+        if pipe is not None:
+            with self._sending, contextlib.suppress(OSError):
+                pipe.close()
 
     def _listen(self) -> None:
-        for line in self._process.stdout or ():
+        for line in self._lines(self._process.stdout):
             try:
                 message = json.loads(line)
             except ValueError:
-                log.debug("%s: %s", self._name, line.decode(errors="replace").rstrip())
+                log.debug("%s: %s", self._name, line.rstrip())
             else:
-                self._heard(message)
+                self._tell(message)
         self._process.wait()
-        self._heard({"event": "gone"})
+        self._tell({"event": "gone"})
+
+    def _tell(self, message: Message) -> None:
+        try:
+            self._heard(message)
+        except Exception:  # whoever listens, we go on
+            log.exception("%s: could not act on %s", self._name, message)
 
     def _overhear(self) -> None:
-        for line in self._process.stderr or ():
-            log.debug("%s: %s", self._name, line.decode(errors="replace").rstrip())
+        for line in self._lines(self._process.stderr):
+            log.debug("%s: %s", self._name, line.rstrip())
+
+    @staticmethod
+    def _lines(pipe: IO[bytes] | None) -> Iterator[str]:
+        if pipe is not None:
+            with pipe:
+                for line in pipe:
+                    yield line.decode(errors="replace")
 
 
 def _claim_stdout() -> int:

@@ -275,6 +275,7 @@ class Server:
             "osc_errors": counts.errors,
             "osc_refused": traffic.refused,
             "osc_dropped": traffic.kernel_drops + traffic.queue_drops,
+            "osc_failures": traffic.failures,
             "osc_buffer_bytes": traffic.buffer_bytes,
             "osc_connections": traffic.connections,
             "osc_subscribers": self.handler.clients.subscribers,

@@ -46,6 +46,12 @@ class SharedMemory:
         os.ftruncate(self.descriptor, RIG_BYTES)
         self.buffer = mmap.mmap(self.descriptor, RIG_BYTES)
 
+    def close(self) -> None:
+        """Let no further process in; the memory goes with the last who uses it."""
+        if self.descriptor >= 0:
+            os.close(self.descriptor)
+        self.descriptor = -1
+
 
 class SilentClock:
     """Plays the instrument in real time, to nobody."""
@@ -166,6 +172,7 @@ class Output:
             self._thread.join()
         self._drop_child(gently=True)
         self._stop_clock()
+        self.memory.close()
 
     # -- the device's process ----------------------------------------------------------------
 

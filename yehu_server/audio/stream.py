@@ -7,6 +7,7 @@ process, or the silent clock, goes on where this one stopped.
 
 from __future__ import annotations
 
+import itertools
 import mmap
 import os
 import queue
@@ -18,7 +19,8 @@ from yehu_server.audio.devices import AudioDevice, choose, load_portaudio, outpu
 from yehu_server.child import Message, Parent
 from yehu_server.errors import DeviceError
 
-LOOK_EVERY_S = 0.5
+LOOK_EVERY_S, LATER_EVERY_S = 0.5, 2.0
+LATER = 60  # looks
 WATCH_EVERY_S = 0.02
 CLOSE_WITHIN_S = 0.5
 MOST_CHANNELS = 64
@@ -123,7 +125,7 @@ def _look(
 ) -> AudioDevice | None:
     """Wait for the device; PortAudio sees what came since only when it starts anew."""
     missing = ""
-    while True:
+    for look in itertools.count():
         try:
             devices = outputs(sounddevice)
             device = choose(devices, wanted)
@@ -140,12 +142,13 @@ def _look(
             )
             return device
         try:
-            if orders.get(timeout=LOOK_EVERY_S) is None:
+            if orders.get(timeout=LOOK_EVERY_S if look < LATER else LATER_EVERY_S) is None:
                 return None
         except queue.Empty:
             pass
         sounddevice._terminate()  # noqa: SLF001 - there is no other way to look again
         sounddevice._initialize()  # noqa: SLF001
+    return None
 
 
 def _watch(parent: Parent, orders: queue.Queue[Message | None], stream: Stream) -> None:

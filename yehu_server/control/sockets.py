@@ -80,6 +80,7 @@ class Traffic:
     kernel_drops: int = 0  # found the socket's buffer full
     queue_drops: int = 0  # found our queue full
     unsent: int = 0
+    failures: int = 0  # defects of ours
     connections: int = 0
     buffer_bytes: int = 0  # of the UDP socket, as granted
 
@@ -218,10 +219,13 @@ class OscPorts:
             wait = LONGEST_WAIT_S if asked is None else min(asked, LONGEST_WAIT_S)
             for key, events in self._selector.select(0.0 if self._queue else wait):
                 self._serve(key, events)
-            for _ in range(min(HANDLED_AT_ONCE, len(self._queue))):
-                packet, peer, arrived_ns = self._queue.popleft()
-                self._handler.handle(packet, peer, arrived_ns)
-            self._handler.tick()
+            try:
+                for _ in range(min(HANDLED_AT_ONCE, len(self._queue))):
+                    self._handler.handle(*self._queue.popleft())
+                self._handler.tick()
+            except Exception:  # a defect of ours must not silence the instrument's only ear
+                self.traffic.failures += 1
+                log.exception("OSC: a message could not be handled")
 
     def _serve(self, key: selectors.SelectorKey, events: int) -> None:
         if key.fileobj is self._udp:

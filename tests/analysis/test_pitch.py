@@ -1,0 +1,61 @@
+"""The pitch estimator, on tones whose pitch is known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from yehu_server.analysis.pitch import cents, pitch_hz, track
+
+RATES = (22050.0, 44100.0, 48000.0, 96000.0)
+
+
+def tone(frequency: float, rate: float, seconds: float, slope: float = 1.0) -> np.ndarray:
+    """Harmonics that fall off as a bowed string's do, in random phases."""
+    phases = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, 60)
+    time = np.arange(round(seconds * rate)) / rate
+    return sum(
+        k**-slope * np.sin(2.0 * np.pi * k * frequency * time + phases[k])
+        for k in range(1, 60)
+        if k * frequency < 0.45 * rate
+    )
+
+
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("note", [60, 65, 69.3, 72, 77.77, 89, 94])
+def test_steady_tones_are_right_to_half_a_cent(rate, note):
+    frequency = 440.0 * 2.0 ** ((note - 69) / 12)
+    for seconds in (0.05, 0.3):
+        assert abs(cents(pitch_hz(tone(frequency, rate, seconds), rate), frequency)) < 0.5
+
+
+def test_a_weak_fundamental_is_still_the_pitch():
+    x = tone(349.2, 44100.0, 0.3) - 0.97 * np.sin(
+        2.0 * np.pi * 349.2 * np.arange(13230) / 44100.0
+        + np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, 60)[1]
+    )
+    assert abs(cents(pitch_hz(x, 44100.0), 349.2)) < 0.5
+
+
+def test_noise_level_and_offset_do_not_matter():
+    noise = np.random.default_rng(2).normal(size=13230)
+    x = 1e-4 * (tone(523.3, 44100.0, 0.3) + 0.05 * noise) + 0.01
+    assert abs(cents(pitch_hz(x, 44100.0), 523.3)) < 0.5
+
+
+def test_what_has_no_pitch_gets_none():
+    assert math.isnan(pitch_hz(np.random.default_rng(3).normal(size=13230), 44100.0))
+    assert math.isnan(pitch_hz(np.zeros(13230), 44100.0))
+    assert math.isnan(pitch_hz(np.ones(3), 44100.0))
+
+
+def test_a_track_follows_a_glide():
+    rate = 44100.0
+    time = np.arange(44100) / rate
+    semitones = 2.0 * time
+    phase = 2.0 * np.pi * np.cumsum(440.0 * 2.0 ** (semitones / 12.0)) / rate
+    times, pitches = track(np.sin(phase) + 0.5 * np.sin(2.0 * phase), rate)
+    expected = 440.0 * 2.0 ** (2.0 * times / 12.0)
+    assert max(abs(cents(p, e)) for p, e in zip(pitches, expected, strict=True)) < 2.0

@@ -1,0 +1,1 @@
+"""Measuring sounds: how high they are and how loud. numpy only."""

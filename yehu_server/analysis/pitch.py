@@ -1,0 +1,99 @@
+"""How high a sound is, from its likeness to itself a period later.
+
+Source: [McLeod], the normalised square difference; each peak of it is refined at ever more
+periods, where a given error in place is a smaller one in pitch.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+Array = Any
+
+LOWEST_HZ, HIGHEST_HZ = 120.0, 2400.0
+CLEAR = 0.8  # likeness (1: the same again) under which there is no pitch
+NEARLY_BEST = 0.93  # the first peak this near to the best is the period, not a multiple of it
+
+
+def cents(frequency_hz: float, reference_hz: float) -> float:
+    """How far a frequency lies above another."""
+    return 1200.0 * math.log2(frequency_hz / reference_hz)
+
+
+def likeness(samples: Array, longest: int) -> Array:
+    """How like a sound is to itself, delayed by each lag up to `longest`.
+
+    Returns: ndarray [shape=(longest,)], 1 where it is the same again, 0 where unrelated.
+    """
+    x = np.asarray(samples, np.float64)
+    size = 1 << (2 * len(x) - 1).bit_length()
+    spectrum = np.fft.rfft(x, size)
+    product = np.fft.irfft(np.abs(spectrum) ** 2, size)[:longest]
+    squares = np.concatenate(([0.0], np.cumsum(x * x)))
+    lags = np.arange(longest)
+    energy = squares[len(x) - lags] + squares[-1] - squares[lags]
+    return 2.0 * product / np.maximum(energy, 1e-300)
+
+
+def pitch_hz(samples: Array, rate: float, lo: float = LOWEST_HZ, hi: float = HIGHEST_HZ) -> float:
+    """Fundamental frequency (Hz) of a steady sound; NaN where it has none.
+
+    Parameters
+    ----------
+    samples : ndarray [shape=(frames,)]
+        Two periods of `lo` at least; more make it surer.
+    """
+    x = np.asarray(samples, np.float64)
+    x = x - x.mean()
+    longest = len(x) // 2
+    first, last = int(rate / hi), min(int(rate / lo) + 2, longest - 2)
+    if last <= first or not np.any(x):
+        return math.nan
+    like = likeness(x, longest)
+    peaks = _peaks(like[: last + 1], max(first, 1))
+    if len(peaks) == 0 or like[peaks].max() < CLEAR:
+        return math.nan
+    best = peaks[like[peaks] >= NEARLY_BEST * like[peaks].max()][0]
+    return rate / _refine(like, float(_vertex(like, int(best))))
+
+
+def _peaks(like: Array, first: int) -> Array:
+    inner = np.arange(max(first, 1), len(like) - 1)
+    is_peak = (like[inner] > like[inner - 1]) & (like[inner] >= like[inner + 1])
+    return inner[is_peak]
+
+
+def _vertex(like: Array, near: int) -> float:
+    """Where a parabola through three values has its top."""
+    left, here, right = like[near - 1 : near + 2]
+    bend = left - 2.0 * here + right
+    return near if bend == 0.0 else float(near + 0.5 * (left - right) / bend)
+
+
+def _refine(like: Array, period: float) -> float:
+    periods = 2
+    while (periods + 0.25) * period < len(like) - 2:
+        reach = 0.25 * period
+        start = round(periods * period - reach)
+        near = start + int(np.argmax(like[start : round(periods * period + reach) + 1]))
+        if like[near] < CLEAR:
+            break
+        period = _vertex(like, near) / periods
+        periods = max(periods + 1, int(1.5 * periods))
+    return period
+
+
+def track(
+    samples: Array, rate: float, *, window_s: float = 0.05, step_s: float = 0.01
+) -> tuple[Array, Array]:
+    """Pitch over time.
+
+    Returns: the windows' middles (s) and pitches (Hz; NaN for none), ndarrays [shape=(windows,)].
+    """
+    window, step = round(window_s * rate), round(step_s * rate)
+    starts = np.arange(0, max(len(samples) - window, 0) + 1, step)
+    pitches = [pitch_hz(samples[start : start + window], rate) for start in starts]
+    return (starts + 0.5 * window) / rate, np.array(pitches)

@@ -100,6 +100,7 @@ class Child:
             else:
                 self._tell(message)
         self._process.wait()
+        self._hang_up()
         self._tell({"event": "gone"})
 
     def _tell(self, message: Message) -> None:

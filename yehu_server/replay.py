@@ -43,6 +43,8 @@ def blocks(capture: Capture, instrument: Instrument) -> Iterator[Any]:
             instrument.post(*event.item())
         samples = np.zeros(stop - start, np.float32)
         instrument.process(samples)
+        for rest, since in capture.rests.items():
+            samples[max(since - start, 0) : max(rest - start, 0)] = 0.0
         yield samples
 
 

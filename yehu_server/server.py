@@ -22,12 +22,14 @@ from platformdirs import user_music_path
 
 from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.audio.recorder import Recorder
+from yehu_server.control.addresses import Address, Allowed
 from yehu_server.control.osc import OscHandler
 from yehu_server.control.ports import MidiOptions, MidiPorts
-from yehu_server.control.sockets import Address, Allowed, OscPorts
+from yehu_server.control.sockets import OscPorts
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
+from yehu_server.files import check_target
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
@@ -96,14 +98,16 @@ class Server:
             self.handler = OscHandler(self.player, self)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
             undo.callback(self.osc.stop)
-            self._capture = self._open_capture()
+            for target in (options.record, options.capture):
+                if target is not None:
+                    check_target(target)
+            if options.capture is not None:
+                self.instrument.report_events()
             for address, value in options.settings:
                 self.player.hold(address, value)
-            self._recorder: Recorder | None = None
-            if options.record is not None:
-                self._recorder = Recorder(self.instrument, options.record, 0, said)
-                undo.callback(self._recorder.stop)
             undo.pop_all()
+        self._recorder: Recorder | None = None
+        self._capture: CaptureWriter | None = None
         self.midi = MidiPorts(self.player, options.midi, said) if options.midi else None
         self._ending = threading.Event()
         self._keeper = threading.Thread(target=self._keep, name="keeper", daemon=True)
@@ -111,23 +115,22 @@ class Server:
         self._unreported = 0
         self._troubles: dict[str, int] = {}
 
-    def _open_capture(self) -> CaptureWriter | None:
-        if self.options.capture is None:
-            return None
-        self.instrument.report_events()
-        return CaptureWriter(
-            self.options.capture, rate=self.instrument.rate, seed=self.options.seed
-        )
-
     def start(self) -> None:
-        """Begin to play. Errors: DeviceError where a named device cannot be opened."""
+        """Begin to play.
+
+        Errors: DeviceError where a named device cannot be opened; OutputError.
+        """
         sys.setswitchinterval(SWITCH_INTERVAL_S)
-        try:
+        with contextlib.ExitStack() as undo:
+            undo.callback(self.osc.stop)
+            undo.callback(self.output.end)
             self.output.begin(self.instrument)
-        except BaseException:
-            self.osc.stop()
-            self._stop_recorder()
-            raise
+            if self.options.capture is not None:
+                rate, seed = self.instrument.rate, self.options.seed
+                self._capture = CaptureWriter(self.options.capture, rate=rate, seed=seed)
+            if self.options.record is not None:
+                self._recorder = Recorder(self.instrument, self.options.record, 0, self._said)
+            undo.pop_all()
         self.osc.start()
         if self.midi is not None:
             self.midi.start()
@@ -167,8 +170,8 @@ class Server:
 
     def _write_capture(self, capture: CaptureWriter) -> None:
         try:
-            for frame in self.instrument.rests[self._rests :]:
-                capture.note("rest", frame)
+            for since, frame in self.instrument.rests[self._rests :]:
+                capture.note("rest", frame, since=since)
                 self._rests += 1
             capture.events(self.instrument.applied_events())
             meters = self.instrument.meters()
@@ -206,10 +209,10 @@ class Server:
             raise OutputError(f"already recording {self._recorder.target.name}")
         folder = self.options.recordings
         target = folder / (name if Path(name).suffix in (".wav", ".flac") else f"{name}.wav")
-        if target.exists():
-            raise OutputError(f"{target.name} exists")
         try:
             folder.mkdir(parents=True, exist_ok=True)
+            if target.exists():
+                raise OutputError(f"{target.name} exists")
         except OSError as error:
             raise OutputError(f"{folder}: {error.strerror}") from error
         self._recorder = Recorder(self.instrument, target, self.instrument.frame, self._said)

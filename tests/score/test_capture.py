@@ -23,7 +23,7 @@ def write(path, events=(), end=None, rests=(), lost=0):
     writer = CaptureWriter(path, rate=RATE, seed=3)
     writer.events(np.array(list(events), EVENT))
     for frame in rests:
-        writer.note("rest", frame)
+        writer.note("rest", frame, since=frame)
     if lost:
         writer.note("lost", 5, events=lost)
     if end is not None:
@@ -143,10 +143,10 @@ def test_a_rest_in_mid_session_is_replayed(tmp_path):
     live._rig["meters"]["running"] = 1  # as if the process was killed inside a block
     live.recover()
     live.process(played[9000:])
-    assert live.rests == [9000]
+    assert live.rests == [(9000, 9000)]
     writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0)
     writer.events(live.applied_events())
-    writer.note("rest", 9000)
+    writer.note("rest", 9000, since=9000)
     writer.close(live.frame)
     again = np.concatenate(list(blocks(read_capture(tmp_path / "c"), Instrument(RATE))))
     assert (again == played).all()

@@ -126,6 +126,7 @@ class Output:
         self._thread = threading.Thread(target=self._supervise, name="audio", daemon=True)
         self._ending = threading.Event()
         self._again_after_s = AGAIN_AFTER_S
+        self._look_at = 0.0  # monotonic s
 
     def find(self) -> float:
         """Look for the device; return the rate to run at (Hz).
@@ -158,10 +159,12 @@ class Output:
         self._start_clock()
         if self._found is not None:
             self._open(self._found)
-            started = self._take_up()
-            if not started and self._options.device is not None:
+            reason = self._take_up()
+            if reason and self._options.device is not None:
                 self.end()
-                raise DeviceError(self.state.problem)
+                raise DeviceError(reason)
+            if reason:
+                self._give_up(reason)
         if self._options.device != NULL:
             self._thread.start()
 
@@ -200,34 +203,38 @@ class Output:
         self._wanted = found
         self._channels = instrument_channels
 
-    def _take_up(self) -> bool:
-        """Hand the instrument over from the clock to the device, once that is ready."""
+    def _take_up(self) -> str:
+        """Hand the instrument over from the clock to the device; return why it cannot be."""
         instrument = self._instrument
         ready = self._await({"ready", "failed", "gone"})
         if ready["event"] != "ready" or self._child is None or instrument is None:
-            self._fail(ready)
-            return False
+            return self._reason(ready)
         self._stop_clock()
         instrument.channels = self._channels
         self._child.send("start")
         started = self._await({"started", "failed", "gone"})
         if started["event"] != "started":
-            self._fail(started)
+            self._drop_child()
+            instrument.recover()
             self._start_clock()
-            return False
+            return self._reason(started)
         self._again_after_s = AGAIN_AFTER_S
         name = self._wanted["name"]
         self.state = OutputState(name, ready["latency_ms"], self.state.losses)
         self._changed(f"playing on {name} at {instrument.rate:g} Hz")
-        return True
+        return ""
 
-    def _fail(self, event: Message) -> None:
+    @staticmethod
+    def _reason(event: Message) -> str:
+        return str(event.get("reason", "the audio process ended"))
+
+    def _give_up(self, reason: str) -> None:
+        """Look again only after a while, each time a longer one."""
         self._drop_child()
-        reason = event.get("reason", "the audio process ended")
         if reason != self.state.problem:
             self._changed(f"no sound: {reason}")
         self.state.problem = reason
-        self._ending.wait(self._again_after_s)
+        self._look_at = time.monotonic() + self._again_after_s
         self._again_after_s = min(2.0 * self._again_after_s, AGAIN_AFTER_AT_MOST_S)
 
     def _await(self, kinds: set[str]) -> Message:
@@ -244,6 +251,7 @@ class Output:
 
     def _drop_child(self, *, gently: bool = False) -> None:
         child, self._child = self._child, None
+        self._events = queue.Queue()  # its last words are nobody's business
         if child is not None:
             child.stop() if gently else child.kill()
 
@@ -257,12 +265,13 @@ class Output:
                 event = {"event": ""}
             if event["event"] == "found":
                 self._open(event)
-                self._take_up()
-            elif event["event"] == "failed":
-                self._fail(event)
-            elif event["event"] in ("lost", "gone") or self._has_stopped(heart):
-                self._lose()
-            if self._child is None and not self._ending.is_set():
+                reason = self._take_up()
+                if reason:
+                    self._give_up(reason)
+            elif event["event"] in ("lost", "gone", "failed") or self._has_stopped(heart):
+                self._lose(self._reason(event))
+            is_time = self._child is None and time.monotonic() >= self._look_at
+            if is_time and not self._ending.is_set():
                 self._look()
             heart = self._listen_to_heart(heart)
 
@@ -274,11 +283,11 @@ class Output:
         on_device = self.state.device is not None
         return on_device and time.monotonic() - heart[1] > HUNG_AFTER_S
 
-    def _lose(self) -> None:
+    def _lose(self, reason: str) -> None:
         """Go on to the silent clock; the process must be gone before that plays."""
         device = self.state.device
         if device is None:
-            self._fail({"event": "gone"})
+            self._give_up(reason)
             return
         self._drop_child()
         if self._instrument is not None:

@@ -222,8 +222,8 @@ def _wait(ended: threading.Event, duration_s: float | None) -> None:
 
 def _options(arguments: argparse.Namespace) -> Any:
     from yehu_server.audio.output import OutputOptions
+    from yehu_server.control.addresses import Allowed, parse_address
     from yehu_server.control.ports import MidiOptions
-    from yehu_server.control.sockets import Allowed, parse_address
     from yehu_server.params.table import assignment
     from yehu_server.physics.grid import check_rate
     from yehu_server.playing.fingering import RangePolicy
@@ -295,7 +295,8 @@ def _set_up_log(arguments: argparse.Namespace) -> None:
     handler = _Handler()
     plain = logging.Formatter("yehu-server: %(message)s")
     handler.setFormatter(_JsonFormatter() if arguments.json_log else plain)
-    logging.basicConfig(handlers=[handler], level=arguments.log_level.upper(), force=True)
+    logging.basicConfig(handlers=[handler], level=logging.WARNING, force=True)
+    logging.getLogger("yehu_server").setLevel(arguments.log_level.upper())
     arguments.quiet = arguments.json_log or arguments.log_level in ("warning", "error")
 
 

@@ -10,8 +10,8 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
-from yehu_server.control.packets import pack
-from yehu_server.control.sockets import Peer
+from yehu_server.control.packets import pack, shortened
+from yehu_server.control.peers import Peer
 
 FLUSH_S = 1.0 / 60.0
 MOST_SUBSCRIBERS = 64
@@ -68,7 +68,9 @@ class Clients:
     def _forget_idle(self) -> None:
         now = time.monotonic()
         self._clients = {
-            peer: client for peer, client in self._clients.items() if client.until > now
+            peer: client
+            for peer, client in self._clients.items()
+            if client.until > now or client.to_tell
         }
 
     # -- what they are told ------------------------------------------------------------------
@@ -108,7 +110,7 @@ class Clients:
             return
         client.patience -= 1.0
         self.errors_sent += 1
-        peer.send(pack(f"{self._prefix}/error", address, reason))
+        peer.send(pack(f"{self._prefix}/error", shortened(address), shortened(reason)))
 
     # -- when --------------------------------------------------------------------------------
 
@@ -129,7 +131,7 @@ class Clients:
         changed = {address: None for address, v in values.items() if self._told.get(address) != v}
         self._told = values
         packets: dict[str, bytes] = {}
-        for client in self._clients.values():
+        for client in list(self._clients.values()):  # sending may end one
             if client.until > now:
                 client.to_tell.update(changed)
             for address in client.to_tell:

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from yehu_server.child import Message, Parent
-from yehu_server.control.midi_names import is_wanted, stable_names
+from yehu_server.control.midi_names import StableNames, is_wanted, stable_names
 
 LOOK_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # look for a MIDI system, where there is none
@@ -71,6 +71,7 @@ class Inputs:
         self._virtual: str | None = order["virtual"]
         self._api = order["api"]
         self._open: dict[str, Input] = {}
+        self._names = StableNames()
         self._finder: Any = None  # the one client that asks for names
         self._problem = ""
 
@@ -84,7 +85,7 @@ class Inputs:
         if self._finder is None and not self._start():
             return
         names = self._finder.get_ports()
-        stable = stable_names(names)
+        stable = self._names.of(names)
         for name, place in zip(stable, range(len(names)), strict=True):
             if name not in self._open and is_wanted(name, self._patterns):
                 self._appear(name, names[place])

@@ -8,15 +8,15 @@ from __future__ import annotations
 import logging
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from yehu_server.control.clients import Clients
-from yehu_server.control.packets import Message, PacketError, pack, unpack
+from yehu_server.control.packets import Message, PacketError, answer, pack, unpack
 from yehu_server.control.patterns import PatternError, is_pattern, matches
-from yehu_server.control.schedule import Schedule, TagClock
-from yehu_server.control.sockets import Peer
+from yehu_server.control.peers import Peer
+from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.errors import YehuError
 from yehu_server.params.table import BY_ADDRESS, TABLE, find
 from yehu_server.playing.live import LivePlayer
@@ -61,6 +61,7 @@ class Call:
     """One message to be acted on: its arguments, who sent it, and when it is to be heard."""
 
     arguments: Sequence[Any]
+    payload: bytes
     peer: Peer
     frame: int
 
@@ -89,7 +90,9 @@ class OscHandler:
         self._desk = desk
         self.counts = Counts()
         self.clients = Clients(player.values, PREFIX)
-        self._schedule: Schedule[tuple[Message, Peer]] = Schedule()
+        # Before any message of now that would be heard later is decided on.
+        ahead_s = AHEAD_S + player.delay / player.instrument.rate
+        self._schedule: Schedule[tuple[Message, Peer]] = Schedule(ahead_s)
         self._tags = TagClock(player)
         self._calls: dict[str, Callable[[Call], None]] = {
             "/note": self._note,
@@ -108,7 +111,7 @@ class OscHandler:
             "/unsubscribe": self._unsubscribe,
             "/record/start": self._record_start,
             "/record/stop": self._record_stop,
-            "/ping": lambda call: call.peer.send(pack(f"{PREFIX}/pong", *call.arguments)),
+            "/ping": lambda call: call.peer.send(answer(f"{PREFIX}/pong", call.payload)),
         }
         for param in TABLE:
             self._calls[param.address] = self._setter(param.address)
@@ -158,32 +161,28 @@ class OscHandler:
         self.clients.forget(peer)
 
     def _act(self, message: Message, peer: Peer, frame: int) -> None:
-        call = Call(message.arguments, peer, frame)
+        call = Call(message.arguments, message.payload, peer, frame)
         try:
-            for action in self._actions(message.address):
-                action(call)
+            actions = self._actions(message.address)
         except YehuError as error:
             self._complain(peer, message.address, str(error))
+            return
+        for action in actions:  # of a pattern, one that refuses does not hold up the others
+            try:
+                action(call)
+            except YehuError as error:
+                self._complain(peer, message.address, str(error))
 
     def _actions(self, address: str) -> list[Callable[[Call], None]]:
-        if not address.startswith(PREFIX + "/") and not is_pattern(address):
+        known = address.removeprefix(PREFIX)
+        if known in self._calls and known != address:
+            return [self._calls[known]]
+        if is_pattern(address):
+            return [self._calls[one] for one in fitting(address, self._calls, PREFIX)]
+        if known == address:
             raise RefusedError(f"unknown address (all begin with {PREFIX}/)")
-        action = self._calls.get(address[len(PREFIX) :])
-        if action is not None:
-            return [action]
-        if not is_pattern(address):
-            find(address[len(PREFIX) :])  # names one that is near
-        if len(address) > LONGEST_PATTERN:
-            raise RefusedError("the pattern is too long")
-        try:
-            actions = [
-                act for known, act in self._calls.items() if matches(address, PREFIX + known)
-            ]
-        except PatternError as error:
-            raise RefusedError(str(error)) from error
-        if not actions:
-            raise RefusedError("the pattern fits no address")
-        return actions
+        find(known)  # names one that is near
+        raise RefusedError("unknown address")
 
     def _complain(self, peer: Peer, address: str, reason: str) -> None:
         self.counts.errors += 1
@@ -201,11 +200,7 @@ class OscHandler:
 
     def _get(self, call: Call) -> None:
         wanted = call.word().removeprefix(PREFIX)
-        addresses = (
-            [a for a in BY_ADDRESS if matches(wanted, a)] if is_pattern(wanted) else [wanted]
-        )
-        if not addresses:
-            raise RefusedError("the pattern fits no parameter")
+        addresses = fitting(wanted, BY_ADDRESS) if is_pattern(wanted) else [wanted]
         for address in addresses:
             call.peer.send(pack(PREFIX + address, self._player.value(address)))
 
@@ -260,18 +255,14 @@ class OscHandler:
         numbers = call.numbers(0, 2)
         seconds = numbers[0] if numbers else SUBSCRIBED_S
         seconds = min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
-        peer = call.peer
-        if len(numbers) == 2:
-            if not 0 < numbers[1] <= 65535 or numbers[1] != int(numbers[1]):
-                raise RefusedError(f"{numbers[1]:g} is not a port")
-            peer = peer.at(int(numbers[1]))
+        peer = call.peer.at(_port(numbers[1])) if len(numbers) == 2 else call.peer
         if not self.clients.subscribe(peer, seconds):
             raise RefusedError("there are too many subscribers")
         peer.send(pack(f"{PREFIX}/subscribed", seconds))
 
     def _unsubscribe(self, call: Call) -> None:
         numbers = call.numbers(0, 1)
-        peer = call.peer.at(int(numbers[0])) if numbers else call.peer
+        peer = call.peer.at(_port(numbers[0])) if numbers else call.peer
         self.clients.unsubscribe(peer)
         peer.send(pack(f"{PREFIX}/unsubscribed"))
 
@@ -295,6 +286,25 @@ def _number(argument: Any) -> float:
     if not math.isfinite(number):
         raise RefusedError(f"{number} is not finite")
     return number
+
+
+def _port(number: float) -> int:
+    if not 0 < number <= 65535 or number != int(number):
+        raise RefusedError(f"{number:g} is not a port")
+    return int(number)
+
+
+def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[str]:
+    """The addresses that a pattern fits. Errors: RefusedError where it fits none."""
+    if len(pattern) > LONGEST_PATTERN:
+        raise RefusedError("the pattern is too long")
+    try:
+        found = [address for address in addresses if matches(pattern, prefix + address)]
+    except PatternError as error:
+        raise RefusedError(str(error)) from error
+    if not found:
+        raise RefusedError("the pattern fits no address")
+    return found
 
 
 def _kind(argument: Any) -> str:

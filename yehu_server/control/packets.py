@@ -1,17 +1,22 @@
-"""OSC packets taken apart: messages with their time tags; and messages put together."""
+"""OSC packets taken apart: messages with their time tags; and messages put together.
+
+Read here and not by python-osc, which takes damaged packets for whole ones, and some for ever.
+"""
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from pythonosc.osc_bundle import OscBundle
-from pythonosc.osc_message import OscMessage
 from pythonosc.osc_message_builder import OscMessageBuilder
-from pythonosc.parsing.osc_types import IMMEDIATELY
 
-DEEPEST = 32  # bundles in bundles
+DEEPEST = 32  # bundles in bundles, lists in lists
+BUNDLE = b"#bundle\0"
+IMMEDIATELY = (0, 1)  # as a time tag
+SECONDS_1900_TO_1970 = 2_208_988_800
+PATIENCE = 1000  # characters of an error
 
 
 class PacketError(ValueError):
@@ -22,42 +27,126 @@ class PacketError(ValueError):
 class Message:
     """One OSC message.
 
-    `due_s` is the time its bundle asks for, in seconds since 1970, or None for now.
+    `due_s` is the time its bundle asks for, in seconds since 1970, or None for now. `payload`
+    is the type tags and arguments as they came.
     """
 
     address: str
     arguments: Sequence[Any]
     due_s: float | None = None
+    payload: bytes = field(default=b"", compare=False)
 
 
 def unpack(packet: bytes) -> list[Message]:
     """The messages of a packet, in order. Errors: PacketError; nothing of it counts then."""
     try:
-        if OscBundle.dgram_is_bundle(packet):
-            return list(_in_bundle(OscBundle(packet), None, DEEPEST))
-        if OscMessage.dgram_is_message(packet):
-            return [_message(OscMessage(packet), None)]
-    # python-osc lets whatever its parsing meets through: IndexError, struct.error,
-    # UnicodeDecodeError, RecursionError.
-    except Exception as error:
-        raise PacketError(str(error)) from error
-    raise PacketError("neither a message nor a bundle")
+        return list(_content(memoryview(packet), None, DEEPEST))
+    except (struct.error, UnicodeDecodeError) as error:
+        raise PacketError("cut short, or no text") from error
 
 
-def _in_bundle(bundle: OscBundle, due_s: float | None, depth: int) -> Iterator[Message]:
+def _content(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message]:
+    if bytes(data[:8]) == BUNDLE:
+        yield from _bundle(data, due_s, depth)
+    elif bytes(data[:1]) == b"/":
+        yield _message(data, due_s)
+    else:
+        raise PacketError("neither a message nor a bundle")
+
+
+def _bundle(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message]:
     if depth == 0:
         raise PacketError("bundles too deep in bundles")
-    if bundle.timestamp != IMMEDIATELY:
-        due_s = bundle.timestamp
-    for content in bundle:
-        if isinstance(content, OscBundle):
-            yield from _in_bundle(content, due_s, depth - 1)
+    tag = struct.unpack_from(">II", data, 8)
+    if tag != IMMEDIATELY:
+        due_s = tag[0] - SECONDS_1900_TO_1970 + tag[1] / 2.0**32
+    place = 16
+    while place < len(data):
+        (size,) = struct.unpack_from(">i", data, place)
+        start, place = place + 4, place + 4 + size
+        if size <= 0 or size % 4 != 0 or place > len(data):
+            raise PacketError("an element of a bundle is not as long as it says")
+        yield from _content(data[start:place], due_s, depth - 1)
+
+
+def _message(data: memoryview, due_s: float | None) -> Message:
+    reader = _Reader(data)
+    address = reader.text()
+    payload = bytes(data[reader.place :])
+    if not payload:  # old senders leave out the tags where there are no arguments
+        return Message(address, [], due_s)
+    tags = reader.text()
+    if not tags.startswith(","):
+        raise PacketError("no type tags")
+    arguments: list[Any] = []
+    lists = [arguments]
+    for tag in tags[1:]:
+        if tag == "[":
+            if len(lists) > DEEPEST:
+                raise PacketError("lists too deep in lists")
+            lists.append([])
+            lists[-2].append(lists[-1])
+        elif tag == "]" and len(lists) > 1:
+            lists.pop()
         else:
-            yield _message(content, due_s)
+            lists[-1].append(reader.argument(tag))
+    if len(lists) > 1 or reader.place != len(data):
+        raise PacketError("more or fewer arguments than type tags")
+    return Message(address, arguments, due_s, payload)
 
 
-def _message(message: OscMessage, due_s: float | None) -> Message:
-    return Message(message.address, message.params, due_s)
+class _Reader:
+    """A place in a message; struct.error or PacketError past its end."""
+
+    def __init__(self, data: memoryview) -> None:
+        self._data = data
+        self._bytes = bytes(data)
+        self.place = 0
+
+    def text(self) -> str:
+        end = self._bytes.find(b"\0", self.place)
+        if end < 0:
+            raise PacketError("a string without an end")
+        text = self._bytes[self.place : end].decode()
+        self._skip_to(end + 1)
+        return text
+
+    def argument(self, tag: str) -> Any:
+        if tag in FIXED:
+            form = FIXED[tag]
+            (value,) = form.unpack_from(self._data, self.place)
+            self.place += form.size
+            return value
+        if tag in CONSTANTS:
+            return CONSTANTS[tag]
+        if tag in "sS":
+            return self.text()
+        if tag == "b":
+            (size,) = struct.unpack_from(">i", self._data, self.place)
+            start = self.place + 4
+            if size < 0 or start + size > len(self._data):
+                raise PacketError("a blob is not as long as it says")
+            self._skip_to(start + size)
+            return self._bytes[start : start + size]
+        raise PacketError(f"unknown type {tag!r}")
+
+    def _skip_to(self, place: int) -> None:
+        """Go on at the next multiple of four."""
+        self.place = (place + 3) & ~3
+        if self.place > len(self._data):
+            raise PacketError("cut short")
+
+
+class Bang:
+    """The argument that means "now" or "without end" and has no value (type I)."""
+
+
+FIXED = {
+    tag: struct.Struct(f">{form}")
+    for tag, form in {"i": "i", "h": "q", "f": "f", "d": "d", "t": "8s", "c": "4s", "r": "4s",
+                      "m": "4s"}.items()
+}  # fmt: skip
+CONSTANTS = {"T": True, "F": False, "N": None, "I": Bang()}
 
 
 def pack(address: str, *arguments: float | str | bool) -> bytes:
@@ -66,3 +155,14 @@ def pack(address: str, *arguments: float | str | bool) -> bytes:
     for argument in arguments:
         builder.add_arg(argument)
     return builder.build().dgram
+
+
+def answer(address: str, payload: bytes) -> bytes:
+    """A message with type tags and arguments as another brought them."""
+    name = address.encode() + b"\0"
+    return name + b"\0" * (-len(name) % 4) + payload
+
+
+def shortened(text: str) -> str:
+    """Text of bearable length, for answers to what has none."""
+    return text if len(text) <= PATIENCE else f"{text[:PATIENCE]}..."

@@ -98,7 +98,7 @@ class MidiPorts:
         self.received += 1
         try:
             message = mido.Message.from_bytes(event["bytes"])
-        except ValueError:
+        except (ValueError, IndexError):
             self.malformed += 1
             return
         number = self._numbers.setdefault(event["port"], len(self._numbers))

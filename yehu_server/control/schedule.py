@@ -15,12 +15,23 @@ from typing import Generic, TypeVar
 
 from yehu_server.playing.live import LivePlayer
 
-AHEAD_S = 0.01  # how long before its time a message is decided on
+AHEAD_S = 0.01  # how long before a message of now a scheduled one is decided on
+TOGETHER_NS, TRIES = 100_000, 10
 STRAY_S = 0.001
 MOST = 1 << 16
 
 
 T = TypeVar("T")
+
+
+def both_clocks() -> tuple[float, int]:
+    """The world's clock (s since 1970) and the monotonic one (ns) at one moment."""
+    for _ in range(TRIES):
+        before = time.monotonic_ns()
+        now_s = time.time()
+        if time.monotonic_ns() - before < TOGETHER_NS:  # nothing held us up between them
+            break
+    return now_s, before
 
 
 class TagClock:
@@ -33,8 +44,8 @@ class TagClock:
     def frame_at(self, due_s: float) -> int:
         """The frame that is played at a moment."""
         rate = self._player.instrument.rate
-        ahead_s = due_s - time.time()
-        true = self._player.instrument.frame_at(time.monotonic_ns()) + ahead_s * rate
+        now_s, now_ns = both_clocks()
+        true = self._player.instrument.frame_at(now_ns) + (due_s - now_s) * rate
         if self._tie is not None:
             moment, frame = self._tie
             counted = frame + round((due_s - moment) * rate)

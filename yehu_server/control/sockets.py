@@ -8,7 +8,6 @@ a message is as early as it truly was, however busy Python is.
 from __future__ import annotations
 
 import contextlib
-import ipaddress
 import logging
 import selectors
 import socket
@@ -17,42 +16,26 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import Protocol
 
-from yehu_server.control.framing import Framing, FramingError
-from yehu_server.errors import DeviceError, ParameterError
+from yehu_server.control.addresses import Address, Allowed
+from yehu_server.control.framing import FramingError
+from yehu_server.control.peers import Peer, TcpPeer, Traffic, UdpPeer
+from yehu_server.errors import DeviceError
 
 log = logging.getLogger(__name__)
 
 BUFFER_BYTES = 32 << 20  # asked for; the system grants what it may
 DATAGRAM_BYTES = 1 << 16
-MOST_QUEUED = 1 << 17  # packets
-READ_AT_ONCE, HANDLED_AT_ONCE = 4096, 64
+MOST_QUEUED, MOST_QUEUED_BYTES = 1 << 17, 1 << 28  # packets
+READ_AT_ONCE = 2048
+HANDLE_FOR_NS = 2_000_000  # before we look for what is due, and read again
 MOST_CONNECTIONS = 64
-MOST_UNSENT_BYTES = 1 << 20
 LONGEST_WAIT_S = 0.5
+LOOPBACK = ("127.0.0.1", "::1")
 TRIES_FOR_A_PORT = 20
 # Linux's numbers for what Python's socket module does not name.
 SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 33, 35, 40
-
-Network = ipaddress.IPv4Network | ipaddress.IPv6Network
-Address = tuple[str, int]
-
-
-class Peer(Protocol):
-    """Someone who sent us something, and can be answered."""
-
-    @property
-    def name(self) -> str:
-        """Host and port, for reading."""
-
-    def send(self, packet: bytes) -> None:
-        """Send a packet, or drop it where the peer does not take it."""
-
-    def at(self, port: int) -> Peer:
-        """The same host at a port of its choice."""
 
 
 class Handler(Protocol):
@@ -71,108 +54,6 @@ class Handler(Protocol):
         """A peer has hung up."""
 
 
-@dataclass
-class Traffic:
-    """What came and went, since the start."""
-
-    packets: int = 0
-    refused: int = 0  # from senders who are not allowed
-    kernel_drops: int = 0  # found the socket's buffer full
-    queue_drops: int = 0  # found our queue full
-    unsent: int = 0
-    failures: int = 0  # defects of ours
-    connections: int = 0
-    buffer_bytes: int = 0  # of the UDP socket, as granted
-
-
-@dataclass(frozen=True)
-class UdpPeer:
-    """A sender of datagrams."""
-
-    socket: socket.socket = field(compare=False)
-    address: Address
-    traffic: Traffic = field(compare=False)
-
-    @property
-    def name(self) -> str:
-        """See `Peer`."""
-        return f"{self.address[0]}:{self.address[1]}"
-
-    def send(self, packet: bytes) -> None:
-        """See `Peer`."""
-        try:
-            self.socket.sendto(packet, self.address)
-        except OSError:
-            self.traffic.unsent += 1
-
-    def at(self, port: int) -> UdpPeer:
-        """See `Peer`."""
-        return UdpPeer(self.socket, (self.address[0], port, *self.address[2:]), self.traffic)
-
-
-class TcpPeer:
-    """One TCP connection."""
-
-    def __init__(self, connection: socket.socket, address: Address, ports: OscPorts) -> None:
-        self.socket = connection
-        self.name = f"{address[0]}:{address[1]} (TCP)"
-        self.framing = Framing()
-        self.unsent = bytearray()
-        self._ports = ports
-
-    def send(self, packet: bytes) -> None:
-        """See `Peer`; one who reads nothing for long is cut off."""
-        self.unsent += self.framing.wrap(packet)
-        self.flush()
-
-    def flush(self) -> None:
-        """Send what is waiting, as far as the peer takes it now."""
-        try:
-            while self.unsent:
-                del self.unsent[: self.socket.send(self.unsent)]
-        except BlockingIOError:
-            pass
-        except OSError:
-            self.unsent.clear()
-        if len(self.unsent) > MOST_UNSENT_BYTES:
-            self._ports.hang_up(self)
-        else:
-            self._ports.watch(self)
-
-    def at(self, port: int) -> TcpPeer:
-        """See `Peer`: over a connection there is only one way back."""
-        del port
-        return self
-
-
-class Allowed:
-    """Which senders are heard.
-
-    Errors: ParameterError for what is no network, such as ``192.168.1.0/24``.
-    """
-
-    def __init__(self, networks: Iterable[str] = ()) -> None:
-        self._networks: list[Network] = []
-        self._known: dict[str, bool] = {}
-        for text in networks:
-            try:
-                self._networks.append(ipaddress.ip_network(text, strict=False))
-            except ValueError:
-                raise ParameterError(f"{text!r} is not a network, such as 192.168.1.0/24") from None
-
-    def __contains__(self, host: str) -> bool:
-        """Whether a host is heard: any, where no network is named."""
-        if not self._networks:
-            return True
-        if host not in self._known:
-            if len(self._known) > MOST_QUEUED:
-                self._known.clear()
-            address = ipaddress.ip_address(host.partition("%")[0])
-            address = getattr(address, "ipv4_mapped", None) or address
-            self._known[host] = any(address in network for network in self._networks)
-        return self._known[host]
-
-
 class OscPorts:
     """One UDP and one TCP port, and the thread that serves them.
 
@@ -183,7 +64,8 @@ class OscPorts:
         self.traffic = Traffic()
         self._allowed = allowed
         self._handler = handler
-        self._queue: deque[tuple[bytes, Peer, int]] = deque()
+        self._queue: deque[tuple[bytes | None, Peer, int]] = deque()  # None: has hung up
+        self._queued_bytes = 0
         self._peers: dict[Address, UdpPeer] = {}
         self._selector = selectors.DefaultSelector()
         self._udp, self._tcp = _open(host, port)
@@ -220,12 +102,22 @@ class OscPorts:
             for key, events in self._selector.select(0.0 if self._queue else wait):
                 self._serve(key, events)
             try:
-                for _ in range(min(HANDLED_AT_ONCE, len(self._queue))):
-                    self._handler.handle(*self._queue.popleft())
+                until_ns = time.monotonic_ns() + HANDLE_FOR_NS
+                while self._queue and time.monotonic_ns() < until_ns:
+                    self._handle_next()
                 self._handler.tick()
             except Exception:  # a defect of ours must not silence the instrument's only ear
                 self.traffic.failures += 1
                 log.exception("OSC: a message could not be handled")
+
+    def _handle_next(self) -> None:
+        packet, peer, arrived_ns = self._queue.popleft()
+        if packet is not None:
+            self._queued_bytes -= len(packet)
+            self._handler.handle(packet, peer, arrived_ns)
+        elif isinstance(peer, TcpPeer):
+            peer.finish()
+            self._handler.gone(peer)
 
     def _serve(self, key: selectors.SelectorKey, events: int) -> None:
         if key.fileobj is self._udp:
@@ -256,7 +148,9 @@ class OscPorts:
                     arrived_ns = min(seconds * 10**9 + ns - offset_ns, time.monotonic_ns())
                 elif kind == SO_RXQ_OVFL:
                     self.traffic.kernel_drops = struct.unpack("I", data[:4])[0]
-            if address[0] in self._allowed:
+            if address[1] == self.port and address[0] in (self.host, *LOOPBACK):
+                self.traffic.refused += 1  # our own word, by way of a subscription to ourselves
+            elif address[0] in self._allowed:
                 self._enqueue(packet, self._peer(address), arrived_ns)
             else:
                 self.traffic.refused += 1
@@ -271,9 +165,10 @@ class OscPorts:
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
         self.traffic.packets += 1
-        if len(self._queue) >= MOST_QUEUED:
+        if len(self._queue) >= MOST_QUEUED or self._queued_bytes > MOST_QUEUED_BYTES:
             self.traffic.queue_drops += 1
         else:
+            self._queued_bytes += len(packet)
             self._queue.append((packet, peer, arrived_ns))
 
     # -- TCP -----------------------------------------------------------------------------------
@@ -291,7 +186,9 @@ class OscPorts:
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.traffic.connections += 1
         self._selector.register(
-            connection, selectors.EVENT_READ, TcpPeer(connection, address, self)
+            connection,
+            selectors.EVENT_READ,
+            TcpPeer(connection, address, self.watch, self.hear_out),
         )
 
     def _read_stream(self, peer: TcpPeer) -> None:
@@ -312,38 +209,23 @@ class OscPorts:
             log.warning("OSC: %s: %s; connection closed", peer.name, error)
             data = b""
         if not data:
-            self.hang_up(peer)
+            self.hear_out(peer)
+
+    def hear_out(self, peer: TcpPeer) -> None:
+        """Read no more from a peer; what it has said is still acted on and answered."""
+        peer.reads = False
+        self.watch(peer)
+        self._queue.append((None, peer, 0))
 
     def watch(self, peer: TcpPeer) -> None:
-        """Wait until a peer takes more, where it has not taken all."""
-        events = selectors.EVENT_READ | (selectors.EVENT_WRITE if peer.unsent else 0)
+        """Wait for what the peer has still to say or to take; close when there is neither."""
         with contextlib.suppress(KeyError, ValueError):
-            self._selector.modify(peer.socket, events, peer)
-
-    def hang_up(self, peer: TcpPeer) -> None:
-        """Close a connection."""
-        peer.unsent.clear()
-        try:
             self._selector.unregister(peer.socket)
-        except (KeyError, ValueError):
-            return  # already closed
-        peer.socket.close()
-        self.traffic.connections -= 1
-        self._handler.gone(peer)
-
-
-def parse_address(text: str, default_host: str, default_port: int) -> Address:
-    """Read ``HOST:PORT``, ``HOST`` or ``:PORT``. Errors: ParameterError."""
-    host, colon, port = text.rpartition(":")
-    if not colon or text.endswith("]"):
-        host, port = text, ""
-    try:
-        number = int(port) if port else default_port
-    except ValueError:
-        number = -1
-    if not 0 <= number <= 65535:
-        raise ParameterError(f"{text!r}: expected HOST:PORT, such as 127.0.0.1:9000")
-    return host.strip("[]") or default_host, number
+        if peer.events:
+            self._selector.register(peer.socket, peer.events, peer)
+        elif peer.is_finished and peer.socket.fileno() >= 0:
+            peer.socket.close()
+            self.traffic.connections -= 1
 
 
 def _open(host: str, port: int) -> tuple[socket.socket, socket.socket]:

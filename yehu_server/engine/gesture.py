@@ -73,6 +73,16 @@ def prepare_gesture(quantities: Quantities, rate: float) -> Any:
     return gesture
 
 
+def settle(gesture: Any) -> None:
+    """Let a record of dtype GESTURE be where it is bound, with nothing on its way; in place."""
+    gesture["value"] = gesture["target"]
+    gesture["remaining"] = 0
+    gesture["silence_in"] = 0
+    is_down = gesture["value"][PRESS] > 0.0
+    gesture["finger_up"] = 0 if is_down else gesture["park_after"]
+    gesture["sounding_from"] = gesture["value"][FINGER] if is_down else 0.0
+
+
 @compiled
 def take(g: Any, index: int, target: float, ramp: int, silence_frames: int) -> None:
     """Apply one event: set a parameter going towards its target. Real time: safe."""

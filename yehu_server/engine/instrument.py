@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from yehu_server.engine import native
-from yehu_server.engine.gesture import SILENCE, prepare_gesture
+from yehu_server.engine.gesture import SILENCE, prepare_gesture, settle
 from yehu_server.engine.mailbox import EVENT, LIVE_BUDGET, RING
-from yehu_server.engine.output import prepare_output
+from yehu_server.engine.output import prepare_output, rest_output
 from yehu_server.engine.telemetry import METERS
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT, find
@@ -64,7 +64,6 @@ class Instrument:
         self._rig["model"] = kernel.prepare(self.quantities, rate)
         self._rig["mail"]["budget"] = RING if memory is None else LIVE_BUDGET
         prepare_output(self._rig["output"], rate, channels)
-        self.rests: list[int] = []  # frames at which `recover` had to put the model to rest
         self.reset()
 
     def reset(self) -> None:
@@ -76,13 +75,16 @@ class Instrument:
         rig["state"] = kernel.at_rest(rig["model"])
         rig["gesture"] = prepare_gesture(self.quantities, self.rate)
         prepare_output(rig["output"], self.rate, self.channels)
-        rig["mail"]["waiting"] = 0
-        rig["mail"]["drained"] = rig["mail"]["posted"]
-        rig["meters"] = 0
+        mail = rig["mail"]
+        kept = mail["budget"].copy(), mail["reporting"].copy()
+        mail[:] = np.zeros(1, mail.dtype)
+        mail["budget"], mail["reporting"] = kept
+        rig["meters"] = np.zeros(1, METERS)
         rig["meters"]["rate"] = self.rate
         rig["meters"]["ns_per_frame"] = 1e9 / self.rate
         rig["published"] = rig["meters"]
         rig["taped"] = 0
+        self.rests: list[tuple[int, int]] = []
 
     @property
     def address(self) -> int:
@@ -169,17 +171,29 @@ class Instrument:
             native.callback.call(None, out.ctypes.data, len(out), None, 0, self._address)
 
     def come_to_rest(self) -> None:
-        """Put the model to rest at once. Nobody may play meanwhile."""
-        kernel.come_to_rest(self._rig["model"], self._rig["state"][0])
+        """Put the model to rest at once, its parameters where they are bound.
+
+        Nobody may play meanwhile.
+        """
+        rig = self._rig
+        kernel.come_to_rest(rig["model"][0], rig["state"][0])
+        settle(rig["gesture"][0])
+        rest_output(rig["output"])
 
     def recover(self) -> None:
-        """Mend what a process left that was killed while it played. Nobody may play meanwhile."""
+        """Mend what a process left that was killed while it played: rest, and a gap of silence.
+
+        Nobody may play meanwhile. Kept in ``rests``: first frame of the gap, and after it.
+        """
         rig = self._rig
         rig["version"][0, 0] += rig["version"][0, 0] % 2
         if rig["meters"]["running"][0]:
             rig["meters"]["running"] = 0
             self.come_to_rest()
-            self.rests.append(self.frame)
+            gap = int(rig["taped"][0, 0]), self.frame
+            rig["tape"][0, np.arange(*gap) % TAPE_FRAMES] = 0.0
+            rig["taped"][0, 0] = self.frame
+            self.rests.append(gap)
 
     def meters(self) -> Any:
         """What the audio side last told of itself: a record of dtype ``telemetry.METERS``."""

@@ -85,8 +85,11 @@ REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
 
 
 @compiled
-def drain(rig: Any, mail: Any, frame: int) -> None:
-    """Move what was posted into the heap, as far as the callback's budget goes."""
+def drain(rig: Any, mail: Any, frame: int) -> bool:
+    """Move what was posted into the heap, as far as the callback's budget goes.
+
+    Returns whether the heap has no room for more, so that it is worth another try soon.
+    """
     ring = carray(at(rig, RING_AT), (RING,), EVENT)
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     posted = load_acquire(rig, POSTED_AT)
@@ -99,6 +102,7 @@ def drain(rig: Any, mail: Any, frame: int) -> None:
         mail.waiting += 1
         drained += 1
     store_release(rig, DRAINED_AT, drained)
+    return bool(drained < posted and mail.waiting >= HEAP)
 
 
 @compiled
@@ -145,12 +149,14 @@ def play(rig: Any, out: Array) -> None:
     tape = carray(at(rig, TAPE_AT), (TAPE,), np.float32)
     done = 0
     while done < out.shape[0]:
-        drain(rig, mail, g.frame)
+        is_full = drain(rig, mail, g.frame)
         first = g.frame
         frames = 0
         silenced = False
         while frames < CHUNK and done + frames < out.shape[0] and not silenced:
             apply(rig, mail, g, o.fade)
+            if is_full:
+                is_full = drain(rig, mail, g.frame)
             move(g)
             write_controls(g, o.controls[frames])
             gain = level(g)
@@ -169,7 +175,7 @@ def play(rig: Any, out: Array) -> None:
             for channel in range(out.shape[1]):
                 out[done + n, channel] = sample
         if silenced:
-            kernel.come_to_rest(model, state[0])
+            kernel.come_to_rest(model[0], state[0])
             fall_silent(o)
         close_window(t, model[0], state[0])
         done += frames
@@ -186,6 +192,8 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
 
     Real time: safe; no Python, no lock, no allocation, no exception.
     """
+    if frames == 0:
+        return 0
     started_ns, cpu_ns = monotonic_ns(), thread_cpu_ns()
     mode = flush_denormals()
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]

@@ -41,6 +41,11 @@ def prepare_output(output: Any, rate: float, channels: int) -> None:
     output["fade"] = max(1, round(FADE_S * rate))
     output["decay"] = math.exp(-1.0 / (FADE_S * rate))
     output["blocker"] = math.exp(-2.0 * math.pi * BLOCKED_HZ / rate)
+    rest_output(output)
+
+
+def rest_output(output: Any) -> None:
+    """Forget the last samples, in place."""
     for name in ("last", "ghost", "pressure", "swing"):
         output[name] = 0.0
 

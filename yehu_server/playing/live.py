@@ -77,6 +77,7 @@ class LivePlayer:
         )
         self._midi = MidiPlayer(self._performer, mapping)
         self._decided = 0  # the latest frame of a decision
+        self._written = 0  # and of anything
 
     def frame_of(self, arrived_ns: int | None = None) -> int:
         """The frame for a message that arrived at a moment of ``time.monotonic_ns()``."""
@@ -85,6 +86,7 @@ class LivePlayer:
 
     def _in_order(self, frame: int) -> int:
         self._decided = max(self._decided, frame)
+        self._written = max(self._written, self._decided)
         return self._decided
 
     # -- parameters --------------------------------------------------------------------------
@@ -107,6 +109,7 @@ class LivePlayer:
         with self._turn:
             if find(address).place is Place.PLAYER:
                 frame = self._in_order(frame)
+            self._written = max(self._written, frame)
             return self._midi.write(address, value, frame=frame)
 
     def hold(self, address: str, value: float) -> float:
@@ -164,7 +167,7 @@ class LivePlayer:
     def end_notes(self, *, frame: int) -> None:
         """End all notes, as if all keys and pedals were let go, and lift a bow drawn by hand."""
         with self._turn:
-            frame = self._in_order(frame)
+            frame = self._in_order(max(frame, self._written))
             self._midi.receive(mido.Message("reset"), frame=frame)
             self._performer.lift(frame=frame)
 
@@ -177,10 +180,10 @@ class LivePlayer:
     def reset(self, *, frame: int) -> None:
         """The same, and put every parameter back to its default."""
         with self._turn:
+            frame = self._in_order(max(frame, self._written))
+            for param in sorted(TABLE, key=lambda param: param.place is Place.ENGINE):
+                self._midi.write(param.address, param.default, frame=frame)
             self.panic(frame=frame)
-            for param in TABLE:
-                self._midi.write(param.address, param.default, frame=self._decided)
-            self._performer.release()
 
 
 def _within(what: str, value: float) -> float:

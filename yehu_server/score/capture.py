@@ -69,7 +69,7 @@ class CaptureWriter:
         )
 
     def note(self, what: str, frame: int, **details: int) -> None:
-        """Add what else happened: ``rest`` (put to rest from outside), ``lost`` events."""
+        """Add what else happened: ``rest`` (after a gap `since` a frame), ``lost`` `events`."""
         self._write([{what: frame, **details}])
 
     def close(self, frame: int) -> None:
@@ -92,7 +92,7 @@ class Capture:
     rate: float
     build: dict[str, str]
     events: Any = field(default_factory=lambda: np.zeros(0, EVENT))  # by frame
-    rests: list[int] = field(default_factory=list)  # frames of rest
+    rests: dict[int, int] = field(default_factory=dict)  # frames of rest, and since when silent
     end: int | None = None  # frames in all
     lost: int = 0  # events that were not captured
     warnings: list[str] = field(default_factory=list)
@@ -158,7 +158,7 @@ def _take(entry: Any, capture: Capture, events: list[tuple[int, int, float, int]
     elif "end" in entry:
         capture.end = int(entry["end"])
     elif "rest" in entry:
-        capture.rests.append(int(entry["rest"]))
+        capture.rests[int(entry["rest"])] = int(entry["since"])
     elif "lost" in entry:
         capture.lost += int(entry["events"])
 

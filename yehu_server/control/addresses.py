@@ -1,0 +1,55 @@
+"""Who may speak, and where we listen."""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Iterable
+
+from yehu_server.errors import ParameterError
+
+Network = ipaddress.IPv4Network | ipaddress.IPv6Network
+Address = tuple[str, int]
+
+MOST_KNOWN = 1 << 16
+
+
+class Allowed:
+    """Which senders are heard.
+
+    Errors: ParameterError for what is no network, such as ``192.168.1.0/24``.
+    """
+
+    def __init__(self, networks: Iterable[str] = ()) -> None:
+        self._networks: list[Network] = []
+        self._known: dict[str, bool] = {}
+        for text in networks:
+            try:
+                self._networks.append(ipaddress.ip_network(text, strict=False))
+            except ValueError:
+                raise ParameterError(f"{text!r} is not a network, such as 192.168.1.0/24") from None
+
+    def __contains__(self, host: str) -> bool:
+        """Whether a host is heard: any, where no network is named."""
+        if not self._networks:
+            return True
+        if host not in self._known:
+            if len(self._known) > MOST_KNOWN:
+                self._known.clear()
+            address = ipaddress.ip_address(host.partition("%")[0])
+            address = getattr(address, "ipv4_mapped", None) or address
+            self._known[host] = any(address in network for network in self._networks)
+        return self._known[host]
+
+
+def parse_address(text: str, default_host: str, default_port: int) -> Address:
+    """Read ``HOST:PORT``, ``HOST`` or ``:PORT``. Errors: ParameterError."""
+    host, colon, port = text.rpartition(":")
+    if not colon or text.endswith("]"):
+        host, port = text, ""
+    try:
+        number = int(port) if port else default_port
+    except ValueError:
+        number = -1
+    if not 0 <= number <= 65535:
+        raise ParameterError(f"{text!r}: expected HOST:PORT, such as 127.0.0.1:9000")
+    return host.strip("[]") or default_host, number

@@ -129,7 +129,7 @@ def collect(
 
 
 @pytest.mark.parametrize("make", [lambda: Instrument(RATE), live], ids=["offline", "live"])
-@pytest.mark.parametrize(("post", "count"), [(post_by_storm, 400_000), (post_by_python, 80_000)])
+@pytest.mark.parametrize(("post", "count"), [(post_by_storm, 300_000), (post_by_python, 80_000)])
 def test_events_come_whole_and_in_order_from_thread_to_thread(make, post, count):
     instrument = make()
     instrument.report_events()
@@ -219,7 +219,7 @@ def test_events_come_whole_and_in_order_to_another_process_and_its_reports_back(
 
         def post_some() -> None:
             nonlocal posted
-            for _ in range(500):
+            for _ in range(min(500, count - posted)):
                 posted += post_numbered(instrument, posted)
 
         events = collect(instrument, count, post_some)
@@ -472,7 +472,6 @@ def test_a_reset_leaves_nothing_to_apply():
     assert instrument.meters()["waiting"] == 0
 
 
-@pytest.mark.xfail(reason="reset() leaves reports, and the counts of the mailbox")
 def test_a_reset_leaves_nothing_to_tell_of():
     instrument = Instrument(RATE)
     instrument.report_events()
@@ -523,7 +522,6 @@ def test_a_crowd_of_events_sounds_the_same_in_blocks_of_any_size(whole, block):
         np.testing.assert_array_equal(part, expected)
 
 
-@pytest.mark.xfail(reason="the ring waits for room in the heap until 64 frames are over")
 def test_even_more_than_can_wait_at_once_apply_the_same_in_blocks_of_any_size():
     def applied(block: int) -> np.ndarray:
         instrument = Instrument(RATE)

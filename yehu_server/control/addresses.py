@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ipaddress
+import socket
 from collections.abc import Iterable
+from functools import lru_cache
 
 from yehu_server.errors import ParameterError
 
@@ -39,6 +41,18 @@ class Allowed:
             address = getattr(address, "ipv4_mapped", None) or address
             self._known[host] = any(address in network for network in self._networks)
         return self._known[host]
+
+
+@lru_cache(maxsize=1024)
+def is_here(host: str) -> bool:
+    """Whether an address is one of this machine's."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        with socket.socket(family, socket.SOCK_DGRAM) as probe:
+            probe.bind((host, 0))  # only an address of ours can be bound
+    except OSError:
+        return False
+    return True
 
 
 def parse_address(text: str, default_host: str, default_port: int) -> Address:

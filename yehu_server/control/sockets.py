@@ -18,7 +18,7 @@ import time
 from collections import deque
 from typing import Protocol
 
-from yehu_server.control.addresses import Address, Allowed
+from yehu_server.control.addresses import Address, Allowed, is_here
 from yehu_server.control.framing import FramingError
 from yehu_server.control.peers import Peer, TcpPeer, Traffic, UdpPeer
 from yehu_server.errors import DeviceError
@@ -32,7 +32,6 @@ READ_AT_ONCE = 2048
 HANDLE_FOR_NS = 2_000_000  # before we look for what is due, and read again
 MOST_CONNECTIONS = 64
 LONGEST_WAIT_S = 0.5
-LOOPBACK = ("127.0.0.1", "::1")
 TRIES_FOR_A_PORT = 20
 # Linux's numbers for what Python's socket module does not name.
 SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 33, 35, 40
@@ -67,6 +66,7 @@ class OscPorts:
         self._queue: deque[tuple[bytes | None, Peer, int]] = deque()  # None: has hung up
         self._queued_bytes = 0
         self._peers: dict[Address, UdpPeer] = {}
+        self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
         self._udp, self._tcp = _open(host, port)
         self.port = int(self._udp.getsockname()[1])
@@ -89,6 +89,8 @@ class OscPorts:
         self._wake_there.send(b"!")
         if self._thread.is_alive():
             self._thread.join()
+        for peer in list(self._streams):
+            peer.socket.close()
         for key in list(self._selector.get_map().values()):
             with contextlib.suppress(AttributeError):
                 key.fileobj.close()  # type: ignore[union-attr]
@@ -148,7 +150,7 @@ class OscPorts:
                     arrived_ns = min(seconds * 10**9 + ns - offset_ns, time.monotonic_ns())
                 elif kind == SO_RXQ_OVFL:
                     self.traffic.kernel_drops = struct.unpack("I", data[:4])[0]
-            if address[1] == self.port and address[0] in (self.host, *LOOPBACK):
+            if address[1] == self.port and is_here(address[0]):
                 self.traffic.refused += 1  # our own word, by way of a subscription to ourselves
             elif address[0] in self._allowed:
                 self._enqueue(packet, self._peer(address), arrived_ns)
@@ -185,11 +187,9 @@ class OscPorts:
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.traffic.connections += 1
-        self._selector.register(
-            connection,
-            selectors.EVENT_READ,
-            TcpPeer(connection, address, self.watch, self.hear_out),
-        )
+        peer = TcpPeer(connection, address, self.watch, self.hear_out)
+        self._streams.add(peer)
+        self._selector.register(connection, selectors.EVENT_READ, peer)
 
     def _read_stream(self, peer: TcpPeer) -> None:
         # Not read while we are behind: the sender waits, and nothing is lost.
@@ -225,6 +225,7 @@ class OscPorts:
             self._selector.register(peer.socket, peer.events, peer)
         elif peer.is_finished and peer.socket.fileno() >= 0:
             peer.socket.close()
+            self._streams.discard(peer)
             self.traffic.connections -= 1
 
 

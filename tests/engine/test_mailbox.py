@@ -460,6 +460,19 @@ def test_a_live_instrument_takes_in_so_many_events_for_each_64_frames():
         assert instrument.meters()["waiting"] == waiting
 
 
+@pytest.mark.xfail(reason="take() writes wherever the index leads")
+@pytest.mark.parametrize("index", [-1, -2, SILENCE + 1, SILENCE + 5])
+def test_an_event_for_no_parameter_changes_nothing(index):
+    instrument = Instrument(RATE)
+    run(instrument, 64)
+    before = instrument._rig["gesture"].copy()
+    instrument.post(0, index, 0.125, 0)
+    run(instrument, 64)
+    after = instrument._rig["gesture"].copy()
+    for name in ("value", "target", "slope", "remaining", "silence_in", "sounding_from"):
+        np.testing.assert_array_equal(after[name], before[name])
+
+
 def test_a_reset_leaves_nothing_to_apply():
     instrument = Instrument(RATE)
     instrument.report_events()

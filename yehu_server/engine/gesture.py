@@ -90,6 +90,8 @@ def take(g: Any, index: int, target: float, ramp: int, silence_frames: int) -> N
         if g.silence_in == 0:
             g.silence_in = silence_frames
         return
+    if index < 0 or index >= SLOTS:
+        return
     g.target[index] = target
     if ramp <= 0:
         g.value[index] = target

@@ -83,6 +83,7 @@ class Instrument:
         rig["meters"]["rate"] = self.rate
         rig["meters"]["ns_per_frame"] = 1e9 / self.rate
         rig["published"] = rig["meters"]
+        self._meters = rig["meters"].copy()  # as last read whole
         rig["taped"] = 0
         self.rests: list[tuple[int, int]] = []
 
@@ -200,8 +201,9 @@ class Instrument:
         meters = np.zeros(1, METERS)
         for _ in range(native.TRIES):
             if native.read_meters.call(self._address, meters.ctypes.data):
+                self._meters = meters
                 break
-        return meters[0]
+        return self._meters[0]
 
     def frame_at(self, time_ns: int) -> float:
         """The frame that a moment of ``time.monotonic_ns()`` falls on, as blocks are played."""

@@ -460,7 +460,6 @@ def test_a_live_instrument_takes_in_so_many_events_for_each_64_frames():
         assert instrument.meters()["waiting"] == waiting
 
 
-@pytest.mark.xfail(reason="take() writes wherever the index leads")
 @pytest.mark.parametrize("index", [-1, -2, SILENCE + 1, SILENCE + 5])
 def test_an_event_for_no_parameter_changes_nothing(index):
     instrument = Instrument(RATE)

@@ -69,7 +69,7 @@ class Instrument:
     def reset(self) -> None:
         """Put model and parameters back to the start; forget scheduled events.
 
-        Nobody may play meanwhile.
+        Nobody may play or post meanwhile.
         """
         rig = self._rig
         rig["state"] = kernel.at_rest(rig["model"])
@@ -84,7 +84,7 @@ class Instrument:
         rig["meters"]["ns_per_frame"] = 1e9 / self.rate
         rig["published"] = rig["meters"]
         self._meters = rig["meters"].copy()  # as last read whole
-        rig["taped"] = 0
+        rig["taped"], rig["version"] = 0, 0
         self.rests: list[tuple[int, int]] = []
 
     @property
@@ -217,7 +217,7 @@ class Instrument:
         """What was applied since the last call: ndarray [shape=(events,), dtype=EVENT]."""
         events = np.zeros(RING, EVENT)
         count = native.read_reports.call(self._address, events.ctypes.data, RING)
-        return events[:count]
+        return events[:count].copy()
 
     def taped(self, start: int) -> tuple[int, Array]:
         """What was played from a frame on, as far as the tape still holds it.

@@ -58,7 +58,7 @@ METERS = np.dtype(
         ("window_power", np.float64),
         ("peak", np.float64),  # of the last whole window
         ("rms", np.float64),
-        ("shapes", np.float32, (STRINGS, SHAPE_POINTS)),  # m; displacement, loop to bridge
+        ("shapes", np.float32, (STRINGS, SHAPE_POINTS)),  # m; displacement, end to end
         ("unconverged", np.int64),
         ("lost", np.int64),
         # The mailbox.

@@ -1,0 +1,475 @@
+"""What the audio side tells of itself: levels, shapes, load, and the time of a frame."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import threading
+import time
+
+import numba
+import numpy as np
+import pytest
+
+from yehu_server.engine import native, telemetry
+from yehu_server.engine.atomics import at, load_acquire
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.output import CHUNK
+from yehu_server.engine.telemetry import (
+    BINS_PER_DEADLINE,
+    LOAD_BINS,
+    METERS,
+    SHAPE_POINTS,
+)
+from yehu_server.physics.layout import GHOST, STRINGS
+
+RATE = 44100
+# PortAudio's flags: the one that counts; input under- and overflow, output overflow, priming.
+OUTPUT_UNDERFLOW, OTHER_FLAGS = 4, [0, 1, 2, 8, 16]
+
+
+def bowed(rate: float = RATE) -> Instrument:
+    instrument = Instrument(rate)
+    instrument.write("/finger/1/position", 0.1, ramp_ms=0.0)
+    instrument.write("/finger/1/press", 1.5)
+    instrument.write("/bow/side", 1.0)
+    instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
+    return instrument
+
+
+def run(instrument: Instrument, frames: int, block: int = 4096) -> np.ndarray:
+    out = np.zeros(frames, np.float32)
+    for start in range(0, frames, block):
+        instrument.process(out[start : start + block])
+    return out
+
+
+# ---------------------------------------------------------------- level
+
+
+def windows(frames: int, block: int, rate: float) -> list[tuple[int, int]]:
+    """Where windows of a sixtieth of a second begin and end: at the ends of chunks."""
+    found, begin, now = [], 0, 0
+    while now < frames:
+        left = min(block, frames - now)
+        for chunk in [CHUNK] * (left // CHUNK) + [left % CHUNK]:
+            now += chunk
+            if now - begin >= rate / 60.0:
+                found.append((begin, now))
+                begin = now
+    return found
+
+
+@pytest.mark.parametrize("rate", [22050, 44100, 96000])
+@pytest.mark.parametrize("block", [1, 64, 100, 333, 4096])
+def test_peak_and_rms_are_those_of_the_last_whole_window(rate, block):
+    instrument = bowed(rate)
+    frames = rate // 5 + 7
+    out = run(instrument, frames, block).astype(np.float64)
+    expected = windows(frames, block, rate)
+    begin, end = expected[-1]
+    meters = instrument.meters()
+    assert meters["window"] == len(expected) > 3
+    assert meters["peak"] == np.abs(out[begin:end]).max() > 0.001
+    assert meters["rms"] == pytest.approx(np.sqrt(np.mean(out[begin:end] ** 2)), rel=1e-5)
+    assert meters["window_frames"] == frames - end
+
+
+def test_each_window_tells_of_its_own_samples_only():
+    instrument = bowed()
+    loud = run(instrument, RATE // 2)
+    instrument.silence()
+    run(instrument, RATE // 10)
+    assert np.abs(loud).max() > 0.01
+    instrument.write("/bow/side", 0.0)
+    instrument.write("/bow/speed", 0.0)
+    instrument.write("/output/level", 0.0, ramp_ms=0.0)
+    run(instrument, RATE // 10)
+    assert instrument.meters()["peak"] == 0.0
+    assert instrument.meters()["rms"] == 0.0
+
+
+def test_a_silent_instrument_has_no_level_and_straight_strings():
+    instrument = Instrument(RATE)
+    run(instrument, RATE // 10)
+    meters = instrument.meters()
+    assert meters["window"] > 0
+    assert (meters["peak"], meters["rms"]) == (0.0, 0.0)
+    assert not meters["shapes"].any()
+
+
+# ---------------------------------------------------------------- shapes
+
+
+@pytest.mark.parametrize("rate", [22050, 44100, 192000])
+def test_shapes_are_the_strings_as_they_were_when_the_window_closed(rate):
+    instrument = bowed(rate)
+    run(instrument, rate // 5)
+    before = instrument.meters()["window"]
+    while instrument.meters()["window"] == before:
+        run(instrument, CHUNK)
+    model, state = instrument._rig["model"][0], instrument._rig["state"][0]
+    now = state["u"][state["level"]]
+    shapes = instrument.meters()["shapes"]
+    assert shapes.shape == (STRINGS, SHAPE_POINTS)
+    for i in range(STRINGS):
+        N = int(model["N"][i])
+        string = now[i, GHOST : GHOST + N + 1]
+        places = np.arange(SHAPE_POINTS) * N / (SHAPE_POINTS - 1)
+        nearest = np.floor(places + 0.5).astype(int)
+        assert nearest[0] == 0
+        assert nearest[-1] == N
+        np.testing.assert_array_equal(shapes[i], string[nearest].astype(np.float32))
+    assert np.abs(shapes[0]).max() > 1e-6
+    # Between windows they stay.
+    kept = shapes.copy()
+    run(instrument, CHUNK)
+    np.testing.assert_array_equal(instrument.meters()["shapes"], kept)
+
+
+# ---------------------------------------------------------------- load
+
+
+def test_the_load_is_there_and_its_histogram_counts_every_callback():
+    instrument = bowed()
+    for number in range(1, 201):
+        run(instrument, 256)
+        meters = instrument.meters()
+        assert meters["callbacks"] == meters["loads"].sum() == number
+        assert meters["running"] == 0
+        assert 0.0 < meters["load"] <= meters["worst_load"]
+    assert meters["missed"] == meters["loads"][BINS_PER_DEADLINE:].sum()
+    worst = min(int(meters["worst_load"] * BINS_PER_DEADLINE), LOAD_BINS - 1)
+    assert np.flatnonzero(meters["loads"]).max() == worst
+
+
+def test_the_load_is_cpu_time_over_the_deadline():
+    instrument = bowed()
+    out = np.zeros(RATE, np.float32)  # the mean of a second is all of this
+    instrument.process(out)
+    before = time.thread_time_ns()
+    instrument.process(out)
+    spent = 1e-9 * (time.thread_time_ns() - before)
+    assert instrument.meters()["load"] == pytest.approx(spent, rel=0.2)
+
+
+def account(meters: np.ndarray, *loads: float) -> None:
+    """Book callbacks of these loads, without flags."""
+    for load in loads:
+        seconds = meters[0]["block"] / meters[0]["rate"]
+        telemetry.account(meters[0], round(1e9 * load * seconds), 0)
+
+
+def fresh(rate: float = 48000.0, block: int = 480) -> np.ndarray:
+    meters = np.zeros(1, METERS)
+    meters["rate"], meters["block"] = rate, block
+    meters["ns_per_frame"] = 1e9 / rate
+    return meters
+
+
+def test_loads_are_sorted_by_sixty_fourths_of_the_deadline_and_missed_ones_counted():
+    meters = fresh()
+    account(meters, 0.0, 0.001, 0.51, 0.51, 0.99, 1.01, 1.99, 2.5, 1e6)
+    bins = {int(at): int(meters["loads"][0, at]) for at in np.flatnonzero(meters["loads"][0])}
+    assert bins == {0: 2, 32: 2, 63: 1, 64: 1, 127: 3}
+    assert meters["missed"] == 4
+    assert meters["worst_load"] == pytest.approx(1e6)
+
+
+def test_the_load_shown_follows_in_about_a_second():
+    meters = fresh()
+    account(meters, *[0.5] * 100)  # of 10 ms each
+    assert meters["load"][0] == pytest.approx(0.5 * (1.0 - math.exp(-1.0)), rel=0.02)
+    account(meters, *[0.5] * 900)
+    assert meters["load"][0] == pytest.approx(0.5, rel=0.001)
+
+
+def test_under_runs_are_counted_as_the_device_flags_them():
+    instrument, out = Instrument(RATE), np.zeros(64, np.float32)
+    for count, others in enumerate(itertools.product(OTHER_FLAGS, OTHER_FLAGS)):
+        for flags in (sum(set(others)), sum(set(others)) + OUTPUT_UNDERFLOW):
+            native.callback.call(None, out.ctypes.data, 64, None, flags, instrument.address)
+        assert instrument.meters()["underruns"] == count + 1
+
+
+# ---------------------------------------------------------------- the delay-locked loop
+
+
+class Clock:
+    """A device whose callbacks begin about when they should, and the loop that follows it."""
+
+    def __init__(self, rate: float, block: int, drift: float = 1.0, jitter_ns: float = 0.0) -> None:
+        self.meters = fresh(rate, 0)
+        self.block, self.exact_ns = block, 5e12
+        self.ns_per_frame = 1e9 / (rate * drift)
+        self._jitter_ns, self._chance = jitter_ns, np.random.default_rng(1)
+        self.frame = 0
+
+    def tick(self, late_ns: float = 0.0) -> int:
+        """Begin one callback; return when it began."""
+        started = round(self.exact_ns + late_ns + self._jitter_ns * self._chance.uniform(-1.0, 1.0))
+        telemetry.tell_time(self.meters[0], self.frame, started, self.block)
+        assert self.meters["frame"] == self.frame
+        assert self.meters["block"] == self.block
+        self.frame += self.block
+        self.exact_ns += self.block * self.ns_per_frame
+        return started
+
+    def follow(self, seconds: float) -> np.ndarray:
+        """How far off (ns) start and frame time were, and ns per frame: one row a callback."""
+        rows = []
+        for _ in range(round(seconds * 1e9 / (self.block * self.ns_per_frame))):
+            exact = self.exact_ns
+            started = self.tick()
+            meters = self.meters[0]
+            rows.append((started - exact, meters["due_ns"] - exact, meters["ns_per_frame"]))
+        return np.array(rows).T
+
+
+@pytest.mark.parametrize(("block", "smoother"), [(64, 12.0), (256, 7.0), (1024, 3.0)])
+@pytest.mark.parametrize("drift", [0.9999, 1.0, 1.0005])
+def test_the_loop_smoothes_the_callbacks_jitter_and_follows_the_devices_rate(
+    block, smoother, drift
+):
+    clock = Clock(48000.0, block, drift, jitter_ns=0.5e6)
+    clock.follow(6.0)
+    jitter, error, rate = clock.follow(8.0)
+    assert np.std(jitter) > 0.25e6
+    assert np.std(error) < np.std(jitter) / smoother
+    assert np.std(np.diff(error)) < 0.1 * np.std(np.diff(jitter))
+    assert abs(np.mean(error)) < 0.1e6
+    assert np.mean(rate) == pytest.approx(clock.ns_per_frame, rel=3e-5)
+    assert clock.meters["late_callbacks"] == 0
+
+
+@pytest.mark.parametrize("drift", [0.9999, 1.0005])
+def test_without_jitter_the_loop_comes_to_the_devices_rate_and_time(drift):
+    clock = Clock(48000.0, 256, drift)
+    clock.follow(8.0)
+    _, error, rate = clock.follow(1.0)
+    assert np.abs(error).max() < 100.0
+    np.testing.assert_allclose(rate, clock.ns_per_frame, rtol=1e-6)
+
+
+def test_blocks_of_changing_size_are_followed_too():
+    clock = Clock(48000.0, 256, 0.9999)
+    chance = np.random.default_rng(2)
+    errors = []
+    for number in range(4000):
+        clock.block = int(chance.choice([64, 100, 256, 512]))
+        exact = clock.exact_ns
+        clock.tick()
+        if number > 2000:
+            errors.append(clock.meters["due_ns"][0] - exact)
+    assert np.abs(errors).max() < 1000.0
+
+
+@pytest.mark.parametrize("gap_ns", [0.3e9, 10e9, -0.3e9])
+def test_after_a_stall_the_loop_starts_anew_at_once(gap_ns):
+    clock = Clock(48000.0, 256, 0.9999, jitter_ns=0.1e6)
+    clock.follow(6.0)
+    clock.exact_ns += gap_ns
+    started = clock.tick()
+    assert clock.meters["due_ns"] == started
+    assert clock.meters["ns_per_frame"] == 1e9 / 48000.0
+    assert clock.meters["late_callbacks"] == (1 if gap_ns > 0.0 else 0)
+    _, error, _ = clock.follow(1.0)
+    assert np.abs(error).max() < 0.2e6
+    assert clock.meters["late_callbacks"] == (1 if gap_ns > 0.0 else 0)
+
+
+def test_one_callback_that_begins_late_hardly_moves_the_time():
+    clock = Clock(48000.0, 256)
+    clock.follow(2.0)
+    clock.tick(late_ns=20e6)
+    assert clock.meters["late_callbacks"] == 1
+    exact = clock.exact_ns
+    clock.tick()
+    assert abs(clock.meters["due_ns"][0] - exact) < 0.5e6
+    _, error, _ = clock.follow(5.0)
+    assert abs(error[-1]) < 0.02e6
+    assert clock.meters["late_callbacks"] == 1
+
+
+# ---------------------------------------------------------------- the frame of a moment
+
+
+def told(instrument: Instrument, meters: np.ndarray) -> Instrument:
+    """Let an instrument tell what is in this record."""
+    instrument._rig["published"] = meters
+    return instrument
+
+
+def test_the_first_frame_of_a_block_falls_on_when_it_was_due():
+    instrument = bowed()
+    for number in range(20):
+        before = time.monotonic_ns()
+        run(instrument, 441)
+        after = time.monotonic_ns()
+        meters = instrument.meters()
+        assert meters["frame"] == 441 * number
+        assert instrument.frame_at(int(meters["due_ns"])) == 441 * number
+        if number == 0:
+            assert before <= meters["due_ns"] <= after  # the clock is the same
+
+
+def test_a_moment_falls_on_its_frame_and_frames_follow_in_order():
+    clock = Clock(48000.0, 256, 0.9999, jitter_ns=0.5e6)
+    clock.follow(8.0)
+    instrument = told(Instrument(48000.0), clock.meters)
+    first, due = int(clock.meters["frame"][0]), int(clock.meters["due_ns"][0])
+    length = 256 * clock.ns_per_frame
+    moments = [due + round(length * part) for part in np.linspace(0.0, 1.0, 500)]
+    frames = np.array([instrument.frame_at(moment) for moment in moments])
+    assert (np.diff(frames) > 0.0).all()
+    np.testing.assert_allclose(frames, first + np.linspace(0.0, 256.0, 500), atol=0.05)
+
+
+def test_what_comes_at_a_steady_pace_is_stamped_at_a_steady_pace():
+    clock = Clock(48000.0, 256, 0.9999, jitter_ns=0.5e6)
+    clock.follow(6.0)
+    instrument = Instrument(48000.0)
+    stamps = []
+    for _ in range(1000):
+        moment = clock.exact_ns + 3.1e6  # the same moment of each block
+        clock.tick()
+        stamps.append(told(instrument, clock.meters).frame_at(round(moment)))
+    pace = np.diff(stamps)
+    assert np.mean(pace) == pytest.approx(256.0, rel=1e-4)
+    assert np.std(pace) < 0.5  # frames; the callbacks' own starts vary by 20
+
+
+def test_in_a_stall_time_stands_still_a_little_after_the_last_block():
+    clock = Clock(48000.0, 480)
+    clock.follow(1.0)
+    instrument = told(Instrument(48000.0), clock.meters)
+    first, due = int(clock.meters["frame"][0]), int(clock.meters["due_ns"][0])
+    end = first + 480 + native.STALL_NS * 48e-6
+    moments = [due + round(1e6 * ms) for ms in np.linspace(0.0, 100.0, 301)]
+    frames = np.array([instrument.frame_at(moment) for moment in moments])
+    assert (np.diff(frames) >= 0.0).all()
+    elapsed = 1e-9 * (np.array(moments) - due)
+    np.testing.assert_allclose(frames, np.minimum(first + 48000.0 * elapsed, end), atol=0.01)
+    assert instrument.frame_at(due + 10**15) == pytest.approx(end, abs=0.01)
+
+
+def test_before_anything_is_played_every_moment_is_near_the_start():
+    instrument = Instrument(48000.0)
+    assert 0.0 <= instrument.frame_at(time.monotonic_ns()) <= 48000.0 * 0.05
+
+
+# ---------------------------------------------------------------- readers
+
+
+_read_meters = numba.njit(native.read_meters._function)
+METERS_AT, POSTED_AT = native.METERS_AT, native.POSTED_AT
+
+
+@numba.cfunc("int64(voidptr, int64)")
+def tell(rig, times):
+    """Publish records, all of whose parts tell the same number."""
+    t = numba.carray(at(rig, METERS_AT), (1,), METERS)[0]
+    for number in range(times):
+        t.frame, t.callbacks, t.unreported = number, number, number
+        for i in range(LOAD_BINS):
+            t.loads[i] = number
+        native.publish(rig)
+        for _ in range(500):  # so that there is time to read
+            load_acquire(rig, POSTED_AT)
+    return times
+
+
+@numba.cfunc("int64(voidptr, voidptr, int64)")
+def listen(rig, into, times):
+    """Read records; return how many were whole, or below zero how many were not."""
+    t = numba.carray(into, (1,), METERS)[0]
+    whole, torn = 0, 0
+    for _ in range(times):
+        if _read_meters(rig, into) == 1:
+            is_whole = t.frame == t.callbacks == t.unreported
+            for i in range(LOAD_BINS):
+                is_whole = is_whole and t.loads[i] == t.frame
+            whole += 1 if is_whole else 0
+            torn += 0 if is_whole else 1
+    return whole if torn == 0 else -torn
+
+
+def test_a_reader_never_sees_half_of_a_record():
+    instrument, into, times = Instrument(RATE), np.zeros(1, METERS), 500_000
+    teller = threading.Thread(target=lambda: tell.ctypes(instrument.address, times))
+    teller.start()
+    found = []
+    while teller.is_alive():
+        found.append(listen.ctypes(instrument.address, into.ctypes.data, 10_000))
+    teller.join()
+    assert min(found) >= 0
+    assert sum(found) > 1000
+    assert instrument.meters()["frame"] == times - 1
+
+
+def test_a_reader_is_told_when_a_record_is_just_being_written():
+    instrument, into = Instrument(RATE), np.zeros(1, METERS)
+    for version in range(4):
+        instrument._rig["version"][0, 0] = version
+        is_whole = native.read_meters.call(instrument.address, into.ctypes.data)
+        assert is_whole == (version % 2 == 0)
+
+
+def test_a_reader_never_sees_half_of_a_block():
+    instrument, block = bowed(), 16
+    out = np.zeros(block, np.float32)
+    over = threading.Event()
+
+    def play() -> None:
+        while not over.is_set():
+            instrument.process(out)
+
+    player = threading.Thread(target=play)
+    player.start()
+    into = np.zeros(1, METERS)
+    meters, whole = into[0], 0
+    try:
+        end = time.monotonic() + 0.7
+        while time.monotonic() < end:
+            is_whole = native.read_meters.call(instrument.address, into.ctypes.data)
+            if is_whole and meters["callbacks"] > 0:
+                whole += 1
+                assert meters["loads"].sum() + meters["running"] == meters["callbacks"]
+                assert meters["frame"] == (meters["callbacks"] - 1) * block
+                assert meters["rate"] == RATE
+    finally:
+        over.set()
+        player.join()
+    assert whole > 100
+
+
+def test_while_a_block_is_being_told_of_the_one_before_is_read():
+    instrument = Instrument(RATE)
+    run(instrument, 64)
+    before = instrument.meters().copy()
+    instrument._rig["version"][0, 0] += 1  # the audio side was interrupted here
+    instrument._rig["published"]["callbacks"] = 777
+    assert instrument.meters()["callbacks"] == before["callbacks"]
+
+
+def test_meters_of_a_new_instrument_are_empty():
+    meters = Instrument(RATE).meters()
+    assert meters["rate"] == RATE
+    for name in set(METERS.names) - {"rate", "ns_per_frame"}:
+        assert not np.asarray(meters[name]).any(), name
+    assert meters["ns_per_frame"] == 1e9 / RATE
+
+
+def test_lost_states_and_events_are_told():
+    instrument = bowed()
+    run(instrument, 4096)
+    instrument._rig["state"]["u"] = np.nan
+    instrument.post(0, 0, 0.1, 0)  # for a frame that has passed
+    instrument.post(10**9, 0, 0.1, 0)
+    run(instrument, 64)
+    meters = instrument.meters()
+    assert meters["lost"] == instrument.lost_states == 1
+    assert meters["unconverged"] == instrument.unconverged_solves
+    assert meters["late_events"] == 1
+    assert meters["applied"] == 5
+    assert meters["waiting"] == 1

@@ -8,6 +8,7 @@ MIDI process ┘                              └─> meters, applied events, ta
 from __future__ import annotations
 
 import contextlib
+import gc
 import logging
 import math
 import re
@@ -121,6 +122,8 @@ class Server:
         Errors: DeviceError where a named device cannot be opened; OutputError.
         """
         sys.setswitchinterval(SWITCH_INTERVAL_S)
+        gc.collect()
+        gc.freeze()  # what is loaded by now stays: later collections need not look at it
         with contextlib.ExitStack() as undo:
             undo.callback(self.osc.stop)
             undo.callback(self.output.end)
@@ -277,7 +280,7 @@ class Server:
             "osc_malformed": counts.malformed,
             "osc_errors": counts.errors,
             "osc_refused": traffic.refused,
-            "osc_dropped": traffic.kernel_drops + traffic.queue_drops,
+            "osc_dropped": traffic.kernel_drops,
             "osc_failures": traffic.failures,
             "osc_buffer_bytes": traffic.buffer_bytes,
             "osc_connections": traffic.connections,

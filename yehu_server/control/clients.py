@@ -98,8 +98,8 @@ class Clients:
         """A peer is gone."""
         self._clients.pop(peer, None)
 
-    def complain(self, peer: Peer, address: str, reason: str) -> None:
-        """Tell a peer of an error, unless it has had many of late."""
+    def complain(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
+        """Tell a peer of an error, unless it has had many of late; only then ask the reason."""
         client = self._client(peer)
         now = time.monotonic()
         gained = ERRORS_A_SECOND * (now - client.complained)
@@ -110,6 +110,7 @@ class Clients:
             return
         client.patience -= 1.0
         self.errors_sent += 1
+        reason = reason if isinstance(reason, str) else reason()
         peer.send(pack(f"{self._prefix}/error", shortened(address), shortened(reason)))
 
     # -- when --------------------------------------------------------------------------------

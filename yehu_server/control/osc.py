@@ -25,11 +25,16 @@ log = logging.getLogger(__name__)
 
 PREFIX = "/yehu"
 LONGEST_PATTERN = 256
+INT_MAX = (1 << 31) - 1
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 
 
 class RefusedError(YehuError):
     """A message that cannot be done as it is."""
+
+
+class UnknownError(Exception):
+    """An address that we do not have; looking for a near one takes too long for a flood."""
 
 
 class Desk(Protocol):
@@ -132,11 +137,12 @@ class OscHandler:
             self.clients.complain(peer, "", f"malformed packet: {error}")
             return
         now = time.time()
+        is_late = any(message.due_s is not None and message.due_s <= now for message in messages)
+        self.counts.late_bundles += is_late
         for message in messages:
             self.counts.messages += 1
             due_s = message.due_s
             if due_s is None or due_s <= now:
-                self.counts.late_bundles += 0 if due_s is None else 1
                 self._act(message, peer, self._player.frame_of(arrived_ns))
             elif self._schedule.add(due_s, (message, peer)):
                 self.counts.scheduled += 1
@@ -164,6 +170,9 @@ class OscHandler:
         call = Call(message.arguments, message.payload, peer, frame)
         try:
             actions = self._actions(message.address)
+        except UnknownError:
+            self._complain(peer, message.address, lambda: _near(message.address))
+            return
         except YehuError as error:
             self._complain(peer, message.address, str(error))
             return
@@ -179,12 +188,9 @@ class OscHandler:
             return [self._calls[known]]
         if is_pattern(address):
             return [self._calls[one] for one in fitting(address, self._calls, PREFIX)]
-        if known == address:
-            raise RefusedError(f"unknown address (all begin with {PREFIX}/)")
-        find(known)  # names one that is near
-        raise RefusedError("unknown address")
+        raise UnknownError
 
-    def _complain(self, peer: Peer, address: str, reason: str) -> None:
+    def _complain(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         self.counts.errors += 1
         self.clients.complain(peer, address, reason)
 
@@ -249,7 +255,8 @@ class OscHandler:
 
     def _status(self, call: Call) -> None:
         for name, value in self._desk.status().items():
-            call.peer.send(pack(f"{PREFIX}/status/{name}", value))
+            is_long = isinstance(value, int) and abs(value) > INT_MAX  # not read by Pd and Max
+            call.peer.send(pack(f"{PREFIX}/status/{name}", float(value) if is_long else value))
 
     def _subscribe(self, call: Call) -> None:
         numbers = call.numbers(0, 2)
@@ -286,6 +293,17 @@ def _number(argument: Any) -> float:
     if not math.isfinite(number):
         raise RefusedError(f"{number} is not finite")
     return number
+
+
+def _near(address: str) -> str:
+    """Why an address is unknown, and one that is near."""
+    if not address.startswith(PREFIX + "/"):
+        return f"unknown address (all begin with {PREFIX}/)"
+    try:
+        find(address.removeprefix(PREFIX)[:LONGEST_PATTERN])
+    except YehuError as error:
+        return str(error)
+    return "unknown address"
 
 
 def _port(number: float) -> int:

@@ -35,7 +35,6 @@ class Traffic:
     packets: int = 0
     refused: int = 0  # from senders who are not allowed
     kernel_drops: int = 0  # found the socket's buffer full
-    queue_drops: int = 0  # found our queue full
     unsent: int = 0
     failures: int = 0  # defects of ours
     connections: int = 0
@@ -77,6 +76,7 @@ class TcpPeer:
         self,
         connection: socket.socket,
         address: Address,
+        traffic: Traffic,
         watch: Callable[[TcpPeer], None],
         hear_out: Callable[[TcpPeer], None],
     ) -> None:
@@ -86,6 +86,7 @@ class TcpPeer:
         self.reads = True  # until the peer will say no more
         self._unsent = bytearray()
         self._finished = False
+        self._traffic = traffic
         self._watch = watch
         self._hear_out = hear_out
 
@@ -102,8 +103,10 @@ class TcpPeer:
         )
 
     def send(self, packet: bytes) -> None:
-        """See `Peer`; one who reads nothing for long is cut off."""
-        if not self._finished:
+        """See `Peer`; one who reads nothing for long misses what does not fit."""
+        if len(self._unsent) > MOST_UNSENT_BYTES:
+            self._traffic.unsent += 1
+        elif not self._finished:
             self._unsent += self.framing.wrap(packet)
             self.flush()
 
@@ -113,8 +116,7 @@ class TcpPeer:
             while self._unsent:
                 del self._unsent[: self.socket.send(self._unsent)]
         except BlockingIOError:
-            if len(self._unsent) > MOST_UNSENT_BYTES:
-                self.cut_off()
+            pass
         except OSError:
             self.cut_off()
         self._watch(self)

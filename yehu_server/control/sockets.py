@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import math
 import selectors
 import socket
 import struct
@@ -27,9 +28,11 @@ log = logging.getLogger(__name__)
 
 BUFFER_BYTES = 32 << 20  # asked for; the system grants what it may
 DATAGRAM_BYTES = 1 << 16
-MOST_QUEUED, MOST_QUEUED_BYTES = 1 << 17, 1 << 28  # packets
-READ_AT_ONCE = 2048
-HANDLE_FOR_NS = 2_000_000  # before we look for what is due, and read again
+MOST_QUEUED, MOST_QUEUED_BYTES = 1 << 15, 1 << 27
+READ_AT_ONCE = 256  # datagrams, before we look for what is due
+READ_FOR_NS = 20_000_000  # before we handle some of it
+ACCEPT_AGAIN_S = 1.0
+HANDLE_FOR_NS = 2_000_000
 MOST_CONNECTIONS = 64
 LONGEST_WAIT_S = 0.5
 TRIES_FOR_A_PORT = 20
@@ -65,6 +68,9 @@ class OscPorts:
         self._handler = handler
         self._queue: deque[tuple[bytes | None, Peer, int]] = deque()  # None: has hung up
         self._queued_bytes = 0
+        self._has_more = False  # in the socket, as far as we know
+        self._handled_ns = 0
+        self._accept_from = math.inf  # monotonic s
         self._peers: dict[Address, UdpPeer] = {}
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
@@ -99,18 +105,34 @@ class OscPorts:
 
     def _run(self) -> None:
         while not self._ending:
-            asked = self._handler.wait_s()
-            wait = LONGEST_WAIT_S if asked is None else min(asked, LONGEST_WAIT_S)
-            for key, events in self._selector.select(0.0 if self._queue else wait):
-                self._serve(key, events)
             try:
-                until_ns = time.monotonic_ns() + HANDLE_FOR_NS
-                while self._queue and time.monotonic_ns() < until_ns:
-                    self._handle_next()
-                self._handler.tick()
+                self._turn()
             except Exception:  # a defect of ours must not silence the instrument's only ear
                 self.traffic.failures += 1
                 log.exception("OSC: a message could not be handled")
+
+    def _turn(self) -> None:
+        """Read what has come, handle for a while, and do what is due."""
+        asked = self._handler.wait_s()
+        wait = LONGEST_WAIT_S if asked is None else min(asked, LONGEST_WAIT_S)
+        self._has_more = False
+        for key, events in self._selector.select(0.0 if self._queue else wait):
+            self._serve(key, events)
+        now_ns = time.monotonic_ns()
+        # First the socket's small buffer, then the queue's large one.
+        if not self._has_more or now_ns - self._handled_ns > READ_FOR_NS:
+            while self._queue and time.monotonic_ns() < now_ns + HANDLE_FOR_NS:
+                self._handle_next()
+            self._handled_ns = time.monotonic_ns()
+        self._handler.tick()
+        if time.monotonic() > self._accept_from:
+            self._accept_from = math.inf
+            self._selector.register(self._tcp, selectors.EVENT_READ)
+
+    @property
+    def _is_full(self) -> bool:
+        """Whether senders have to wait, or the kernel to hold what they send."""
+        return len(self._queue) >= MOST_QUEUED or self._queued_bytes >= MOST_QUEUED_BYTES
 
     def _handle_next(self) -> None:
         packet, peer, arrived_ns = self._queue.popleft()
@@ -129,13 +151,15 @@ class OscPorts:
         elif isinstance(key.data, TcpPeer):
             if events & selectors.EVENT_WRITE:
                 key.data.flush()
-            if events & selectors.EVENT_READ:
+            if events & selectors.EVENT_READ and key.data.reads:
                 self._read_stream(key.data)
 
     def _read_datagrams(self) -> None:
         """Empty the socket, as far as one turn goes."""
         offset_ns = time.time_ns() - time.monotonic_ns()
         for _ in range(READ_AT_ONCE):
+            if self._is_full:
+                return
             try:
                 packet, extras, _, address = self._udp.recvmsg(DATAGRAM_BYTES, 128)
             except BlockingIOError:
@@ -156,6 +180,7 @@ class OscPorts:
                 self._enqueue(packet, self._peer(address), arrived_ns)
             else:
                 self.traffic.refused += 1
+        self._has_more = True
 
     def _peer(self, address: Address) -> UdpPeer:
         peer = self._peers.get(address)
@@ -167,18 +192,17 @@ class OscPorts:
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
         self.traffic.packets += 1
-        if len(self._queue) >= MOST_QUEUED or self._queued_bytes > MOST_QUEUED_BYTES:
-            self.traffic.queue_drops += 1
-        else:
-            self._queued_bytes += len(packet)
-            self._queue.append((packet, peer, arrived_ns))
+        self._queued_bytes += len(packet)
+        self._queue.append((packet, peer, arrived_ns))
 
     # -- TCP -----------------------------------------------------------------------------------
 
     def _accept(self) -> None:
         try:
             connection, address = self._tcp.accept()
-        except OSError:
+        except OSError:  # too many open files: try again when some may be closed
+            self._selector.unregister(self._tcp)
+            self._accept_from = time.monotonic() + ACCEPT_AGAIN_S
             return
         if address[0] not in self._allowed or self.traffic.connections >= MOST_CONNECTIONS:
             self.traffic.refused += 1
@@ -187,13 +211,13 @@ class OscPorts:
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.traffic.connections += 1
-        peer = TcpPeer(connection, address, self.watch, self.hear_out)
+        peer = TcpPeer(connection, address, self.traffic, self.watch, self.hear_out)
         self._streams.add(peer)
         self._selector.register(connection, selectors.EVENT_READ, peer)
 
     def _read_stream(self, peer: TcpPeer) -> None:
         # Not read while we are behind: the sender waits, and nothing is lost.
-        if len(self._queue) >= READ_AT_ONCE:
+        if self._is_full:
             return
         try:
             data = peer.socket.recv(DATAGRAM_BYTES)

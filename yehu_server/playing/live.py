@@ -85,6 +85,8 @@ class LivePlayer:
         return int(self.instrument.frame_at(moment)) + self.delay
 
     def _in_order(self, frame: int) -> int:
+        if self._decided > frame + self.instrument.rate:  # the world's clock was set back
+            self._decided = self._written = frame
         self._decided = max(self._decided, frame)
         self._written = max(self._written, self._decided)
         return self._decided
@@ -145,14 +147,14 @@ class LivePlayer:
 
         Errors: ParameterError where one is out of MIDI's range.
         """
-        key = Key(ELSEWHERE, _within("note", note))
+        key = _key(_within("note", note))
         with self._turn:
             self._midi.note_on(key, _within("velocity", velocity) / 127.0, self._in_order(frame))
 
     def note_off(self, note: float, *, frame: int) -> None:
         """End a note that `note_on` began."""
         with self._turn:
-            self._midi.note_off(Key(ELSEWHERE, note), self._in_order(frame))
+            self._midi.note_off(_key(note), self._in_order(frame))
 
     def slide(self, pitch: float, *, frame: int) -> float:
         """See `Performer.slide`. Errors: ParameterError where it is out of MIDI's range."""
@@ -184,6 +186,11 @@ class LivePlayer:
             for param in sorted(TABLE, key=lambda param: param.place is Place.ENGINE):
                 self._midi.write(param.address, param.default, frame=frame)
             self.panic(frame=frame)
+
+
+def _key(note: float) -> Key:
+    """The key of a note: the same for single and double precision."""
+    return Key(ELSEWHERE, round(note, 3))
 
 
 def _within(what: str, value: float) -> float:

@@ -1,0 +1,604 @@
+"""OSC as bytes, peers that only listen, a clock that stands still, and servers to play on."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import math
+import socket
+import struct
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+import pytest
+
+from yehu_server.audio.output import OutputOptions
+from yehu_server.control import clients, osc, schedule
+from yehu_server.engine.gesture import SILENCE
+from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.errors import OutputError
+from yehu_server.params.table import ENGINE
+from yehu_server.playing import live
+from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.server import ServeOptions, Server
+
+HOST = "127.0.0.1"
+PATIENCE_S = 20.0  # for other threads, on a busy machine
+QUIET_S = 0.15  # nothing comes for so long: nothing comes
+SINCE_1900_S = 2_208_988_800
+ADDRESSES = {slot: param.address for slot, param in enumerate(ENGINE)} | {SILENCE: "silence"}
+
+
+def until(condition: Callable[[], Any], what: str, within_s: float = PATIENCE_S) -> Any:
+    """Wait for something to be true, and return it."""
+    deadline = time.monotonic() + within_s
+    while not (value := condition()):
+        assert time.monotonic() < deadline, f"not within {within_s} s: {what}"
+        time.sleep(0.002)
+    return value
+
+
+# ---------------------------------------------------------------- bytes
+
+
+class Heard(NamedTuple):
+    """A message as a client reads it."""
+
+    address: str
+    arguments: list[Any]
+
+
+class Wire:
+    """OSC 1.0 in bytes, made and read without help of the package or python-osc."""
+
+    NUMBERS: ClassVar = {
+        "i": ">i",
+        "f": ">f",
+        "h": ">q",
+        "d": ">d",
+        "t": ">Q",
+        "r": ">I",
+        "c": ">I",
+    }
+    BARE: ClassVar = {"T": True, "F": False, "N": None, "I": math.inf}
+
+    @staticmethod
+    def text(text: str) -> bytes:
+        data = text.encode()
+        return data + b"\0" * (4 - len(data) % 4)
+
+    @classmethod
+    def tag(cls, argument: Any) -> str:
+        if isinstance(argument, bool):
+            return "T" if argument else "F"
+        if isinstance(argument, int):
+            return "i" if -(2**31) <= argument < 2**31 else "h"
+        return {float: "f", str: "s", bytes: "b", type(None): "N"}[type(argument)]
+
+    @classmethod
+    def message(cls, address: str, *arguments: Any, tags: str | None = None) -> bytes:
+        """A message; with tags, they say what the arguments are."""
+        if tags is None:
+            tags = "".join(map(cls.tag, arguments))
+        data = bytearray(cls.text(address) + cls.text("," + tags))
+        left = deque(arguments)
+        for tag in tags:
+            if tag in cls.NUMBERS:
+                data += struct.pack(cls.NUMBERS[tag], left.popleft())
+            elif tag in "sS":
+                data += cls.text(left.popleft())
+            elif tag == "b":
+                blob = left.popleft()
+                data += struct.pack(">i", len(blob)) + blob + b"\0" * (-len(blob) % 4)
+            elif tag == "m":
+                data += bytes(left.popleft())
+            elif tag in "TFN" and left:
+                left.popleft()
+        return bytes(data)
+
+    @staticmethod
+    def bundle(at_s: float | None, *elements: bytes) -> bytes:
+        """A bundle for a moment in seconds since 1970, or for at once."""
+        tag = 1
+        if at_s is not None:
+            whole = math.floor(at_s)
+            tag = (whole + SINCE_1900_S << 32) + round((at_s - whole) * 2**32)
+        sized = (struct.pack(">i", len(element)) + element for element in elements)
+        return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(sized)
+
+    @classmethod
+    def read(cls, packet: bytes) -> Heard:
+        """Take one message apart, strictly."""
+
+        def text(at: int) -> tuple[str, int]:
+            end = packet.index(0, at)
+            after = end + 4 - (end - at) % 4
+            assert not any(packet[end:after])
+            return packet[at:end].decode(), after
+
+        assert len(packet) % 4 == 0
+        address, at = text(0)
+        tags, at = text(at)
+        assert tags[0] == ","
+        arguments: list[Any] = []
+        for tag in tags[1:]:
+            if tag in cls.NUMBERS:
+                (value,) = struct.unpack_from(cls.NUMBERS[tag], packet, at)
+                at += struct.calcsize(cls.NUMBERS[tag])
+            elif tag == "s":
+                value, at = text(at)
+            elif tag == "b":
+                (size,) = struct.unpack_from(">i", packet, at)
+                value = packet[at + 4 : at + 4 + size]
+                at += 4 + size + -size % 4
+            elif tag in cls.BARE:
+                value = cls.BARE[tag]
+            else:
+                value, at = packet[at : at + 4], at + 4
+            arguments.append(value)
+        assert at == len(packet)
+        return Heard(address, arguments)
+
+
+@pytest.fixture(scope="session")
+def wire() -> type[Wire]:
+    return Wire
+
+
+@pytest.fixture(scope="session")
+def patience() -> Callable[..., Any]:
+    """Wait for something to be true, and return it."""
+    return until
+
+
+# ---------------------------------------------------------------- peers
+
+
+class Ear:
+    """A peer who only listens."""
+
+    def __init__(self, port: int = 1) -> None:
+        self.port = port
+        self.packets: list[bytes] = []
+        self.others: dict[int, Ear] = {}
+
+    @property
+    def name(self) -> str:
+        return f"ear:{self.port}"
+
+    def send(self, packet: bytes) -> None:
+        self.packets.append(packet)
+
+    def at(self, port: int) -> Ear:
+        return self.others.setdefault(port, Ear(port))
+
+    def heard(self) -> list[Heard]:
+        """What came since the last call."""
+        packets, self.packets = self.packets, []
+        return [Wire.read(packet) for packet in packets]
+
+
+@pytest.fixture(scope="session")
+def ear_type() -> type[Ear]:
+    """For whoever needs many."""
+    return Ear
+
+
+@pytest.fixture
+def ear() -> Ear:
+    return Ear()
+
+
+class StillTime:
+    """A clock that moves when told to; stands in for the module ``time``."""
+
+    def __init__(self) -> None:
+        self.now = time.monotonic() + 100.0  # s; what began on the true clock is long ago
+        self.since_1970 = 1.7e9  # of the monotonic clock's zero
+
+    def monotonic(self) -> float:
+        return self.now
+
+    def monotonic_ns(self) -> int:
+        return round(1e9 * self.now)
+
+    def time(self) -> float:
+        return self.since_1970 + self.now
+
+    time_ns = None  # nobody who gets this clock may read others
+    sleep = None
+
+
+@pytest.fixture
+def still_time(monkeypatch) -> StillTime:
+    clock = StillTime()
+    for module in (clients, schedule, osc, live):
+        monkeypatch.setattr(module, "time", clock)
+    return clock
+
+
+# ---------------------------------------------------------------- a stage without clock
+
+
+class Desk:
+    """A desk that keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    def status(self) -> dict[str, float | str]:
+        return {"load": 0.5, "recording": "".join(self.names[-1:])}
+
+    def start_recording(self, name: str) -> str:
+        self.names.append(name)
+        return f"{name}.wav"
+
+    def stop_recording(self) -> str:
+        if not self.names:
+            raise OutputError("nothing is being recorded")
+        return f"{self.names.pop()}.wav"
+
+
+class Stage:
+    """An instrument that plays as fast as it can, and OSC before it, on a clock of its own."""
+
+    RATE = 48000
+
+    def __init__(self, clock: StillTime, block: int = 128) -> None:
+        self.clock = clock
+        self.block = block
+        self.instrument = Instrument(self.RATE, memory=bytearray(RIG_BYTES))
+        self.instrument.report_events()
+        self.instrument.frame_at = self._frame_at
+        self.pace = 1.0  # of the device, where 1 is the rate it promises
+        self._began = (clock.now, 0)
+        self.player = live.LivePlayer(
+            self.instrument, load(DEFAULT), delay_ms=1e3 * block / self.RATE + 1.0
+        )
+        self.player.write("/playing/variation", 0.0, frame=0)
+        self.desk = Desk()
+        self.handler = osc.OscHandler(self.player, self.desk)
+        self.ear = Ear()
+        self.events: list[tuple[int, str, float]] = []
+
+    def _frame_at(self, time_ns: int) -> float:
+        moment, frame = self._began
+        return frame + (1e-9 * time_ns - moment) * self.RATE * self.pace
+
+    def take(self, packet: bytes, ear: Ear | None = None) -> None:
+        """Let a packet come in now."""
+        self.handler.handle(packet, ear or self.ear, self.clock.monotonic_ns())
+
+    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+        self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
+
+    def ask(self, address: str, *arguments: Any, tags: str | None = None) -> list[Heard]:
+        """Say something, and return what is heard by the next flush."""
+        self.ear.heard()
+        self.tell(address, *arguments, tags=tags)
+        self.clock.now += 0.02
+        self.handler.tick()
+        return self.ear.heard()
+
+    def pass_time(self, seconds: float) -> np.ndarray:
+        """Play on, as a device of this pace would; return what is heard."""
+        out = []
+        end = self.clock.now + seconds
+        while self.clock.now < end:
+            while self.instrument.frame <= self._frame_at(self.clock.monotonic_ns()):
+                sound = np.zeros(self.block, np.float32)
+                self.instrument.process(sound)
+                out.append(sound)
+            self.clock.now += 0.001
+            self.handler.tick()
+        self.events += [
+            (int(e["frame"]), ADDRESSES[int(e["index"])], float(e["target"]))
+            for e in self.instrument.applied_events()
+        ]
+        return np.concatenate(out) if out else np.zeros(0, np.float32)
+
+    def frames(self, address: str) -> list[int]:
+        """When a parameter was told to move, so far."""
+        return [frame for frame, moved, _ in self.events if moved == address]
+
+    def late(self) -> int:
+        """Events that came after their frame."""
+        return int(self.instrument.meters()["late_events"])
+
+
+@pytest.fixture
+def stage_type(still_time) -> Callable[..., Stage]:
+    return lambda block=128: Stage(still_time, block)
+
+
+@pytest.fixture
+def stage(stage_type) -> Stage:
+    return stage_type()
+
+
+# ---------------------------------------------------------------- clients of a real server
+
+
+class Client:
+    """A client by UDP."""
+
+    def __init__(self, port: int, host: str = HOST) -> None:
+        self.server = (host, port)
+        family = socket.AF_INET6 if ":" in host else socket.AF_INET
+        self.socket = socket.socket(family, socket.SOCK_DGRAM)
+        self.socket.bind((host, 0))
+        self.port = self.socket.getsockname()[1]
+
+    def take(self, packet: bytes) -> None:
+        self.socket.sendto(packet, self.server)
+
+    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+        self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
+
+    def next(self, within_s: float = PATIENCE_S) -> Heard | None:
+        """The next message, if one comes within the time."""
+        self.socket.settimeout(within_s)
+        try:
+            packet, sender = self.socket.recvfrom(1 << 16)
+        except TimeoutError:
+            return None
+        assert sender[:2] == self.server  # from the listening port
+        return Wire.read(packet)
+
+    def all(self, quiet_s: float = QUIET_S) -> list[Heard]:
+        """All messages until none comes for a while."""
+        return list(iter(lambda: self.next(quiet_s), None))
+
+    def wait_for(self, address: str, within_s: float = PATIENCE_S) -> list[Any]:
+        """The arguments of the next message of an address."""
+        deadline = time.monotonic() + within_s
+        while message := self.next(max(0.001, deadline - time.monotonic())):
+            if message.address == "/yehu" + address:
+                return message.arguments
+        raise AssertionError(f"no {address} within {within_s} s")
+
+    def sync(self) -> None:
+        """Wait until all said so far is acted on; forget what was heard."""
+        token = time.monotonic_ns()
+        self.tell("/ping", token)
+        while self.wait_for("/pong") != [token]:
+            pass
+
+    def value(self, address: str) -> float:
+        """Where a parameter is."""
+        self.sync()
+        self.tell("/get", address)
+        (value,) = self.wait_for(address)
+        return value
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+class Stream:
+    """A client by TCP, in either framing."""
+
+    def __init__(self, port: int, *, slip: bool = False, host: str = HOST) -> None:
+        self.slip = slip
+        self.socket = socket.create_connection((host, port), timeout=PATIENCE_S)
+        self._buffer = b""
+
+    def wrap(self, packet: bytes) -> bytes:
+        if not self.slip:
+            return struct.pack(">I", len(packet)) + packet
+        escaped = packet.replace(b"\xdb", b"\xdb\xdd").replace(b"\xc0", b"\xdb\xdc")
+        return b"\xc0" + escaped + b"\xc0"
+
+    def take(self, packet: bytes) -> None:
+        self.socket.sendall(self.wrap(packet))
+
+    def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
+        self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
+
+    def next(self, within_s: float = PATIENCE_S) -> Heard | None:
+        """The next message; None if none comes within the time, or the other end hung up."""
+        self.socket.settimeout(within_s)
+        while (packet := self._packet()) is None:
+            try:
+                data = self.socket.recv(1 << 16)
+            except (TimeoutError, ConnectionError):
+                return None
+            if not data:
+                return None
+            self._buffer += data
+        return Wire.read(packet)
+
+    def _packet(self) -> bytes | None:
+        if not self.slip:
+            size = int.from_bytes(self._buffer[:4], "big")
+            if len(self._buffer) < 4 + size or len(self._buffer) < 4:
+                return None
+            packet, self._buffer = self._buffer[4 : 4 + size], self._buffer[4 + size :]
+            return packet
+        frame, end, rest = self._buffer.lstrip(b"\xc0").partition(b"\xc0")
+        if not end:
+            return None
+        self._buffer = rest
+        return frame.replace(b"\xdb\xdc", b"\xc0").replace(b"\xdb\xdd", b"\xdb")
+
+    all = Client.all
+    wait_for = Client.wait_for
+    sync = Client.sync
+    value = Client.value
+
+    def has_ended(self, within_s: float = PATIENCE_S) -> bool:
+        """Whether the other end hangs up."""
+        self.socket.settimeout(within_s)
+        try:
+            while self.socket.recv(1 << 16):
+                pass
+        except TimeoutError:
+            return False
+        except ConnectionError:
+            return True
+        return True
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+class Hall:
+    """A server that plays to nobody, and whoever comes to play it."""
+
+    def __init__(self, folder: Path, ending: contextlib.ExitStack, **options: Any) -> None:
+        self.said: list[str] = []
+        output = OutputOptions(device="null", blocksize=options.pop("blocksize", 128))
+        osc = options.pop("osc", (HOST, 0))
+        self.server = Server(
+            ServeOptions(output=output, osc=osc, midi=None, recordings=folder, **options),
+            self.said.append,
+        )
+        self.ports = self.server.osc
+        self.handler = self.server.handler
+        self.instrument = self.server.instrument
+        self.player = self.server.player
+        self.instrument.report_events()
+        self._ending = ending
+        self.server.start()
+        ending.callback(self.server.stop)
+
+    def client(self) -> Client:
+        client = Client(self.ports.port, self.ports.host)
+        self._ending.callback(client.close)
+        return client
+
+    def stream(self, *, slip: bool = False) -> Stream:
+        stream = Stream(self.ports.port, slip=slip, host=self.ports.host)
+        self._ending.callback(stream.close)
+        return stream
+
+    def moves(self) -> list[tuple[int, str, float]]:
+        """What was applied since the last call: frame, address, value."""
+        self.wait_frames(1)
+        return [
+            (int(e["frame"]), ADDRESSES[int(e["index"])], float(e["target"]))
+            for e in self.instrument.applied_events()
+        ]
+
+    def settle(self) -> list[tuple[int, str, float]]:
+        """Wait until all that is decided so far is played; return what was applied."""
+        self.wait_frames(2 * self.player.delay + 1024)
+        return self.moves()
+
+    def wait_frames(self, frames: int) -> None:
+        end = self.instrument.frame + frames
+        until(lambda: self.instrument.frame >= end, f"frame {end}")
+
+    def target(self, address: str) -> float:
+        """Where a parameter of the engine goes, as the audio side has it."""
+        slot = {param.address: slot for slot, param in enumerate(ENGINE)}[address]
+        return float(self.instrument._rig["gesture"]["target"][0, slot])
+
+    def level(self, seconds: float = 0.2) -> float:
+        """How loud it is for a while from now (rms)."""
+        start = self.instrument.frame
+        self.wait_frames(round(seconds * self.instrument.rate))
+        _, sound = self.instrument.taped(start)
+        return float(np.sqrt(np.mean(np.square(sound, dtype=np.float64))))
+
+    def is_at_rest(self) -> bool:
+        """Whether nothing is left sounding or held."""
+        performer = self.player._performer
+        return (
+            self.player.pitch is None
+            and not performer._held
+            and self.target("/bow/speed") == 0.0
+            and self.target("/bow/side") == 0.0
+            and self.handler.waiting == 0
+        )
+
+    def is_well(self) -> bool:
+        """Whether it listens, and met no defect of its own."""
+        return self.ports._thread.is_alive() and self.ports.traffic.failures == 0
+
+
+@contextlib.contextmanager
+def hall_opened(folder: Path, **options: Any) -> Iterator[Hall]:
+    interval = sys.getswitchinterval()
+    before = set(threading.enumerate())
+    try:
+        with contextlib.ExitStack() as ending:
+            yield Hall(folder, ending, **options)
+    finally:
+        sys.setswitchinterval(interval)
+    assert set(threading.enumerate()) <= before
+
+
+@pytest.fixture
+def make_hall(tmp_path) -> Iterator[Callable[..., Hall]]:
+    """Open a server with options."""
+    with contextlib.ExitStack() as ending:
+        yield lambda **options: ending.enter_context(hall_opened(tmp_path / "takes", **options))
+
+
+@pytest.fixture
+def hall(make_hall) -> Hall:
+    return make_hall()
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory) -> Iterator[Hall]:
+    """One server for a whole file of tests that leave it as it was."""
+    with hall_opened(tmp_path_factory.mktemp("house")) as hall:
+        yield hall
+
+
+@contextlib.contextmanager
+def python_is_busy() -> Iterator[None]:
+    """While a thread of ours computes without a pause."""
+    ending = threading.Event()
+
+    def count() -> None:
+        number = 0
+        while not ending.is_set():
+            for _ in range(10_000):
+                number += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    try:
+        yield
+    finally:
+        ending.set()
+        thread.join()
+
+
+@pytest.fixture
+def busy() -> Callable[[], contextlib.AbstractContextManager[None]]:
+    return python_is_busy
+
+
+@pytest.fixture(autouse=True)
+def _quiet() -> Iterator[None]:
+    """python-osc warns of each odd byte by itself; not thousands of times to our log."""
+    logging.getLogger().setLevel(logging.ERROR)
+    yield
+    logging.getLogger().setLevel(logging.WARNING)
+
+
+@pytest.fixture(scope="session")
+def kit() -> SimpleNamespace:
+    """What tests without a hall need to make connections of their own."""
+    return SimpleNamespace(Client=Client, Stream=Stream)
+
+
+@pytest.fixture(scope="module")
+def fuzz_stage() -> Iterator[Stage]:
+    """A stage for many examples, on a still clock of its own."""
+    with pytest.MonkeyPatch.context() as patch:
+        clock = StillTime()
+        for module in (clients, schedule, osc, live):
+            patch.setattr(module, "time", clock)
+        yield Stage(clock)

@@ -1,0 +1,244 @@
+"""Who is told what: echoes, changes, errors, and how often."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from yehu_server.control.clients import MOST_KNOWN, MOST_SUBSCRIBERS, Clients
+
+
+class Values:
+    """Some parameters."""
+
+    def __init__(self) -> None:
+        self.now = {"/a": 0.0, "/b": 0.0, "/c": 0.0}
+
+    def __call__(self) -> dict[str, float]:
+        return dict(self.now)
+
+
+@pytest.fixture
+def values() -> Values:
+    return Values()
+
+
+@pytest.fixture
+def clients(still_time, values) -> Clients:  # noqa: ARG001 - its clock stands still
+    return Clients(values, "/yehu")
+
+
+@pytest.fixture
+def play(still_time, clients):
+    """Let time pass, in milliseconds; something may happen in each."""
+
+    def play(ms: int, happens=lambda: None) -> None:
+        for _ in range(ms):
+            still_time.now += 0.001
+            happens()
+            clients.flush()
+
+    return play
+
+
+def told(ear) -> list[tuple[str, list[float]]]:
+    return [(message.address, message.arguments) for message in ear.heard()]
+
+
+# ---------------------------------------------------------------- echoes
+
+
+def test_who_sets_something_is_told_its_value_once(clients, values, play, ear, ear_type):
+    other = ear_type(2)
+    values.now["/a"] = 0.5
+    clients.echo(ear, ["/a"])
+    play(100)
+    assert told(ear) == [("/yehu/a", [0.5])]
+    assert told(other) == []
+    play(100)
+    assert told(ear) == []
+
+
+def test_who_sets_something_often_is_told_sixty_times_a_second_and_the_last_value(
+    clients, values, play, ear
+):
+    def turn() -> None:
+        values.now["/a"] += 1.0
+        clients.echo(ear, ["/a"])
+
+    play(1000, turn)
+    play(20)
+    heard = told(ear)
+    assert 50 <= len(heard) <= 61
+    assert heard[-1] == ("/yehu/a", [1000.0])
+
+
+def test_there_is_nothing_to_wait_for_while_nobody_is_to_be_told(clients, play, ear):
+    assert clients.wait_s() is None
+    clients.echo(ear, ["/a"])
+    assert 0.0 <= clients.wait_s() <= 1.0 / 60.0
+    play(20)
+    assert clients.wait_s() is None
+
+
+def test_many_who_set_something_at_once_are_all_told(clients, play, ear_type):
+    ears = [ear_type(port) for port in range(MOST_KNOWN + 100)]
+    for ear in ears:
+        clients.echo(ear, ["/a"])
+    play(20)
+    assert sum(len(ear.packets) for ear in ears) == len(ears)
+
+
+def test_only_so_many_are_remembered(clients, ear_type):
+    for port in range(5 * MOST_KNOWN):
+        clients.complain(ear_type(port), "/x", "no")
+        assert len(clients._clients) <= MOST_KNOWN
+
+
+# ---------------------------------------------------------------- changes
+
+
+def test_a_subscriber_is_told_all_and_then_what_changes(clients, values, play, ear):
+    assert clients.subscribe(ear, 10.0)
+    play(20)
+    assert told(ear) == [("/yehu/a", [0.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
+    play(100)
+    assert told(ear) == []
+    values.now["/b"] = 1.0
+    play(100)
+    assert told(ear) == [("/yehu/b", [1.0])]
+
+
+def test_a_subscriber_is_told_of_a_value_sixty_times_a_second_at_most(clients, values, play, ear):
+    def turn() -> None:
+        values.now["/a"] += 1.0
+        values.now["/b"] -= 1.0
+        clients.echo(ear, ["/a"])
+
+    clients.subscribe(ear, 10.0)
+    play(20)
+    ear.heard()
+    play(1000, turn)
+    play(20)
+    heard = told(ear)
+    assert max(Counter(address for address, _ in heard).values()) <= 61
+    assert heard[-2:] == [("/yehu/a", [1000.0]), ("/yehu/b", [-1000.0])]
+
+
+def test_a_change_that_is_taken_back_at_once_need_not_be_told_but_never_lies(
+    clients, values, play, ear
+):
+    clients.subscribe(ear, 10.0)
+    play(20)
+    values.now["/a"] = 1.0
+    values.now["/a"] = 0.0
+    play(20)
+    assert set(told(ear)[3:]) <= {("/yehu/a", (0.0,))}
+
+
+def test_a_subscription_ends(clients, values, play, ear):
+    clients.subscribe(ear, 0.5)
+    play(400)
+    assert clients.subscribers == 1
+    play(200)
+    assert clients.subscribers == 0
+    ear.heard()
+    values.now["/a"] = 1.0
+    play(100)
+    assert told(ear) == []
+    assert clients.wait_s() is None
+
+
+def test_a_subscription_is_renewed_and_not_doubled(clients, values, play, ear):
+    clients.subscribe(ear, 0.5)
+    play(400)
+    clients.subscribe(ear, 0.5)
+    play(400)
+    ear.heard()
+    values.now["/a"] = 1.0
+    play(50)
+    assert told(ear) == [("/yehu/a", [1.0])]
+
+
+@pytest.mark.parametrize("end", [Clients.unsubscribe, Clients.forget])
+def test_who_unsubscribes_or_is_gone_is_told_no_more(clients, values, play, ear, end):
+    clients.subscribe(ear, 10.0)
+    play(20)
+    ear.heard()
+    end(clients, ear)
+    values.now["/a"] = 1.0
+    play(100)
+    assert told(ear) == []
+    assert clients.subscribers == 0
+
+
+def test_subscribers_of_no_time_get_all_values_once(clients, values, play, ear):
+    clients.subscribe(ear, 0.0)
+    values.now["/a"] = 1.0
+    play(100)
+    assert told(ear) == [("/yehu/a", [1.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
+
+
+def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(
+    clients, play, ear_type
+):
+    ears = [ear_type(port) for port in range(MOST_SUBSCRIBERS + 1)]
+    assert all(clients.subscribe(ear, 1.0) for ear in ears[:-1])
+    assert not clients.subscribe(ears[-1], 1.0)
+    assert clients.subscribe(ears[0], 1.0)  # who has a place keeps it
+    clients.unsubscribe(ears[3])
+    assert clients.subscribe(ears[-1], 1.0)
+    play(1100)
+    assert clients.subscribers == 0
+
+
+def test_subscribers_are_not_forgotten_for_the_many_who_pass_by(
+    clients, values, play, ear, ear_type
+):
+    clients.subscribe(ear, 10.0)
+    play(20)
+    ear.heard()
+    for port in range(2, 3 * MOST_KNOWN):
+        clients.complain(ear_type(port), "/x", "no")
+    values.now["/a"] = 1.0
+    play(20)
+    assert told(ear) == [("/yehu/a", [1.0])]
+
+
+@pytest.mark.parametrize("is_subscribed", [False, True])
+def test_a_peer_that_is_gone_when_it_is_told_leaves_the_others_in_peace(
+    clients, play, ear, ear_type, is_subscribed
+):
+    class Gone(ear_type):
+        def send(self, _packet: bytes) -> None:
+            clients.forget(self)
+
+    if is_subscribed:
+        clients.subscribe(Gone(2), 10.0)
+    clients.echo(Gone(3), ["/a"])
+    clients.echo(ear, ["/a"])
+    play(20)
+    assert ("/yehu/a", [0.0]) in told(ear)
+
+
+# ---------------------------------------------------------------- errors
+
+
+def test_errors_are_told_with_address_and_reason(clients, ear):
+    clients.complain(ear, "/yehu/nothing", "it is not there")
+    assert told(ear) == [("/yehu/error", ["/yehu/nothing", "it is not there"])]
+
+
+def test_errors_are_told_rarely_to_who_makes_many(clients, play, ear, ear_type):
+    patient = ear_type(2)
+    play(10_000, lambda: clients.complain(ear, "/x", "no"))
+    assert 100 <= len(ear.packets) <= 125
+    assert clients.errors_sent == len(ear.packets)
+    assert clients.errors_sent + clients.errors_withheld == 10_000
+    clients.complain(patient, "/x", "no")
+    assert len(patient.packets) == 1  # others are not made to wait
+    ear.heard()
+    play(5000)
+    clients.complain(ear, "/x", "no")
+    assert len(ear.packets) == 1

@@ -1,0 +1,133 @@
+"""Packets in streams: both framings, however the stream is cut, and damaged ones."""
+
+from __future__ import annotations
+
+import itertools
+import struct
+from collections.abc import Iterable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pythonosc import slip
+
+from yehu_server.control.framing import MOST_BYTES, Framing, FramingError
+
+ESC, END = b"\xdb", b"\xc0"
+
+
+def prefixed(packets: Iterable[bytes]) -> bytes:
+    return b"".join(struct.pack(">I", len(packet)) + packet for packet in packets)
+
+
+def slipped(packets: Iterable[bytes]) -> bytes:
+    """As of OSC 1.1, an END before and after each."""
+    return b"".join(slip.encode(packet) for packet in packets)
+
+
+def slipped_bare(packets: Iterable[bytes]) -> bytes:
+    """As of RFC 1055's first sketch, an END after each only."""
+    return b"".join(slip.encode(packet)[1:] for packet in packets)
+
+
+def read(framing: Framing, *pieces: bytes) -> list[bytes]:
+    return [packet for piece in pieces for packet in framing.packets(piece)]
+
+
+FRAMINGS = [prefixed, slipped, slipped_bare]
+SOME = [b"/a\0\0", b"/" + END * 3 + ESC * 2, b"#bundle\0", b"/\xdb\xdc\xdb\xdd\0", b"/b" * 300]
+# The first byte tells the framing apart: of SLIP without a leading END, that of a packet.
+osc_like = st.builds(lambda start, rest: start + rest, st.sampled_from([b"/", b"#"]), st.binary())
+awkward = st.lists(st.sampled_from([END, ESC, b"\xdc", b"\xdd", b"\0", b"/"])).map(b"".join)
+packets = st.lists(osc_like | awkward.map(lambda rest: b"/" + rest), max_size=8)
+
+
+@pytest.mark.parametrize("frame", FRAMINGS)
+def test_a_stream_cut_anywhere_gives_the_same_packets(frame):
+    stream = frame(SOME)
+    for cut in range(len(stream) + 1):
+        assert read(Framing(), stream[:cut], stream[cut:]) == SOME
+
+
+@pytest.mark.parametrize("frame", FRAMINGS)
+def test_a_stream_that_comes_byte_by_byte_gives_the_same_packets(frame):
+    stream = frame(SOME)
+    assert read(Framing(), *(stream[at : at + 1] for at in range(len(stream)))) == SOME
+
+
+@pytest.mark.parametrize("frame", FRAMINGS)
+@given(packets, st.lists(st.integers(0, 400)))
+def test_what_is_framed_comes_out_again_however_it_is_cut(frame, packets, cuts):
+    stream = frame(packets)
+    edges = [0, *sorted(cut for cut in cuts if cut < len(stream)), len(stream)]
+    pieces = [stream[a:b] for a, b in itertools.pairwise(edges)]
+    assert read(Framing(), *pieces) == packets
+
+
+@given(st.lists(st.integers(0, 5)))
+def test_ends_between_slip_packets_are_no_packets(counts):
+    stream = END + b"".join(b"/a\0\0" + END * (1 + count) for count in counts)
+    assert read(Framing(), stream) == [b"/a\0\0"] * len(counts)
+
+
+@given(st.binary())
+def test_answers_are_framed_as_the_peer_frames(packet):
+    by_length, by_slip, unknown = Framing(), Framing(), Framing()
+    read(by_length, b"\0")
+    read(by_slip, b"/")
+    assert by_length.wrap(packet) == prefixed([packet])
+    assert by_slip.wrap(packet) == unknown.wrap(packet) == slip.encode(packet)
+
+
+def test_a_packet_may_be_as_long_as_is_allowed_and_no_longer():
+    longest = b"/" * MOST_BYTES
+    assert read(Framing(), prefixed([longest])) == [longest]
+    assert read(Framing(), slipped([longest])) == [longest]
+    with pytest.raises(FramingError, match="too long"):
+        read(Framing(), prefixed([longest + b"/"])[:4])
+
+
+@pytest.mark.parametrize("size", [MOST_BYTES + 1, 2**24 - 1])
+def test_what_came_before_a_length_that_is_too_long_still_counts(size):
+    got: list[bytes] = []
+    with pytest.raises(FramingError):
+        got.extend(Framing().packets(prefixed([b"/a\0\0"]) + struct.pack(">I", size)))
+    assert got == [b"/a\0\0"]
+
+
+@pytest.mark.parametrize("start", [END, b"/", b"\xff"])
+def test_a_stream_that_never_ends_a_packet_is_given_up(start):
+    framing = Framing()
+    with pytest.raises(FramingError):
+        read(framing, start, *([b"x" * 65536] * 64))
+    assert len(framing._received) <= 3 * MOST_BYTES
+
+
+@pytest.mark.parametrize(
+    "damaged", [b"/a" + ESC + b"b", b"/a" + ESC, ESC + ESC, ESC, b"/" + ESC + b"\0\xdc"]
+)
+def test_a_damaged_slip_packet_is_told_and_the_next_is_whole(damaged):
+    stream = slipped([b"/a\0\0"]) + END + damaged + END + slipped([b"/b\0\0"])
+    assert read(Framing(), stream) == [b"/a\0\0", b"", b"/b\0\0"]
+    pieces = (stream[at : at + 1] for at in range(len(stream)))
+    assert read(Framing(), *pieces) == [b"/a\0\0", b"", b"/b\0\0"]
+
+
+def test_a_packet_of_no_bytes_is_told_where_a_length_announces_it():
+    assert read(Framing(), prefixed([b"/a\0\0", b"", b"/b\0\0"])) == [b"/a\0\0", b"", b"/b\0\0"]
+
+
+@given(st.lists(st.binary(max_size=200), max_size=20))
+def test_any_bytes_are_packets_or_refused(pieces):
+    framing = Framing()
+    try:
+        got = read(framing, *pieces)
+    except FramingError:
+        return
+    assert sum(map(len, got)) <= sum(map(len, pieces))
+
+
+def test_nothing_at_all_decides_nothing():
+    framing = Framing()
+    assert read(framing, b"", b"") == []
+    assert read(framing, prefixed(SOME)) == SOME

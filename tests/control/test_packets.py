@@ -1,0 +1,284 @@
+"""Packets taken apart: every type, bundles in bundles, and whatever else may come."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import signal
+import struct
+import time
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from yehu_server.control.framing import MOST_BYTES
+from yehu_server.control.packets import DEEPEST, Message, PacketError, pack, unpack
+
+LONGEST_S = 2.0
+
+
+class HangError(BaseException):
+    """It does not come to an end."""
+
+
+@contextlib.contextmanager
+def soon() -> Iterator[None]:
+    """Nothing here may take long: it would stop the one thread that listens."""
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def ring(*_: object) -> None:
+        raise HangError
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, LONGEST_S)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def is_read_or_refused(packet: bytes) -> None:
+    with soon(), contextlib.suppress(PacketError):
+        unpack(packet)
+
+
+words = st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=12)
+arguments = st.one_of(
+    st.integers(-(2**31), 2**31 - 1).map(lambda v: ("i", v)),
+    st.integers(-(2**63), 2**63 - 1).map(lambda v: ("h", v)),
+    st.floats(width=32).map(lambda v: ("f", v)),
+    st.floats().map(lambda v: ("d", v)),
+    words.map(lambda v: ("s", v)),
+    st.binary(max_size=12).map(lambda v: ("b", v)),
+    st.sampled_from([("T", True), ("F", False), ("N", None)]),
+)
+messages = st.tuples(words.map("/".__add__), st.lists(arguments, max_size=6))
+
+
+def same(one: object, other: object) -> bool:
+    if isinstance(one, float) and isinstance(other, float) and math.isnan(one):
+        return math.isnan(other)
+    return type(one) is type(other) and one == other
+
+
+# ---------------------------------------------------------------- what is whole
+
+
+@given(messages)
+@example(("/", [("s", ""), ("b", b""), ("d", 1e300), ("f", math.inf), ("i", -(2**31))]))
+def test_every_type_of_argument_is_read_as_it_was_written(wire, message):
+    address, tagged = message
+    tags, values = "".join(tag for tag, _ in tagged), [value for _, value in tagged]
+    (got,) = unpack(wire.message(address, *values, tags=tags))
+    assert (got.address, got.due_s) == (address, None)
+    assert len(got.arguments) == len(values)
+    assert all(map(same, got.arguments, values))
+
+
+@given(words.map("/".__add__), st.lists(words | st.booleans() | st.integers(-(2**63), 2**63 - 1)))
+def test_what_is_packed_is_read_by_others(wire, address, values):
+    assert wire.read(pack(address, *values)) == (address, values)
+
+
+def test_a_message_without_type_tags_has_no_arguments(wire):
+    assert unpack(wire.text("/yehu/panic")) == [Message("/yehu/panic", [])]
+    assert unpack(wire.message("/yehu/panic")) == [Message("/yehu/panic", [])]
+
+
+def test_arguments_in_brackets_are_one_list():
+    (got,) = unpack(b"/a\0\0,i[i[i]]\0\0\0\0" + struct.pack(">iii", 1, 2, 3))
+    assert got.arguments == [1, [2, [3]]]
+
+
+@given(st.floats(1.0, 2e9))
+def test_a_time_tag_is_read_to_the_microsecond(wire, at_s):
+    (got,) = unpack(wire.bundle(at_s, wire.message("/a")))
+    assert got.due_s == pytest.approx(at_s, abs=1e-6)
+
+
+def test_at_once_is_no_time(wire):
+    assert unpack(wire.bundle(None, wire.message("/a"))) == [Message("/a", [])]
+
+
+def test_messages_of_bundles_keep_their_order_and_the_innermost_time(wire):
+    inner = wire.bundle(3e8, wire.message("/b"), wire.bundle(None, wire.message("/c")))
+    outer = wire.bundle(2e8, wire.message("/a"), inner, wire.message("/d"))
+    assert [(m.address, m.due_s) for m in unpack(outer)] == [
+        ("/a", 2e8),
+        ("/b", 3e8),
+        ("/c", 3e8),
+        ("/d", 2e8),
+    ]
+
+
+def test_a_bundle_may_be_empty(wire):
+    assert unpack(wire.bundle(None)) == []
+    assert unpack(wire.bundle(1e9, wire.bundle(None), wire.bundle(2e9))) == []
+
+
+def test_bundles_go_as_deep_in_bundles_as_is_allowed_and_no_deeper(wire):
+    packet = wire.message("/a")
+    for _ in range(DEEPEST):
+        packet = wire.bundle(None, packet)
+    assert [m.address for m in unpack(packet)] == ["/a"]
+    with pytest.raises(PacketError, match="deep"):
+        unpack(wire.bundle(None, packet))
+
+
+# ---------------------------------------------------------------- what is not
+
+
+@pytest.mark.parametrize(
+    "packet",
+    [
+        b"",
+        b"\0",
+        b"\0\0\0\0",
+        b"abc\0",
+        b"yehu/panic\0\0",
+        b"/yehu/panic",  # its end is missing
+        b"/yehu/panic,\0\0\0",
+        b"/a\0\0i\0\0\0\0\0\0\1",  # no comma
+        b"/a\0\0,i\0\0",
+        b"/a\0\0,i\0\0\0\0",
+        b"/a\0\0,d\0\0\0\0\0\0",
+        b"/a\0\0,s\0\0abcd",
+        b"/a\0\0,b\0\0\0\0\0\x08abcd",
+        b"/a\0\0,[i\0\0\0\0\1",
+        b"/a\0\0,i]\0\0\0\0\1",
+        b"/\xff\xff\0",
+        b"/a\0\0,s\0\0\xff\xff\xff\0",
+        b"#bundle",
+        b"#bundle\0",
+        b"#bundle\0\0\0\0\0",
+        b"#bundle\0" + b"\0" * 7 + b"\1\0\0",
+        b"#bundle\0" + b"\0" * 7 + b"\1\0\0\0\x08/a\0\0,i\0\0",
+        b"#bundlf\0" + b"\0" * 7 + b"\1",
+    ],
+    ids=repr,
+)
+def test_what_is_no_packet_is_refused(packet):
+    with soon(), pytest.raises(PacketError):
+        unpack(packet)
+
+
+def test_of_a_bundle_with_a_broken_message_nothing_counts(wire):
+    with pytest.raises(PacketError):
+        unpack(wire.bundle(None, wire.message("/a"), b"/b\0\0,i\0\0"))
+
+
+def test_an_element_of_negative_size_is_refused(wire):
+    packet = wire.bundle(None) + struct.pack(">i", -4) + wire.message("/a")
+    with soon(), pytest.raises(PacketError):
+        unpack(packet)
+
+
+@pytest.mark.parametrize("element", [b"", b"\0\0\0\0", b"abcd", b"#bundl\0\0", b",i\0\0\0\0\0\1"])
+def test_an_element_that_is_neither_message_nor_bundle_is_refused(wire, element):
+    with pytest.raises(PacketError):
+        unpack(wire.bundle(None, wire.message("/a"), element))
+
+
+def test_an_element_that_is_shorter_than_it_says_is_refused(wire):
+    packet = wire.bundle(None) + struct.pack(">i", 64) + wire.message("/a")
+    with pytest.raises(PacketError):
+        unpack(packet)
+
+
+@pytest.mark.parametrize("end", range(4, 8))
+def test_floats_that_are_cut_short_are_refused(wire, end):
+    packet = wire.message("/yehu/note", 67.0, 90.0)
+    with pytest.raises(PacketError):
+        unpack(packet[: len(packet) - 8 + end])
+
+
+@pytest.mark.parametrize(
+    ("tags", "values"),
+    [("cf", [97, 0.7]), ("Sf", ["loud", 0.7]), ("If", [0.7]), ("Xf", [0.7]), ("fX", [0.7])],
+)
+def test_a_type_that_is_not_known_is_refused_or_read(wire, tags, values):
+    try:
+        (got,) = unpack(wire.message("/yehu/bow/force", *values, tags=tags))
+    except PacketError:
+        return
+    assert len(got.arguments) == len(tags)
+    assert got.arguments[tags.index("f")] == pytest.approx(0.7)
+
+
+@given(messages, st.data())
+def test_a_message_that_is_cut_short_is_never_taken_for_another(wire, message, data):
+    address, tagged = message
+    tags, values = "".join(tag for tag, _ in tagged), [value for _, value in tagged]
+    packet = wire.message(address, *values, tags=tags)
+    cut = data.draw(st.integers(0, len(packet) - 1))
+    try:
+        (got,) = unpack(packet[:cut])
+    except PacketError:
+        return
+    if cut == len(wire.text(address)):  # before the type tags: an old sender's message
+        values = []
+    assert got.address == address
+    assert all(map(same, got.arguments, values))  # at most the padding of the last is missing
+    assert len(got.arguments) == len(values)
+
+
+bundled = st.recursive(
+    messages, lambda inner: st.lists(inner, max_size=3).map(lambda of: ("#", of)), max_leaves=6
+)
+
+
+def wired(wire, thing) -> bytes:
+    address, content = thing
+    if address == "#":
+        return wire.bundle(1e9, *(wired(wire, each) for each in content))
+    return wire.message(address, *(v for _, v in content), tags="".join(t for t, _ in content))
+
+
+@given(st.binary())
+def test_garbage_is_refused_and_nothing_else_happens(garbage):
+    with soon(), pytest.raises(PacketError):
+        unpack(b"x" + garbage)
+
+
+@settings(max_examples=400)
+@given(st.sampled_from([b"/", b"#bundle\0", b"/a\0\0,", b"#bundle\0\0\0\0\0\0\0\0\1"]), st.binary())
+def test_garbage_that_begins_well_is_read_or_refused(start, garbage):
+    is_read_or_refused(start + garbage)
+
+
+@settings(max_examples=400)
+@given(bundled, st.data())
+def test_a_packet_with_a_byte_changed_is_read_or_refused(wire, thing, data):
+    packet = bytearray(wired(wire, thing))
+    packet[data.draw(st.integers(0, len(packet) - 1))] = data.draw(st.integers(0, 255))
+    is_read_or_refused(bytes(packet))
+
+
+@pytest.mark.parametrize("depth", [DEEPEST + 1, 500, 3000, 50_000])
+def test_bundles_much_too_deep_are_refused_at_once(depth):
+    head = b"#bundle\0" + b"\0" * 7 + b"\1"
+    sizes_ = [20 * level + 8 for level in reversed(range(depth))]
+    packet = b"".join(head + struct.pack(">i", size) for size in sizes_) + b"/a\0\0,\0\0\0"
+    with soon(), pytest.raises(PacketError):
+        unpack(packet)
+
+
+def test_a_message_as_long_as_is_allowed_is_read_at_once(wire):
+    count = MOST_BYTES // 5 - 10
+    packet = wire.message("/a", *[1] * count)
+    started = time.thread_time()
+    assert len(unpack(packet)[0].arguments) == count
+    assert time.thread_time() - started < 1.2
+
+
+def test_a_bundle_as_long_as_is_allowed_is_read_at_once(wire):
+    count = MOST_BYTES // 8 - 10
+    packet = wire.bundle(None, *[b"/\0\0\0"] * count)
+    started = time.thread_time()
+    assert len(unpack(packet)) == count
+    assert time.thread_time() - started < 1.2

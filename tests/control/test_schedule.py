@@ -1,0 +1,153 @@
+"""Time tags: what waits for its time, and the frames that moments fall on."""
+
+from __future__ import annotations
+
+import itertools
+import random
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from yehu_server.control import schedule
+from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
+
+RATE = 48000
+MS = RATE // 1000
+
+
+# ---------------------------------------------------------------- waiting
+
+
+@given(st.lists(st.floats(0.0, 100.0)))
+def test_things_are_handed_out_once_in_order_of_their_times(due):
+    waiting: Schedule[int] = Schedule()
+    for number, moment in enumerate(due):
+        assert waiting.add(moment, number)
+    assert len(waiting) == len(due)
+    assert waiting.due() == sorted((moment, number) for number, moment in enumerate(due))
+    assert not waiting
+    assert waiting.due() == []
+
+
+def test_nothing_is_handed_out_before_its_time(still_time):
+    waiting: Schedule[str] = Schedule()
+    now = still_time.time()
+    assert waiting.wait_s() is None
+    waiting.add(now + 2.0, "second")
+    waiting.add(now + 1.0, "first")
+    assert waiting.wait_s() == pytest.approx(1.0 - AHEAD_S)
+    assert waiting.due() == []
+    still_time.now += 1.0 - AHEAD_S + 1e-4
+    assert waiting.due() == [(now + 1.0, "first")]
+    assert waiting.wait_s() == pytest.approx(1.0, abs=0.01)
+    still_time.now += 5.0
+    assert waiting.wait_s() == 0.0
+    assert waiting.due() == [(now + 2.0, "second")]
+
+
+def test_there_is_room_for_so_many_and_again_when_they_are_gone():
+    waiting: Schedule[int] = Schedule(most=3)
+    assert [waiting.add(0.0, number) for number in range(5)] == [True, True, True, False, False]
+    waiting.clear()
+    assert waiting.add(0.0, 5)
+    assert waiting.due() == [(0.0, 5)]
+
+
+# ---------------------------------------------------------------- frames of moments
+
+
+class Device:
+    """A device of some pace; stands in for a player with an instrument."""
+
+    def __init__(self, clock, pace: float = 1.0) -> None:
+        self.pace = pace
+        self.stray = 0.0  # s; how wrong our idea of it is
+        self._began = clock.now
+        self.instrument = SimpleNamespace(rate=RATE, frame_at=self.frame_at)
+
+    def frame_at(self, time_ns: int) -> float:
+        return 1234.5 + (1e-9 * time_ns - self._began + self.stray) * RATE * self.pace
+
+
+def true_frame(device: Device, clock, due_s: float) -> float:
+    return device.frame_at(round(1e9 * (due_s - clock.since_1970)))
+
+
+@pytest.mark.parametrize("pace", [1.0, 1.0 + 1e-5, 1.0 - 1e-5])
+def test_distances_are_exact_to_the_frame(still_time, pace):
+    device = Device(still_time, pace)
+    tags = TagClock(device)
+    chance = random.Random(1)
+    first = still_time.time() + 0.5
+    places = sorted(chance.randrange(0, 20 * RATE) for _ in range(2000))
+    frames = []
+    for place in places:
+        due_s = first + place / RATE
+        still_time.now = due_s - still_time.since_1970 - chance.uniform(0.0, AHEAD_S)
+        frames.append(tags.frame_at(due_s))
+    assert [frame - frames[0] for frame in frames] == [place - places[0] for place in places]
+
+
+@pytest.mark.parametrize("pace", [1.0, 1.0 + 2e-4, 1.0 - 2e-4])
+def test_times_stay_within_a_millisecond_and_a_bit_for_minutes(still_time, pace):
+    device = Device(still_time, pace)
+    tags = TagClock(device)
+    first = still_time.time() + 0.5
+    steps = []
+    before = None
+    for number in range(1200):
+        due_s = first + 0.1 * number
+        still_time.now = due_s - still_time.since_1970 - 0.005
+        frame = tags.frame_at(due_s)
+        assert abs(frame - true_frame(device, still_time, due_s)) <= 1.01 * MS
+        if before is not None and frame - before != RATE // 10:
+            steps.append(number)
+        before = frame
+    drift_ms = 120.0 * abs(pace - 1.0) * 1e3
+    assert len(steps) <= drift_ms + 1.0  # only as often as it has led a millisecond away
+
+
+@pytest.mark.parametrize("step_s", [-3600.0, -0.01, 0.01, 3600.0])
+def test_a_step_of_the_worlds_clock_is_followed(still_time, step_s):
+    device = Device(still_time)
+    tags = TagClock(device)
+    tags.frame_at(still_time.time() + 0.005)
+    still_time.since_1970 += step_s
+    due_s = still_time.time() + 0.005
+    assert abs(tags.frame_at(due_s) - true_frame(device, still_time, due_s)) <= 1.0
+
+
+def test_a_little_uncertainty_of_the_device_moves_nothing(still_time):
+    device = Device(still_time)
+    tags = TagClock(device)
+    chance = random.Random(2)
+    first = still_time.time() + 0.5
+    frames = []
+    for number in range(500):
+        due_s = first + 0.01 * number
+        still_time.now = due_s - still_time.since_1970 - 0.005
+        device.stray = chance.uniform(-4e-4, 4e-4)
+        frames.append(tags.frame_at(due_s))
+    assert {after - before for before, after in itertools.pairwise(frames)} == {480}
+
+
+def test_being_held_up_while_reading_the_clocks_moves_nothing(still_time, monkeypatch):
+    device = Device(still_time)
+    tags = TagClock(device)
+    held_up = iter([0.0, 0.0, 0.004, 0.0, 0.0])  # s, after the first clock is read
+
+    def read() -> float:
+        now = type(still_time).time(still_time)
+        still_time.now += next(held_up, 0.0)
+        return now
+
+    monkeypatch.setattr(schedule.time, "time", read)
+    first = type(still_time).time(still_time) + 0.5
+    frames = []
+    for number in range(5):
+        due_s = first + 0.02 * number
+        still_time.now = due_s - still_time.since_1970 - 0.008
+        frames.append(tags.frame_at(due_s))
+    assert [frame - frames[0] for frame in frames] == [960 * number for number in range(5)]

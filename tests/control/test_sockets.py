@@ -1,0 +1,606 @@
+"""Sockets: nothing is lost that need not be, what is lost is counted, and who may speak."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import itertools
+import logging
+import socket
+import struct
+import sys
+import threading
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from yehu_server.control import sockets
+from yehu_server.control.addresses import Allowed, parse_address
+from yehu_server.control.packets import pack
+from yehu_server.control.schedule import AHEAD_S
+from yehu_server.control.sockets import OscPorts
+from yehu_server.errors import DeviceError, ParameterError
+
+HOST = "127.0.0.1"
+BURST = 20_000
+PACKET_BYTES = 768  # a small one, as Linux counts it against the buffer
+SETTLE_S = 0.05
+
+on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells")
+
+
+class Keeper:
+    """Keeps what comes, where it is not held up."""
+
+    def __init__(self) -> None:
+        self.packets: list[tuple[bytes, object, int]] = []
+        self.answer: bytes | None = None
+        self.gone_peers: list[object] = []
+        self.go_on = threading.Event()
+        self.go_on.set()
+        self.ticks = 0
+        self.takes_s = 0.0
+        self.since_tick = [0]  # packets handled since each tick
+        self.ticked_s: list[float] = []  # of the thread's own time
+
+    def handle(self, packet: bytes, peer, arrived_ns: int) -> None:
+        self.go_on.wait()
+        self.packets.append((packet, peer, arrived_ns))
+        self.since_tick[-1] += 1
+        if self.takes_s:
+            time.sleep(self.takes_s)
+        if packet == b"raise":
+            raise RuntimeError("as asked")
+        if self.answer is not None:
+            peer.send(self.answer)
+
+    def tick(self) -> None:
+        self.ticks += 1
+        self.since_tick.append(0)
+        self.ticked_s.append(time.thread_time())
+
+    def wait_s(self) -> float | None:
+        return None
+
+    def gone(self, peer) -> None:
+        self.gone_peers.append(peer)
+
+    @property
+    def bodies(self) -> list[bytes]:
+        return [packet for packet, _, _ in self.packets]
+
+
+@pytest.fixture
+def keeper():
+    return Keeper()
+
+
+@pytest.fixture
+def listen(keeper):
+    """Listen with the keeper behind, anywhere on this machine."""
+    with contextlib.ExitStack() as ending:
+
+        def listen(*, host: str = HOST, allowed: Allowed | None = None, start: bool = True):
+            ports = OscPorts(host, 0, allowed or Allowed(), keeper)
+            ending.callback(ports.stop)
+            ending.callback(keeper.go_on.set)
+            if start:
+                ports.start()
+            return ports
+
+        yield listen
+
+
+@pytest.fixture
+def client(kit):
+    with contextlib.ExitStack() as ending:
+
+        def client(ports, kind: str = "udp"):
+            if kind == "udp":
+                made = kit.Client(ports.port, ports.host)
+            else:
+                made = kit.Stream(ports.port, slip=kind == "slip", host=ports.host)
+            ending.callback(made.close)
+            return made
+
+        yield client
+
+
+def numbered(count: int) -> list[bytes]:
+    return [pack("/yehu/bow/force", number) for number in range(count)]
+
+
+# ---------------------------------------------------------------- UDP
+
+
+def send_all(client, packets) -> None:
+    for packet in packets:
+        client.take(packet)
+
+
+def test_a_burst_to_an_idle_server_arrives_whole(listen, client, keeper, patience):
+    ports = listen()
+    packets = numbered(BURST)
+    send_all(client(ports), packets)
+    if ports.traffic.buffer_bytes < BURST * PACKET_BYTES:
+        pytest.skip(f"the system grants {ports.traffic.buffer_bytes} bytes only")
+    patience(lambda: len(keeper.packets) >= BURST, "all packets")
+    assert keeper.bodies == packets
+    assert ports.traffic.packets == BURST
+    assert ports.traffic.kernel_drops == 0
+
+
+def test_what_the_buffer_holds_is_kept_while_nobody_reads(listen, client, keeper, patience):
+    ports = listen(start=False)
+    fits = min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES))
+    packets = numbered(fits)
+    send_all(client(ports), packets)
+    ports.start()
+    patience(lambda: len(keeper.packets) >= fits, "all packets")
+    assert keeper.bodies == packets
+    assert ports.traffic.kernel_drops == 0
+
+
+def test_a_burst_arrives_while_python_is_busy(listen, client, keeper, patience, busy):
+    ports = listen()
+    packets = numbered(min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES)))
+    with busy():
+        send_all(client(ports), packets)
+        patience(lambda: len(keeper.packets) >= len(packets), "all packets")
+    assert keeper.bodies == packets
+
+
+def test_a_burst_is_kept_while_the_handler_is_held_up(listen, client, keeper, patience):
+    ports = listen()
+    packets = numbered(min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES)))
+    keeper.go_on.clear()
+    send_all(client(ports), packets)
+    time.sleep(SETTLE_S)
+    keeper.go_on.set()
+    patience(lambda: len(keeper.packets) >= len(packets), "all packets")
+    assert keeper.bodies == packets
+
+
+@on_linux
+def test_what_the_kernel_drops_is_counted(listen, client, keeper, patience):
+    ports = listen(start=False)
+    ports._udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 8192)
+    sender = client(ports)
+    send_all(sender, numbered(1000))
+    ports.start()
+    patience(lambda: keeper.packets, "a packet")
+    time.sleep(SETTLE_S)
+    sender.take(b"the last")  # the kernel tells of its drops with the next that arrives
+    patience(lambda: b"the last" in keeper.bodies, "the last packet")
+    assert ports.traffic.kernel_drops > 0
+    assert ports.traffic.packets + ports.traffic.kernel_drops == 1001
+
+
+def test_the_buffer_that_is_granted_is_told(listen):
+    ports = listen()
+    granted = ports._udp.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+    assert ports.traffic.buffer_bytes == granted > 0
+
+
+@on_linux
+def test_a_packet_is_as_early_as_it_came_however_late_it_is_read(listen, client, keeper, patience):
+    ports = listen(start=False)
+    before = time.monotonic_ns()
+    client(ports).take(b"/a\0\0")
+    after = time.monotonic_ns()
+    time.sleep(0.2)
+    ports.start()
+    patience(lambda: keeper.packets, "the packet")
+    ((_, _, arrived_ns),) = keeper.packets
+    assert before - 2_000_000 <= arrived_ns <= after + 50_000_000
+
+
+@pytest.mark.parametrize("size", [0, 1, 1472, 9000, 65507])
+def test_datagrams_of_any_size_come_whole(listen, client, keeper, patience, size):
+    ports = listen()
+    client(ports).take(b"x" * size)
+    patience(lambda: keeper.packets, "the packet")
+    assert keeper.bodies == [b"x" * size]
+
+
+def test_answers_come_from_the_listening_port_to_who_asked(listen, client, keeper):
+    ports = listen()
+    keeper.answer = pack("/yehu/pong", 1)
+    one, other = client(ports), client(ports)
+    one.take(b"/ping")
+    assert one.next() == ("/yehu/pong", [1])
+    assert other.next(0.1) is None
+
+
+def test_answers_nobody_takes_are_no_trouble(listen, client, keeper, patience):
+    ports = listen()
+    keeper.answer = b"x" * 70_000  # more than a datagram holds
+    one, other = client(ports), client(ports)
+    one.take(b"/ping")
+    one.close()
+    other.take(b"/ping")
+    patience(lambda: len(keeper.packets) == 2, "both")
+    patience(lambda: ports.traffic.unsent == 2, "both to be counted")
+
+
+def test_what_waits_in_memory_is_bounded_in_bytes(listen, client, keeper, patience, monkeypatch):
+    monkeypatch.setattr(sockets, "MOST_QUEUED_BYTES", 1 << 20)
+    ports = listen()
+    keeper.takes_s = 0.002
+    send_all(client(ports), [b"x" * 60_000] * 100)
+    most = 0
+    while len(keeper.packets) + ports.traffic.kernel_drops < 100:
+        most = max(most, ports._queued_bytes)
+    assert (1 << 19) < most <= (1 << 20) + (1 << 16)
+    patience(lambda: ports._queued_bytes == 0, "nothing to be left")
+
+
+def test_there_is_osc_over_ipv6(listen, client, keeper):
+    try:
+        ports = listen(host="::1", allowed=Allowed(["::1/128"]))
+    except DeviceError:
+        pytest.skip("no IPv6 here")
+    keeper.answer = pack("/yehu/pong")
+    for kind in ("udp", "prefixed", "slip"):
+        sender = client(ports, kind)
+        sender.take(b"/ping\0\0\0")
+        assert sender.next() == ("/yehu/pong", [])
+
+
+# ---------------------------------------------------------------- TCP
+
+KINDS = ["prefixed", "slip"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_stream_loses_nothing_while_python_is_busy(listen, client, keeper, patience, busy, kind):
+    ports = listen()
+    packets = numbered(BURST)
+    stream = client(ports, kind)
+    with busy():
+        stream.socket.sendall(b"".join(map(stream.wrap, packets)))
+        patience(lambda: len(keeper.packets) >= BURST, "all packets")
+    assert keeper.bodies == packets
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_stream_that_is_too_fast_is_made_to_wait(listen, client, keeper, patience, kind):
+    ports = listen()
+    keeper.go_on.clear()
+    packet = b"/" + b"x" * 999
+    count = 40_000
+    stream = client(ports, kind)
+    data = stream.wrap(packet) * count
+
+    def send() -> None:
+        stream.socket.sendall(data)
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    time.sleep(0.2)
+    keeper.go_on.set()
+    sender.join(60.0)
+    patience(lambda: len(keeper.packets) >= count, "all packets")
+    assert len(keeper.packets) == count
+    assert set(keeper.bodies) == {packet}
+
+
+def test_streams_of_long_packets_are_made_to_wait_too(
+    listen, client, keeper, patience, monkeypatch
+):
+    monkeypatch.setattr(sockets, "MOST_QUEUED_BYTES", 1 << 20)
+    ports = listen()
+    keeper.takes_s = 0.003
+    streams = [client(ports, "prefixed") for _ in range(20)]
+    for _ in range(5):
+        for stream in streams:
+            stream.take(b"/" + b"x" * 59_999)
+    patience(lambda: ports.traffic.packets == 100, "all packets")
+    patience(lambda: len(keeper.packets) == 100, "their end")
+
+
+def test_streams_are_not_lost_beside_a_flood_of_datagrams(listen, client, keeper, patience):
+    ports = listen()
+    udp, tcp = client(ports), client(ports, "prefixed")
+    packets = numbered(2000)
+    for packet in packets:
+        tcp.take(packet)
+        udp.take(b"flood")
+        udp.take(b"flood")
+    patience(lambda: len([p for p in keeper.bodies if p != b"flood"]) >= 2000, "the stream")
+    assert [packet for packet in keeper.bodies if packet != b"flood"] == packets
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_was_sent_before_hanging_up_is_heard(listen, client, keeper, patience, kind):
+    ports = listen()
+    packets = numbered(3000)
+    stream = client(ports, kind)
+    stream.socket.sendall(b"".join(map(stream.wrap, packets)))
+    stream.close()
+    patience(lambda: len(keeper.packets) >= 3000, "all packets")
+    assert keeper.bodies == packets
+    patience(lambda: ports.traffic.connections == 0, "the connection to be gone")
+    assert len(keeper.gone_peers) == 1
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_answers_come_in_the_framing_of_the_question(listen, client, keeper, kind):
+    ports = listen()
+    keeper.answer = pack("/yehu/pong", "a\x40b")
+    stream = client(ports, kind)
+    for _ in range(100):
+        stream.take(b"/ping\0\0\0")
+    for _ in range(100):
+        assert stream.next() == ("/yehu/pong", ["a\x40b"])
+
+
+def test_who_sends_no_packets_is_hung_up_on_and_others_play_on(listen, client, keeper, patience):
+    ports = listen()
+    bad, good = client(ports, "prefixed"), client(ports, "prefixed")
+    good.take(b"/a\0\0")
+    bad.socket.sendall(bad.wrap(b"/b\0\0") + struct.pack(">I", 1 << 23))
+    assert bad.has_ended()
+    good.take(b"/c\0\0")
+    patience(lambda: len(keeper.packets) == 3, "all whole packets")
+    assert sorted(keeper.bodies) == [b"/a\0\0", b"/b\0\0", b"/c\0\0"]
+    assert ports.traffic.connections == 1
+
+
+def test_who_never_reads_misses_answers_and_others_play_on(listen, client, keeper, patience):
+    ports = listen()
+    keeper.answer = b"x" * 60_000
+    deaf = client(ports, "prefixed")
+    for _ in range(400):
+        deaf.take(b"/ping\0\0\0")
+    patience(lambda: len(keeper.packets) == 400, "all that it says")
+    assert ports.traffic.unsent > 0
+    assert ports.traffic.connections == 1
+    keeper.answer = pack("/yehu/pong")
+    other = client(ports, "slip")
+    other.take(b"/ping\0\0\0")
+    assert other.next() == ("/yehu/pong", [])
+
+
+def test_who_reads_slowly_gets_every_answer(listen, client, keeper):
+    ports = listen()
+    keeper.answer = pack("/yehu/pong", "x" * 1000)
+    slow = client(ports, "prefixed")
+    for _ in range(500):
+        slow.take(b"/ping\0\0\0")
+    time.sleep(0.1)
+    assert [slow.next() for _ in range(500)] == [("/yehu/pong", ["x" * 1000])] * 500
+
+
+def test_half_a_packet_makes_nobody_wait(listen, client, keeper, patience):
+    ports = listen()
+    half, whole = client(ports, "prefixed"), client(ports, "prefixed")
+    half.socket.sendall(struct.pack(">I", 100) + b"/half")
+    whole.take(b"/whole\0\0")
+    patience(lambda: keeper.packets, "the whole one")
+    assert keeper.bodies == [b"/whole\0\0"]
+    half.socket.sendall(b"x" * 95)
+    patience(lambda: len(keeper.packets) == 2, "the other one")
+
+
+def test_connections_that_come_and_go_leave_nothing(listen, client, patience):
+    ports = listen()
+    kept = len(ports._selector.get_map())
+    for number in range(200):
+        stream = client(ports, KINDS[number % 2])
+        if number % 3:
+            stream.take(b"/a\0\0")
+        if number % 5 == 0:  # a reset, not a goodbye
+            stream.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        stream.close()
+    patience(lambda: ports.traffic.connections == 0, "all to be gone")
+    patience(lambda: len(ports._selector.get_map()) == kept, "no socket to be left")
+
+
+def test_there_is_room_for_so_many_connections(listen, client, keeper, patience):
+    ports = listen()
+    streams = [client(ports, "slip") for _ in range(sockets.MOST_CONNECTIONS)]
+    for stream in streams:
+        stream.take(b"/a\0\0")
+    patience(lambda: len(keeper.packets) == len(streams), "all to be heard")
+    assert client(ports, "slip").has_ended()
+    assert ports.traffic.refused == 1
+    streams[0].close()
+    patience(lambda: ports.traffic.connections < len(streams), "room")
+    late = client(ports, "slip")
+    late.take(b"/late\0\0\0")
+    patience(lambda: b"/late\0\0\0" in keeper.bodies, "the late one")
+
+
+# ---------------------------------------------------------------- who may speak
+
+
+@pytest.mark.parametrize("kind", ["udp", *KINDS])
+def test_who_is_not_allowed_is_counted_and_never_answered(listen, client, keeper, patience, kind):
+    ports = listen(allowed=Allowed(["192.0.2.0/24"]))
+    keeper.answer = b"/yehu/pong\0\0,\0\0\0"
+    sender = client(ports, kind)
+    with contextlib.suppress(OSError):
+        sender.take(b"/ping\0\0\0")
+    patience(lambda: ports.traffic.refused == 1, "the refusal to be counted")
+    assert sender.next(0.1) is None
+    assert keeper.packets == []
+    assert ports.traffic.packets == ports.traffic.connections == 0
+
+
+@pytest.mark.parametrize(
+    ("networks", "host", "is_heard"),
+    [
+        ((), "203.0.113.9", True),
+        (("127.0.0.0/8",), "127.0.0.1", True),
+        (("127.0.0.1",), "127.0.0.1", True),
+        (("192.168.1.7/24",), "192.168.1.200", True),
+        (("192.168.1.0/24",), "192.168.2.1", False),
+        (("192.168.1.0/24", "10.0.0.0/8"), "10.1.2.3", True),
+        (("127.0.0.0/8",), "::ffff:127.0.0.1", True),
+        (("127.0.0.0/8",), "::1", False),
+        (("fe80::/10",), "fe80::1%eth0", True),
+        (("0.0.0.0/0",), "203.0.113.9", True),
+    ],
+)
+def test_who_is_heard(networks, host, is_heard):
+    allowed = Allowed(networks)
+    assert [host in allowed for _ in range(2)] == [is_heard] * 2
+
+
+@pytest.mark.parametrize("text", ["", "localhost", "192.168.1", "192.168.1.0/33", "1.2.3.4/x", "*"])
+def test_what_is_no_network_is_refused(text):
+    with pytest.raises(ParameterError, match="network"):
+        Allowed([text])
+
+
+# ---------------------------------------------------------------- addresses
+
+
+@pytest.mark.parametrize(
+    ("text", "address"),
+    [
+        ("127.0.0.1:9000", ("127.0.0.1", 9000)),
+        (":57120", ("0.0.0.0", 57120)),  # noqa: S104 - only a default
+        ("localhost", ("localhost", 9001)),
+        ("10.0.0.1:0", ("10.0.0.1", 0)),
+        ("[::1]:9000", ("::1", 9000)),
+        ("[::1]", ("::1", 9001)),
+    ],
+)
+def test_where_to_listen_is_read(text, address):
+    assert parse_address(text, "0.0.0.0", 9001) == address  # noqa: S104 - only a default
+
+
+@pytest.mark.parametrize("text", ["a:b", "a:-1", "a:65536", "a:1.5", "a:1e3", "[::1]:x"])
+def test_where_nobody_can_listen_is_refused(text):
+    with pytest.raises(ParameterError, match="HOST:PORT"):
+        parse_address(text, "127.0.0.1", 9000)
+
+
+@given(st.text(max_size=20))
+def test_any_text_is_an_address_or_refused(text):
+    try:
+        host, port = parse_address(text, "127.0.0.1", 9000)
+    except ParameterError:
+        return
+    assert host
+    assert 0 <= port <= 65535
+
+
+@pytest.mark.parametrize("kind", [socket.SOCK_DGRAM, socket.SOCK_STREAM])
+def test_a_port_that_is_taken_is_told(keeper, kind):
+    with socket.socket(socket.AF_INET, kind) as taken:
+        taken.bind((HOST, 0))
+        if kind == socket.SOCK_STREAM:
+            taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(DeviceError, match=f"{HOST}:{port}"):
+            OscPorts(HOST, port, Allowed(), keeper)
+
+
+@pytest.mark.parametrize("host", ["192.0.2.1", "nowhere.invalid"])
+def test_an_address_that_is_not_ours_is_told(keeper, host):
+    with pytest.raises(DeviceError, match="cannot listen"):
+        OscPorts(host, 0, Allowed(), keeper)
+
+
+def test_both_kinds_are_at_one_port(listen, client, keeper, patience):
+    ports = listen()
+    for kind in ("udp", *KINDS):
+        client(ports, kind).take(b"/a\0\0")
+    patience(lambda: len(keeper.packets) == 3, "all three")
+
+
+# ---------------------------------------------------------------- the thread
+
+
+def test_a_handler_that_fails_is_counted_and_the_next_packet_is_heard(
+    listen, client, keeper, patience
+):
+    ports = listen()
+    sender = client(ports)
+    logging.disable(logging.CRITICAL)
+    try:
+        sender.take(b"raise")
+        sender.take(b"/next\0\0\0")
+        patience(lambda: b"/next\0\0\0" in keeper.bodies, "the next")
+    finally:
+        logging.disable(logging.NOTSET)
+    assert ports.traffic.failures == 1
+
+
+def test_what_is_due_is_looked_after_however_much_is_to_be_handled(
+    listen, client, keeper, patience
+):
+    ports = listen()
+    keeper.takes_s = 0.001
+    send_all(client(ports), numbered(300))
+    patience(lambda: len(keeper.packets) == 300, "all packets")
+    assert max(keeper.since_tick) * keeper.takes_s <= AHEAD_S
+
+
+def test_what_is_due_is_looked_after_however_much_is_to_be_read(listen, client, keeper, patience):
+    ports = listen(start=False)
+    count = min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES))
+    send_all(client(ports), numbered(count))
+    gc.collect()
+    gc.disable()  # all that the test session holds takes long to go through
+    try:
+        ports.start()
+        patience(lambda: len(keeper.packets) >= count, "all packets")
+    finally:
+        gc.enable()
+    gaps = [after - before for before, after in itertools.pairwise(keeper.ticked_s)]
+    assert max(gaps) < 0.5 * AHEAD_S
+
+
+def test_what_finds_no_room_is_left_to_the_kernel(listen, client, keeper, patience):
+    ports = listen(start=False)
+    for _ in range(sockets.MOST_QUEUED):
+        ports._enqueue(b"flood", None, 0)
+    send_all(client(ports), numbered(100))
+    ports.start()
+    patience(lambda: len(keeper.packets) >= sockets.MOST_QUEUED, "the flood to be handled")
+    patience(lambda: ports.traffic.packets == sockets.MOST_QUEUED + 100, "the rest to be read")
+
+
+def test_an_idle_server_sleeps(listen, keeper):
+    listen()
+    time.sleep(0.3)
+    assert keeper.ticks <= 5
+
+
+def test_when_it_stops_a_stream_that_is_still_heard_out_is_closed_too(keeper, kit, patience):
+    ports = OscPorts(HOST, 0, Allowed(), keeper)
+    ports.start()
+    keeper.takes_s = 0.01
+    stream = kit.Stream(ports.port)
+    stream.socket.sendall(stream.wrap(b"/a\0\0") * 1000)
+    stream.socket.shutdown(socket.SHUT_WR)
+    patience(lambda: ports.traffic.packets == 1000, "all to be read")
+    time.sleep(SETTLE_S)
+    ports.stop()
+    connections = {peer.socket for _, peer, _ in keeper.packets}
+    assert [connection.fileno() for connection in connections] == [-1]
+    stream.close()
+
+
+@pytest.mark.parametrize("started", [False, True])
+def test_when_it_stops_everything_is_closed(keeper, kit, started):
+    ports = OscPorts(HOST, 0, Allowed(), keeper)
+    stream = None
+    if started:
+        ports.start()
+        stream = kit.Stream(ports.port)
+        stream.take(b"/a\0\0")
+    threads = threading.active_count()
+    ports.stop()
+    assert threading.active_count() == threads - started
+    if stream is not None:
+        assert stream.has_ended()
+        stream.close()
+    again = OscPorts(HOST, ports.port, Allowed(), keeper)
+    again.stop()

@@ -85,8 +85,8 @@ class Server:
         with contextlib.ExitStack() as undo:
             self.output = Output(options.output, said)
             undo.callback(self.output.end)
+            native.warm_up()  # while the device is looked for
             rate = self.output.find()
-            native.warm_up()
             self.instrument = Instrument(rate, memory=self.output.memory.buffer)
             block_ms = 1e3 * options.output.blocksize / rate + HANDLING_MS
             self.player = LivePlayer(

@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 NULL = "null"
 NULL_RATE = 48000.0
-FIRST_LOOK_S = 10.0
+FIRST_LOOK_S, COMPILING_S = 10.0, 300.0
 HUNG_AFTER_S = 2.0
 AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
 HOPELESS_S = 0.5  # the silent clock gives up catching up
@@ -103,7 +103,7 @@ class OutputState:
 
 
 class Output:
-    """The instrument's way out.
+    """The instrument's way out, which looks for its device from the first moment.
 
     Use: `find` the device, make the instrument at its rate in ``memory``, `begin`, `end`.
 
@@ -127,6 +127,8 @@ class Output:
         self._ending = threading.Event()
         self._again_after_s = AGAIN_AFTER_S
         self._look_at = 0.0  # monotonic s
+        if options.device != NULL:
+            self._look()
 
     def find(self) -> float:
         """Look for the device; return the rate to run at (Hz).
@@ -136,7 +138,6 @@ class Output:
         if self._options.device == NULL:
             self.state.problem = "asked for silence"
             return self._options.rate or NULL_RATE
-        self._look()
         try:
             event = self._events.get(timeout=FIRST_LOOK_S)
         except queue.Empty:
@@ -247,6 +248,9 @@ class Output:
                 return {"event": "gone", "reason": "the audio device does not answer"}
             if event["event"] in kinds:
                 return event
+            if event["event"] == "compiling":
+                deadline = time.monotonic() + COMPILING_S
+                self._changed("compiling for the audio process, since nothing can be cached")
         return {"event": "gone"}
 
     def _drop_child(self, *, gently: bool = False) -> None:

@@ -105,6 +105,10 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
     order = orders.get()
     if order is None:
         return None
+    from yehu_server.jit import IS_CACHED
+
+    if not IS_CACHED:
+        parent.tell("compiling")
     try:
         stream = Stream(sounddevice, device, order)
     except sounddevice.PortAudioError as error:

@@ -6,9 +6,6 @@ over JACK crashes when the server dies: then this process ends, and a fresh one 
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
-import ctypes.util
 import os
 import threading
 import time
@@ -16,6 +13,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from yehu_server.child import Message, Parent
+from yehu_server.control.jack_watch import JackWatch
 from yehu_server.control.midi_names import StableNames, is_wanted, stable_names
 
 LOOK_EVERY_S = 0.5
@@ -32,9 +30,10 @@ APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windo
 class Input:
     """One open port."""
 
-    def __init__(self, midi: Any, name: str, parent: Parent) -> None:
+    def __init__(self, midi: Any, name: str, full_name: str | None, parent: Parent) -> None:
         self.midi = midi
         self.name = name
+        self.full_name = full_name
         self._parent = parent
         self._last = 0.0
         self._senses = False
@@ -74,6 +73,8 @@ class Inputs:
         self._names = StableNames()
         self._finder: Any = None  # the one client that asks for names
         self._problem = ""
+        self._refused: set[str] = set()
+        self._watch: JackWatch | None = None
 
     @property
     def has_system(self) -> bool:
@@ -85,13 +86,20 @@ class Inputs:
         if self._finder is None and not self._start():
             return
         names = self._finder.get_ports()
-        stable = self._names.of(names)
-        for name, place in zip(stable, range(len(names)), strict=True):
-            if name not in self._open and is_wanted(name, self._patterns):
-                self._appear(name, names[place])
-        for name in set(self._open) - set(stable) - {self._virtual}:
+        stable = dict(zip(self._names.of(names), names, strict=True))
+        gone = set(self._open) - set(stable) - {self._virtual}
+        if self._watch is not None:  # away for a moment, and back under the same name
+            left = self._watch.left()
+            gone |= {name for name, port in self._open.items() if port.full_name in left}
+        for name in gone:
             self._parent.tell("vanished", port=name)
             self._open.pop(name).close()
+        self._refused &= set(stable)
+        for name, full_name in stable.items():
+            if name not in self._open | dict.fromkeys(self._refused) and is_wanted(
+                name, self._patterns
+            ):
+                self._add(name, full_name)
 
     def sense(self) -> None:
         """See `Input.sense`."""
@@ -108,38 +116,33 @@ class Inputs:
         self._finder = finder
         self._api = finder.get_current_api()
         if self._api == _number("jack"):
-            _end_with_jack()
+            self._watch = JackWatch(f"{CLIENT} watch")
         self._parent.tell("system", api=api_name(self._api))
         if self._virtual is not None:
-            with self._reporting(self._virtual):
-                midi = self._client()
-                midi.open_virtual_port(self._virtual)
-                self._add(self._virtual, midi)
+            self._add(self._virtual, None)
         return True
 
-    def _appear(self, name: str, full_name: str) -> None:
-        with self._reporting(name):
-            midi = self._client()
-            midi.open_port(midi.get_ports().index(full_name), name=name[:32])
-            self._add(name, midi)
+    def _add(self, name: str, full_name: str | None) -> None:
+        """Open a port, or a virtual one, that is listened to from its first moment."""
+        import rtmidi
 
-    def _add(self, name: str, midi: Any) -> None:
+        try:
+            port = Input(self._client(), name, full_name, self._parent)
+            if full_name is None:
+                port.midi.open_virtual_port(name)
+            else:
+                port.midi.open_port(port.midi.get_ports().index(full_name), name=name[:32])
+        except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
+            self._refused.add(name)
+            self._parent.tell("refused", port=name, reason=str(error))
+            return
+        self._open[name] = port
         self._parent.tell("appeared", port=name)
-        self._open[name] = Input(midi, name, self._parent)
 
     def _client(self) -> Any:
         import rtmidi
 
         return rtmidi.MidiIn(self._api, name=CLIENT)
-
-    @contextlib.contextmanager
-    def _reporting(self, name: str) -> Any:
-        import rtmidi
-
-        try:
-            yield
-        except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
-            self._parent.tell("refused", port=name, reason=str(error))
 
 
 def open_client(api: str | int | None) -> tuple[Any, str]:
@@ -178,32 +181,6 @@ def api_name(number: int) -> str:
     import rtmidi
 
     return str(rtmidi.get_api_display_name(number))
-
-
-def _end_with_jack() -> None:
-    """End this process when JACK's server dies: nothing RtMidi does after that is safe.
-
-    RtMidi has no word for it, so a client of our own listens for it.
-    """
-    name = ctypes.util.find_library("jack")
-    if name is None:
-        return
-    jack = ctypes.CDLL(name)
-    jack.jack_client_open.restype = ctypes.c_void_p
-    watcher = jack.jack_client_open(f"{CLIENT} watch".encode(), NO_START_SERVER, None)
-    if watcher:
-        jack.jack_on_shutdown(ctypes.c_void_p(watcher), _ended, None)
-        jack.jack_activate(ctypes.c_void_p(watcher))
-
-
-NO_START_SERVER = 1
-
-
-def _end(_argument: Any) -> None:
-    os._exit(1)
-
-
-_ended = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(_end)
 
 
 def main() -> None:

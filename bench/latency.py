@@ -1,0 +1,250 @@
+"""How soon a message is heard: from sending it to the first changed sample, end to end.
+
+    .venv/bin/python bench/latency.py [--trials N] [--save bench/results/NAME.json]
+
+A JACK client in another process sends OSC or MIDI, at moments that have nothing to do with
+blocks, and listens: a note sounds all the while, and each message opens or closes its volume,
+so that the first sample that is not zero is the message's. Its time is that of JACK's cycle,
+on the monotonic clock, and its place therein; where JACK is late, so is the sample. The
+device's own latency comes on top: the last column. The instrument's own share is from the
+message's arrival, as stamped, to the frame at which it was applied.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import random
+import re
+import socket
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from endurance import JACK, SPAWN, dummy_jack, midi_out, start
+from rich.console import Console
+from rich.table import Table
+from run import processor
+
+from yehu_server.audio.output import OutputOptions
+from yehu_server.control.packets import pack, unpack
+from yehu_server.control.ports import MidiOptions
+from yehu_server.params.table import SLOT
+from yehu_server.server import ServeOptions, Server
+
+RATE = 48000
+BLOCKS = (64, 128)
+VOLUME = 7
+OPEN_S, CLOSED_S = 0.04, 0.06  # longer than the volume's smoothing
+
+
+class Listener:
+    """A JACK client that finds the first sample after silence."""
+
+    def __init__(self) -> None:
+        import jack  # type: ignore[import-untyped]
+
+        for silence in (jack.set_error_function, jack.set_info_function):
+            silence(lambda _message: None)
+        self.client = jack.Client("listener", servername=JACK, no_start_server=True)
+        self._port = self.client.inports.register("in")
+        self._was_silent = False
+        self.changed: list[float] = []  # ns
+        self.xruns = 0
+        self.client.set_process_callback(self._hear)
+        self.client.set_xrun_callback(self._late)
+        self.client.activate()
+        deadline = time.monotonic() + 10.0
+        while not self.client.get_ports("yehu-server:out_0") and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.client.connect("yehu-server:out_0", self._port)
+
+    def _hear(self, _frames: int) -> None:
+        cycle_ns = time.monotonic_ns()
+        samples = self._port.get_array()
+        if self._was_silent and samples.any():
+            self.changed.append(cycle_ns + 1e9 * int(np.flatnonzero(samples)[0]) / RATE)
+        self._was_silent = not samples.any()
+
+    def _late(self, _delay_us: float) -> None:
+        self.xruns += 1
+
+
+def measure(kind: str, port: int, trials: int, answer: Any) -> None:
+    """Send and listen; answer with the latencies (ms) and what else was found."""
+    osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    osc.connect(("127.0.0.1", port))
+    midi = midi_out("bench") if kind == "MIDI" else None
+    listener = Listener()
+    time.sleep(2.0)  # until the port is found
+
+    def volume(value: int) -> None:
+        if midi is not None:
+            midi.send_message([0xB0, VOLUME, 127 * value])
+        else:
+            osc.send(pack("/yehu/playing/volume", float(value)))
+
+    chance = random.Random(3)  # noqa: S311
+    if midi is not None:
+        midi.send_message([0x90, 69, 90])
+    else:
+        osc.send(pack("/yehu/note", 69.0, 90.0))
+    time.sleep(0.3)
+    latencies = []
+    for _ in range(trials):
+        volume(0)
+        time.sleep(CLOSED_S + 0.01 * chance.random())
+        listener.changed.clear()
+        sent_ns = time.monotonic_ns()
+        volume(1)
+        time.sleep(OPEN_S)
+        if listener.changed:
+            latencies.append(1e-6 * (listener.changed[0] - sent_ns))
+    answer.send((latencies, listener.xruns))
+    answer.close()
+    os._exit(0)
+
+
+class Witness:
+    """Notes when messages came and when they were applied, as frames."""
+
+    def __init__(self, server: Server, kind: str) -> None:
+        self._instrument = server.instrument
+        self._arrived: list[float] = []
+        self._instrument.report_events()
+        if kind == "OSC":
+            handle = server.handler.handle
+
+            def hear(packet: bytes, peer: Any, arrived_ns: int) -> None:
+                (message,) = unpack(packet)
+                if message.address == "/yehu/playing/volume" and message.arguments[0] == 1.0:
+                    self._arrived.append(self._instrument.frame_at(arrived_ns))
+                handle(packet, peer, arrived_ns)
+
+            vars(server.handler)["handle"] = hear
+        elif server.midi is not None:
+            receive = server.midi._receive  # noqa: SLF001
+
+            def listen(event: dict[str, Any]) -> None:
+                if event["bytes"][1:] == [VOLUME, 127]:
+                    self._arrived.append(self._instrument.frame_at(event["at"]))
+                receive(event)
+
+            vars(server.midi)["_receive"] = listen
+
+    def shares(self) -> list[float]:
+        """From arrival to being applied (ms), for each message that opened the volume."""
+        events: Any = self._instrument.applied_events()
+        level = events[(events["index"] == SLOT["/output/level"])]
+        opened = level["frame"][level["target"] == 1.0]
+        nexts = np.searchsorted(opened, self._arrived)
+        return [
+            1e3 * float(opened[at] - came) / RATE
+            for at, came in zip(nexts, self._arrived, strict=True)
+            if at < len(opened)
+        ]
+
+
+def run(kind: str, block: int, trials: int) -> dict[str, Any]:
+    """One row of the table."""
+    options = ServeOptions(
+        output=OutputOptions(device="system, JACK", blocksize=block),
+        midi=MidiOptions(api="jack") if kind == "MIDI" else None,
+        osc=("127.0.0.1", 0),
+    )
+    server = Server(options, lambda _line: None)
+    witness = Witness(server, kind)
+    server.start()
+    here, there = SPAWN.Pipe()
+    client = SPAWN.Process(target=measure, args=(kind, server.osc.port, trials, there))
+    client.start()
+    there.close()
+    try:
+        latencies, xruns = here.recv()
+    except EOFError:
+        sys.exit("the JACK client ended before its time")
+    finally:
+        client.join()
+        shares = witness.shares()
+        late = int(server.instrument.meters()["late_events"])
+        server.stop()
+    return {
+        "heard": len(latencies),
+        "latency_ms": summary(latencies),
+        "share_ms": summary(shares),
+        "bound_ms": 2e3 * block / RATE + 0.5,
+        "within_bound": sum(s < 2e3 * block / RATE + 0.5 for s in shares) / max(1, len(shares)),
+        "late_events": late,
+        "device_ms": 1e3 * device_frames() / RATE,
+        "xruns": xruns,
+    }
+
+
+def device_frames() -> int:
+    """From JACK's cycle to the device's output, as its driver says."""
+    out, _ = start(["jack_lsp", "-l", "system:playback_1"], subprocess.PIPE).communicate()
+    found = re.search(rb"playback latency = \[ \d+ (\d+) \]", out)
+    return int(found[1]) if found else 0
+
+
+def summary(values: list[float]) -> dict[str, float]:
+    """Median, extremes and standard deviation."""
+    if len(values) < 2:
+        sys.exit("nothing was heard")
+    ordered = sorted(values)
+    return {
+        "median": statistics.median(ordered),
+        "least": ordered[0],
+        "p95": ordered[int(0.95 * len(ordered))],
+        "most": ordered[-1],
+        "jitter": statistics.stdev(ordered),
+    }
+
+
+def main() -> None:
+    """Measure and print everything."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--trials", type=int, default=200, help="of each (default: 200)")
+    parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
+    arguments = parser.parse_args()
+
+    figures = {}
+    for block in BLOCKS:
+        with dummy_jack(block, RATE):
+            for kind in ("OSC", "MIDI"):
+                figures[f"{kind}, blocks of {block}"] = run(kind, block, arguments.trials)
+
+    table = Table(title="ms; jitter is the standard deviation")
+    table.add_column("", no_wrap=True)
+    for column in (
+        *("heard", "median", "least", "95 %", "most", "jitter"),
+        *("own share", "jitter", "within 2 blocks + 0.5", "device"),
+    ):
+        table.add_column(column)
+    for name, figure in figures.items():
+        latency, share = figure["latency_ms"], figure["share_ms"]
+        row = [f"{latency[what]:.2f}" for what in ("median", "least", "p95", "most", "jitter")]
+        row += [f"{share['median']:.2f}", f"{share['jitter']:.2f}"]
+        row += [f"{100 * figure['within_bound']:.1f} %", f"+{figure['device_ms']:.2f}"]
+        table.add_row(name, f"{figure['heard']} of {arguments.trials}", *row)
+    Console(width=150).print(table)
+    if arguments.save:
+        arguments.save.parent.mkdir(parents=True, exist_ok=True)
+        record = {
+            "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
+            "python": platform.python_version(),
+            "device": "JACK, dummy driver, no real-time rights",
+            "trials": arguments.trials,
+            "figures": figures,
+        }
+        arguments.save.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

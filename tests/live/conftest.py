@@ -1,0 +1,437 @@
+"""A JACK server for each file of tests, a recorder in a process of its own, and `serve`.
+
+Run as a program, this file is that recorder.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes.util
+import functools
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from yehu_server.control.packets import pack, unpack
+from yehu_server.engine import native
+
+ROOT = Path(__file__).resolve().parents[2]
+RATE = 48000
+COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
+STARTED_WITHIN_S = 120.0  # where everything has to be compiled first
+RECORDED_S = 45
+
+
+def until(condition: Callable[[], Any], within_s: float, what: str) -> Any:
+    """Wait for something to be true, and return it."""
+    deadline = time.monotonic() + within_s
+    while not (value := condition()):
+        assert time.monotonic() < deadline, f"not within {within_s} s: {what}"
+        time.sleep(0.005)
+    return value
+
+
+@pytest.fixture(scope="session", name="until")
+def until_fixture() -> Callable[..., Any]:
+    return until
+
+
+@functools.cache
+def missing() -> str:
+    for program in ("jackd", "jack_lsp"):
+        if shutil.which(program) is None:
+            return f"{program} is not installed"
+    for library in ("jack", "portaudio"):
+        if ctypes.util.find_library(library) is None:
+            return f"lib{library} is not installed"
+    return ""
+
+
+# ---------------------------------------------------------------- JACK
+
+
+class Jackd:
+    """A JACK server that pretends to have a sound card."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.environment = os.environ | {
+            "JACK_DEFAULT_SERVER": name,
+            "JACK_NO_START_SERVER": "1",
+            "JACK_NO_AUDIO_RESERVATION": "1",
+        }
+        self._process: subprocess.Popen | None = None
+        self._card: dict[str, int] = {}
+
+    @property
+    def pid(self) -> int:
+        assert self._process is not None
+        return self._process.pid
+
+    def start(self, period: int = 128, *, rate: int = RATE, channels: int = 2) -> None:
+        """Start it, or start it anew where its card is to be another."""
+        card = {"-p": period, "-r": rate, "-P": channels, "-C": 1}
+        if self._process is not None and self._process.poll() is None and card == self._card:
+            return
+        self.stop()
+        self._card = card
+        words = [str(word) for option in card.items() for word in option]
+        safe = ("--no-realtime", "--no-mlock", "-p", "128")
+        program = ["jackd", *safe, "-n", self.name, "-d", "dummy", *words]
+
+        def is_up() -> bool:
+            if self._process is None or self._process.poll() is not None:
+                # It ends at once where the one before has not left JACK's registry yet.
+                self._process = subprocess.Popen(
+                    program,
+                    env=self.environment,
+                    stdout=subprocess.DEVNULL,
+                    stderr=subprocess.DEVNULL,
+                )
+            return "system:playback_1" in self.ports()
+
+        until(is_up, 10.0, "a JACK server")
+
+    def restart(self) -> None:
+        """Start the same again after a kill."""
+        card = self._card
+        self.start(card["-p"], rate=card["-r"], channels=card["-P"])
+
+    def kill(self, number: int = signal.SIGKILL) -> None:
+        assert self._process is not None
+        self._process.send_signal(signal.SIGCONT)
+        self._process.send_signal(number)
+        try:
+            self._process.wait(3.0)
+        except subprocess.TimeoutExpired:  # JACK sometimes hangs as it ends
+            self._process.kill()
+            self._process.wait()
+
+    def stop(self) -> None:
+        if self._process is not None and self._process.poll() is None:
+            self.kill(signal.SIGTERM)
+
+    def ports(self) -> list[str]:
+        found = subprocess.run(
+            ["jack_lsp", "-s", self.name],  # noqa: S607
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=10.0,
+            check=False,
+        )
+        return found.stdout.split("\n")
+
+
+@pytest.fixture(scope="module")
+def jackd(request) -> Iterator[Jackd]:
+    if missing():
+        pytest.skip(missing())
+    native.warm_up()  # what an audio process had to compile would come too late
+    server = Jackd(f"yehu-{request.path.stem.removeprefix('test_')}")
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("JACK_DEFAULT_SERVER", "JACK_NO_START_SERVER"):
+            patch.setenv(name, server.environment[name])
+        yield server
+        server.stop()
+        for left in Path("/dev/shm").glob(f"jack_sem.*_{server.name}_*"):  # noqa: S108
+            left.unlink(missing_ok=True)
+
+
+# ---------------------------------------------------------------- recorder
+
+
+class Recording:
+    """What a recorder heard: samples [shape=(channels, frames)], and each block's time."""
+
+    def __init__(self, path: Path) -> None:
+        with np.load(path) as file:
+            self.samples = file["samples"]
+            self.times = file["times"]  # of blocks: JACK's frame, frames, monotonic ns
+            self.xruns = int(file["xruns"])
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether JACK called us for every block, and nobody was late."""
+        frames, sizes = self.times[:, 0], self.times[:, 1]
+        return self.xruns == 0 and bool((np.diff(frames) == sizes[:-1]).all())
+
+
+class Recorder:
+    """Records what the instrument's ports give, in a process of its own."""
+
+    def __init__(self, jackd: Jackd, folder: Path, channels: int = 2) -> None:
+        self._folder = folder
+        self._process = subprocess.Popen(
+            [sys.executable, __file__, jackd.name, str(channels)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env=jackd.environment,
+        )
+        self._expect("ready")
+
+    def connected(self) -> Recorder:
+        """Wait until every port is connected."""
+        self._tell("connect")
+        self._expect("connected")
+        return self
+
+    def freewheel(self, *, on: bool) -> None:
+        self._tell("freewheel on" if on else "freewheel off")
+        self._expect("freewheel")
+
+    def forget(self) -> None:
+        """Begin the recording now."""
+        self._tell("forget")
+        self._expect("forgotten")
+
+    def recording(self) -> Recording:
+        target = self._folder / f"{time.monotonic_ns()}.npz"
+        self._tell(f"save {target}")
+        self._expect("saved")
+        return Recording(target)
+
+    def close(self) -> None:
+        for pipe in (self._process.stdin, self._process.stdout):
+            with contextlib.suppress(OSError):
+                pipe.close()
+        try:
+            self._process.wait(2.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    def _tell(self, order: str) -> None:
+        self._process.stdin.write(order + "\n")
+        self._process.stdin.flush()
+
+    def _expect(self, word: str) -> None:
+        heard = self._process.stdout.readline().strip()
+        assert heard == word
+
+
+@pytest.fixture
+def recorder(jackd, tmp_path) -> Iterator[Callable[..., Recorder]]:
+    with contextlib.ExitStack() as ending:
+
+        def make(channels: int = 2) -> Recorder:
+            made = Recorder(jackd, tmp_path, channels)
+            ending.callback(made.close)
+            return made
+
+        yield make
+
+
+def record(server: str, channels: int) -> None:
+    """Be the recorder: orders in, words out."""
+    import jack
+
+    for silence in (jack.set_error_function, jack.set_info_function):
+        silence(lambda _message: None)
+    client = jack.Client("recorder", servername=server, no_start_server=True)
+    inputs = [client.inports.register(f"in_{number}") for number in range(channels)]
+    samples = np.zeros((channels, RECORDED_S * client.samplerate), np.float32)
+    times = np.zeros((samples.shape[1] // client.blocksize + 1, 3), np.int64)
+    recorded, blocks, xruns = 0, 0, 0
+
+    @client.set_process_callback
+    def process(frames: int) -> None:
+        nonlocal recorded, blocks
+        if recorded + frames <= samples.shape[1]:
+            for channel, port in enumerate(inputs):
+                samples[channel, recorded : recorded + frames] = port.get_array()
+            times[blocks] = client.last_frame_time, frames, time.monotonic_ns()
+            recorded += frames
+            blocks += 1
+
+    @client.set_xrun_callback
+    def xrun(_delay_us: float) -> None:
+        nonlocal xruns
+        xruns += 1
+
+    client.set_shutdown_callback(lambda _status, _reason: None)
+    client.activate()
+
+    def connect() -> None:
+        for number, port in enumerate(inputs):
+            until(lambda: client.get_ports("yehu-server:out_"), 10.0, "the instrument's ports")
+            client.connect(f"yehu-server:out_{number}", port)
+
+    print("ready", flush=True)  # noqa: T201
+    for line in sys.stdin:
+        order, _, what = line.strip().partition(" ")
+        answer = {"connect": "connected", "save": "saved", "forget": "forgotten"}.get(order, order)
+        if order == "connect":
+            connect()
+        elif order == "freewheel":
+            client.set_freewheel(what == "on")
+        elif order == "forget":
+            recorded, blocks, xruns = 0, 0, 0
+        elif order == "save":
+            till, of = recorded, blocks
+            np.savez(what, samples=samples[:, :till], times=times[:of], xruns=xruns)
+        print(answer, flush=True)  # noqa: T201
+    os._exit(0)  # JACK may hang where its server is gone
+
+
+# ---------------------------------------------------------------- serve
+
+
+class Osc:
+    """An OSC client."""
+
+    def __init__(self, port: int) -> None:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.connect(("127.0.0.1", port))
+
+    def send(self, address: str, *arguments: float | str) -> None:
+        with contextlib.suppress(ConnectionRefusedError):  # told of an earlier packet
+            self._socket.send(pack(f"/yehu{address}", *arguments))
+
+    def ask(self, address: str, *arguments: float | str, last: str = "") -> dict[str, Any]:
+        """Send, and return the answers of the next moment by address, or as far as `last`."""
+        self._socket.setblocking(False)
+        with contextlib.suppress(OSError):
+            while True:
+                self._socket.recv(65536)
+        self.send(address, *arguments)
+        return self.hear(2.0, last)
+
+    def hear(self, within_s: float, last: str = "") -> dict[str, Any]:
+        heard = {}
+        self._socket.settimeout(within_s)
+        with contextlib.suppress(TimeoutError, ConnectionRefusedError):
+            while not last or last not in heard:
+                for message in unpack(self._socket.recv(65536)):
+                    heard[message.address.removeprefix("/yehu")] = message.arguments
+                self._socket.settimeout(0.1)
+        return heard
+
+    def status(self) -> dict[str, Any]:
+        heard = self.ask("/status", last="/status/recording")
+        return {
+            address.removeprefix("/status/"): arguments[0]
+            for address, arguments in heard.items()
+            if address.startswith("/status/")
+        }
+
+    def close(self) -> None:
+        self._socket.close()
+
+
+class Serve:
+    """``yehu-server serve``, as a command."""
+
+    def __init__(self, environment: dict[str, str], *words: object) -> None:
+        self.lines: list[str] = []
+        self._told = threading.Condition()
+        self._clients: list[Osc] = []
+        self._family: set[int] = set()
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", COMMAND, "serve", *map(str, words)],
+            env=environment | {"PYTHONPATH": str(ROOT)},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        self._listener = threading.Thread(target=self._listen)
+        self._listener.start()
+
+    def _listen(self) -> None:
+        for line in self.process.stderr:
+            with self._told:
+                self.lines.append(line.rstrip())
+                self._told.notify_all()
+
+    def said(self, pattern: str, within_s: float = 10.0, after: int = 0) -> re.Match[str]:
+        """Wait for a line that fits; the first of those after so many."""
+
+        def found() -> re.Match[str] | None:
+            fitting = (re.search(pattern, line) for line in self.lines[after:])
+            return next((match for match in fitting if match), None)
+
+        with self._told:
+            self._told.wait_for(found, within_s)
+            match = found()
+        assert match, f"{pattern!r} not within {within_s} s among {self.lines}"
+        return match
+
+    def osc(self) -> Osc:
+        """A client, once it serves."""
+        port = int(self.said(r"OSC at [\d.]+:(\d+)", STARTED_WITHIN_S)[1])
+        self.said("Ctrl-C ends")
+        self._clients.append(Osc(port))
+        return self._clients[-1]
+
+    def family(self) -> set[int]:
+        """The processes it has started and that live, and those of before that still do."""
+        for entry in Path("/proc").glob("[0-9]*/stat"):
+            with contextlib.suppress(OSError):
+                fields = entry.read_text().rpartition(")")[2].split()
+                if int(fields[1]) == self.process.pid:
+                    self._family.add(int(entry.parent.name))
+        return {pid for pid in self._family if _lives(pid)}
+
+    def end(self, number: int = signal.SIGTERM) -> int:
+        """Let it end; return its exit code. Nothing it started may be left."""
+        self.family()
+        self.process.send_signal(number)
+        return self.wait()
+
+    def wait(self, within_s: float = 10.0) -> int:
+        code = self.process.wait(within_s)
+        self._listener.join()
+        until(lambda: not self.family(), 2.0, "all its processes to be gone")
+        return code
+
+    def close(self) -> None:
+        self.family()
+        for pid in {*self._family, self.process.pid}:
+            if _lives(pid):
+                os.kill(pid, signal.SIGKILL)
+        self.process.wait()
+        self._listener.join()
+        self.process.stderr.close()
+        for client in self._clients:
+            client.close()
+
+
+def _lives(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+@pytest.fixture
+def serve(jackd) -> Iterator[Callable[..., Serve]]:
+    """Start ``yehu-server serve`` with options; OSC is at any free port by default."""
+    with contextlib.ExitStack() as ending:
+
+        def start(*words: object, environment: dict[str, str] | None = None) -> Serve:
+            osc = () if "--osc" in words else ("--osc", "127.0.0.1:0")
+            made = Serve(environment or jackd.environment, *osc, *words)
+            ending.callback(made.close)
+            return made
+
+        yield start
+
+
+if __name__ == "__main__":
+    record(sys.argv[1], int(sys.argv[2]))

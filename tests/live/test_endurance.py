@@ -1,0 +1,205 @@
+"""Dense MIDI and OSC and a busy Python, for some seconds: deadlines, and when events are heard.
+
+``bench/endurance.py`` does the same for an hour.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from yehu_server.audio.output import Output, OutputOptions
+from yehu_server.control.packets import unpack
+from yehu_server.control.ports import MidiOptions
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.telemetry import BINS_PER_DEADLINE
+from yehu_server.params.table import SLOT
+from yehu_server.server import ServeOptions, Server
+
+RATE = 48000
+DEVICE = "system, JACK"
+
+# Notes, wheels and touch over MIDI, parameters over OSC: a thousand messages a second and more.
+LOAD = """
+import os, random, rtmidi, socket, sys, time
+from yehu_server.control.packets import pack
+osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+osc.connect(("127.0.0.1", int(sys.argv[1])))
+midi = rtmidi.MidiOut(rtmidi.API_UNIX_JACK, name="load")
+midi.open_virtual_port("out")
+print("plays", flush=True)
+chance = random.Random(1)
+note, due = 60, time.monotonic()
+while True:
+    midi.send_message([0x80, note, 64])
+    note = chance.randrange(65, 90)
+    midi.send_message([0x90, note, chance.randrange(20, 127)])
+    for _ in range(50):
+        midi.send_message([0xE0, chance.randrange(128), chance.randrange(128)])
+        midi.send_message([0xD0, chance.randrange(128)])
+        midi.send_message([0xB0, 1, chance.randrange(128)])
+        for _ in range(5):
+            osc.send(pack("/yehu/bow/position", chance.uniform(0.05, 0.2)))
+            osc.send(pack("/yehu/playing/pressure", chance.uniform(0.2, 0.6)))
+        due += 0.005
+        time.sleep(max(0.0, due - time.monotonic()))
+"""
+
+
+@contextlib.contextmanager
+def server_of(blocksize: int) -> Iterator[Server]:
+    interval = sys.getswitchinterval()
+    server = Server(
+        ServeOptions(
+            output=OutputOptions(device=DEVICE, blocksize=blocksize),
+            midi=MidiOptions(api="jack"),
+            osc=("127.0.0.1", 0),
+        ),
+        lambda _line: None,
+    )
+    server.instrument.report_events()
+    server.start()
+    try:
+        yield server
+    finally:
+        server.stop()
+        sys.setswitchinterval(interval)
+
+
+@contextlib.contextmanager
+def idle_stream(blocksize: int) -> Iterator[Instrument]:
+    """The same callback, with nothing to do."""
+    output = Output(OutputOptions(device=DEVICE, blocksize=blocksize), lambda _line: None)
+    try:
+        instrument = Instrument(output.find(), memory=output.memory.buffer)
+        output.begin(instrument)
+        yield instrument
+    finally:
+        output.end()
+
+
+@contextlib.contextmanager
+def busy_python() -> Iterator[None]:
+    """A thread that has always something to do."""
+    ending = threading.Event()
+
+    def work() -> None:
+        while not ending.is_set():
+            sum(number * number for number in range(1000))
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    try:
+        yield
+    finally:
+        ending.set()
+        thread.join()
+
+
+def quantile(loads: np.ndarray, share: float) -> float:
+    """The load that so large a share of callbacks stays below."""
+    bin_ = int(np.searchsorted(np.cumsum(loads), share * loads.sum()))
+    return (bin_ + 1) / BINS_PER_DEADLINE
+
+
+def test_under_load_the_callback_keeps_its_deadlines(jackd, until):
+    jackd.start(128)
+    with idle_stream(128) as idle, server_of(128) as server, busy_python():
+        load = subprocess.Popen(
+            [sys.executable, "-c", LOAD, str(server.osc.port)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=jackd.environment,
+        )
+        try:
+            assert load.stdout.readline() == b"plays\n"
+            until(lambda: server.midi.received > 100, 10.0, "MIDI")
+            counted = ("callbacks", "missed", "late_callbacks", "underruns", "loads", "applied")
+            before = {
+                one: {what: meters[what].copy() for what in counted}
+                for one, meters in (
+                    ("idle", idle.meters()),
+                    ("playing", server.instrument.meters()),
+                )
+            }
+            received = server.midi.received, server.osc.traffic.packets
+            start = time.monotonic()
+            while time.monotonic() < start + 4.0:
+                time.sleep(0.1)
+                server.instrument.applied_events()
+            seconds = time.monotonic() - start
+            after = {"idle": idle.meters(), "playing": server.instrument.meters()}
+            heard = server.midi.received - received[0], server.osc.traffic.packets - received[1]
+        finally:
+            load.kill()
+            load.communicate()
+        dropped = server.instrument.dropped_events
+    idles, playing = (
+        {what: after[one][what] - before[one][what] for what in counted}
+        for one in ("idle", "playing")
+    )
+    assert heard[0] > 200 * seconds
+    assert heard[1] > 700 * seconds
+    assert dropped == 0
+    assert playing["applied"] > 500 * seconds
+    assert playing["callbacks"] > 100
+    # What the callback itself needs; preempted or not, it is the same.
+    assert playing["missed"] <= idles["missed"] + 2
+    assert quantile(playing["loads"], 0.999) < 0.8
+    # When it is called is for JACK and the system, who were as kind to the idle stream.
+    assert playing["late_callbacks"] <= 3 * idles["late_callbacks"] + 60
+    assert playing["underruns"] <= 3 * idles["underruns"] + 100
+
+
+def test_an_event_is_heard_within_two_blocks_and_half_a_millisecond_of_its_arrival(jackd):
+    jackd.start(64)
+    slot = SLOT["/bow/position"]
+    arrived: dict[float, float] = {}
+    with server_of(64) as server:
+        instrument, handle = server.instrument, server.handler.handle
+
+        def witness(packet: bytes, peer: object, arrived_ns: int) -> None:
+            (message,) = unpack(packet)
+            if message.address == "/yehu/bow/position":
+                arrived[message.arguments[0]] = instrument.frame_at(arrived_ns)
+            handle(packet, peer, arrived_ns)
+
+        server.handler.handle = witness
+        time.sleep(0.3)
+        applied = {}
+        client = subprocess.Popen(
+            [sys.executable, "-c", STEPS, str(server.osc.port)], stdout=subprocess.DEVNULL
+        )
+        try:
+            while client.poll() is None:
+                time.sleep(0.05)
+                for event in instrument.applied_events():
+                    if event["index"] == slot:
+                        applied[np.float32(event["target"]).item()] = int(event["frame"])
+        finally:
+            client.wait()
+    shares = np.array([applied[value] - arrived[value] for value in arrived if value in applied])
+    assert len(shares) > 450
+    assert (shares >= 0.0).all()
+    bound = 2 * 64 + 0.0005 * RATE
+    assert (shares < bound).mean() > 0.9
+    # One block and a millisecond after it came: the rhythm is kept to the frame.
+    assert np.median(shares) == pytest.approx(64 + 0.001 * RATE, abs=2.0)
+
+
+STEPS = """
+import socket, sys, time
+from yehu_server.control.packets import pack
+osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+osc.connect(("127.0.0.1", int(sys.argv[1])))
+for step in range(500):
+    osc.send(pack("/yehu/bow/position", 0.05 + 0.0001 * step))
+    time.sleep(0.0037)
+"""

@@ -1,0 +1,157 @@
+"""Python stands still, and the sound goes on."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+
+from yehu_server.audio.output import Output, OutputOptions
+from yehu_server.engine.instrument import Instrument
+from yehu_server.replay import blocks
+from yehu_server.score.capture import CaptureWriter, read_capture
+
+RATE, BLOCK = 48000, 128
+A_SECOND_US = 1_000_000
+
+
+def hold_the_gil() -> None:
+    """Let no Python run for a second: calls by PyDLL keep the GIL."""
+    ctypes.PyDLL(None).usleep(A_SECOND_US)
+
+
+def bow(instrument: Instrument) -> None:
+    instrument.write("/finger/1/position", 0.1, ramp_ms=0.0)
+    instrument.write("/finger/1/press", 1.5)
+    instrument.write("/bow/side", 1.0)
+    instrument.write("/bow/speed", 0.2)
+
+
+def places(heard: np.ndarray, played: np.ndarray, period: int = BLOCK) -> np.ndarray:
+    """Where in what was played each period that was heard begins; -1 for nowhere."""
+    at = {played[n : n + 8].tobytes(): n for n in range(len(played) - period)}
+    found = []
+    for start in range(0, len(heard) - period + 1, period):
+        place = at.get(heard[start : start + 8].tobytes(), -1)
+        same = place >= 0 and (heard[start : start + period] == played[place : place + period])
+        found.append(place if np.all(same) else -1)
+    return np.array(found)
+
+
+def breaks(found: np.ndarray) -> int:
+    """Periods that do not follow on the one before."""
+    return int((np.diff(found) != BLOCK).sum())
+
+
+def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
+    jackd.start(BLOCK)
+    output = Output(OutputOptions(device="system, JACK", blocksize=BLOCK), lambda _line: None)
+    try:
+        instrument = Instrument(output.find(), memory=output.memory.buffer)
+        instrument.report_events()
+        capture = CaptureWriter(tmp_path / "take.jsonl", rate=RATE, seed=0)
+        output.begin(instrument)
+        listener = recorder(1).connected()
+        bow(instrument)
+        time.sleep(0.1)
+        capture.events(instrument.applied_events())
+
+        listener.forget()
+        time.sleep(1.0)
+        before = instrument.meters()
+        hold_the_gil()
+        after = instrument.meters()
+        recording = listener.recording()
+        end = instrument.frame
+        tape = instrument.taped(0)[1]
+    finally:
+        output.end()
+    capture.close(end)
+    assert after["frame"] - before["frame"] > 0.9 * RATE
+    assert after["callbacks"] - before["callbacks"] > 0.9 * RATE / BLOCK
+
+    replayed = np.concatenate(
+        list(blocks(read_capture(tmp_path / "take.jsonl"), Instrument(float(RATE))))
+    )
+    np.testing.assert_array_equal(replayed, tape[:end])
+
+    found = places(recording.samples[0], tape)
+    half = len(found) // 2
+    undisturbed, held = breaks(found[:half]), breaks(found[half:])
+    assert held <= undisturbed + recording.xruns + 2
+    assert (found[half:] >= 0).mean() > 0.95  # nothing but what was played
+
+
+# The stream and the GIL in one process; what is printed is what the callback did meanwhile.
+SAME_PROCESS = """
+import ctypes, json, mmap, os
+from yehu_server.audio.devices import choose, load_portaudio, outputs
+from yehu_server.audio.output import SharedMemory
+from yehu_server.audio.stream import Stream
+from yehu_server.engine.instrument import Instrument
+
+memory = SharedMemory()
+instrument = Instrument(48000.0, memory=memory.buffer)
+sounddevice = load_portaudio()
+device = choose(outputs(sounddevice), "system, JACK")
+order = {"memory": memory.descriptor, "rate": 48000.0, "blocksize": 128, "channels": 1,
+         "latency": "low"}
+stream = Stream(sounddevice, device, order)
+stream.start()
+usleep = ctypes.PyDLL(None).usleep
+ctypes.CDLL(None).usleep(500_000)
+counts = []
+for hold in (False, True):
+    before = instrument.meters().copy()
+    usleep(1_000_000) if hold else ctypes.CDLL(None).usleep(1_000_000)
+    after = instrument.meters().copy()
+    counts.append({what: int(after[what] - before[what])
+                   for what in ("frame", "callbacks", "late_callbacks", "underruns", "missed")})
+print(json.dumps(counts), flush=True)
+stream.close()
+os._exit(0)
+"""
+
+
+def test_the_gil_of_the_process_that_holds_the_stream_stops_nothing(jackd):
+    jackd.start(BLOCK)
+    run = subprocess.run(
+        [sys.executable, "-c", SAME_PROCESS],
+        env=jackd.environment,
+        capture_output=True,
+        timeout=120.0,
+        check=True,
+    )
+    free, held = json.loads(run.stdout)
+    assert held["frame"] > 0.9 * RATE
+    assert held["callbacks"] > 0.9 * RATE / BLOCK
+    assert held["missed"] <= free["missed"] + 1
+    assert held["late_callbacks"] <= 2 * free["late_callbacks"] + 10
+    assert held["underruns"] <= 2 * free["underruns"] + 10
+
+
+def test_holding_the_gil_holds_python():
+    # What the tests above take for granted.
+    counts = 0
+    ending = threading.Event()
+
+    def count() -> None:
+        nonlocal counts
+        while not ending.wait(0.001):
+            counts += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    time.sleep(0.2)
+    before = counts
+    hold_the_gil()
+    during = counts - before
+    ending.set()
+    thread.join()
+    assert before > 20
+    assert during < 5

@@ -1,0 +1,308 @@
+"""``yehu-server serve`` as a command, on a real audio server: what is heard, files, ends."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+
+from yehu_server.cli import main
+
+ROOT = Path(__file__).resolve().parents[2]
+COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
+RATE = 48000
+DEVICE = "system, JACK Audio Connection Kit"
+TRIES = 4
+
+
+def first_sound(samples: np.ndarray) -> int:
+    return int(np.flatnonzero(samples)[0])
+
+
+def play(osc, seconds: float) -> None:
+    """Notes and bends for a while."""
+    end = time.monotonic() + seconds
+    note = 0
+    while time.monotonic() < end:
+        note += 1
+        osc.send("/note", 65 + note % 12, 60 + 5 * (note % 10))
+        for bend in range(10):
+            osc.send("/bend", 0.1 * bend)
+            time.sleep(0.01)
+        osc.send("/note/off", 65 + note % 12)
+
+
+def take(path: Path) -> np.ndarray:
+    return soundfile.read(path, dtype="float32")[0]
+
+
+def replayed(folder: Path) -> np.ndarray:
+    """A replay of what was captured."""
+    words = ["replay", str(folder / "take.jsonl"), "-o", str(folder / "again.wav"), "--quiet"]
+    assert main(words) == 0
+    return take(folder / "again.wav")
+
+
+def files(folder: Path) -> tuple[object, ...]:
+    return ("--record", folder / "take.wav", "--capture", folder / "take.jsonl")
+
+
+# ---------------------------------------------------------------- what is heard
+
+
+@pytest.mark.parametrize(("channels", "block"), [(1, 128), (6, 100)])
+def test_the_device_gets_what_is_recorded_on_every_channel(
+    channels, block, jackd, serve, recorder, tmp_path
+):
+    # JACK without real-time rights is late now and then: only what it says was whole counts.
+    jackd.start(1024, channels=6)
+    words = ("--midi-api", "none", "--channels", channels, "--blocksize", block)
+    server = serve(*words, *files(tmp_path))
+    osc = server.osc()
+    server.said(f"playing on {DEVICE}")
+    listener = recorder(channels).connected()
+    takes = []
+    while len(takes) < TRIES and not any(heard.is_whole for heard in takes):
+        time.sleep(0.3)  # until the last note has rung out
+        listener.forget()
+        play(osc, 0.5)
+        takes.append(listener.recording())
+    underruns = osc.status()["underruns"]
+    assert server.end() == 0
+
+    played = take(tmp_path / "take.wav")
+    whole = [heard for heard in takes if heard.is_whole]
+    if not whole:
+        pytest.skip(f"JACK was late in each of {TRIES} takes ({underruns} under-runs)")
+    heard = whole[0].samples
+    sound = heard[0, first_sound(heard[0]) :]
+    assert len(sound) > 0.3 * RATE
+    assert np.abs(sound).max() > 0.01
+    places = np.flatnonzero(played[: len(played) - len(sound)] == sound[0])
+    same = [place for place in places if (played[place : place + len(sound)] == sound).all()]
+    assert len(same) == 1
+    for other in heard[1:]:
+        np.testing.assert_array_equal(other, heard[0])
+    np.testing.assert_array_equal(replayed(tmp_path), played)
+
+
+def test_it_plays_at_the_devices_own_rate_on_no_more_channels_than_it_has(jackd, serve, tmp_path):
+    jackd.start(512, rate=44100, channels=2)
+    server = serve("--midi-api", "none", "--channels", 8, *files(tmp_path))
+    server.said(f"playing on {DEVICE} at 44100 Hz", 120.0)
+    ports = jackd.ports()
+    assert "yehu-server:out_1" in ports
+    assert "yehu-server:out_2" not in ports
+    assert server.end() == 0
+    assert soundfile.info(tmp_path / "take.wav").samplerate == 44100
+    np.testing.assert_array_equal(replayed(tmp_path), take(tmp_path / "take.wav"))
+
+
+# ---------------------------------------------------------------- how it ends
+
+
+@pytest.mark.parametrize("number", [None, signal.SIGTERM, signal.SIGINT])
+def test_however_it_ends_notes_are_ended_and_files_are_whole(number, jackd, serve, tmp_path):
+    jackd.start(512)
+    words = ("--duration", 0.8) if number is None else ()
+    server = serve(*words, *files(tmp_path))
+    osc = server.osc()
+    server.said(f"playing on {DEVICE}")
+    server.family()
+    osc.send("/note", 69, 100)
+    osc.send("/note", 72, 100)
+    time.sleep(0.3)
+    if number is not None:  # as Ctrl-C does, to all processes of the terminal's group
+        os.killpg(server.process.pid, number)
+    assert server.wait() == 0
+    assert not any("gone" in line for line in server.lines)
+
+    played = take(tmp_path / "take.wav")
+    assert np.abs(played).max() > 0.02
+    loudest = np.abs(played[-round(0.3 * RATE) :]).max()
+    assert np.abs(played[-round(0.005 * RATE) :]).max() < 0.5 * loudest  # it was ending
+    lines = [json.loads(line) for line in (tmp_path / "take.jsonl").read_text().splitlines()]
+    assert lines[-1] == {"end": len(played)}
+    last = {line[1]: line[2] for line in lines if isinstance(line, list)}
+    assert last["/bow/speed"] == 0.0
+    assert last["/bow/side"] == 0.0
+    np.testing.assert_array_equal(replayed(tmp_path), played)
+
+
+def test_a_killed_server_leaves_no_process_and_a_capture_that_can_be_replayed(
+    jackd, serve, tmp_path
+):
+    jackd.start(512)
+    server = serve(*files(tmp_path))
+    osc = server.osc()
+    server.said(f"playing on {DEVICE}")
+    osc.send("/note", 69, 100)
+    time.sleep(0.5)
+    server.family()
+    server.process.kill()
+    assert server.wait() == -signal.SIGKILL
+    assert np.abs(replayed(tmp_path)).max() > 0.02
+
+
+# ---------------------------------------------------------------- options
+
+
+def command(jackd, *words: object) -> subprocess.CompletedProcess:
+    """Run to the end."""
+    return subprocess.run(
+        [sys.executable, "-c", COMMAND, *map(str, words)],
+        env=jackd.environment | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=120.0,
+        check=False,
+        stdin=subprocess.DEVNULL,
+    )
+
+
+def refused(jackd, folder: Path, *words: object) -> str:
+    """The one line with which a call is refused; nothing may be left behind."""
+    files_before = sorted(folder.iterdir())
+    run = command(jackd, "serve", *words)
+    assert run.returncode == 2, run.stderr
+    assert run.stdout == ""
+    lines = [line for line in run.stderr.splitlines() if "compiling" not in line]
+    assert len(lines) == 1, lines
+    assert sorted(folder.iterdir()) == files_before
+    assert not [port for port in jackd.ports() if port.startswith("yehu-server")]
+    return lines[0]
+
+
+def test_a_device_that_is_not_there_is_refused(jackd, tmp_path):
+    jackd.start(512)
+    line = refused(jackd, tmp_path, "--audio-device", "hifi", *files(tmp_path))
+    assert line == f"yehu-server: no audio output fits 'hifi' (there are: {DEVICE})"
+
+
+@pytest.fixture(scope="module")
+def refused_rate(jackd, tmp_path_factory) -> tuple[int, list[str], list[Path]]:
+    """Exit code, lines and files of a call with a rate that the named device does not have."""
+    jackd.start(512, rate=RATE)
+    folder = tmp_path_factory.mktemp("refused")
+    words = ("--audio-device", "JACK", "--rate", 44100, "--osc", "127.0.0.1:0")
+    run = command(jackd, "serve", *words, *files(folder))
+    return run.returncode, run.stderr.splitlines(), list(folder.iterdir())
+
+
+def test_a_rate_the_named_device_does_not_have_is_refused(refused_rate):
+    code, (*_, line), _ = refused_rate
+    assert code == 2
+    assert line == f"yehu-server: {DEVICE} does not run at 44100 Hz (its own rate is 48000 Hz)"
+
+
+def test_a_rate_the_named_device_does_not_have_is_said_once(refused_rate):
+    _, lines, _ = refused_rate
+    assert len([line for line in lines if "44100 Hz" in line]) == 1
+
+
+def test_where_the_named_device_cannot_be_opened_no_file_is_left(refused_rate):
+    _, _, left = refused_rate
+    assert left == []
+
+
+def test_a_rate_the_default_device_does_not_have_is_said_and_played_in_silence(jackd, serve):
+    jackd.start(512)
+    server = serve("--rate", 44100, "--midi-api", "none", "--duration", 1.0)
+    server.said("does not run at 44100 Hz", 120.0)
+    osc = server.osc()
+    status = osc.status()
+    assert status["device"] == "silent clock"
+    assert status["rate"] == 44100
+    assert "44100 Hz" in status["problem"]
+    assert server.wait() == 0
+
+
+@pytest.mark.parametrize("kind", [socket.SOCK_DGRAM, socket.SOCK_STREAM])
+def test_a_port_that_is_taken_is_refused(kind, jackd, tmp_path):
+    jackd.start(512)
+    with socket.socket(socket.AF_INET, kind) as other:
+        other.bind(("127.0.0.1", 0))
+        if kind == socket.SOCK_STREAM:
+            other.listen()
+        port = other.getsockname()[1]
+        line = refused(jackd, tmp_path, "--osc", f"127.0.0.1:{port}", *files(tmp_path))
+    where = f"127.0.0.1:{port}"
+    assert line == f"yehu-server: OSC: cannot listen at {where}: Address already in use"
+
+
+def test_where_the_recording_cannot_be_written_no_capture_is_left(jackd, tmp_path):
+    jackd.start(512)
+    refused(
+        jackd, tmp_path, "--osc", "127.0.0.1:0", "--audio-device", "null",
+        "--capture", tmp_path / "take.jsonl", "--record", tmp_path / "no folder" / "take.wav",
+    )  # fmt: skip
+
+
+def test_options_come_from_a_file_and_the_command_line_wins(jackd, serve, tmp_path):
+    jackd.start(512, rate=RATE)
+    config = tmp_path / "yehu.toml"
+    config.write_text(
+        'audio-device = "JACK"\nblocksize = 333\nchannels = 1\nmidi_api = "none"\nseed = 5\n'
+        f'duration = 30\ncapture = "{tmp_path / "take.jsonl"}"\n[set]\n"/playing/attack" = 80\n'
+    )
+    server = serve("--config", config, "--channels", 2)
+    osc = server.osc()
+    server.said(f"playing on {DEVICE}")
+    assert osc.status()["blocksize"] == 333
+    assert osc.ask("/get", "/playing/attack")["/playing/attack"] == [80.0]
+    assert "yehu-server:out_1" in jackd.ports()
+    assert server.end() == 0
+    assert json.loads((tmp_path / "take.jsonl").read_text().splitlines()[0])["seed"] == 5
+
+
+def test_the_devices_are_listed(jackd):
+    jackd.start(512, rate=RATE)
+    run = command(jackd, "devices")
+    assert run.returncode == 0
+    assert "system" in run.stdout
+    assert "48000 Hz" in run.stdout
+    assert run.stderr == ""
+    found = json.loads(command(jackd, "devices", "--json").stdout)
+    (device,) = [row for row in found["audio"] if row["full_name"] == DEVICE]
+    assert device["rate"] == RATE
+    assert device["is_default"]
+    assert found["audio_problem"] == ""
+
+
+def test_without_any_device_it_says_so_and_plays_in_silence(jackd, serve, tmp_path):
+    jackd.stop()
+    found = json.loads(command(jackd, "devices", "--json").stdout)
+    if found["audio"]:
+        pytest.skip("there is a sound card here")
+    server = serve("--duration", 1.0, *files(tmp_path))
+    osc = server.osc()
+    server.said("there is no audio output: playing on a silent clock")
+    osc.send("/note", 69, 100)
+    assert osc.status()["device"] == "silent clock"
+    assert server.wait() == 0
+    played = take(tmp_path / "take.wav")
+    assert np.abs(played).max() > 0.02
+    np.testing.assert_array_equal(replayed(tmp_path), played)
+
+
+COMPILING = """
+import argparse, logging
+from yehu_server.cli.serve import _set_up_log
+_set_up_log(argparse.Namespace(log_level="debug", json_log=False))
+print(logging.getLogger("numba").getEffectiveLevel())
+"""
+
+
+def test_a_log_for_debugging_has_no_word_of_the_compiler():
+    run = subprocess.run([sys.executable, "-c", COMPILING], capture_output=True, check=True)
+    assert int(run.stdout) > logging.DEBUG

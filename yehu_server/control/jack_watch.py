@@ -1,0 +1,53 @@
+"""Hears of JACK what RtMidi does not tell: that the server ends, and that ports go.
+
+A client of our own, without ports. When the server ends, this process does: nothing that
+RtMidi does after that is safe.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+import os
+from typing import Any
+
+NO_START_SERVER = 1
+PORT_IS_GONE = 0
+
+
+class JackWatch:
+    """Watches the JACK server that is running."""
+
+    def __init__(self, name: str) -> None:
+        self._left: set[str] = set()
+        self._client: int | None = None
+        library = ctypes.util.find_library("jack")
+        if library is None:
+            return
+        self._jack = jack = ctypes.CDLL(library)
+        jack.jack_client_open.restype = ctypes.c_void_p
+        jack.jack_port_by_id.restype = ctypes.c_void_p
+        jack.jack_port_name.restype = ctypes.c_char_p
+        self._client = jack.jack_client_open(name.encode(), NO_START_SERVER, None)
+        if not self._client:
+            return
+        # Kept here, since JACK keeps their addresses only.
+        self._ended = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(lambda _: os._exit(1))
+        kind = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_int, ctypes.c_void_p)
+        self._registered = kind(self._port_changed)
+        client = ctypes.c_void_p(self._client)
+        jack.jack_on_shutdown(client, self._ended, None)
+        jack.jack_set_port_registration_callback(client, self._registered, None)
+        jack.jack_activate(client)
+
+    def left(self) -> set[str]:
+        """Full names of ports that went since the last call, also where they are back."""
+        left, self._left = self._left, set()
+        return left
+
+    def _port_changed(self, number: int, change: int, _argument: Any) -> None:
+        if change == PORT_IS_GONE:
+            port = self._jack.jack_port_by_id(ctypes.c_void_p(self._client), number)
+            name = self._jack.jack_port_name(ctypes.c_void_p(port)) if port else None
+            if name:
+                self._left.add(name.decode(errors="replace"))

@@ -45,7 +45,7 @@ HANDLING_MS = 1.0
 FADE_MS = 50.0  # after the notes' release
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 # Short turns for Python's threads, so that handlers are not late when one is busy.
-SWITCH_INTERVAL_S = 0.0005
+SWITCH_INTERVAL_S = 0.0001
 
 
 @dataclass

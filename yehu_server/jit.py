@@ -43,6 +43,11 @@ def cache_folder() -> Path:
     return Path(root) / f"{FOLDER}{source_hash()}"
 
 
+def data_folder() -> Path:
+    """Where else is kept what takes long to find, such as calibrations."""
+    return cache_folder().parent
+
+
 def _open_cache() -> bool:
     """Make the cache folder and drop what older sources left; return whether it is writable.
 

@@ -16,6 +16,7 @@ from yehu_server.audio.file import SoundWriter, check_format, sound_file
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibration import Calibration, calibration_for
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
@@ -48,6 +49,8 @@ class Options:
     seed: int = 0
     policy: RangePolicy = RangePolicy.TRANSPOSE
     quantities: Quantities = field(default_factory=Quantities)
+    a4: float = 440.0  # Hz
+    calibration: Calibration | None = None  # None: found, or measured
     block: int = BLOCK
 
 
@@ -74,10 +77,13 @@ class Performance:
     def __init__(self, score: Score, options: Options) -> None:
         self._score = score
         self._options = options
-        self.instrument = Instrument(float(options.rate), options.quantities)
+        calibration = options.calibration or calibration_for(
+            float(options.rate), options.quantities, a4=options.a4
+        )
+        self.instrument = Instrument(float(options.rate), calibration.tuned(options.quantities))
         self.performer = Performer(
             self.instrument,
-            Intonation(options.quantities),
+            Intonation(calibration, options.quantities),
             policy=options.policy,
             seed=options.seed,
         )

@@ -14,6 +14,7 @@ import numpy as np
 from yehu_server.audio.file import sound_file
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.grid import check_rate
+from yehu_server.physics.quantities import Quantities, override
 from yehu_server.score.capture import Capture
 
 BLOCK = 1024  # frames; the ring takes whatever can be applied in them
@@ -58,7 +59,9 @@ def replay(
 ) -> Replayed:
     """Render a capture to a sound file. Errors: YehuError; nothing is left behind."""
     check_rate(capture.rate)
-    instrument = Instrument(capture.rate)
+    first, second = capture.tensions
+    changes = {"string_1": {"T": first}, "string_2": {"T": second}}
+    instrument = Instrument(capture.rate, override(Quantities(), changes))
     start = time.perf_counter()
     with sound_file(target, round(capture.rate), format_name, subtype) as file:
         for samples in blocks(capture, instrument):

@@ -31,6 +31,8 @@ from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.files import check_target
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibration import Progress, calibration_for
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
@@ -58,6 +60,7 @@ class ServeOptions:
     allowed: Allowed = field(default_factory=Allowed)
     mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
     settings: tuple[tuple[str, float], ...] = ()
+    a4: float = 440.0  # Hz
     seed: int = 0
     policy: RangePolicy = RangePolicy.TRANSPOSE
     jitter_ms: float | None = None  # None: one block and HANDLING_MS
@@ -73,12 +76,19 @@ class Server:
     ----------
     said : callable
         Told in a line what a player should know: devices that come and go, troubles.
+    progress : callable, optional
+        Told notes done and in all, where the instrument has to be calibrated first.
 
     Errors: DeviceError where a named device or the OSC address cannot be had; OutputError
     where `record` or `capture` cannot be written.
     """
 
-    def __init__(self, options: ServeOptions, said: Callable[[str], None] = log.info) -> None:
+    def __init__(
+        self,
+        options: ServeOptions,
+        said: Callable[[str], None] = log.info,
+        progress: Progress | None = None,
+    ) -> None:
         self.options = options
         self._said = said
         self._started = time.monotonic()
@@ -87,11 +97,14 @@ class Server:
             undo.callback(self.output.end)
             native.warm_up()  # while the device is looked for
             rate = self.output.find()
-            self.instrument = Instrument(rate, memory=self.output.memory.buffer)
+            calibration = calibration_for(rate, a4=options.a4, progress=progress)
+            quantities = calibration.tuned(Quantities())
+            self.instrument = Instrument(rate, quantities, memory=self.output.memory.buffer)
             block_ms = 1e3 * options.output.blocksize / rate + HANDLING_MS
             self.player = LivePlayer(
                 self.instrument,
                 options.mapping,
+                calibration=calibration,
                 policy=options.policy,
                 seed=options.seed,
                 delay_ms=block_ms if options.jitter_ms is None else options.jitter_ms,
@@ -129,8 +142,12 @@ class Server:
             undo.callback(self.output.end)
             self.output.begin(self.instrument)
             if self.options.capture is not None:
-                rate, seed = self.instrument.rate, self.options.seed
-                self._capture = CaptureWriter(self.options.capture, rate=rate, seed=seed)
+                self._capture = CaptureWriter(
+                    self.options.capture,
+                    rate=self.instrument.rate,
+                    seed=self.options.seed,
+                    tensions=[silk.T for silk in self.instrument.quantities.strings],
+                )
             if self.options.record is not None:
                 self._recorder = Recorder(self.instrument, self.options.record, 0, self._said)
             undo.pop_all()

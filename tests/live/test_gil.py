@@ -17,6 +17,7 @@ from yehu_server.replay import blocks
 from yehu_server.score.capture import CaptureWriter, read_capture
 
 RATE, BLOCK = 48000, 128
+TENSIONS = (49.5, 64.1)  # N
 A_SECOND_US = 1_000_000
 
 
@@ -54,7 +55,7 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     try:
         instrument = Instrument(output.find(), memory=output.memory.buffer)
         instrument.report_events()
-        capture = CaptureWriter(tmp_path / "take.jsonl", rate=RATE, seed=0)
+        capture = CaptureWriter(tmp_path / "take.jsonl", rate=RATE, seed=0, tensions=TENSIONS)
         output.begin(instrument)
         listener = recorder(1).connected()
         bow(instrument)

@@ -23,6 +23,7 @@ from yehu_server.score.capture import CaptureWriter, read_capture
 
 DEVICE = "system, JACK Audio Connection Kit"
 SOUNDS = 1e-3
+TENSIONS = (49.5, 64.1)  # N
 
 
 def peak(samples: np.ndarray) -> float:
@@ -196,7 +197,7 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
     memory = SharedMemory()
     live = Instrument(48000.0, memory=memory.buffer)
     live.report_events()
-    capture = CaptureWriter(tmp_path / "take.jsonl", rate=live.rate, seed=0)
+    capture = CaptureWriter(tmp_path / "take.jsonl", rate=live.rate, seed=0, tensions=TENSIONS)
     recorded = np.zeros(0, np.float32)
     for _ in range(3):
         bow(live)

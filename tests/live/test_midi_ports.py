@@ -216,29 +216,29 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
         until(moved, 5.0, f"{data} to move {address}")
         return applied[address][1]
 
-    assert moves("90 45 7f", "/bow/pressure") == pytest.approx(0.55)  # of velocity 127
-    assert heard.player.pitch == 69.0
+    assert moves("90 4a 7f", "/bow/pressure") == pytest.approx(0.55)  # of velocity 127
+    assert heard.player.pitch == 74.0
     assert abs(applied["/bow/speed"][1]) == pytest.approx(0.2)
     assert applied["/finger/1/press"][1] == pytest.approx(1.5)
     place = applied["/finger/1/position"][1]
 
     assert moves("e0 7f 7f", "/finger/1/position") > place  # the wheel up: two semitones
-    assert heard.player.pitch == 71.0
+    assert heard.player.pitch == 76.0
     assert moves("d0 7f", "/finger/1/press") == pytest.approx(5.0)
-    assert abs(moves("b0 01 7f", "/bow/speed")) == pytest.approx(0.3)
+    assert abs(moves("b0 01 7f", "/bow/speed")) == pytest.approx(0.22)
 
     # Reset all controllers.
     assert abs(moves("b0 79 00", "/bow/speed")) == pytest.approx(0.2)
     assert applied["/finger/1/press"][1] == pytest.approx(1.5)
-    assert heard.player.pitch == 69.0
+    assert heard.player.pitch == 74.0
 
-    assert moves("80 45 40", "/bow/side") == 0.0
+    assert moves("80 4a 40", "/bow/side") == 0.0
     assert heard.player.pitch is None
-    assert moves("90 45 01", "/bow/pressure") == pytest.approx(0.3, abs=0.01)
+    assert moves("90 4a 01", "/bow/pressure") == pytest.approx(0.3, abs=0.01)
 
     for mode in ("7b", "78"):  # all notes off, all sound off
-        assert moves("90 45 60", "/bow/side") != 0.0
-        assert heard.player.pitch == 69.0
+        assert moves("90 4a 60", "/bow/side") != 0.0
+        assert heard.player.pitch == 74.0
         assert moves(f"b0 {mode} 00", "/bow/side") == 0.0
         assert heard.player.pitch is None
     assert heard.server.status()["midi_malformed"] == 0

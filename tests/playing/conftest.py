@@ -74,7 +74,8 @@ class Ruler:
 
     OPEN = (65.0, 72.0)
 
-    def position(self, string: int, pitch: float) -> float:
+    def position(self, string: int, pitch: float, speed: float = 0.2) -> float:
+        assert 0.0 < speed < 2.0
         return 0.01 * (pitch - self.OPEN[string])
 
     def reaches(self, string: int, pitch: float) -> bool:

@@ -21,7 +21,7 @@ def key(note: int) -> Key:
         ("/bow/side", 0.5, 1.0),
         ("/bow/pressure", 1.1, 0.77),
         ("/bow/assist", 0.3, 0.9),
-        ("/finger/1/position", 0.2, 0.06),
+        ("/finger/1/position", 0.2, 0.05),
         ("/finger/1/press", 4.0, 2.2),
     ],
 )
@@ -37,7 +37,7 @@ def test_a_direct_write_takes_one_parameter_over_until_the_next_note(
     player.write("/playing/bend", -4.0)  # moves the finger, and the bow to the F string
     player.write("/playing/bend", 0.0)
     assert listener[address] == value
-    player.note_on(key(71))
+    player.note_on(key(70))
     assert listener[address] == pytest.approx(players)
 
 

@@ -209,9 +209,9 @@ def test_a_stroke_begins_and_ends_in_the_times_set_for_it(player, listener):
 
 
 def test_speed_pressure_and_press_reach_the_sounding_note(player, listener):
-    player.note_on(key(66))
-    player.note_off(key(66))
-    player.note_on(key(66))
+    player.note_on(key(67))
+    player.note_off(key(67))
+    player.note_on(key(67))
     player.write("/playing/speed", 0.3)
     player.write("/playing/pressure", 0.7)
     player.write("/playing/press", 3.0)

@@ -16,11 +16,12 @@ from yehu_server.replay import blocks, replay
 from yehu_server.score.capture import CaptureWriter, build, read_capture
 
 RATE = 48000.0
+TENSIONS = (49.5, 64.1)
 SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 
 
 def write(path, events=(), end=None, rests=(), lost=0):
-    writer = CaptureWriter(path, rate=RATE, seed=3)
+    writer = CaptureWriter(path, rate=RATE, seed=3, tensions=TENSIONS)
     writer.events(np.array(list(events), EVENT))
     for frame in rests:
         writer.note("rest", frame, since=frame)
@@ -112,7 +113,7 @@ def test_a_missing_file_and_a_missing_folder_are_told(tmp_path):
     with pytest.raises(ScoreError, match="No such file"):
         read_capture(tmp_path / "none")
     with pytest.raises(OutputError, match="does not exist"):
-        CaptureWriter(tmp_path / "none" / "c", rate=RATE, seed=0)
+        CaptureWriter(tmp_path / "none" / "c", rate=RATE, seed=0, tensions=TENSIONS)
 
 
 def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
@@ -125,7 +126,7 @@ def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
         if start == 10000:
             live.write("/finger/1/press", 1.5)
         live.process(played[start : start + 100])
-    writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0)
+    writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0, tensions=TENSIONS)
     writer.events(live.applied_events())
     writer.close(live.frame)
     again = np.concatenate(list(blocks(read_capture(tmp_path / "c"), Instrument(RATE))))
@@ -144,7 +145,7 @@ def test_a_rest_in_mid_session_is_replayed(tmp_path):
     live.recover()
     live.process(played[9000:])
     assert live.rests == [(9000, 9000)]
-    writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0)
+    writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0, tensions=TENSIONS)
     writer.events(live.applied_events())
     writer.note("rest", 9000, since=9000)
     writer.close(live.frame)

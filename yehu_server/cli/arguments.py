@@ -52,7 +52,7 @@ def compiling(arguments: argparse.Namespace) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def progress_bar(arguments: argparse.Namespace, what: str) -> Iterator[Any]:
+def progress_bar(arguments: argparse.Namespace, what: str, unit: str = "s") -> Iterator[Any]:
     """A progress bar on a terminal; silence elsewhere."""
     if arguments.quiet or not sys.stderr.isatty():
         yield lambda _done, _total: None
@@ -63,12 +63,17 @@ def progress_bar(arguments: argparse.Namespace, what: str) -> Iterator[Any]:
     columns = (
         TextColumn(what),
         BarColumn(),
-        TextColumn("{task.completed:.1f} of {task.total:.1f} s"),
+        TextColumn(f"{{task.completed:.1f}} of {{task.total:.1f}} {unit}"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=0.0)
         yield lambda done, total: bar.update(task, completed=min(done, total), total=total)
+
+
+def a4(text: str) -> float:
+    """The frequency of A4 in Hz."""
+    return within(text, 400.0, 480.0, "Hz")
 
 
 def whole(text: str) -> int:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server.cli.arguments import (
+    a4,
     add_reporting,
     channel,
     compiling,
@@ -102,6 +104,9 @@ def add_to(commands: Any) -> None:
         help="hold a parameter at a value, such as /bow/position=0.1; may be repeated",
     )
     parser.add_argument(
+        "--a4", type=a4, default=440.0, metavar="HZ", help="reference pitch (default: 440)"
+    )
+    parser.add_argument(
         "--range",
         choices=("transpose", "clamp", "skip"),
         default="transpose",
@@ -125,6 +130,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.params.table import assignment
     from yehu_server.physics.grid import check_rate
     from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.playing.calibration import calibration_for
     from yehu_server.playing.fingering import RangePolicy
     from yehu_server.playing.mapping import load
     from yehu_server.render import Options, render
@@ -143,6 +149,7 @@ def run(arguments: argparse.Namespace) -> int:
         normalize=arguments.normalize,
         mapping=load(arguments.mapping),
         settings=tuple(assignment(text) for text in arguments.set),
+        a4=arguments.a4,
         seed=arguments.seed,
         policy=RangePolicy(arguments.range),
         quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
@@ -152,6 +159,10 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"yehu-server: {warning}", file=sys.stderr)
     with compiling(arguments):
         warm_up()
+    with progress_bar(arguments, "calibrating", "notes") as progress:
+        rate = float(options.rate)
+        calibration = calibration_for(rate, options.quantities, a4=options.a4, progress=progress)
+    options = replace(options, calibration=calibration)
     with progress_bar(arguments, "rendering") as progress:
         summary = render(score, arguments.output, options, progress)
     if arguments.json:

@@ -17,7 +17,7 @@ from typing import Any
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
-from yehu_server.cli.arguments import compiling, positive, whole, within
+from yehu_server.cli.arguments import a4, compiling, positive, progress_bar, whole, within
 
 EXAMPLES = """\
 examples:
@@ -128,6 +128,9 @@ def _add_playing(group: Any) -> None:
         help="hold a parameter at a value, such as /bow/position=0.1; may be repeated",
     )
     group.add_argument(
+        "--a4", type=a4, default=440.0, metavar="HZ", help="reference pitch (default: 440)"
+    )
+    group.add_argument(
         "--range",
         choices=("transpose", "clamp", "skip"),
         default="transpose",
@@ -196,7 +199,8 @@ def _serve(arguments: argparse.Namespace, ended: threading.Event) -> None:
     from yehu_server.server import Server
 
     say = logging.getLogger("yehu_server").info
-    server = Server(_options(arguments), say)
+    with progress_bar(arguments, "calibrating", "notes") as progress:
+        server = Server(_options(arguments), say, progress)
     if server.output.state.problem and arguments.audio_device != "null":
         say(f"{server.output.state.problem}: playing on a silent clock")
     server.start()
@@ -247,6 +251,7 @@ def _options(arguments: argparse.Namespace) -> Any:
         allowed=Allowed(arguments.osc_allow),
         mapping=load(arguments.mapping),
         settings=tuple(assignment(text) for text in arguments.set),
+        a4=arguments.a4,
         seed=arguments.seed,
         policy=RangePolicy(arguments.range),
         jitter_ms=arguments.jitter_buffer,

@@ -33,8 +33,8 @@ SILENCE = SLOTS  # an event at this index fades the sound out and puts the model
 PARK_X = 0.012  # m
 PARK_AFTER_S = 0.03
 # A fast bow needs a larger share of Schelleng's limit, or notes jump to the octave. Measured
-# over F4 to F6: 0.3 is enough at 0.1 m/s, 0.6 at 0.35 m/s.
-FAST_SHARE, FAST = 0.3, 0.35  # m/s
+# over F4 to F6: shares from 0.35 hold at 0.12 m/s, from 0.5 at 0.2, from 0.75 at 0.3.
+FAST_SHARE, FAST = 0.6, 0.35  # m/s
 FOLLOW_S = 0.01  # how fast the bow follows the sounding length
 
 GESTURE = np.dtype(

@@ -23,7 +23,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/bow/pressure", "F_N / F_max", "1", 0.0, 2.0, 0.4,
-        "Bow force as a share of Schelleng's upper limit; fast strokes get up to 0.3 more.",
+        "Bow force as a share of Schelleng's upper limit; fast strokes get up to 0.6 more.",
         place=Place.ENGINE, smooth_ms=10.0, owned=True,
     ),
     Param(
@@ -58,7 +58,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/speed", "", "m/s", 0.03, 0.6, 0.2,
-        "Bow speed of a sounding note.", curve=Curve.EXP,
+        "Bow speed of a sounding note, as far as the note bears it.", curve=Curve.EXP,
     ),
     Param(
         "/playing/pressure", "", "1", 0.1, 1.0, 0.4,

@@ -7,6 +7,7 @@ moved to the same frequencies and its numerators fitted to the same response.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,7 @@ def response(sections: Floats, taps: Floats, rate: float, frequency_hz: Floats) 
     return poles.sum(axis=1) + (taps * z_1 ** np.arange(len(taps))).sum(axis=1)
 
 
+@lru_cache(maxsize=16)  # it takes a tenth of a second
 def refit(body: Body, rate: float) -> tuple[Floats, Floats]:
     """Fit the measured filter for another sample rate (Hz).
 

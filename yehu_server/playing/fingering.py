@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from yehu_server.playing.intonation import OPEN_NOTES, Intonation
+from yehu_server.playing.calibration import OPEN_NOTES
+from yehu_server.playing.intonation import Intonation
 
 LOWEST_NOTE, HIGHEST_NOTE = 65, 89  # F4 to F6
 # Semitones about an open string that need no finger: nearer to the loop than 8 mm, which is
@@ -53,8 +54,8 @@ class Stopped(Fingering):
     position: float
 
 
-def choose(pitch: float, hand: Fingering | None, intonation: Intonation) -> Fingering:
-    """Finger a pitch (fractional MIDI note).
+def choose(pitch: float, hand: Fingering | None, intonation: Intonation, speed: float) -> Fingering:
+    """Finger a pitch (fractional MIDI note) for a bow of some speed (m/s).
 
     Below C5 there is only the F string; from C5 up the C string, unless the finger is down
     on the F string (`hand`) and has a shorter way to the pitch there.
@@ -65,21 +66,21 @@ def choose(pitch: float, hand: Fingering | None, intonation: Intonation) -> Fing
     if pitch < OPEN_NOTES[0]:
         return Fingering(0, None)  # the lowest there is
     if pitch < OPEN_NOTES[1]:
-        return _stop(0, pitch, intonation)
-    near, far = _stop(1, pitch, intonation), _stop(0, pitch, intonation)
+        return _stop(0, pitch, intonation, speed)
+    near, far = (_stop(string, pitch, intonation, speed) for string in (1, 0))
     if hand is None or hand.string != 0 or hand.position is None:
         return near
     nearer = abs(far.position - hand.position) < abs(near.position - hand.position)
     return far if nearer and intonation.reaches(0, pitch) else near
 
 
-def stay(pitch: float, string: int, intonation: Intonation) -> Fingering:
+def stay(pitch: float, string: int, intonation: Intonation, speed: float) -> Fingering:
     """Follow a bent pitch on the string it sounds on; below the open C string, on the F."""
     open_note = OPEN_NOTES[string]
     if abs(pitch - open_note) < OPEN_WITHIN or pitch < OPEN_NOTES[0]:
         return Fingering(string if pitch >= OPEN_NOTES[0] else 0, None)
-    return _stop(string if pitch > open_note else 0, pitch, intonation)
+    return _stop(string if pitch > open_note else 0, pitch, intonation, speed)
 
 
-def _stop(string: int, pitch: float, intonation: Intonation) -> Stopped:
-    return Stopped(string, intonation.position(string, pitch))
+def _stop(string: int, pitch: float, intonation: Intonation, speed: float) -> Stopped:
+    return Stopped(string, intonation.position(string, pitch, speed))

@@ -1,54 +1,63 @@
-"""Where to stop a string for a pitch."""
+"""Where the finger goes for a pitch."""
 
 from __future__ import annotations
 
 import math
 
 from yehu_server.physics.quantities import Quantities
-
-OPEN_NOTES = (65, 72)  # F4 and C5
-HIGHEST_X = 0.19  # m; beyond it fingers and bow crowd, and notes turn to the octave
-
-# How much sharper a stopped note sounds than c/2f promises (cents), from a semitone above
-# the open string upwards: stiffness, the finger's width and the body pull at it. Measured
-# at 44.1 kHz by scripts/measure_intonation.py.
-# fmt: off
-SHARPENING: tuple[tuple[float, ...], tuple[float, ...]] = (
-    # F#4 to A#5
-    (27.2, 30.5, 32.7, 47.9, 50.2, 47.7, 51.3, 55.3, 57.1,
-     46.3, 38.9, 45.9, 67.5, 65.8, 68.8, 70.6, 87.0),
-    # C#5 to F6
-    (16.3, 19.7, 18.6, 18.1, 22.3, 22.0, 23.4, 19.7, 27.1,
-     25.5, 23.3, 22.8, 24.0, 23.5, 25.0, 30.3, 40.1),
+from yehu_server.playing.calibration import (
+    OPEN_NOTES,
+    SPEEDS,
+    Calibration,
+    calibration_for,
+    frequency_hz,
+    ideal_position,
 )
-# fmt: on
 
-
-def ideal_position(quantities: Quantities, string: int, pitch: float) -> float:
-    """Finger position (m) that leaves c/2f of an ideal string to the bridge."""
-    silk = quantities.strings[string]
-    frequency_hz = 440.0 * math.exp2((pitch - 69.0) / 12.0)
-    return quantities.bridge_x - math.sqrt(silk.T / silk.rho_A) / (2.0 * frequency_hz)
+HIGHEST_X = 0.19  # m; beyond it fingers and bow crowd, and notes turn to the octave
+DEFAULT_RATE = 44100.0
 
 
 class Intonation:
-    """Finger positions in equal temperament at A4 = 440 Hz."""
+    """Finger positions in equal temperament, for one calibrated instrument."""
 
-    def __init__(self, quantities: Quantities | None = None) -> None:
-        self._quantities = quantities or Quantities()
+    def __init__(
+        self, calibration: Calibration | None = None, quantities: Quantities | None = None
+    ) -> None:
+        quantities = quantities or Quantities()
+        self._calibration = calibration or calibration_for(DEFAULT_RATE, quantities)
+        self._quantities = self._calibration.tuned(quantities)
 
-    def position(self, string: int, pitch: float) -> float:
-        """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1."""
-        cents = self._sharpening(string, pitch)
-        return ideal_position(self._quantities, string, pitch - cents / 100.0)
+    def position(self, string: int, pitch: float, speed: float) -> float:
+        """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1.
+
+        The pitch is that of a bow of `speed` (m/s): a faster one pulls it.
+        """
+        sharp = self._sharpening(string, pitch, speed)
+        frequency = frequency_hz(pitch - sharp / 100.0, self._calibration.a4)
+        return ideal_position(self._quantities, string, frequency)
 
     def reaches(self, string: int, pitch: float) -> bool:
         """Whether a finger gets there without crowding the bow."""
-        return self.position(string, pitch) <= HIGHEST_X
+        return self.position(string, pitch, SPEEDS[0]) <= HIGHEST_X
 
-    def _sharpening(self, string: int, pitch: float) -> float:
-        table = SHARPENING[string]
-        place = min(max(pitch - OPEN_NOTES[string] - 1.0, 0.0), len(table) - 1.0)
-        below = min(int(place), max(len(table) - 2, 0))
-        above = min(below + 1, len(table) - 1)
-        return table[below] + (place - below) * (table[above] - table[below])
+    def _sharpening(self, string: int, pitch: float, speed: float) -> float:
+        table = self._calibration.sharpening[string]
+        row, across = _between(pitch - OPEN_NOTES[string] - 1.0, len(table))
+        speeds = [math.log(entry) for entry in SPEEDS]
+        logarithm = math.log(max(speed, 1e-3))
+        column = sum(logarithm >= entry for entry in speeds[1:-1])
+        part = (logarithm - speeds[column]) / (speeds[column + 1] - speeds[column])
+        part = min(max(part, 0.0), 1.0)
+
+        def at(note: int) -> float:
+            return table[note][column] + part * (table[note][column + 1] - table[note][column])
+
+        return at(row) + across * (at(row + 1) - at(row))
+
+
+def _between(place: float, rows: int) -> tuple[int, float]:
+    """The row below a place in a table, and how far it is to the next."""
+    place = min(max(place, 0.0), rows - 1.0)
+    row = min(int(place), rows - 2)
+    return row, place - row

@@ -15,6 +15,7 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import ENGINE, TABLE, find
+from yehu_server.playing.calibration import Calibration
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import Mapping
@@ -64,6 +65,7 @@ class LivePlayer:
         instrument: Instrument,
         mapping: Mapping,
         *,
+        calibration: Calibration | None = None,
         policy: RangePolicy = RangePolicy.TRANSPOSE,
         seed: int = 0,
         delay_ms: float,
@@ -72,9 +74,8 @@ class LivePlayer:
         self.delay = instrument.frames(delay_ms)
         self._turn = threading.RLock()
         self._targets = Targets(instrument)
-        self._performer = Performer(
-            self._targets, Intonation(instrument.quantities), policy=policy, seed=seed
-        )
+        intonation = Intonation(calibration, instrument.quantities)
+        self._performer = Performer(self._targets, intonation, policy=policy, seed=seed)
         self._midi = MidiPlayer(self._performer, mapping)
         self._decided = 0  # the latest frame of a decision
         self._written = 0  # and of anything

@@ -16,6 +16,7 @@ from typing import Protocol
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
+from yehu_server.playing.bowing import manner
 from yehu_server.playing.fingering import Fingering, RangePolicy, choose, stay
 from yehu_server.playing.intonation import Intonation
 
@@ -93,6 +94,8 @@ class Performer:
         self._taken: set[str] = set()
         self._kept: set[str] = set()
         self._by_hand = False  # the bow is drawn by `draw`
+        # The bow's relative position as asked, and as the note has it.
+        self._beta = self._beta_now = find("/bow/position").default
         self.expression: Callable[[Key], Mapping[str, float]] = lambda _key: {}
         self.notes_played = 0
         self.notes_out_of_range = 0
@@ -124,6 +127,10 @@ class Performer:
         param = find(address)
         accepted = param.accept(value)
         if param.place is Place.ENGINE:
+            if address == "/bow/position":
+                self._beta = self._beta_now = accepted
+                if hold:
+                    self._kept.add(address)
             if param.owned:
                 (self._kept if hold else self._taken).add(address)
                 if address == "/bow/force":  # raw newtons are heard only without assist
@@ -142,6 +149,7 @@ class Performer:
             self._press(frame)
         elif address == "/playing/speed":
             self._draw(frame, None)
+            self._follow_bend(frame)  # a faster bow pulls the pitch
         elif address == "/playing/pressure":
             self._lean(frame)
         elif address == "/playing/assist":
@@ -232,7 +240,7 @@ class Performer:
             self._held[self._sounding] = pitch
             self._follow_bend(frame)
             return pitch
-        fingering = choose(pitch, self._fingering, self._intonation)
+        fingering = choose(pitch, self._fingering, self._intonation, self._speed_at(pitch))
         self._place(fingering, frame, BEND_RAMP_MS)
         if self._by_hand:
             self._sink.write("/bow/side", self._side, frame=frame, ramp_ms=CROSSING_MS)
@@ -271,7 +279,7 @@ class Performer:
         )
         if not legato:
             self._direction = -self._direction
-        fingering = choose(self._pitch, was, self._intonation)
+        fingering = choose(self._pitch, was, self._intonation, self._speed_at(self._pitch))
         self._place(fingering, frame, 0.0 if at_once else self._value["/playing/glide"])
         slurred = legato and not at_once
         crossing = slurred and was is not None and was.side != self._side
@@ -306,14 +314,26 @@ class Performer:
         level = (self._value["/playing/volume"] * self._value["/playing/expression"]) ** 2
         self._move("/output/level", level, frame)
 
+    def _speed_at(self, pitch: float) -> float:
+        """Bow speed (m/s) for a pitch: as wished, as far as the note bears it."""
+        wish = self._value["/playing/speed"] * (1.0 + self._varied(0, VARIED_SHARE))
+        return min(wish, manner(pitch).top_speed)
+
     def _lean(self, frame: int | None) -> None:
-        pressure = self._value["/playing/pressure"] * (1.0 + self._varied(1, VARIED_SHARE))
-        self._move("/bow/pressure", pressure, frame)
+        wish = self._value["/playing/pressure"] * (1.0 + self._varied(1, VARIED_SHARE))
+        if self._sounding is None:
+            self._move("/bow/pressure", wish, frame)
+            return
+        bowing = manner(self._pitch)
+        self._move("/bow/pressure", bowing.pressure(wish), frame)
+        position = self._beta * bowing.farther
+        if position != self._beta_now:
+            self._beta_now = position
+            self._move("/bow/position", position, frame)
 
     def _draw(self, frame: int | None, ramp_ms: float | None) -> None:
         if self._sounding is not None:
-            speed = self._direction * self._value["/playing/speed"]
-            speed *= 1.0 + self._varied(0, VARIED_SHARE)
+            speed = self._direction * self._speed_at(self._pitch)
             self._move("/bow/speed", speed, frame, ramp_ms)
 
     def _place(self, fingering: Fingering, frame: int | None, glide_ms: float) -> None:
@@ -327,12 +347,15 @@ class Performer:
     def _press(self, frame: int | None) -> None:
         down = self._fingering is not None and self._fingering.position is not None
         press = self._value["/playing/press"] if down else 0.0
+        if down and self._sounding is not None:
+            press = max(press, manner(self._pitch).press)
         self._move("/finger/1/press", press, frame, LANDING_MS)
 
     def _follow_bend(self, frame: int | None) -> None:
         if self._sounding is None or self._fingering is None:
             return
-        fingering = stay(self._pitch, self._fingering.string, self._intonation)
+        pitch, string = self._pitch, self._fingering.string
+        fingering = stay(pitch, string, self._intonation, self._speed_at(pitch))
         crossing = fingering.string != self._fingering.string
         self._place(fingering, frame, BEND_RAMP_MS)
         if crossing:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -50,7 +50,7 @@ class CaptureWriter:
     Errors: OutputError.
     """
 
-    def __init__(self, target: Path, *, rate: float, seed: int) -> None:
+    def __init__(self, target: Path, *, rate: float, seed: int, tensions: Sequence[float]) -> None:
         check_target(target)
         self._target = target
         try:
@@ -58,7 +58,8 @@ class CaptureWriter:
         except OSError as error:
             raise OutputError(f"{target}: cannot write: {error.strerror}") from error
         values = {param.address: param.default for param in ENGINE}
-        header = {"format": FORMAT, "version": VERSION, "rate": rate, "seed": seed}
+        header: dict[str, Any] = {"format": FORMAT, "version": VERSION, "rate": rate, "seed": seed}
+        header["tensions"] = list(tensions)
         self._write([{**header, "build": build(), "values": values}])
 
     def events(self, events: Any) -> None:
@@ -90,6 +91,7 @@ class Capture:
     """A captured session."""
 
     rate: float
+    tensions: tuple[float, float]  # N, of the strings as tuned
     build: dict[str, str]
     events: Any = field(default_factory=lambda: np.zeros(0, EVENT))  # by frame
     rests: dict[int, int] = field(default_factory=dict)  # frames of rest, and since when silent
@@ -146,7 +148,8 @@ def _header(path: Path, line: str) -> Capture:
             raise ScoreError(f"{path}: version {header['version']} of the format is not known")
         if dict(header["values"]) != {param.address: param.default for param in ENGINE}:
             raise ScoreError(f"{path}: begins with other values than this version has")
-        return Capture(float(header["rate"]), dict(header["build"]))
+        first, second = map(float, header["tensions"])
+        return Capture(float(header["rate"]), (first, second), dict(header["build"]))
     except (ValueError, TypeError, KeyError) as error:
         raise ScoreError(f"{path}: not a capture") from error
 

@@ -1,0 +1,52 @@
+"""How notes want to be bowed."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server.playing.bowing import FIRM, LIGHT, MANNERS, ORDINARY, manner
+from yehu_server.playing.performer import Key
+
+
+def test_most_notes_are_bowed_as_asked():
+    assert manner(74.0) is ORDINARY
+    for wish in (0.1, 0.3, 0.42, 0.55, 0.9, 1.0):
+        assert ORDINARY.pressure(wish) == wish
+
+
+@pytest.mark.parametrize("note", MANNERS)
+def test_a_difficult_note_leans_between_its_two_ends(note):
+    bowing = manner(note + 0.4)
+    light, firm = bowing.lean
+    assert bowing.pressure(LIGHT) == pytest.approx(light)
+    assert bowing.pressure(FIRM) == pytest.approx(firm)
+    assert light < bowing.pressure(0.5 * (LIGHT + FIRM)) < firm
+
+
+def test_a_difficult_note_is_bowed_no_faster_than_it_bears(player, listener):
+    player.write("/playing/speed", 0.3)
+    player.note_on(Key(0, 69))
+    assert abs(listener["/bow/speed"]) == MANNERS[69].top_speed
+    player.note_on(Key(0, 74))
+    assert abs(listener["/bow/speed"]) == 0.3
+
+
+def test_the_bow_moves_farther_for_a_note_that_wants_it_and_back(player, listener):
+    player.write("/bow/position", 0.1)
+    player.note_on(Key(0, 66))
+    assert listener["/bow/position"] == pytest.approx(0.1 * MANNERS[66].farther)
+    player.note_on(Key(0, 67))
+    assert listener["/bow/position"] == 0.1
+
+
+def test_a_bow_position_that_is_held_stays(player, listener):
+    player.write("/bow/position", 0.1, hold=True)
+    player.note_on(Key(0, 66))
+    assert listener["/bow/position"] == 0.1
+
+
+def test_the_finger_presses_hard_enough_for_its_note(player, listener):
+    player.note_on(Key(0, 66))
+    assert listener["/finger/1/press"] == MANNERS[66].press
+    player.write("/playing/press", 5.0)
+    assert listener["/finger/1/press"] == 5.0

@@ -1,0 +1,120 @@
+"""In tune: the calibration, and what is shipped of it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import mido
+import numpy as np
+import pytest
+from pitch import cents, hertz, pitch_of
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing import calibration
+from yehu_server.playing.calibration import (
+    OPEN_NOTES,
+    SHIPPED,
+    SPEEDS,
+    Calibration,
+    calibration_for,
+    calibration_key,
+)
+from yehu_server.playing.intonation import Intonation
+from yehu_server.playing.mapping import load
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.performer import Performer
+
+RATES = (44100.0, 48000.0, 96000.0)
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_the_usual_rates_are_shipped_and_fresh(rate):
+    shipped = json.loads(SHIPPED.read_text())
+    assert calibration_key(rate, Quantities(), 440.0) in shipped, "run scripts/calibrate.py"
+
+
+def test_a_calibration_is_of_its_rate_its_instrument_and_its_pitch():
+    keys = {
+        calibration_key(rate, quantities, a4)
+        for rate in RATES
+        for quantities in (Quantities(), replace(Quantities(), bridge_x=0.29))
+        for a4 in (440.0, 442.0)
+    }
+    assert len(keys) == 12
+
+
+def test_what_was_measured_once_is_kept(monkeypatch, tmp_path):
+    measured = []
+    shipped = calibration_for(44100.0)
+
+    def measure(rate, _quantities, *, a4, **_):
+        measured.append(rate)
+        return replace(shipped, a4=a4)
+
+    monkeypatch.setattr(calibration, "calibrate", measure)
+    monkeypatch.setattr(calibration, "data_folder", lambda: tmp_path)
+    first = calibration_for(50000.0, a4=441.0)
+    assert calibration_for(50000.0, a4=441.0) == first
+    assert measured == [50000.0]
+    (kept,) = tmp_path.iterdir()
+    kept.write_text("{damaged")
+    assert calibration_for(50000.0, a4=441.0) == first
+    assert measured == [50000.0, 50000.0]
+
+
+def test_without_a_place_to_keep_it_it_is_measured_all_the_same(monkeypatch, tmp_path):
+    shipped = calibration_for(44100.0)
+    monkeypatch.setattr(calibration, "calibrate", lambda *_args, **_options: shipped)
+    monkeypatch.setattr(calibration, "data_folder", lambda: tmp_path / "none")
+    assert calibration_for(50000.0) == shipped
+
+
+def test_positions_go_up_with_the_pitch_and_are_even_between_the_notes():
+    intonation = Intonation(calibration_for(44100.0))
+    for string, open_note in enumerate(OPEN_NOTES):
+        for speed in (0.05, *SPEEDS, 0.5):
+            pitches = np.arange(open_note + 0.5, open_note + 10.0, 0.25)
+            places = [intonation.position(string, pitch, speed) for pitch in pitches]
+            assert (np.diff(places) > 0.0).all()
+
+
+def test_the_sharpening_is_read_at_its_notes_and_speeds():
+    table = tuple(tuple(10.0 * row + column for column in range(4)) for row in range(17))
+    intonation = Intonation(Calibration(440.0, (49.5, 64.1), (table, table)))
+    assert intonation._sharpening(0, 66.0, SPEEDS[0]) == 0.0
+    assert intonation._sharpening(1, 75.0, SPEEDS[2]) == pytest.approx(22.0)
+    assert intonation._sharpening(0, 67.5, SPEEDS[3]) == pytest.approx(18.0)
+    assert intonation._sharpening(0, 60.0, 0.01) == 0.0
+    assert intonation._sharpening(0, 99.0, 9.0) == pytest.approx(163.0)
+
+
+def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 440.0) -> float:
+    """The pitch (Hz) of a note, from 0.1 s after it began."""
+    tuned = calibration_for(rate, a4=a4)
+    instrument = Instrument(rate, tuned.tuned(Quantities()))
+    midi = MidiPlayer(Performer(instrument, Intonation(tuned)), load("keyboard"))
+    if wheel is not None:
+        midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
+    midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
+    out = np.zeros(round(0.7 * rate), np.float32)
+    instrument.process(out)
+    return pitch_of(out[round(0.1 * rate) :], rate)
+
+
+@pytest.mark.parametrize("rate", [44100.0, 48000.0])
+@pytest.mark.parametrize("note", [65, 67, 70, 72, 73, 75, 77, 78, 81, 82, 84, 86, 87, 89])
+def test_notes_are_in_tune(note, rate):
+    for velocity, wheel in ((80, None), (110, 0), (50, 64)):
+        assert abs(cents(heard(note, rate, velocity, wheel), hertz(note))) < 10.0
+
+
+def test_another_reference_pitch_is_calibrated_for(monkeypatch, tmp_path):
+    monkeypatch.setattr(calibration, "data_folder", lambda: tmp_path)
+    told = []
+    calibration_for(44100.0, a4=430.0, progress=lambda done, total: told.append((done, total)))
+    assert told[-1] == (34, 34)
+    for note in (72, 77, 84):
+        pitch = heard(note, 44100.0, 80, None, a4=430.0)
+        assert abs(cents(pitch, 430.0 / 440.0 * hertz(note))) < 10.0

@@ -1,0 +1,283 @@
+"""Where to stop a string for a pitch, and how tight it is: measured by bowing the model itself.
+
+Each open string is tuned by its tension; each stopped note is bowed at several speeds, and the
+finger moved until it is in tune. What comes of it is kept on disk, under a key made from
+everything it depends on; the usual sample rates come with the package.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.engine.instrument import Instrument
+from yehu_server.jit import data_folder
+from yehu_server.params.table import find
+from yehu_server.physics.quantities import Quantities, override
+from yehu_server.playing.bowing import FIRM, LIGHT, manner
+
+Progress = Callable[[float, float], None]
+
+OPEN_NOTES = (65, 72)  # F4 and C5
+SPEEDS = (0.12, 0.16, 0.2, 0.26)  # m/s
+HIGHEST_NOTES = (82, 89)  # on each string
+PRESS = 1.5  # N
+SETTLE_S, LISTEN_S, OPEN_SETTLE_S, OPEN_LISTEN_S = 0.3, 0.12, 0.6, 0.3
+ROUNDS = 6
+PLAUSIBLE_CENTS = 90.0  # further off, the note is not in its register
+IN_TUNE_CENTS, ENOUGH_CENTS = 15.0, 0.7  # within which a place is found, and good
+USUAL_CENTS = (50.0, 25.0)  # sharpening where nothing could be measured
+SHIPPED = Path(__file__).parent / "calibrations.json"
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """An instrument in tune.
+
+    `tensions` of the strings (N); `sharpening` how much sharper than c/2f promises a stopped
+    note sounds (cents): for each string rows of notes from a semitone above the open string, and
+    in each a value for each of SPEEDS.
+    """
+
+    a4: float
+    tensions: tuple[float, float]
+    sharpening: tuple[tuple[tuple[float, ...], ...], ...]
+
+    def tuned(self, quantities: Quantities) -> Quantities:
+        """The instrument with its strings at pitch."""
+        first, second = self.tensions
+        return replace(
+            quantities,
+            string_1=replace(quantities.string_1, T=first),
+            string_2=replace(quantities.string_2, T=second),
+        )
+
+
+def frequency_hz(pitch: float, a4: float) -> float:
+    """Frequency of a fractional MIDI note in equal temperament."""
+    return a4 * math.exp2((pitch - 69.0) / 12.0)
+
+
+def calibration_for(
+    rate: float,
+    quantities: Quantities | None = None,
+    *,
+    a4: float = 440.0,
+    progress: Progress | None = None,
+) -> Calibration:
+    """The calibration of an instrument: as shipped, as kept on disk, or measured now.
+
+    Takes some seconds where it is measured; `progress` is told notes done and notes in all.
+    """
+    quantities = quantities or Quantities()
+    key = calibration_key(rate, quantities, a4)
+    found = _shipped().get(key) or _kept(key)
+    if found is None:
+        found = _as_data(calibrate(rate, quantities, a4=a4, progress=progress))
+        _keep(key, found)
+    return _from_data(found)
+
+
+def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
+    """What a calibration depends on, in 16 hex digits."""
+    package = Path(__file__).parent.parent
+    sources = [*sorted((package / "physics").glob("*.py")), package / "engine" / "gesture.py"]
+    sources += [package / "playing" / "bowing.py", Path(__file__)]
+    digest = hashlib.sha256(repr((rate, a4, quantities)).encode())
+    for source in sources:
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+# ---------------------------------------------------------------- measuring
+
+
+def calibrate(
+    rate: float, quantities: Quantities, *, a4: float = 440.0, progress: Progress | None = None
+) -> Calibration:
+    """Bow the model until it is in tune."""
+    tuned = _tune_open_strings(rate, quantities, a4)
+    jobs = [
+        (string, note)
+        for string, open_note in enumerate(OPEN_NOTES)
+        for note in range(open_note + 1, HIGHEST_NOTES[string] + 1)
+    ]
+    rows: list[list[float]] = []
+    with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
+        measured = workers.map(lambda job: _stopped_note(rate, tuned, a4, *job), jobs)
+        for done, row in enumerate(measured, start=1):
+            rows.append(row)
+            if progress is not None:
+                progress(done, len(jobs))
+    tables = []
+    for string in range(len(OPEN_NOTES)):
+        own = [row for (on, _), row in zip(jobs, rows, strict=True) if on == string]
+        tables.append(_completed(np.array(own), USUAL_CENTS[string]))
+    return Calibration(a4, (tuned.string_1.T, tuned.string_2.T), tuple(tables))
+
+
+def ideal_position(quantities: Quantities, string: int, frequency: float) -> float:
+    """Finger position (m) that leaves c/2f of an ideal string to the bridge."""
+    silk = quantities.strings[string]
+    return quantities.bridge_x - math.sqrt(silk.T / silk.rho_A) / (2.0 * frequency)
+
+
+def _bow(
+    rate: float, quantities: Quantities, string: int, pitch: float, speed: float, x_f: float | None
+) -> float:
+    """Pitch (Hz) of a string bowed as the player would at medium pressure."""
+    instrument = Instrument(rate, quantities)
+    if x_f is not None:
+        instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
+        instrument.write("/finger/1/press", max(PRESS, manner(pitch).press))
+    bowing = manner(pitch)
+    pressure = bowing.pressure(0.5 * (LIGHT + FIRM))
+    beta = bowing.farther * find("/bow/position").default
+    instrument.write("/bow/position", beta, ramp_ms=0.0)
+    instrument.write("/bow/pressure", pressure, ramp_ms=0.0)
+    instrument.write("/bow/side", 1.0 if string == 0 else -1.0)
+    instrument.write("/bow/speed", min(speed, bowing.top_speed), ramp_ms=40.0)
+    settle_s = OPEN_SETTLE_S if x_f is None else SETTLE_S
+    listen_s = OPEN_LISTEN_S if x_f is None else LISTEN_S
+    out = np.zeros(round((settle_s + listen_s) * rate), np.float32)
+    instrument.process(out)
+    return pitch_hz(out[round(settle_s * rate) :], rate)
+
+
+def _tune_open_strings(rate: float, quantities: Quantities, a4: float) -> Quantities:
+    tensions = []
+    for string, note in enumerate(OPEN_NOTES):
+        target = frequency_hz(note, a4)
+        silk = quantities.strings[string]
+        tension = silk.T * (a4 / 440.0) ** 2
+        for _ in range(ROUNDS):
+            tried = override(quantities, {f"string_{string + 1}": {"T": tension}})
+            heard = [_bow(rate, tried, string, note, speed, None) for speed in SPEEDS[:3]]
+            errors = [cents(f, target) for f in heard if math.isfinite(f)]
+            error = float(np.median(errors)) if errors else 0.0
+            if abs(error) < PLAUSIBLE_CENTS:
+                tension *= math.exp2(-2.0 * error / 1200.0)
+        tensions.append(tension)
+    return Calibration(a4, (tensions[0], tensions[1]), ()).tuned(quantities)
+
+
+def _stopped_note(
+    rate: float, quantities: Quantities, a4: float, string: int, note: int
+) -> list[float]:
+    """Sharpening (cents) at each speed; NaN where the note does not hold its register."""
+    found = []
+    guess = USUAL_CENTS[string]
+    for speed in SPEEDS:
+        sharp = _search(rate, quantities, a4, string, note, speed, guess)
+        found.append(sharp)
+        guess = sharp if math.isfinite(sharp) else guess
+    return found
+
+
+def _search(
+    rate: float,
+    quantities: Quantities,
+    a4: float,
+    string: int,
+    note: int,
+    speed: float,
+    sharp: float,
+) -> float:
+    """Sharpening (cents) that brings a note nearest to its pitch.
+
+    Pitch does not follow the finger everywhere: it locks to the other string and to the body,
+    and may step over the note. So the search keeps a bracket, and the best it has heard.
+    """
+    target = frequency_hz(note, a4)
+    best, nearest = math.nan, IN_TUNE_CENTS
+    flat, high = math.inf, -math.inf  # the least sharpening heard flat, the most heard sharp
+    for _ in range(ROUNDS):
+        x_f = ideal_position(quantities, string, target * math.exp2(-sharp / 1200.0))
+        heard = _bow(rate, quantities, string, note, speed, x_f)
+        error = cents(heard, target) if math.isfinite(heard) else math.inf
+        if abs(error) > PLAUSIBLE_CENTS:
+            break
+        if abs(error) < nearest:
+            best, nearest = sharp, abs(error)
+        if abs(error) < ENOUGH_CENTS:
+            break
+        if error > 0.0:
+            high = max(high, sharp)
+        else:
+            flat = min(flat, sharp)
+        sharp += error
+        if not high < sharp < flat:
+            sharp = 0.5 * (high + flat) if high < flat else sharp
+    return best
+
+
+def _completed(table: Any, usual: float) -> tuple[tuple[float, ...], ...]:
+    """Fill what could not be measured from the note's other speeds, or from its neighbours."""
+    for column in range(table.shape[1]):
+        missing = np.isnan(table[:, column])
+        known = np.flatnonzero(~missing)
+        between = (
+            np.interp(np.arange(len(table)), known, table[known, column])
+            if len(known)
+            else np.full(len(table), usual)
+        )
+        for row in np.flatnonzero(missing):
+            others = table[row][~np.isnan(table[row])]
+            table[row, column] = others[-1] if len(others) else between[row]
+    return tuple(tuple(round(float(value), 2) for value in row) for row in table)
+
+
+# ---------------------------------------------------------------- keeping
+
+
+def _as_data(calibration: Calibration) -> dict[str, Any]:
+    return {
+        "a4": calibration.a4,
+        "tensions": list(calibration.tensions),
+        "sharpening": [[list(row) for row in table] for table in calibration.sharpening],
+    }
+
+
+def _from_data(data: dict[str, Any]) -> Calibration:
+    first, second = data["tensions"]
+    tables = tuple(tuple(tuple(row) for row in table) for table in data["sharpening"])
+    return Calibration(float(data["a4"]), (float(first), float(second)), tables)
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> dict[str, Any]:
+    return _read(SHIPPED) or {}
+
+
+def _kept(key: str) -> dict[str, Any] | None:
+    return _read(data_folder() / f"calibration-{key}.json")
+
+
+def _keep(key: str, data: dict[str, Any]) -> None:
+    """Write it for the next time; without a place to write, it is measured again then."""
+    target = data_folder() / f"calibration-{key}.json"
+    partial = target.with_suffix(f".{os.getpid()}.part")
+    try:
+        partial.write_text(json.dumps(data), encoding="utf-8")
+        partial.replace(target)
+    except OSError:
+        partial.unlink(missing_ok=True)
+
+
+def _read(path: Path) -> dict[str, Any] | None:
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return data if isinstance(data, dict) else None

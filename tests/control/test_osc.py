@@ -388,7 +388,11 @@ def test_pitch_slides_the_sounding_note_steplessly(stage):
         stage.tell("/pitch", float(pitch))
         assert stage.player.pitch == pytest.approx(pitch, abs=1e-5)
         stage.pass_time(0.01)
-    assert {address for _, address, _ in stage.events} == {"/finger/1/position", "/finger/1/press"}
+    assert {address for _, address, _ in stage.events} == {
+        "/finger/1/position",
+        "/finger/1/press",
+        "/output/balance",
+    }
     places = [place for _, address, place in stage.events if address == "/finger/1/position"]
     assert len(places) == 30
     assert all(np.diff(places) > 0.0)

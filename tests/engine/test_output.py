@@ -85,3 +85,23 @@ def test_a_loud_instrument_is_bent_and_not_clipped(soft):
     assert KNEE < np.abs(loud).max() <= 1.0
     expected = [limit(10 ** (36 / 20) * float(x)) for x in soft]
     np.testing.assert_allclose(loud, expected, atol=1e-5)
+
+
+def blended(blend: float) -> np.ndarray:
+    instrument = Instrument(RATE)
+    instrument.write("/body/blend", blend, ramp_ms=0.0)
+    instrument.write("/bow/side", 1.0)
+    instrument.write("/bow/speed", 0.2)
+    out = np.zeros(RATE, np.float32)
+    instrument.process(out)
+    return out[RATE // 2 :].astype(float)
+
+
+def test_the_blend_goes_from_the_body_to_the_bridge():
+    body, half, bridge = (blended(blend) for blend in (0.0, 0.5, 1.0))
+    assert half == pytest.approx(0.5 * (body + bridge), abs=1e-6)
+    assert 0.1 < body.std() / bridge.std() < 10.0  # about as loud
+    # F4's fundamental is weak in what the body radiates.
+    fundamental = np.exp(-2j * np.pi * 346.7 * np.arange(len(body)) / RATE) * np.hanning(len(body))
+    shares = [abs(x @ fundamental) / x.std() for x in (body, bridge)]
+    assert shares[1] > 2.0 * shares[0]

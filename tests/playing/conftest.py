@@ -24,6 +24,8 @@ ENGINE = {
     "/finger/1/press",
     "/output/gain",
     "/output/level",
+    "/output/balance",
+    "/body/blend",
 }
 
 
@@ -77,6 +79,12 @@ class Ruler:
     def position(self, string: int, pitch: float, speed: float = 0.2) -> float:
         assert 0.0 < speed < 2.0
         return 0.01 * (pitch - self.OPEN[string])
+
+    def balance_db(self, string: int, pitch: float, speed: float, wish: float) -> float:
+        """C5 and above are 6 dB too loud."""
+        assert string in (0, 1)
+        assert 0.0 < speed <= wish * 1.5
+        return -6.0 if pitch >= 72.0 else 0.0
 
     def reaches(self, string: int, pitch: float) -> bool:
         return self.position(string, pitch) <= 0.19

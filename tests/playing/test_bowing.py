@@ -50,3 +50,14 @@ def test_the_finger_presses_hard_enough_for_its_note(player, listener):
     assert listener["/finger/1/press"] == MANNERS[66].press
     player.write("/playing/press", 5.0)
     assert listener["/finger/1/press"] == 5.0
+
+
+def test_a_loud_note_is_turned_down_as_far_as_evenness_is_asked(player, listener):
+    player.note_on(Key(0, 74))
+    assert listener["/output/balance"] == pytest.approx(-6.0 * 0.9)
+    player.write("/body/evenness", 0.5)
+    assert listener["/output/balance"] == pytest.approx(-3.0)
+    player.note_on(Key(0, 67))
+    assert listener["/output/balance"] == 0.0
+    player.write("/playing/bend", 6.0)
+    assert listener["/output/balance"] == pytest.approx(-3.0)

@@ -110,6 +110,39 @@ def test_notes_are_in_tune(note, rate):
         assert abs(cents(heard(note, rate, velocity, wheel), hertz(note))) < 10.0
 
 
+@pytest.mark.parametrize(("velocity", "wheel"), [(80, None), (80, 0), (110, 64), (127, 127)])
+def test_notes_are_evenly_loud(velocity, wheel):
+    levels = [loudness(note, velocity, wheel) for note in range(65, 90)]
+    assert max(levels) - min(levels) < 6.0
+    assert np.abs(np.diff(levels)).max() < 4.0
+
+
+def test_without_evenness_the_body_has_its_way():
+    levels = [loudness(note, 80, None, evenness=0.0) for note in (65, 73, 78)]
+    assert levels[1] - levels[0] > 12.0
+    assert levels[1] - levels[2] > 6.0
+
+
+def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None = None) -> float:
+    """A-weighted level (dB) of a note once it has settled."""
+    tuned = calibration_for(44100.0)
+    instrument = Instrument(44100.0, tuned.tuned(Quantities()))
+    performer = Performer(instrument, Intonation(tuned))
+    if evenness is not None:
+        performer.write("/body/evenness", evenness)
+    midi = MidiPlayer(performer, load("keyboard"))
+    if wheel is not None:
+        midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
+    midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
+    out = np.zeros(30870, np.float32)
+    instrument.process(out)
+    power = np.abs(np.fft.rfft(out[13230:] * np.hanning(17640))) ** 2
+    f2 = np.fft.rfftfreq(17640, 1.0 / 44100.0)[1:] ** 2
+    curve = 12194.0**4 * f2**4 / ((f2 + 424.4) * (f2 + 12194.0**2)) ** 2
+    curve /= (f2 + 107.7**2) * (f2 + 737.9**2)
+    return float(10.0 * np.log10((power[1:] * curve).sum()))
+
+
 def test_another_reference_pitch_is_calibrated_for(monkeypatch, tmp_path):
     monkeypatch.setattr(calibration, "data_folder", lambda: tmp_path)
     told = []

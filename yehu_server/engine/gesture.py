@@ -25,6 +25,7 @@ POSITION = SLOT["/bow/position"]
 FINGER, PRESS = SLOT["/finger/1/position"], SLOT["/finger/1/press"]
 FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
 GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
+BALANCE, BLEND = SLOT["/output/balance"], SLOT["/body/blend"]
 SLOTS = len(ENGINE)
 SILENCE = SLOTS  # an event at this index fades the sound out and puts the model to rest
 
@@ -116,7 +117,8 @@ def move(g: Any) -> None:
 @compiled
 def level(g: Any) -> float:
     """Amplitude at full scale of one pascal at this frame."""
-    return float(g.value[LEVEL] * 10.0 ** (g.value[GAIN] / 20.0) / FULL_SCALE_PRESSURE)
+    gain_db = g.value[GAIN] + g.value[BALANCE]
+    return float(g.value[LEVEL] * 10.0 ** (gain_db / 20.0) / FULL_SCALE_PRESSURE)
 
 
 @compiled

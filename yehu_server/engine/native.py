@@ -19,7 +19,7 @@ from yehu_server.engine.atomics import (
     load_acquire,
     store_release,
 )
-from yehu_server.engine.gesture import GESTURE, level, move, take, write_controls
+from yehu_server.engine.gesture import BLEND, GESTURE, level, move, take, write_controls
 from yehu_server.engine.mailbox import (
     APPLIED_AT_ONCE,
     EVENT,
@@ -165,11 +165,12 @@ def play(rig: Any, out: Array) -> None:
                 gain *= g.silence_in / o.fade
                 silenced = g.silence_in == 0
             o.gain[frames] = gain
+            o.blend[frames] = g.value[BLEND]
             g.frame += 1
             frames += 1
         kernel.advance(model, state, o.controls[:frames], o.probes[:frames], o.probes[:0])
         for n in range(frames):
-            sample: Any = np.float32(play_out(o, o.probes[n], o.gain[n]))
+            sample: Any = np.float32(play_out(o, o.probes[n], o.gain[n], o.blend[n]))
             tape[(first + n) & (TAPE - 1)] = sample
             hear(t, sample)
             for channel in range(out.shape[1]):

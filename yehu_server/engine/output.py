@@ -8,13 +8,21 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
-from yehu_server.physics.layout import ITERATIONS, PRESSURE, control_columns, probe_columns
+from yehu_server.physics.layout import (
+    BRIDGE_FORCE,
+    ITERATIONS,
+    PRESSURE,
+    control_columns,
+    probe_columns,
+)
 
 Array = Any
 
 CHUNK = 64  # frames run through the kernel at a time
 FADE_S = 0.005
 BLOCKED_HZ = 10.0  # what is slower than this is no sound
+# Pa that count for a newton at the bridge, so that a blend is about as loud at both ends.
+BRIDGE_PRESSURE = 0.1
 SOFT_ABOVE = 10.0 ** (-3.0 / 20.0)  # the limiter is transparent below -3 dBFS
 
 OUTPUT = np.dtype(
@@ -30,6 +38,7 @@ OUTPUT = np.dtype(
         ("controls", np.float64, (CHUNK, control_columns(1))),
         ("probes", np.float64, (CHUNK, probe_columns(1))),
         ("gain", np.float64, CHUNK),
+        ("blend", np.float64, CHUNK),
     ],
     align=True,
 )
@@ -62,15 +71,16 @@ def limit(x: float) -> float:
 
 
 @compiled
-def play_out(o: Any, probe: Array, gain: float) -> float:
+def play_out(o: Any, probe: Array, gain: float, blend: float) -> float:
     """One sample of output from one row of probes; a lost state is faded, not cut."""
     if probe[ITERATIONS] < 0:
         o.ghost = o.last
         o.pressure, o.swing = 0.0, 0.0
     o.ghost *= o.decay
     # A finger's press pulls at the bridge for as long as it lasts: not a sound.
-    o.swing = probe[PRESSURE] - o.pressure + o.blocker * o.swing
-    o.pressure = probe[PRESSURE]
+    source = (1.0 - blend) * probe[PRESSURE] + blend * BRIDGE_PRESSURE * probe[BRIDGE_FORCE]
+    o.swing = source - o.pressure + o.blocker * o.swing
+    o.pressure = source
     o.last = limit(o.swing * gain + o.ghost)
     return float(o.last)
 

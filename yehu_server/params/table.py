@@ -57,6 +57,20 @@ TABLE: tuple[Param, ...] = (
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
+        "/output/balance", "", "dB", -36.0, 36.0, 0.0,
+        "Gain that makes this note as loud as the others.",
+        place=Place.ENGINE, smooth_ms=20.0, owned=True,
+    ),
+    Param(
+        "/body/blend", "", "1", 0.0, 1.0, 0.0,
+        "From the radiated sound (0) to the bare force of the strings on the bridge (1).",
+        place=Place.ENGINE, smooth_ms=20.0,
+    ),
+    Param(
+        "/body/evenness", "", "1", 0.0, 1.0, 0.9,
+        "From the body's own loudness of each note (0) to notes that are equally loud (1).",
+    ),
+    Param(
         "/playing/speed", "", "m/s", 0.03, 0.6, 0.2,
         "Bow speed of a sounding note, as far as the note bears it.", curve=Curve.EXP,
     ),

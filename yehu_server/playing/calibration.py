@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.analysis.level import SILENCE_DB, a_weighted_db
 from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.jit import data_folder
@@ -27,6 +28,7 @@ from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities, override
 from yehu_server.playing.bowing import FIRM, LIGHT, manner
 
+Tables = tuple[tuple[tuple[float, ...], ...], ...]  # of strings, notes, speeds
 Progress = Callable[[float, float], None]
 
 OPEN_NOTES = (65, 72)  # F4 and C5
@@ -47,12 +49,14 @@ class Calibration:
 
     `tensions` of the strings (N); `sharpening` how much sharper than c/2f promises a stopped
     note sounds (cents): for each string rows of notes from a semitone above the open string, and
-    in each a value for each of SPEEDS.
+    in each a value for each of SPEEDS. `levels` how loud each note is (dB, A-weighted), in
+    rows from the open string.
     """
 
     a4: float
     tensions: tuple[float, float]
-    sharpening: tuple[tuple[tuple[float, ...], ...], ...]
+    sharpening: Tables
+    levels: Tables = ()
 
     def tuned(self, quantities: Quantities) -> Quantities:
         """The instrument with its strings at pitch."""
@@ -92,8 +96,9 @@ def calibration_for(
 def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     """What a calibration depends on, in 16 hex digits."""
     package = Path(__file__).parent.parent
-    sources = [*sorted((package / "physics").glob("*.py")), package / "engine" / "gesture.py"]
-    sources += [package / "playing" / "bowing.py", Path(__file__)]
+    sources = [*sorted((package / "physics").glob("*.py")), package / "playing" / "bowing.py"]
+    sources += [package / "engine" / f"{name}.py" for name in ("gesture", "output")]
+    sources += [Path(__file__)]
     digest = hashlib.sha256(repr((rate, a4, quantities)).encode())
     for source in sources:
         digest.update(source.read_bytes())
@@ -113,18 +118,21 @@ def calibrate(
         for string, open_note in enumerate(OPEN_NOTES)
         for note in range(open_note + 1, HIGHEST_NOTES[string] + 1)
     ]
-    rows: list[list[float]] = []
+    rows: list[Any] = []
     with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
         measured = workers.map(lambda job: _stopped_note(rate, tuned, a4, *job), jobs)
         for done, row in enumerate(measured, start=1):
             rows.append(row)
             if progress is not None:
                 progress(done, len(jobs))
-    tables = []
-    for string in range(len(OPEN_NOTES)):
-        own = [row for (on, _), row in zip(jobs, rows, strict=True) if on == string]
-        tables.append(_completed(np.array(own), USUAL_CENTS[string]))
-    return Calibration(a4, (tuned.string_1.T, tuned.string_2.T), tuple(tables))
+    sharpening, levels = [], []
+    for string, note in enumerate(OPEN_NOTES):
+        own = np.array([row for (on, _), row in zip(jobs, rows, strict=True) if on == string])
+        open_levels = [_bow(rate, tuned, string, note, speed, None)[1] for speed in SPEEDS]
+        sharpening.append(_completed(own[:, :, 0], USUAL_CENTS[string]))
+        levels.append(_completed(np.vstack([open_levels, own[:, :, 1]]), SILENCE_DB))
+    tensions = tuned.string_1.T, tuned.string_2.T
+    return Calibration(a4, tensions, tuple(sharpening), tuple(levels))
 
 
 def ideal_position(quantities: Quantities, string: int, frequency: float) -> float:
@@ -135,8 +143,8 @@ def ideal_position(quantities: Quantities, string: int, frequency: float) -> flo
 
 def _bow(
     rate: float, quantities: Quantities, string: int, pitch: float, speed: float, x_f: float | None
-) -> float:
-    """Pitch (Hz) of a string bowed as the player would at medium pressure."""
+) -> tuple[float, float]:
+    """Pitch (Hz) and level (dB) of a string bowed as the player would at medium pressure."""
     instrument = Instrument(rate, quantities)
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
@@ -152,7 +160,8 @@ def _bow(
     listen_s = OPEN_LISTEN_S if x_f is None else LISTEN_S
     out = np.zeros(round((settle_s + listen_s) * rate), np.float32)
     instrument.process(out)
-    return pitch_hz(out[round(settle_s * rate) :], rate)
+    steady = out[round(settle_s * rate) :]
+    return pitch_hz(steady, rate), a_weighted_db(steady, rate)
 
 
 def _tune_open_strings(rate: float, quantities: Quantities, a4: float) -> Quantities:
@@ -163,7 +172,7 @@ def _tune_open_strings(rate: float, quantities: Quantities, a4: float) -> Quanti
         tension = silk.T * (a4 / 440.0) ** 2
         for _ in range(ROUNDS):
             tried = override(quantities, {f"string_{string + 1}": {"T": tension}})
-            heard = [_bow(rate, tried, string, note, speed, None) for speed in SPEEDS[:3]]
+            heard = [_bow(rate, tried, string, note, speed, None)[0] for speed in SPEEDS[:3]]
             errors = [cents(f, target) for f in heard if math.isfinite(f)]
             error = float(np.median(errors)) if errors else 0.0
             if abs(error) < PLAUSIBLE_CENTS:
@@ -174,13 +183,13 @@ def _tune_open_strings(rate: float, quantities: Quantities, a4: float) -> Quanti
 
 def _stopped_note(
     rate: float, quantities: Quantities, a4: float, string: int, note: int
-) -> list[float]:
-    """Sharpening (cents) at each speed; NaN where the note does not hold its register."""
+) -> list[tuple[float, float]]:
+    """Sharpening (cents) and level (dB) at each speed; NaN where it leaves its register."""
     found = []
     guess = USUAL_CENTS[string]
     for speed in SPEEDS:
-        sharp = _search(rate, quantities, a4, string, note, speed, guess)
-        found.append(sharp)
+        sharp, level = _search(rate, quantities, a4, string, note, speed, guess)
+        found.append((sharp, level))
         guess = sharp if math.isfinite(sharp) else guess
     return found
 
@@ -193,23 +202,23 @@ def _search(
     note: int,
     speed: float,
     sharp: float,
-) -> float:
-    """Sharpening (cents) that brings a note nearest to its pitch.
+) -> tuple[float, float]:
+    """Sharpening (cents) that brings a note nearest to its pitch, and its level (dB) there.
 
     Pitch does not follow the finger everywhere: it locks to the other string and to the body,
     and may step over the note. So the search keeps a bracket, and the best it has heard.
     """
     target = frequency_hz(note, a4)
-    best, nearest = math.nan, IN_TUNE_CENTS
+    best, nearest = (math.nan, math.nan), IN_TUNE_CENTS
     flat, high = math.inf, -math.inf  # the least sharpening heard flat, the most heard sharp
     for _ in range(ROUNDS):
         x_f = ideal_position(quantities, string, target * math.exp2(-sharp / 1200.0))
-        heard = _bow(rate, quantities, string, note, speed, x_f)
+        heard, level = _bow(rate, quantities, string, note, speed, x_f)
         error = cents(heard, target) if math.isfinite(heard) else math.inf
         if abs(error) > PLAUSIBLE_CENTS:
             break
         if abs(error) < nearest:
-            best, nearest = sharp, abs(error)
+            best, nearest = (sharp, level), abs(error)
         if abs(error) < ENOUGH_CENTS:
             break
         if error > 0.0:
@@ -245,14 +254,18 @@ def _as_data(calibration: Calibration) -> dict[str, Any]:
     return {
         "a4": calibration.a4,
         "tensions": list(calibration.tensions),
-        "sharpening": [[list(row) for row in table] for table in calibration.sharpening],
+        "sharpening": calibration.sharpening,
+        "levels": calibration.levels,
     }
 
 
 def _from_data(data: dict[str, Any]) -> Calibration:
     first, second = data["tensions"]
-    tables = tuple(tuple(tuple(row) for row in table) for table in data["sharpening"])
-    return Calibration(float(data["a4"]), (float(first), float(second)), tables)
+    sharpening, levels = (
+        tuple(tuple(tuple(row) for row in table) for table in data[name])
+        for name in ("sharpening", "levels")
+    )
+    return Calibration(float(data["a4"]), (float(first), float(second)), sharpening, levels)
 
 
 @lru_cache(maxsize=1)

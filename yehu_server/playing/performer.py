@@ -17,6 +17,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bowing import manner
+from yehu_server.playing.calibration import OPEN_NOTES
 from yehu_server.playing.fingering import Fingering, RangePolicy, choose, stay
 from yehu_server.playing.intonation import Intonation
 
@@ -96,6 +97,18 @@ class Performer:
         self._by_hand = False  # the bow is drawn by `draw`
         # The bow's relative position as asked, and as the note has it.
         self._beta = self._beta_now = find("/bow/position").default
+        # What a parameter of the player moves while a note sounds.
+        self._followers: dict[str, tuple[Callable[[int | None], None], ...]] = {
+            "/playing/bend": (self._follow_bend,),
+            "/playing/press": (self._press,),
+            # A faster bow pulls the pitch.
+            "/playing/speed": (lambda frame: self._draw(frame, None), self._follow_bend),
+            "/playing/pressure": (self._lean,),
+            "/playing/assist": (self._set_assist,),
+            "/playing/volume": (self._set_level,),
+            "/playing/expression": (self._set_level,),
+            "/body/evenness": (self._even_out,),
+        }
         self.expression: Callable[[Key], Mapping[str, float]] = lambda _key: {}
         self.notes_played = 0
         self.notes_out_of_range = 0
@@ -143,19 +156,8 @@ class Performer:
         if self._value[address] == accepted:
             return accepted
         self._value[address] = accepted
-        if address == "/playing/bend":
-            self._follow_bend(frame)
-        elif address == "/playing/press":
-            self._press(frame)
-        elif address == "/playing/speed":
-            self._draw(frame, None)
-            self._follow_bend(frame)  # a faster bow pulls the pitch
-        elif address == "/playing/pressure":
-            self._lean(frame)
-        elif address == "/playing/assist":
-            self._move("/bow/assist", accepted, frame)
-        elif address in ("/playing/volume", "/playing/expression"):
-            self._set_level(frame)
+        for follow in self._followers.get(address, ()):
+            follow(frame)
         return accepted
 
     def release(self) -> None:
@@ -284,8 +286,9 @@ class Performer:
         slurred = legato and not at_once
         crossing = slurred and was is not None and was.side != self._side
         attack = self._value["/playing/attack"]
-        self._move("/bow/assist", self._value["/playing/assist"], frame)
+        self._set_assist(frame)
         self._set_level(frame)
+        self._even_out(frame)
         self._lean(frame)
         self._move("/bow/side", self._side, frame, CROSSING_MS if crossing else attack / 4.0)
         self._draw(frame, self._value["/playing/glide"] if slurred else attack)
@@ -310,6 +313,9 @@ class Performer:
     def _varied(self, which: int, spread: float) -> float:
         return self._value["/playing/variation"] * spread * self._deviation[which]
 
+    def _set_assist(self, frame: int | None) -> None:
+        self._move("/bow/assist", self._value["/playing/assist"], frame)
+
     def _set_level(self, frame: int | None) -> None:
         level = (self._value["/playing/volume"] * self._value["/playing/expression"]) ** 2
         self._move("/output/level", level, frame)
@@ -330,6 +336,16 @@ class Performer:
         if position != self._beta_now:
             self._beta_now = position
             self._move("/bow/position", position, frame)
+
+    def _even_out(self, frame: int | None) -> None:
+        """Let the note be as loud as the others, as far as asked."""
+        if self._sounding is None or self._fingering is None:
+            return
+        pitch, string = self._pitch, self._fingering.string
+        heard = float(OPEN_NOTES[string]) if self._fingering.position is None else pitch
+        speed, wish = self._speed_at(pitch), self._value["/playing/speed"]
+        balance = self._intonation.balance_db(string, heard, speed, wish)
+        self._move("/output/balance", self._value["/body/evenness"] * balance, frame)
 
     def _draw(self, frame: int | None, ramp_ms: float | None) -> None:
         if self._sounding is not None:
@@ -358,6 +374,7 @@ class Performer:
         fingering = stay(pitch, string, self._intonation, self._speed_at(pitch))
         crossing = fingering.string != self._fingering.string
         self._place(fingering, frame, BEND_RAMP_MS)
+        self._even_out(frame)
         if crossing:
             self._move("/bow/side", self._side, frame, CROSSING_MS)
 

@@ -50,6 +50,8 @@ SILENCED = ("/bow/speed", "/bow/side", "/finger/1/press")
 BEND_RAMP_MS = find("/playing/bend").smooth_ms
 LANDING_MS = 5.0
 CROSSING_MS = 20.0  # from one string to the other
+# A loud note before a soft one has to die away before it may be turned up.
+RISING_MS, FALLING_MS = 90.0, 15.0
 # Standard deviations at full variation. By ear.
 VARIED_SHARE = 0.1  # of bow speed and force
 VARIED_CENTS = 6.0
@@ -97,6 +99,7 @@ class Performer:
         self._by_hand = False  # the bow is drawn by `draw`
         # The bow's relative position as asked, and as the note has it.
         self._beta = self._beta_now = find("/bow/position").default
+        self._balance = 0.0  # dB
         # What a parameter of the player moves while a note sounds.
         self._followers: dict[str, tuple[Callable[[int | None], None], ...]] = {
             "/playing/bend": (self._follow_bend,),
@@ -345,7 +348,10 @@ class Performer:
         heard = float(OPEN_NOTES[string]) if self._fingering.position is None else pitch
         speed, wish = self._speed_at(pitch), self._value["/playing/speed"]
         balance = self._intonation.balance_db(string, heard, speed, wish)
-        self._move("/output/balance", self._value["/body/evenness"] * balance, frame)
+        balance *= self._value["/body/evenness"]
+        ramp_ms = RISING_MS if balance > self._balance else FALLING_MS
+        self._balance = balance
+        self._move("/output/balance", balance, frame, ramp_ms)
 
     def _draw(self, frame: int | None, ramp_ms: float | None) -> None:
         if self._sounding is not None:

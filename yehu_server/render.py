@@ -17,7 +17,7 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Calibration, calibration_for
-from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.fingering import OpenStrings, RangePolicy
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.messages import MidiPlayer
@@ -48,6 +48,7 @@ class Options:
     settings: tuple[tuple[str, float], ...] = ()
     seed: int = 0
     policy: RangePolicy = RangePolicy.TRANSPOSE
+    open_strings: OpenStrings = OpenStrings.ALWAYS
     quantities: Quantities = field(default_factory=Quantities)
     a4: float = 440.0  # Hz
     calibration: Calibration | None = None  # None: found, or measured
@@ -86,6 +87,7 @@ class Performance:
             Intonation(calibration, options.quantities),
             policy=options.policy,
             seed=options.seed,
+            open_strings=options.open_strings,
         )
         self.midi = MidiPlayer(self.performer, options.mapping, _set(options.channels))
         self.instrument.write("/output/gain", options.gain_db, ramp_ms=0.0)

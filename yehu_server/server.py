@@ -33,7 +33,7 @@ from yehu_server.errors import OutputError
 from yehu_server.files import check_target
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
-from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.fingering import OpenStrings, RangePolicy
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.score.capture import CaptureWriter
@@ -63,6 +63,7 @@ class ServeOptions:
     a4: float = 440.0  # Hz
     seed: int = 0
     policy: RangePolicy = RangePolicy.TRANSPOSE
+    open_strings: OpenStrings = OpenStrings.ALWAYS
     jitter_ms: float | None = None  # None: one block and HANDLING_MS
     record: Path | None = None
     capture: Path | None = None
@@ -107,6 +108,7 @@ class Server:
                 calibration=calibration,
                 policy=options.policy,
                 seed=options.seed,
+                open_strings=options.open_strings,
                 delay_ms=block_ms if options.jitter_ms is None else options.jitter_ms,
             )
             self.handler = OscHandler(self.player, self)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import mido
 import pytest
 
+from yehu_server.playing.fingering import OpenStrings
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Key
+from yehu_server.playing.performer import Key, Performer
 
 
 def test_the_finger_waits_at_a_pitch_for_the_bow(player, listener):
@@ -136,3 +137,25 @@ def test_a_direct_write_reaches_notes_of_other_ports(ports, player):
     ports.write("/playing/speed", 0.1)
     on(ports, 67, port=1)
     assert player.value("/playing/speed") == 0.1
+
+
+# ---------------------------------------------------------------- the open C string
+
+
+@pytest.mark.parametrize(
+    ("when", "pitch", "where"),
+    [
+        ("always", 72.0, ("C", None)),
+        ("always", 72.3, ("C", None)),
+        ("on-pitch", 72.0, ("C", None)),
+        ("on-pitch", 72.3, ("F", 7.3)),
+        ("never", 72.0, ("F", 7.0)),
+        ("never", 73.0, ("C", 1.0)),
+        ("never", 65.0, ("F", None)),  # there is no other way
+    ],
+)
+def test_the_open_string_sounds_when_it_is_wanted(listener, ruler, when, pitch, where):
+    player = Performer(listener, ruler, open_strings=OpenStrings(when))
+    player.write("/playing/variation", 0.0)
+    player.note_on(Key(0, pitch))
+    assert listener.where() == where

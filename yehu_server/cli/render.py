@@ -113,6 +113,12 @@ def add_to(commands: Any) -> None:
         help="what becomes of notes outside F4 to F6 (default: transpose, by octaves)",
     )
     parser.add_argument(
+        "--open-strings",
+        choices=("always", "on-pitch", "never"),
+        default="always",
+        help="when C5 is played on the open string; else on the inner one (default: always)",
+    )
+    parser.add_argument(
         "--seed",
         type=whole,
         default=0,
@@ -131,7 +137,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.physics.grid import check_rate
     from yehu_server.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibration import calibration_for
-    from yehu_server.playing.fingering import RangePolicy
+    from yehu_server.playing.fingering import OpenStrings, RangePolicy
     from yehu_server.playing.mapping import load
     from yehu_server.render import Options, render
     from yehu_server.score.smf import concatenate, read_score
@@ -152,6 +158,7 @@ def run(arguments: argparse.Namespace) -> int:
         a4=arguments.a4,
         seed=arguments.seed,
         policy=RangePolicy(arguments.range),
+        open_strings=OpenStrings(arguments.open_strings),
         quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
     )
     score = concatenate([read_score(path) for path in arguments.midi])

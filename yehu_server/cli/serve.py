@@ -137,6 +137,12 @@ def _add_playing(group: Any) -> None:
         help="what becomes of notes outside F4 to F6 (default: transpose, by octaves)",
     )
     group.add_argument(
+        "--open-strings",
+        choices=("always", "on-pitch", "never"),
+        default="always",
+        help="when C5 is played on the open string; else on the inner one (default: always)",
+    )
+    group.add_argument(
         "--seed",
         type=whole,
         default=0,
@@ -230,7 +236,7 @@ def _options(arguments: argparse.Namespace) -> Any:
     from yehu_server.control.ports import MidiOptions
     from yehu_server.params.table import assignment
     from yehu_server.physics.grid import check_rate
-    from yehu_server.playing.fingering import RangePolicy
+    from yehu_server.playing.fingering import OpenStrings, RangePolicy
     from yehu_server.playing.mapping import load
     from yehu_server.server import ServeOptions
 
@@ -254,6 +260,7 @@ def _options(arguments: argparse.Namespace) -> Any:
         a4=arguments.a4,
         seed=arguments.seed,
         policy=RangePolicy(arguments.range),
+        open_strings=OpenStrings(arguments.open_strings),
         jitter_ms=arguments.jitter_buffer,
         record=arguments.record,
         capture=arguments.capture,

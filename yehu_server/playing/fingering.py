@@ -12,6 +12,7 @@ LOWEST_NOTE, HIGHEST_NOTE = 65, 89  # F4 to F6
 # Semitones about an open string that need no finger: nearer to the loop than 8 mm, which is
 # this much, no finger fits.
 OPEN_WITHIN = 0.45
+ON_PITCH_WITHIN = 0.05
 
 
 class RangePolicy(Enum):
@@ -34,6 +35,19 @@ class RangePolicy(Enum):
         return note - 12 * -(-(note - HIGHEST_NOTE) // 12)
 
 
+class OpenStrings(Enum):
+    """When the open C string sounds; below the first finger on the F string there is no choice."""
+
+    ALWAYS = "always"  # wherever no finger fits on the C string
+    ON_PITCH = "on-pitch"
+    NEVER = "never"
+
+    def takes(self, pitch: float) -> bool:
+        """Whether a pitch is played on the open C string."""
+        within = {OpenStrings.ALWAYS: OPEN_WITHIN, OpenStrings.ON_PITCH: ON_PITCH_WITHIN}
+        return abs(pitch - OPEN_NOTES[1]) < within.get(self, 0.0)
+
+
 @dataclass(frozen=True)
 class Fingering:
     """A string (0: F4, 1: C5) and the finger's place on it (m); None for an open string."""
@@ -54,18 +68,23 @@ class Stopped(Fingering):
     position: float
 
 
-def choose(pitch: float, hand: Fingering | None, intonation: Intonation, speed: float) -> Fingering:
+def choose(
+    pitch: float,
+    hand: Fingering | None,
+    intonation: Intonation,
+    speed: float,
+    open_strings: OpenStrings = OpenStrings.ALWAYS,
+) -> Fingering:
     """Finger a pitch (fractional MIDI note) for a bow of some speed (m/s).
 
     Below C5 there is only the F string; from C5 up the C string, unless the finger is down
     on the F string (`hand`) and has a shorter way to the pitch there.
     """
-    for string, note in enumerate(OPEN_NOTES):
-        if abs(pitch - note) < OPEN_WITHIN:
-            return Fingering(string, None)
-    if pitch < OPEN_NOTES[0]:
+    if pitch < OPEN_NOTES[0] + OPEN_WITHIN:
         return Fingering(0, None)  # the lowest there is
-    if pitch < OPEN_NOTES[1]:
+    if open_strings.takes(pitch):
+        return Fingering(1, None)
+    if pitch < OPEN_NOTES[1] + OPEN_WITHIN:
         return _stop(0, pitch, intonation, speed)
     near, far = (_stop(string, pitch, intonation, speed) for string in (1, 0))
     if hand is None or hand.string != 0 or hand.position is None:

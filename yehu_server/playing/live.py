@@ -16,7 +16,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import ENGINE, TABLE, find
 from yehu_server.playing.calibration import Calibration
-from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.fingering import OpenStrings, RangePolicy
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.messages import MidiPlayer
@@ -68,6 +68,7 @@ class LivePlayer:
         calibration: Calibration | None = None,
         policy: RangePolicy = RangePolicy.TRANSPOSE,
         seed: int = 0,
+        open_strings: OpenStrings = OpenStrings.ALWAYS,
         delay_ms: float,
     ) -> None:
         self.instrument = instrument
@@ -75,7 +76,9 @@ class LivePlayer:
         self._turn = threading.RLock()
         self._targets = Targets(instrument)
         intonation = Intonation(calibration, instrument.quantities)
-        self._performer = Performer(self._targets, intonation, policy=policy, seed=seed)
+        self._performer = Performer(
+            self._targets, intonation, policy=policy, seed=seed, open_strings=open_strings
+        )
         self._midi = MidiPlayer(self._performer, mapping)
         self._decided = 0  # the latest frame of a decision
         self._written = 0  # and of anything

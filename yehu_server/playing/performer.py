@@ -18,7 +18,7 @@ from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bowing import manner
 from yehu_server.playing.calibration import OPEN_NOTES
-from yehu_server.playing.fingering import Fingering, RangePolicy, choose, stay
+from yehu_server.playing.fingering import Fingering, OpenStrings, RangePolicy, choose, stay
 from yehu_server.playing.intonation import Intonation
 
 
@@ -66,6 +66,8 @@ class Performer:
         The instrument.
     policy : RangePolicy
         What happens to notes out of range.
+    open_strings : OpenStrings
+        When C5 is played open.
     seed : int
         Of the variation between notes; the same seed plays the same.
 
@@ -82,8 +84,10 @@ class Performer:
         intonation: Intonation | None = None,
         policy: RangePolicy = RangePolicy.TRANSPOSE,
         seed: int = 0,
+        open_strings: OpenStrings = OpenStrings.ALWAYS,
     ) -> None:
         self._sink = sink
+        self._open_strings = open_strings
         self._intonation = intonation or Intonation()
         self._policy = policy
         self._chance = random.Random(seed)  # noqa: S311 - for music, not secrets
@@ -245,7 +249,7 @@ class Performer:
             self._held[self._sounding] = pitch
             self._follow_bend(frame)
             return pitch
-        fingering = choose(pitch, self._fingering, self._intonation, self._speed_at(pitch))
+        fingering = self._choose(pitch, self._fingering)
         self._place(fingering, frame, BEND_RAMP_MS)
         if self._by_hand:
             self._sink.write("/bow/side", self._side, frame=frame, ramp_ms=CROSSING_MS)
@@ -284,7 +288,7 @@ class Performer:
         )
         if not legato:
             self._direction = -self._direction
-        fingering = choose(self._pitch, was, self._intonation, self._speed_at(self._pitch))
+        fingering = self._choose(self._pitch, was)
         self._place(fingering, frame, 0.0 if at_once else self._value["/playing/glide"])
         slurred = legato and not at_once
         crossing = slurred and was is not None and was.side != self._side
@@ -295,6 +299,10 @@ class Performer:
         self._lean(frame)
         self._move("/bow/side", self._side, frame, CROSSING_MS if crossing else attack / 4.0)
         self._draw(frame, self._value["/playing/glide"] if slurred else attack)
+
+    def _choose(self, pitch: float, hand: Fingering | None) -> Fingering:
+        speed = self._speed_at(pitch)
+        return choose(pitch, hand, self._intonation, speed, self._open_strings)
 
     def _stop(self, frame: int | None) -> None:
         self._sounding = None

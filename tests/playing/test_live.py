@@ -12,7 +12,7 @@ import pytest
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT, TABLE
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live import Arrivals, LivePlayer
 from yehu_server.playing.mapping import load
 
 RATE = 48000.0
@@ -59,6 +59,15 @@ def test_what_arrives_is_heard_a_constant_time_later(live, instrument):
     frames = [live.frame_of(now + ns) for ns in range(0, 10_000_000, 1_000_000)]
     assert frames[0] == pytest.approx(144, abs=1)  # 3 ms after the block's beginning
     assert np.diff(frames) == pytest.approx(48, abs=1)
+
+
+def test_messages_of_one_source_keep_their_order_over_corrections_of_the_clock(live, monkeypatch):
+    frames = iter([100, 200, 190, 210, 205])
+    monkeypatch.setattr(live, "frame_of", lambda _arrived_ns: next(frames))
+    arrivals = Arrivals(live)
+    assert [arrivals.frame_of(0) for _ in range(5)] == [100, 200, 200, 210, 210]
+    frames = iter([10**7, 300])  # a device that began anew
+    assert [arrivals.frame_of(0) for _ in range(2)] == [10**7, 300]
 
 
 def test_a_decision_never_precedes_an_earlier_one(live, instrument):

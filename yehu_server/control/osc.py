@@ -19,7 +19,7 @@ from yehu_server.control.peers import Peer
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.errors import YehuError
 from yehu_server.params.table import BY_ADDRESS, TABLE, find
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live import Arrivals, LivePlayer
 
 log = logging.getLogger(__name__)
 
@@ -99,6 +99,7 @@ class OscHandler:
         ahead_s = AHEAD_S + player.delay / player.instrument.rate
         self._schedule: Schedule[tuple[Message, Peer]] = Schedule(ahead_s)
         self._tags = TagClock(player)
+        self._arrivals = Arrivals(player)
         self._calls: dict[str, Callable[[Call], None]] = {
             "/note": self._note,
             "/note/off": self._note_off,
@@ -143,7 +144,7 @@ class OscHandler:
             self.counts.messages += 1
             due_s = message.due_s
             if due_s is None or due_s <= now:
-                self._act(message, peer, self._player.frame_of(arrived_ns))
+                self._act(message, peer, self._arrivals.frame_of(arrived_ns))
             elif self._schedule.add(due_s, (message, peer)):
                 self.counts.scheduled += 1
             else:

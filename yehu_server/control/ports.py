@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import mido
 
 from yehu_server.child import Child, Message
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live import Arrivals, LivePlayer
 
 log = logging.getLogger(__name__)
 
@@ -40,6 +40,7 @@ class MidiPorts:
         self, player: LivePlayer, options: MidiOptions, changed: Callable[[str], None]
     ) -> None:
         self._player = player
+        self._arrivals = Arrivals(player)
         self._options = options
         self._changed = changed
         self._numbers: dict[str, int] = {}  # a port keeps its number when it comes back
@@ -102,7 +103,7 @@ class MidiPorts:
             self.malformed += 1
             return
         number = self._numbers.setdefault(event["port"], len(self._numbers))
-        self._player.receive(message, frame=self._player.frame_of(event["at"]), port=number)
+        self._player.receive(message, frame=self._arrivals.frame_of(event["at"]), port=number)
 
     def _let_go_of(self, port: str) -> None:
         with contextlib.suppress(KeyError):

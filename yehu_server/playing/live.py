@@ -45,6 +45,26 @@ class Targets:
         self._instrument.silence(frame=frame)
 
 
+class Arrivals:
+    """Frames for what arrives from one source: none before the one before it.
+
+    The clock that frames are read off is corrected now and then, by a little; messages that
+    come close together must not change places over that.
+    """
+
+    def __init__(self, player: LivePlayer) -> None:
+        self._player = player
+        self._latest = 0
+
+    def frame_of(self, arrived_ns: int) -> int:
+        """See `LivePlayer.frame_of`."""
+        frame = self._player.frame_of(arrived_ns)
+        if self._latest - frame > self._player.instrument.rate:  # no small correction
+            self._latest = frame
+        self._latest = max(self._latest, frame)
+        return self._latest
+
+
 class LivePlayer:
     """A player that several threads may tell what to do.
 

@@ -37,6 +37,45 @@ def add_reporting(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
 
 
+def add_playing(group: Any) -> None:
+    """Add what tells how the instrument is played, live and from files alike."""
+    group.add_argument(
+        "--mapping",
+        default="keyboard",
+        metavar="FILE",
+        help="what controllers do: a shipped mapping's name or a file (default: keyboard)",
+    )
+    group.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="ADDRESS=VALUE",
+        help="hold a parameter at a value, such as /bow/position=0.1; may be repeated",
+    )
+    group.add_argument(
+        "--a4", type=a4, default=440.0, metavar="HZ", help="reference pitch (default: 440)"
+    )
+    group.add_argument(
+        "--range",
+        choices=("transpose", "clamp", "skip"),
+        default="transpose",
+        help="what becomes of notes outside F4 to F6 (default: transpose, by octaves)",
+    )
+    group.add_argument(
+        "--open-strings",
+        choices=("always", "on-pitch", "never"),
+        default="always",
+        help="when C5 is played on the open string; else on the inner one (default: always)",
+    )
+    group.add_argument(
+        "--seed",
+        type=whole,
+        default=0,
+        metavar="N",
+        help="of the chance in /playing/variation (default: 0)",
+    )
+
+
 @contextlib.contextmanager
 def compiling(arguments: argparse.Namespace) -> Iterator[None]:
     """Say why the first use takes a while."""

@@ -12,7 +12,7 @@ from typing import Any
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server.cli.arguments import (
-    a4,
+    add_playing,
     add_reporting,
     channel,
     compiling,
@@ -85,46 +85,12 @@ def add_to(commands: Any) -> None:
         "--normalize", action="store_true", help="scale the result to a peak of -1 dBFS"
     )
     parser.add_argument(
-        "--mapping",
-        default="keyboard",
-        metavar="FILE",
-        help="what controllers do: a shipped mapping's name or a file (default: keyboard)",
-    )
-    parser.add_argument(
         "--instrument",
         type=Path,
         metavar="FILE",
         help="a TOML or JSON file of physical quantities to change",
     )
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="ADDRESS=VALUE",
-        help="hold a parameter at a value, such as /bow/position=0.1; may be repeated",
-    )
-    parser.add_argument(
-        "--a4", type=a4, default=440.0, metavar="HZ", help="reference pitch (default: 440)"
-    )
-    parser.add_argument(
-        "--range",
-        choices=("transpose", "clamp", "skip"),
-        default="transpose",
-        help="what becomes of notes outside F4 to F6 (default: transpose, by octaves)",
-    )
-    parser.add_argument(
-        "--open-strings",
-        choices=("always", "on-pitch", "never"),
-        default="always",
-        help="when C5 is played on the open string; else on the inner one (default: always)",
-    )
-    parser.add_argument(
-        "--seed",
-        type=whole,
-        default=0,
-        metavar="N",
-        help="of the chance in /playing/variation (default: 0)",
-    )
+    add_playing(parser)
     add_reporting(parser)
 
 

@@ -17,7 +17,14 @@ from typing import Any
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
-from yehu_server.cli.arguments import a4, compiling, positive, progress_bar, whole, within
+from yehu_server.cli.arguments import (
+    add_playing,
+    compiling,
+    positive,
+    progress_bar,
+    whole,
+    within,
+)
 
 EXAMPLES = """\
 examples:
@@ -114,41 +121,7 @@ def _add_osc(group: Any) -> None:
 
 
 def _add_playing(group: Any) -> None:
-    group.add_argument(
-        "--mapping",
-        default="keyboard",
-        metavar="FILE",
-        help="what controllers do: a shipped mapping's name or a file (default: keyboard)",
-    )
-    group.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="ADDRESS=VALUE",
-        help="hold a parameter at a value, such as /bow/position=0.1; may be repeated",
-    )
-    group.add_argument(
-        "--a4", type=a4, default=440.0, metavar="HZ", help="reference pitch (default: 440)"
-    )
-    group.add_argument(
-        "--range",
-        choices=("transpose", "clamp", "skip"),
-        default="transpose",
-        help="what becomes of notes outside F4 to F6 (default: transpose, by octaves)",
-    )
-    group.add_argument(
-        "--open-strings",
-        choices=("always", "on-pitch", "never"),
-        default="always",
-        help="when C5 is played on the open string; else on the inner one (default: always)",
-    )
-    group.add_argument(
-        "--seed",
-        type=whole,
-        default=0,
-        metavar="N",
-        help="of the chance in /playing/variation (default: 0)",
-    )
+    add_playing(group)
     group.add_argument(
         "--jitter-buffer",
         type=_jitter,

@@ -101,7 +101,7 @@ class Server:
             calibration = calibration_for(rate, a4=options.a4, progress=progress)
             quantities = calibration.tuned(Quantities())
             self.instrument = Instrument(rate, quantities, memory=self.output.memory.buffer)
-            block_ms = 1e3 * options.output.blocksize / rate + HANDLING_MS
+            usual_ms = 1e3 * options.output.blocksize / rate + HANDLING_MS
             self.player = LivePlayer(
                 self.instrument,
                 options.mapping,
@@ -109,7 +109,7 @@ class Server:
                 policy=options.policy,
                 seed=options.seed,
                 open_strings=options.open_strings,
-                delay_ms=block_ms if options.jitter_ms is None else options.jitter_ms,
+                delay_ms=usual_ms if options.jitter_ms is None else options.jitter_ms,
             )
             self.handler = OscHandler(self.player, self)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)

@@ -61,3 +61,22 @@ def test_a_loud_note_is_turned_down_as_far_as_evenness_is_asked(player, listener
     assert listener["/output/balance"] == 0.0
     player.write("/playing/bend", 6.0)
     assert listener["/output/balance"] == pytest.approx(-3.0)
+
+
+def test_a_note_that_slides_is_bowed_as_its_new_pitch_wants(player, listener):
+    player.note_on(Key(0, 67))
+    player.write("/playing/bend", 2.0)
+    assert abs(listener["/bow/speed"]) == MANNERS[69].top_speed
+    player.write("/playing/bend", 0.0)
+    assert abs(listener["/bow/speed"]) == 0.2
+    player.slide(69.0)
+    assert abs(listener["/bow/speed"]) == MANNERS[69].top_speed
+
+
+def test_a_bow_position_written_during_a_note_stays_until_the_next(player, listener):
+    player.note_on(Key(0, 66))
+    player.write("/bow/position", 0.1)
+    player.write("/playing/pressure", 0.5)
+    assert listener["/bow/position"] == 0.1
+    player.note_on(Key(0, 66))
+    assert listener["/bow/position"] == pytest.approx(0.1 * MANNERS[66].farther)

@@ -15,7 +15,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -99,7 +99,7 @@ class OutputState:
     device: str | None = None  # None: the silent clock
     latency_ms: float = 0.0
     losses: int = 0
-    problem: str = field(default="")  # why there is no device
+    problem: str = ""  # why there is no device
 
 
 class Output:

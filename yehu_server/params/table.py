@@ -34,7 +34,7 @@ TABLE: tuple[Param, ...] = (
     Param(
         "/bow/position", "beta", "1", 0.04, 0.5, 0.13,
         "Distance of the bow from the bridge as a share of the sounding length.",
-        place=Place.ENGINE, smooth_ms=20.0,
+        place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
         "/finger/1/position", "x_f", "m", 0.008, 0.28, 0.05,

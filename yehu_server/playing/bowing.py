@@ -1,8 +1,9 @@
 """How each note wants to be bowed, so that it speaks in its own register.
 
 Notes near the body's modes (A4 at 439 Hz above all) and the open F string jump to other
-registers under a fast or a firm bow. Measured at 44.1 kHz by scripts/playability.py: for each
-note the shares of Schelleng's limit and the speeds at which Helmholtz motion holds.
+registers under a fast or a firm bow. Chosen after bowing each note, at 44.1 kHz, with shares of
+Schelleng's limit from 0.25 to 1.15 and several speeds and places of the bow, for where it holds
+Helmholtz motion; scripts/playability.py shows what comes of it.
 """
 
 from __future__ import annotations

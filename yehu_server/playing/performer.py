@@ -16,7 +16,7 @@ from typing import Protocol
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
-from yehu_server.playing.bowing import manner
+from yehu_server.playing.bowing import ORDINARY, manner
 from yehu_server.playing.calibration import OPEN_NOTES
 from yehu_server.playing.fingering import Fingering, OpenStrings, RangePolicy, choose, stay
 from yehu_server.playing.intonation import Intonation
@@ -104,6 +104,7 @@ class Performer:
         # The bow's relative position as asked, and as the note has it.
         self._beta = self._beta_now = find("/bow/position").default
         self._balance = 0.0  # dB
+        self._bowing = ORDINARY  # how the sounding pitch is bowed
         # What a parameter of the player moves while a note sounds.
         self._followers: dict[str, tuple[Callable[[int | None], None], ...]] = {
             "/playing/bend": (self._follow_bend,),
@@ -147,10 +148,8 @@ class Performer:
         param = find(address)
         accepted = param.accept(value)
         if param.place is Place.ENGINE:
-            if address == "/bow/position":
+            if address == "/bow/position":  # what later notes start from
                 self._beta = self._beta_now = accepted
-                if hold:
-                    self._kept.add(address)
             if param.owned:
                 (self._kept if hold else self._taken).add(address)
                 if address == "/bow/force":  # raw newtons are heard only without assist
@@ -336,15 +335,21 @@ class Performer:
         wish = self._value["/playing/speed"] * (1.0 + self._varied(0, VARIED_SHARE))
         return min(wish, manner(pitch).top_speed)
 
+    def _adapt(self, frame: int | None) -> None:
+        """Bow a pitch that has slid as it wants to be bowed."""
+        if manner(self._pitch) is not self._bowing:
+            self._lean(frame)
+            self._draw(frame, None)
+
     def _lean(self, frame: int | None) -> None:
         wish = self._value["/playing/pressure"] * (1.0 + self._varied(1, VARIED_SHARE))
         if self._sounding is None:
             self._move("/bow/pressure", wish, frame)
             return
-        bowing = manner(self._pitch)
-        self._move("/bow/pressure", bowing.pressure(wish), frame)
-        position = self._beta * bowing.farther
-        if position != self._beta_now:
+        self._bowing = manner(self._pitch)
+        self._move("/bow/pressure", self._bowing.pressure(wish), frame)
+        position = self._beta * self._bowing.farther
+        if position != self._beta_now and self._is_ours("/bow/position"):
             self._beta_now = position
             self._move("/bow/position", position, frame)
 
@@ -387,6 +392,7 @@ class Performer:
         pitch, string = self._pitch, self._fingering.string
         fingering = stay(pitch, string, self._intonation, self._speed_at(pitch))
         crossing = fingering.string != self._fingering.string
+        self._adapt(frame)
         self._place(fingering, frame, BEND_RAMP_MS)
         self._even_out(frame)
         if crossing:
@@ -399,5 +405,8 @@ class Performer:
     def _move(
         self, address: str, value: float, frame: int | None, ramp_ms: float | None = None
     ) -> None:
-        if address not in self._taken and address not in self._kept:
+        if self._is_ours(address):
             self._sink.write(address, value, frame=frame, ramp_ms=ramp_ms)
+
+    def _is_ours(self, address: str) -> bool:
+        return address not in self._taken and address not in self._kept

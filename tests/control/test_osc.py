@@ -392,6 +392,8 @@ def test_pitch_slides_the_sounding_note_steplessly(stage):
         "/finger/1/position",
         "/finger/1/press",
         "/output/balance",
+        "/bow/speed",  # A4 wants it slow
+        "/bow/pressure",
     }
     places = [place for _, address, place in stage.events if address == "/finger/1/position"]
     assert len(places) == 30

@@ -11,7 +11,7 @@ and each equation of motion is diagonal in X^{n+1}:
     a X^{n+1} = b + G f,
 with b known, f the unknown forces and the columns of G their spreading vectors. Each force p also
 has a row of W that reads the motion it works on (the bridge's gap, a contact's eta, the bow's
-place). Bridge and contact forces are linear in W X^{n+1}: a dense system gives
+place). Bridge and contact forces, and the tensions, are linear in W X^{n+1}: a dense system gives
 them as f_0 + f_1 f_b; what is left is one scalar equation for the friction force f_b.
 
 State convention. `RefState` holds u = u^n and u_prev = u^{n-1} (likewise q, zeta, U), and z, Psi at
@@ -53,6 +53,7 @@ class RefString:
     sigma_1: float  # m^2/s
     L: float  # m
     N: int
+    EA: float = 0.0  # N; stiffness against stretching, 0 for constant tension
 
     @property
     def h(self) -> float:
@@ -426,6 +427,13 @@ def external_forces(params: RefParams, state: RefState, controls: RefControls) -
     return np.where(controls.press > 0.0, -controls.press, lift)
 
 
+def stretch(string: RefString, u: Array, u_prev: Array) -> float:
+    """psi^{n-1/2} = kappa <delta_x+ u^n, delta_x+ u^{n-1}>, kappa^2 = EA/(4 L); V = psi^2/2."""
+    D1 = D_minus(string)
+    kappa = np.sqrt(string.EA / (4.0 * string.L))
+    return float(kappa * string.h * (D1 @ u[1:-1]) @ (D1 @ u_prev[1:-1]))
+
+
 def _stack(u: list[Array], q: Array, U: Array, zeta: Array) -> Array:
     return np.concatenate((u[0][1:-1], u[1][1:-1], q, U, zeta))
 
@@ -480,9 +488,10 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
         -M_h / k**2 - K_h / 4.0 + R_h / (2.0 * k)
     ) * state.zeta_prev
 
-    # -- Spreading columns G and reading rows W of the linear forces f_c (2), f_f (2 F) --------
+    # -- Spreading columns G and reading rows W of the linear forces f_c (2), f_f (2 F), tau (2)
     # Column 2 + 2 j + i belongs to finger j on string i. J = I^T / h (28).
-    count = 2 + 2 * F
+    first_tau = 2 + 2 * F
+    count = first_tau + 2
     G, W = np.zeros((size, count)), np.zeros((count, size))
     for i, string in enumerate(strings):
         I_c = interpolate_cubic(string, params.x_c)
@@ -490,6 +499,11 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
         G[in_q, i] = -1.0  # - f_c on every mode, (41)
         W[i, in_u[i]] = I_c  # I_c u_i - sum q, (44)
         W[i, in_q] = -1.0
+        # Tension modulation: the string gains the force density + g_u tau, and tau reads g_u . u.
+        kappa = np.sqrt(string.EA / (4.0 * string.L))
+        g_u = 2.0 * kappa * (D_2(string) @ state.u[i][1:-1])
+        G[in_u[i], first_tau + i] = g_u
+        W[first_tau + i, in_u[i]] = g_u
         for j in range(F):
             col = 2 + 2 * j + i
             I_f = interpolate_cubic(string, float(controls.x_f[j]))
@@ -516,6 +530,11 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
     eta_now = finger_readings(params, state.u, state.U, controls.x_f)
     eta_prev = finger_readings(params, state.u_prev, state.U_prev, controls.x_f)
 
+    psi = [
+        stretch(string, u, u_prev)
+        for string, u, u_prev in zip(strings, state.u, state.u_prev, strict=True)
+    ]
+
     def solve(g: Array) -> tuple[Array, Array, float, float, float, float]:
         """All forces of the step for given contact gradients g (F, 2); g = 0: contacts off.
 
@@ -533,9 +552,16 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
         rhs[:2, 1] = -read_b[:2]
         #   (35)
         A_row = A_f.reshape(-1)
-        matrix[2:] = np.eye(count)[2:] - A_row[:, None] * read_f[2:]
-        rhs[2:, 0] = A_row * (read_free[2:] - eta_prev.reshape(-1)) + (g * Psi).reshape(-1)
-        rhs[2:, 1] = A_row * read_b[2:]
+        c = slice(2, first_tau)
+        matrix[c] = np.eye(count)[c] - A_row[:, None] * read_f[c]
+        rhs[c, 0] = A_row * (read_free[c] - eta_prev.reshape(-1)) + (g * Psi).reshape(-1)
+        rhs[c, 1] = A_row * read_b[c]
+        #   tau = psi - (h/4) g_u . (u^{n+1} - u^{n-1})
+        for i, string in enumerate(strings):
+            row, quarter = first_tau + i, string.h / 4.0
+            matrix[row] = np.eye(count)[row] + quarter * read_f[row]
+            rhs[row, 0] = psi[i] - quarter * (read_free[row] - float(W[row] @ X_prev))
+            rhs[row, 1] = -quarter * read_b[row]
         #   The linear forces are f_0 + f_1 f_b.
         #   Rows in metres and rows in newtons: bring both to one, or the small ones lose digits.
         row = np.abs(matrix).max(axis=1, keepdims=True)
@@ -552,7 +578,7 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
 
     # -- Contact gradient: (33), (34), (58) ----------------------------------------------------
     X_star = solve(np.zeros((F, 2)))[0]
-    eta_star = (W[2:] @ X_star).reshape(F, 2)
+    eta_star = (W[2:first_tau] @ X_star).reshape(F, 2)
     open_eta = np.maximum(eta_now, 0.0)
     g_hat = np.sqrt(params.K_f * (params.alpha + 1.0) / 2.0 * open_eta ** (params.alpha - 1.0))
     theta = np.ones((F, 2))
@@ -563,7 +589,7 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
 
     # -- The step itself -----------------------------------------------------------------------
     X_next, f, f_b, v_r, s, mobility = solve(g)
-    eta_next = (W[2:] @ X_next).reshape(F, 2)
+    eta_next = (W[2:first_tau] @ X_next).reshape(F, 2)
     Psi_next = Psi + g * (eta_next - eta_prev) / 2.0  # (33)
     z_next, zbar, residual = z.copy(), 0.0, 0.0
     if bowed >= 0:
@@ -587,7 +613,7 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
         f_c=f[:2].copy(),
         f_b=f_b,
         v_r=v_r,
-        f_f=f[2:].reshape(F, 2).copy(),
+        f_f=f[2:first_tau].reshape(F, 2).copy(),
         bowed=bowed,
         zbar=zbar,
         friction_residual=residual,
@@ -644,6 +670,7 @@ def energy(params: RefParams, state: RefState) -> dict[str, float]:
         v = (u - u_prev) / k
         h_s += rho_A / 2.0 * h * float(v @ v)
         h_s += string.T / 2.0 * h * float((D1 @ u_prev) @ (D1 @ u))
+        h_s += stretch(string, state.u[i], state.u_prev[i]) ** 2 / 2.0
         h_s += string.EI / 2.0 * h * float((D2 @ u_prev) @ (D2 @ u))
         h_s -= string.sigma_1 * k * rho_A / 2.0 * h * float((D1 @ v) @ (D1 @ v))
     v_U = (state.U - state.U_prev) / k

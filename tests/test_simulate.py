@@ -282,10 +282,11 @@ def test_without_bow_and_finger_energy_only_falls():
     assert (np.diff(energy) <= 1e-9 * energy[0]).all()
 
 
-def test_the_bridge_answers_the_hammer_in_proportion():
+def test_without_tension_modulation_the_bridge_answers_the_hammer_in_proportion():
     def struck(force: float) -> np.ndarray:
         hammer = [[0.0, 0.0], [0.0005, force], [0.001, 0.0]]
-        return run({"duration": 0.05, "hammer": hammer})["bridge_velocity"]
+        gesture = {"duration": 0.05, "hammer": hammer, "instrument": {"tension_modulation": 0.0}}
+        return run(gesture)["bridge_velocity"]
 
     once, twice = struck(0.2), struck(0.4)
     assert np.abs(once).max() > 1e-3

@@ -29,6 +29,7 @@ def reference_params(quantities: Quantities, rate: float) -> ref.RefParams:
                 sigma_1=string.sigma_1,
                 L=string.L,
                 N=N,
+                EA=quantities.tension_modulation * string.E * A,
             )
         )
     bow, finger, body = quantities.bow, quantities.finger, quantities.body

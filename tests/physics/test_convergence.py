@@ -18,7 +18,11 @@ from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities
 
 # The finger out of the way: nothing but strings and bridge.
-YEHU = replace(Quantities(), finger=replace(Quantities().finger, rest_height=0.05))
+YEHU = replace(
+    Quantities(),
+    finger=replace(Quantities().finger, rest_height=0.05),
+    tension_modulation=0.0,
+)
 L = YEHU.string_1.L
 PLUCK = bump(0.02, 0.26, 1e-3)
 TIMES = np.arange(1, 11) * 1e-3  # s

@@ -1,6 +1,7 @@
 """Fingers: how they land, hold, stop the string and leave."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -79,12 +80,19 @@ def test_a_pressed_finger_stops_the_string(string, x_f):
     assert 5.0 < cents(sounding(run), ideal) < 100.0
 
 
-def test_a_harder_press_is_not_another_note():
+@pytest.mark.parametrize(("modulation", "rise"), [(0.0, (-5.0, 5.0)), (1.0, (15.0, 40.0))])
+def test_a_harder_press_raises_the_pitch_as_it_stretches_the_strings(modulation, rise):
+    yehu = replace(YEHU, tension_modulation=modulation)
     soft, hard = (
-        play(lambda t, press=press: {**bowed(t), "press": [press]}, 0.8, ledger=False)
+        play(
+            lambda t, press=press: {**bowed(t), "press": [press]},
+            0.8,
+            ledger=False,
+            quantities=yehu,
+        )
         for press in (1.0, 5.0)
     )
-    assert abs(cents(sounding(soft), sounding(hard))) < 5.0
+    assert rise[0] < cents(sounding(hard), sounding(soft)) < rise[1]
 
 
 # --- leaving ------------------------------------------------------------------------------
@@ -184,7 +192,7 @@ def test_of_two_fingers_the_one_nearer_to_the_bridge_decides_the_pitch():
         )
         for press in ([2.0, 0.0], [2.0, 2.0], [0.0, 2.0])
     )
-    assert abs(cents(both, new)) < 15.0
+    assert abs(cents(both, new)) < 25.0  # it stretches the strings a little more
     assert cents(both, old) > 300.0
 
 

@@ -5,6 +5,7 @@ states can, to rounding, and so can the first 200 samples of a start.
 """
 
 from collections import Counter
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -23,10 +24,11 @@ RATES = (22050.0, 44100.0, 96000.0)
 
 
 @cache
-def models(rate):
+def models(rate, modulation=1.0):
     """The reference's instrument, and the kernel's with 1 to 4 fingers."""
-    params = reference_params(YEHU, rate)
-    prepared = {fingers: kernel.prepare(YEHU, rate, fingers) for fingers in (1, 2, 3, 4)}
+    yehu = replace(YEHU, tension_modulation=modulation)
+    params = reference_params(yehu, rate)
+    prepared = {fingers: kernel.prepare(yehu, rate, fingers) for fingers in (1, 2, 3, 4)}
     for model in prepared.values():
         assert [string.N for string in params.strings] == model["N"][0].tolist()
     return params, prepared
@@ -113,10 +115,14 @@ def natural_scales(expected, controls):
     return {name: max(size, floors.get(name, 0.0)) for name, size in sizes.items()}
 
 
-@pytest.fixture(scope="module", params=RATES, ids=lambda rate: f"{rate:.0f}")
+@pytest.fixture(
+    scope="module",
+    params=[*((rate, 1.0) for rate in RATES), (44100.0, 0.0)],
+    ids=lambda case: "{:.0f}-modulation-{:.0f}".format(*case),
+)
 def compared(request):
     """250 random steps by both: problem, reference (before and after), kernel."""
-    params, prepared = models(request.param)
+    params, prepared = models(*request.param)
     rng = np.random.default_rng(9)
     steps = []
     for _ in range(250):

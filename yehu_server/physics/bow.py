@@ -15,6 +15,7 @@ from yehu_server.jit import compiled
 from yehu_server.physics.layout import BOW, STRINGS
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.stencil import read
+from yehu_server.physics.tension import reading
 
 Array = Any
 
@@ -74,5 +75,6 @@ def hair_velocity(
     """I_b delta_t. u + delta_t. zeta at the bow, as `u_next` and `zeta_next` stand (m/s)."""
     i = s.string[BOW]
     first, weights = s.first[BOW], s.weights[BOW]
-    travel = read(u_next[i], first, weights) - read(u_prev[i], first, weights)
+    travel = reading(s, u_next, i, first, weights, s.bend_at[BOW])
+    travel -= read(u_prev[i], first, weights)
     return float((travel + zeta_next[i] - zeta_prev[i]) / (2.0 * model.k))

@@ -14,7 +14,8 @@ from yehu_server.errors import ParameterError
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import MAX_MODES, STRINGS
 from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.stencil import overlap, place_cubic, read, spread
+from yehu_server.physics.stencil import place_cubic, read, spread
+from yehu_server.physics.tension import reading
 
 Array = Any
 
@@ -56,7 +57,7 @@ def prepare_bridge(model: np.void, quantities: Quantities) -> None:
         weights = model["bridge_weights"][i]
         model["bridge_first"][i] = place_cubic(position, int(model["N"][i]), weights)
         S_c[i, i] += model["spread"][i] * (weights @ weights)
-    model["S_c_inverse"][:] = np.linalg.inv(S_c)
+    model["S_c"][:] = S_c
 
 
 @compiled
@@ -70,38 +71,43 @@ def advance_bridge(model: Any, q_next: Array, q: Array, q_prev: Array, f_hammer:
 
 
 @compiled
-def close_bridge(model: Any, u_next: Array, Q: float, f_c: Array) -> None:
+def tie(model: Any, s: Any) -> None:
+    """Invert S_c of eq. (43), whose own entries give way as the strings' tension does."""
+    for i in range(STRINGS):
+        s.bend_at_bridge[i] = read(s.bend[i], model.bridge_first[i], model.bridge_weights[i])
+    give_1 = s.give[0] * s.bend_at_bridge[0] ** 2
+    give_2 = s.give[1] * s.bend_at_bridge[1] ** 2
+    a, b = model.S_c[0, 0] - give_1, model.S_c[0, 1]
+    c, d = model.S_c[1, 0], model.S_c[1, 1] - give_2
+    determinant = a * d - b * c
+    s.S_c_inverse[0, 0], s.S_c_inverse[0, 1] = d / determinant, -b / determinant
+    s.S_c_inverse[1, 0], s.S_c_inverse[1, 1] = -c / determinant, a / determinant
+
+
+@compiled
+def close_bridge(model: Any, s: Any, u_next: Array, Q: float) -> None:
     """Tie both strings to the bridge at n+1; write the coupling forces f_c (N).
 
     Everything after this meets strings that already follow the bridge.
     Source: [Yehu] eqs. (43)-(45).
     """
-    c_1 = Q - read(u_next[0], model.bridge_first[0], model.bridge_weights[0])
-    c_2 = Q - read(u_next[1], model.bridge_first[1], model.bridge_weights[1])
-    S = model.S_c_inverse
-    f_c[0] = S[0, 0] * c_1 + S[0, 1] * c_2
-    f_c[1] = S[1, 0] * c_1 + S[1, 1] * c_2
+    tie(model, s)
+    first, weights, bend = model.bridge_first, model.bridge_weights, s.bend_at_bridge
+    c_1 = Q - reading(s, u_next, 0, first[0], weights[0], bend[0])
+    c_2 = Q - reading(s, u_next, 1, first[1], weights[1], bend[1])
+    S = s.S_c_inverse
+    s.f_c[0], s.f_c[1] = 0.0, 0.0
+    pull_strings(model, s, u_next, S[0, 0] * c_1 + S[0, 1] * c_2, S[1, 0] * c_1 + S[1, 1] * c_2)
+
+
+@compiled
+def pull_strings(model: Any, s: Any, u_next: Array, f_1: float, f_2: float) -> None:
+    """Let the bridge pull both strings by so much more (N): + J_c f_c of eq. (30)."""
     for i in range(STRINGS):
-        pull_string(model, u_next, i, f_c[i])
-
-
-@compiled
-def pull_string(model: Any, u_next: Array, i: int, f: float) -> None:
-    """Add the bridge's force `f` (N) to string `i`: + J_c f_c of eq. (30)."""
-    spread(u_next[i], model.bridge_first[i], model.bridge_weights[i], model.spread[i] * f)
-
-
-@compiled
-def bridge_pull(model: Any, i: int, first: int, weights: Array, pull: Array) -> None:
-    """How much the bridge's two forces grow per newton that presses on string `i`.
-
-    Written to `pull` [shape=(2,)]; zero unless the contact shares nodes with the bridge.
-    """
-    at_bridge = model.spread[i] * overlap(
-        model.bridge_first[i], model.bridge_weights[i], first, weights
-    )
-    for j in range(STRINGS):
-        pull[j] = model.S_c_inverse[j, i] * at_bridge
+        f = f_1 if i == 0 else f_2
+        s.f_c[i] += f
+        spread(u_next[i], model.bridge_first[i], model.bridge_weights[i], model.spread[i] * f)
+        s.slack[i] -= s.give[i] * s.bend_at_bridge[i] * f
 
 
 @compiled

@@ -1,9 +1,10 @@
 """Where bow and fingers touch the strings, and how each contact feels the others.
 
 With A_s diagonal, a force at q moves the reading at p by ``G[p, q] = I_p J_q / A_s``,
-less what the bridge, tied to the string, takes back. Where no nodes are shared G is
-diagonal and the paper's formulas (43), (45), (50) hold as printed; where stencils
-overlap they do not, and the contacts are solved jointly (decisions/0003).
+less what the bridge, tied to the string, takes back, and what the string's tension does
+(tension.py). Where no nodes are shared and tension is constant G is diagonal and the paper's
+formulas (43), (45), (50) hold as printed; elsewhere they do not, and the contacts are solved
+jointly (decisions/0003).
 """
 
 from __future__ import annotations
@@ -11,9 +12,9 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.jit import compiled
-from yehu_server.physics.bridge import bridge_pull, pull_string
+from yehu_server.physics.bridge import pull_strings
 from yehu_server.physics.layout import BOW, CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS, X_B
-from yehu_server.physics.stencil import overlap, place_cubic, place_linear, spread
+from yehu_server.physics.stencil import overlap, place_cubic, place_linear, read, spread
 
 Array = Any
 
@@ -26,15 +27,14 @@ def place_contacts(model: Any, s: Any, control: Array, bowed_string: int) -> Non
     away from the ends. Work is done only for what moved.
     Real time: safe.
     """
-    moved = s.placed == 0
     x_b = control[X_B]
-    if moved or s.x[BOW] != x_b or s.string[BOW] != bowed_string:
+    if s.placed == 0 or s.x[BOW] != x_b or s.string[BOW] != bowed_string:
         i = bowed_string
         s.x[BOW], s.string[BOW] = x_b, i
         h = model.h[i]
         position = max(1.0, min(x_b / h, model.bridge_x / h - 1.0))
         s.first[BOW] = place_linear(position, model.N[i], s.weights[BOW])
-        moved = True
+        meet_bridge(model, s, BOW)
     for j in range(model.fingers):
         x_f = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j]
         if s.placed == 0 or s.x[STRINGS * j] != x_f:
@@ -43,51 +43,59 @@ def place_contacts(model: Any, s: Any, control: Array, bowed_string: int) -> Non
                 s.x[p], s.string[p] = x_f, i
                 position = max(1.0, min(x_f / model.h[i], model.N[i] - 1.0))
                 s.first[p] = place_cubic(position, model.N[i], s.weights[p])
-            moved = True
-    if moved:
-        couple(model, s)
-        s.placed = 1
+                meet_bridge(model, s, p)
+    s.placed = 1
 
 
 @compiled
-def couple(model: Any, s: Any) -> None:
-    """Fill G, and whether any contact feels another."""
-    contacts = STRINGS * model.fingers
-    for n in range(contacts + 1):
-        p = BOW if n == contacts else n
-        i = s.string[p]
-        s.at_bridge[p] = model.spread[i] * overlap(
-            model.bridge_first[i], model.bridge_weights[i], s.first[p], s.weights[p]
-        )
-        bridge_pull(model, i, s.first[p], s.weights[p], s.pull[p])
-    s.overlapping = 0
-    for n in range(contacts + 1):
-        p = BOW if n == contacts else n
-        for m in range(n + 1):
-            q = BOW if m == contacts else m
-            i = s.string[p]
-            G = -s.at_bridge[p] * s.pull[q, i]
-            if s.string[q] == i:
-                G += model.spread[i] * overlap(s.first[p], s.weights[p], s.first[q], s.weights[q])
-            s.G[p, q] = G
-            s.G[q, p] = G
-            if p != q and G != 0.0:
-                s.overlapping = 1
+def meet_bridge(model: Any, s: Any, p: int) -> None:
+    """Note how far a contact yields to itself, and which nodes it shares with the bridge."""
+    i = s.string[p]
+    first, weights = s.first[p], s.weights[p]
+    s.yields[p] = model.spread[i] * overlap(first, weights, first, weights)
+    s.shared_with_bridge[p] = model.spread[i] * overlap(
+        model.bridge_first[i], model.bridge_weights[i], first, weights
+    )
+
+
+@compiled
+def feel(s: Any, p: int) -> None:
+    """How contact `p` and the bridge feel each other in this step: nodes shared, and tension."""
+    i = s.string[p]
+    s.bend_at[p] = read(s.bend[i], s.first[p], s.weights[p])
+    s.at_bridge[p] = s.shared_with_bridge[p] - s.give[i] * s.bend_at_bridge[i] * s.bend_at[p]
+    for j in range(STRINGS):
+        s.pull[p, j] = s.S_c_inverse[j, i] * s.at_bridge[p]
+
+
+@compiled
+def answer(model: Any, s: Any, p: int, q: int) -> float:
+    """G[p, q]: how far the reading at `p` gives way to a newton at `q` (m/N).
+
+    Both must `feel` this step.
+    """
+    i = s.string[p]
+    G = -s.at_bridge[p] * s.pull[q, i]
+    if p == q:
+        G += s.yields[p]
+    elif s.string[q] == i:
+        G += model.spread[i] * overlap(s.first[p], s.weights[p], s.first[q], s.weights[q])
+    if s.string[q] == i:
+        G -= s.give[i] * s.bend_at[p] * s.bend_at[q]
+    return float(G)
 
 
 @compiled
 def push(model: Any, s: Any, u_next: Array, p: int, force: float) -> None:
-    """Let contact `p` push its string by -J `force` (N), the bridge following.
+    """Let contact `p` push its string by -J `force` (N), bridge and tension following.
 
     Source: [Yehu] eq. (30); the bridge's share keeps eq. (44) true at n+1.
     """
     i = s.string[p]
     spread(u_next[i], s.first[p], s.weights[p], -model.spread[i] * force)
+    s.slack[i] += s.give[i] * s.bend_at[p] * force
     if s.at_bridge[p] != 0.0:
-        for j in range(STRINGS):
-            more = s.pull[p, j] * force
-            s.f_c[j] += more
-            pull_string(model, u_next, j, more)
+        pull_strings(model, s, u_next, s.pull[p, 0] * force, s.pull[p, 1] * force)
 
 
 @compiled

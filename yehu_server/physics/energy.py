@@ -19,7 +19,7 @@ Array = Any
 
 @compiled
 def string_energy(model: Any, i: int, u_next: Array, u: Array) -> float:
-    """h_s of eq. (55a) for string `i` (J): kinetic, tension, stiffness, less the sigma_1 term."""
+    """h_s of eq. (55a) for string `i` (J): kinetic, tension and its modulation, stiffness."""
     k, h, N = model.k, model.h[i], model.N[i]
     kinetic, slope, bend, loss = 0.0, 0.0, 0.0, 0.0
     for l in range(1, N + 1):
@@ -36,6 +36,7 @@ def string_energy(model: Any, i: int, u_next: Array, u: Array) -> float:
     return float(
         0.5 * model.rho_A[i] * h * kinetic
         + 0.5 * model.T[i] * slope / h
+        + 0.5 * model.stretch[i] * slope**2 / h
         + 0.5 * model.EI[i] * bend / h**3
         - 0.5 * model.sigma_1[i] * k * model.rho_A[i] * loss / h
     )

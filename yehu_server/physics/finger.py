@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
-from yehu_server.physics.contacts import eliminate, push
+from yehu_server.physics.contacts import answer, eliminate, feel, push
 from yehu_server.physics.layout import BOW, CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.stencil import read
+from yehu_server.physics.tension import reading
 
 Array = Any
 
@@ -92,10 +93,12 @@ def meet_fingers(
             eta = read(u[i], s.first[p], s.weights[p]) - s.U[now, j]
             reset_contact(s, p, eta)
             s.g[p], s.A_f[p], s.d[p], s.f_f[p] = 0.0, 0.0, 0.0, 0.0
-            # The same I_f at all three times, so that the energy closes as x_f moves.
-            s.eta_prev[p] = read(u_prev[i], s.first[p], s.weights[p]) - s.U[prev, j]
             if eta > 0.0:
-                eta_star = read(u_next[i], s.first[p], s.weights[p]) - s.U[next_, j]
+                # The same I_f at all three times, so that the energy closes as x_f moves.
+                s.eta_prev[p] = read(u_prev[i], s.first[p], s.weights[p]) - s.U[prev, j]
+                feel(s, p)
+                bend = s.bend_at[p]
+                eta_star = reading(s, u_next, i, s.first[p], s.weights[p], bend) - s.U[next_, j]
                 travel = eta_star - s.eta_prev[p]
                 g = contact_gradient(model, s.Psi[p], eta, travel)
                 if g > 0.0:
@@ -107,6 +110,24 @@ def meet_fingers(
 
 
 @compiled
+def touch_apart(model: Any, s: Any, bowed: bool) -> bool:
+    """Whether no contact that touches feels another, so that each can be solved for itself."""
+    for i in range(STRINGS):
+        if s.give[i] != 0.0:
+            return False
+    contacts = STRINGS * model.fingers
+    for p in range(contacts):
+        if s.g[p] == 0.0:
+            continue
+        if bowed and answer(model, s, p, BOW) != 0.0:
+            return False
+        for q in range(p):
+            if s.g[q] != 0.0 and answer(model, s, p, q) != 0.0:
+                return False
+    return True
+
+
+@compiled
 def solve_apart(model: Any, s: Any) -> None:
     """Contact forces where stencils do not overlap: eqs. (37)-(40), finger by finger."""
     compliance = model.k * model.k / model.M_f
@@ -114,13 +135,16 @@ def solve_apart(model: Any, s: Any) -> None:
         total, weight = 0.0, 1.0
         for i in range(STRINGS):
             p = STRINGS * j + i
-            stiffness = 1.0 + s.A_f[p] * s.G[p, p]
-            total += s.d[p] / stiffness
-            weight += compliance * s.A_f[p] / stiffness
+            if s.g[p] != 0.0:
+                stiffness = 1.0 + s.A_f[p] * answer(model, s, p, p)
+                total += s.d[p] / stiffness
+                weight += compliance * s.A_f[p] / stiffness
         total /= weight  # f_f,1 + f_f,2
         for i in range(STRINGS):
             p = STRINGS * j + i
-            s.f_f[p] = (s.d[p] - s.A_f[p] * compliance * total) / (1.0 + s.A_f[p] * s.G[p, p])
+            if s.g[p] != 0.0:
+                pushed = s.d[p] - s.A_f[p] * compliance * total
+                s.f_f[p] = pushed / (1.0 + s.A_f[p] * answer(model, s, p, p))
 
 
 @compiled
@@ -140,21 +164,22 @@ def solve_jointly(model: Any, s: Any) -> tuple[float, float]:
         for q in range(contacts):
             if s.g[q] == 0.0:
                 continue
-            G = s.G[p, q]
+            G = answer(model, s, p, q)
             if p // STRINGS == q // STRINGS:
                 G += compliance
             s.matrix[row, column] = s.A_f[p] * G + (1.0 if p == q else 0.0)
             column += 1
         s.sides[0, row] = s.d[p]
-        s.sides[1, row] = -s.A_f[p] * s.G[p, BOW]
+        s.sides[1, row] = -s.A_f[p] * answer(model, s, p, BOW)
         row += 1
     eliminate(s.matrix, s.sides, row)
     taken, taken_per_newton = 0.0, 0.0
     row = 0
     for p in range(contacts):
         if s.g[p] != 0.0:
-            taken += s.G[BOW, p] * s.sides[0, row]
-            taken_per_newton += s.G[BOW, p] * s.sides[1, row]
+            G = answer(model, s, BOW, p)
+            taken += G * s.sides[0, row]
+            taken_per_newton += G * s.sides[1, row]
             row += 1
     return taken, taken_per_newton
 
@@ -170,8 +195,8 @@ def take_forces(model: Any, s: Any, more_friction: float) -> None:
 
 
 @compiled
-def finish_fingers(model: Any, s: Any, u_next: Array, next_: int) -> None:
-    """Push the strings and the fingers by ``s.f_f``; advance Psi by eq. (33)."""
+def push_fingers(model: Any, s: Any, u_next: Array, next_: int) -> None:
+    """Push the strings and the fingers by ``s.f_f``."""
     compliance = model.k * model.k / model.M_f
     for j in range(model.fingers):
         for i in range(STRINGS):
@@ -179,6 +204,11 @@ def finish_fingers(model: Any, s: Any, u_next: Array, next_: int) -> None:
             if s.g[p] != 0.0:
                 push(model, s, u_next, p, s.f_f[p])
                 s.U[next_, j] += compliance * s.f_f[p]
+
+
+@compiled
+def store_contacts(model: Any, s: Any, u_next: Array, next_: int) -> None:
+    """Advance Psi by eq. (33), once the strings are where they will be."""
     for j in range(model.fingers):
         for i in range(STRINGS):
             p = STRINGS * j + i

@@ -19,16 +19,18 @@ from yehu_server.physics.bridge import (
     finish_bridge,
     prepare_bridge,
 )
-from yehu_server.physics.contacts import place_contacts, push
+from yehu_server.physics.contacts import answer, feel, place_contacts, push
 from yehu_server.physics.energy import book
 from yehu_server.physics.finger import (
     advance_finger,
-    finish_fingers,
     meet_fingers,
     prepare_fingers,
+    push_fingers,
     solve_apart,
     solve_jointly,
+    store_contacts,
     take_forces,
+    touch_apart,
 )
 from yehu_server.physics.friction import solve_friction
 from yehu_server.physics.layout import (
@@ -56,6 +58,7 @@ from yehu_server.physics.layout import (
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
 from yehu_server.physics.string import advance_strings, prepare_strings, support
+from yehu_server.physics.tension import prepare_tension, take_up_slack, tighten
 
 Array = Any
 
@@ -75,6 +78,7 @@ def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
     record["k"] = 1.0 / rate
     record["fingers"] = fingers
     prepare_strings(record, quantities)
+    prepare_tension(record, quantities)
     prepare_bridge(record, quantities)
     prepare_bow(record, quantities)
     prepare_fingers(record, quantities)
@@ -100,6 +104,7 @@ def come_to_rest(model: Any, s: Any) -> None:
     s.U[:], s.Psi[:] = model.rest_height, 0.0
     s.v_r, s.f_b, s.stored = 0.0, 0.0, 0.0
     s.s_1[:], s.s_2[:], s.history[:] = 0.0, 0.0, 0.0
+    s.slack[:], s.give[:], s.bend[:], s.T_more[:] = 0.0, 0.0, 0.0, 0.0
     s.placed = 0
     s.x[:] = 0.0
 
@@ -148,13 +153,15 @@ def step(m: Any, s: Any, control: Array) -> None:
 
     # Strings and modes free of contacts, eq. (58), then tied together, eqs. (43)-(45).
     advance_strings(m, u_next, u, u_prev)
+    tighten(m, s, u_next, u, u_prev)
     Q = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
-    close_bridge(m, u_next, Q, s.f_c)
+    close_bridge(m, s, u_next, Q)
 
     # The bow, eqs. (46)-(53).
+    feel(s, BOW)
     advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
     free = hair_velocity(m, s, u_next, u_prev, s.zeta[next_], s.zeta[prev]) - v_b
-    compliance = (s.G[BOW, BOW] + m.C_h) / (2.0 * k)
+    compliance = (answer(m, s, BOW, BOW) + m.C_h) / (2.0 * k)
     f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
     if bowed:
         f_b, z_bar, v_r, iterations, converged = solve_friction(
@@ -166,7 +173,7 @@ def step(m: Any, s: Any, control: Array) -> None:
     for j in range(m.fingers):
         s.U[next_, j] = advance_finger(m, s, j, control, now, prev)
     if meet_fingers(m, s, u_next, u, u_prev, next_, now, prev) > 0:
-        if s.overlapping == 0:
+        if touch_apart(m, s, bowed):
             solve_apart(m, s)
         else:
             taken, taken_per_newton = solve_jointly(m, s)
@@ -182,7 +189,9 @@ def step(m: Any, s: Any, control: Array) -> None:
                 more = f_b - first
                 push(m, s, u_next, BOW, more)
             take_forces(m, s, more)
-        finish_fingers(m, s, u_next, next_)
+        push_fingers(m, s, u_next, next_)
+    take_up_slack(m, s, u_next)
+    store_contacts(m, s, u_next, next_)
 
     # What the forces leave behind: eqs. (59), (60), and z at n + 1/2.
     finish_bridge(m, s.q[next_], s.f_c)

@@ -38,6 +38,7 @@ MODEL = np.dtype(
         ("EI", np.float64, STRINGS),
         ("sigma_0", np.float64, STRINGS),
         ("sigma_1", np.float64, STRINGS),
+        ("stretch", np.float64, STRINGS),  # EA / (4 L h), tension.py
         # bridge, eqs. (41)-(45)
         ("bridge_x", np.float64),
         ("bridge_first", np.int64, STRINGS),
@@ -50,7 +51,7 @@ MODEL = np.dtype(
         ("B_q", np.float64, MAX_MODES),
         ("C_q", np.float64, MAX_MODES),
         ("C_q_sum", np.float64),
-        ("S_c_inverse", np.float64, (STRINGS, STRINGS)),
+        ("S_c", np.float64, (STRINGS, STRINGS)),
         # bow, eqs. (17)-(25) and (60)
         ("epsilon_0", np.float64),
         ("epsilon_1", np.float64),
@@ -99,10 +100,18 @@ STATE = np.dtype(
         ("string", np.int64, MAX_CONTACTS),
         ("first", np.int64, MAX_CONTACTS),
         ("weights", np.float64, (MAX_CONTACTS, STENCIL)),
+        ("yields", np.float64, MAX_CONTACTS),
+        ("shared_with_bridge", np.float64, MAX_CONTACTS),
         ("at_bridge", np.float64, MAX_CONTACTS),
         ("pull", np.float64, (MAX_CONTACTS, STRINGS)),
-        ("G", np.float64, (MAX_CONTACTS, MAX_CONTACTS)),
-        ("overlapping", np.int64),
+        # the bridge, and tension modulation (tension.py), in the current step
+        ("S_c_inverse", np.float64, (STRINGS, STRINGS)),
+        ("bend", np.float64, (STRINGS, POINTS)),  # Delta u^n
+        ("bend_at", np.float64, MAX_CONTACTS),
+        ("bend_at_bridge", np.float64, STRINGS),
+        ("slack", np.float64, STRINGS),
+        ("give", np.float64, STRINGS),
+        ("T_more", np.float64, STRINGS),
         # forces of the current step, and scratch of the contact solve
         ("f_c", np.float64, STRINGS),
         ("f_b", np.float64),

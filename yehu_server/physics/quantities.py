@@ -50,6 +50,11 @@ class StringQuantities:
         return self.rho * math.pi * self.r**2
 
     @property
+    def EA(self) -> float:
+        """Stiffness against stretching (N)."""
+        return self.E * math.pi * self.r**2
+
+    @property
     def EI(self) -> float:
         """Bending stiffness of a round string (N m^2)."""
         return self.E * math.pi * self.r**4 / 4.0
@@ -175,6 +180,9 @@ class Quantities:
     bridge_x: float = quantity(0.30, "m", 0.05, 1.0, DATA_SET)
     tension_headroom: float = quantity(
         1.06, "1", 1.0, 2.0, "chosen: 50 cents of tuning, or the 46 cents of a 3 N press"
+    )
+    tension_modulation: float = quantity(
+        1.0, "1", 0.0, 1.0, "chosen: share of EA that tightens a stretched string; [Yehu]: 0"
     )
     body: Body = field(default_factory=measured_body)
 

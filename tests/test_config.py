@@ -40,7 +40,7 @@ def test_any_option_may_stand_in_the_file(file):
     assert read.output.latency == 0.01
     assert read.midi.patterns == ["keystep", "breath"]
     assert read.osc == ("127.0.0.1", 9100)
-    assert read.settings == (("/bow/position", 0.1),)
+    assert read.style.settings == (("/bow/position", 0.1),)
     assert "10.1.2.3" in read.allowed
     assert "192.168.0.1" not in read.allowed
     assert read.jitter_ms == 5.0

@@ -15,6 +15,7 @@ import soundfile
 from pitch import cents, hertz, pitch_of
 
 from yehu_server.cli import main
+from yehu_server.playing.style import Style
 from yehu_server.render import Options, Performance, render
 from yehu_server.score.smf import concatenate, read_score
 
@@ -90,7 +91,8 @@ def play(tmp_path, capsys):
 
 def samples(path: Path, **options) -> np.ndarray:
     """What a score sounds like, before it becomes a file."""
-    blocks = Performance(read_score(path), Options(**options)).blocks()
+    style = Style(**{name: options.pop(name) for name in ("seed", "settings") if name in options})
+    blocks = Performance(read_score(path), Options(style=style, **options)).blocks()
     return np.concatenate(list(blocks))
 
 
@@ -336,7 +338,7 @@ def test_the_other_channels_are_not_heard_at_all(play, duet, midi):
 
 def test_a_setting_is_heard(phrase):
     usual = samples(phrase)
-    near = samples(phrase, settings=(("/bow/position", 0.06),))
+    near = samples(phrase, settings=(("/playing/bow_position", 0.06),))
     assert not np.allclose(near[:20_000], usual[:20_000], atol=1e-3)
 
 

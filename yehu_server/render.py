@@ -17,11 +17,9 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Calibration, calibration_for
-from yehu_server.playing.fingering import OpenStrings, RangePolicy
-from yehu_server.playing.intonation import Intonation
-from yehu_server.playing.mapping import DEFAULT, Mapping, load
+from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Performer
+from yehu_server.playing.style import Style
 from yehu_server.score.smf import Score
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
@@ -44,13 +42,8 @@ class Options:
     tail_s: float | None = None  # None: until it is quiet
     gain_db: float = 0.0
     normalize: bool = False
-    mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
-    settings: tuple[tuple[str, float], ...] = ()
-    seed: int = 0
-    policy: RangePolicy = RangePolicy.TRANSPOSE
-    open_strings: OpenStrings = OpenStrings.ALWAYS
+    style: Style = field(default_factory=Style)
     quantities: Quantities = field(default_factory=Quantities)
-    a4: float = 440.0  # Hz
     calibration: Calibration | None = None  # None: found, or measured
     block: int = BLOCK
 
@@ -79,19 +72,14 @@ class Performance:
         self._score = score
         self._options = options
         calibration = options.calibration or calibration_for(
-            float(options.rate), options.quantities, a4=options.a4
+            float(options.rate), options.quantities, a4=options.style.a4
         )
         self.instrument = Instrument(float(options.rate), calibration.tuned(options.quantities))
-        self.performer = Performer(
-            self.instrument,
-            Intonation(calibration, options.quantities),
-            policy=options.policy,
-            seed=options.seed,
-            open_strings=options.open_strings,
-        )
-        self.midi = MidiPlayer(self.performer, options.mapping, _set(options.channels))
+        style = options.style
+        self.performer = style.performer(self.instrument, calibration, options.quantities)
+        self.midi = MidiPlayer(self.performer, style.mapping, _set(options.channels))
         self.instrument.write("/output/gain", options.gain_db, ramp_ms=0.0)
-        for address, value in options.settings:
+        for address, value in style.settings:
             self.performer.write(address, value, hold=True)
         self.score_frames = self.instrument.frames(score.duration_s * 1e3)
 
@@ -168,7 +156,7 @@ def render(
         rms=file.rms,
         notes_played=performance.performer.notes_played,
         notes_out_of_range=performance.performer.notes_out_of_range,
-        policy=options.policy,
+        policy=options.style.policy,
         unconverged_solves=performance.instrument.unconverged_solves,
         lost_states=performance.instrument.lost_states,
         friction_bound=performance.instrument.friction_bound,

@@ -33,9 +33,8 @@ from yehu_server.errors import OutputError
 from yehu_server.files import check_target
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
-from yehu_server.playing.fingering import OpenStrings, RangePolicy
 from yehu_server.playing.live import LivePlayer
-from yehu_server.playing.mapping import DEFAULT, Mapping, load
+from yehu_server.playing.style import Style
 from yehu_server.score.capture import CaptureWriter
 
 log = logging.getLogger(__name__)
@@ -58,12 +57,7 @@ class ServeOptions:
     midi: MidiOptions | None = field(default_factory=MidiOptions)  # None: no MIDI
     osc: Address = ("127.0.0.1", 9000)
     allowed: Allowed = field(default_factory=Allowed)
-    mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
-    settings: tuple[tuple[str, float], ...] = ()
-    a4: float = 440.0  # Hz
-    seed: int = 0
-    policy: RangePolicy = RangePolicy.TRANSPOSE
-    open_strings: OpenStrings = OpenStrings.ALWAYS
+    style: Style = field(default_factory=Style)
     jitter_ms: float | None = None  # None: one block and HANDLING_MS
     record: Path | None = None
     capture: Path | None = None
@@ -98,17 +92,14 @@ class Server:
             undo.callback(self.output.end)
             native.warm_up()  # while the device is looked for
             rate = self.output.find()
-            calibration = calibration_for(rate, a4=options.a4, progress=progress)
+            calibration = calibration_for(rate, a4=options.style.a4, progress=progress)
             quantities = calibration.tuned(Quantities())
             self.instrument = Instrument(rate, quantities, memory=self.output.memory.buffer)
             usual_ms = 1e3 * options.output.blocksize / rate + HANDLING_MS
             self.player = LivePlayer(
                 self.instrument,
-                options.mapping,
+                options.style,
                 calibration=calibration,
-                policy=options.policy,
-                seed=options.seed,
-                open_strings=options.open_strings,
                 delay_ms=usual_ms if options.jitter_ms is None else options.jitter_ms,
             )
             self.handler = OscHandler(self.player, self)
@@ -119,7 +110,7 @@ class Server:
                     check_target(target)
             if options.capture is not None:
                 self.instrument.report_events()
-            for address, value in options.settings:
+            for address, value in options.style.settings:
                 self.player.hold(address, value)
             undo.pop_all()
         self._recorder: Recorder | None = None
@@ -147,7 +138,7 @@ class Server:
                 self._capture = CaptureWriter(
                     self.options.capture,
                     rate=self.instrument.rate,
-                    seed=self.options.seed,
+                    seed=self.options.style.seed,
                     tensions=[silk.T for silk in self.instrument.quantities.strings],
                 )
             if self.options.record is not None:

@@ -26,7 +26,7 @@ from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.errors import OutputError
 from yehu_server.params.table import ENGINE
 from yehu_server.playing import live
-from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.style import Style
 from yehu_server.server import ServeOptions, Server
 
 HOST = "127.0.0.1"
@@ -260,7 +260,7 @@ class Stage:
         self.pace = 1.0  # of the device, where 1 is the rate it promises
         self._began = (clock.now, 0)
         self.player = live.LivePlayer(
-            self.instrument, load(DEFAULT), delay_ms=1e3 * block / self.RATE + 1.0
+            self.instrument, Style(), delay_ms=1e3 * block / self.RATE + 1.0
         )
         self.player.write("/playing/variation", 0.0, frame=0)
         self.desk = Desk()

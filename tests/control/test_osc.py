@@ -256,10 +256,12 @@ def test_a_value_is_asked_for_with_or_without_the_prefix(stage, asked):
 
 
 def test_values_are_asked_for_by_pattern(stage):
-    heard = stage.ask("/get", "/finger/*/p*")
+    heard = stage.ask("/get", "/finger/[1-2]/p*")
     assert {message.address for message in heard} == {
         "/yehu/finger/1/position",
         "/yehu/finger/1/press",
+        "/yehu/finger/2/position",
+        "/yehu/finger/2/press",
     }
 
 
@@ -291,7 +293,7 @@ def test_a_pattern_sets_all_that_it_fits(stage):
     heard = values(stage.ask("/*/speed", 0.25))
     assert heard == {"/yehu/bow/speed": 0.25, "/yehu/playing/speed": 0.25}
     heard = values(stage.ask("/finger/?/pre[a-z]s", 2.0))
-    assert heard == {"/yehu/finger/1/press": 2.0}
+    assert heard == {f"/yehu/finger/{number}/press": 2.0 for number in (1, 2, 3, 4)}
 
 
 @pytest.mark.parametrize("address", ["/bow/[z]*", "/nothing*", "/bow*", "/?", "/bow/[", "/bow/{a"])
@@ -390,7 +392,6 @@ def test_pitch_slides_the_sounding_note_steplessly(stage):
         stage.pass_time(0.01)
     assert {address for _, address, _ in stage.events} == {
         "/finger/1/position",
-        "/finger/1/press",
         "/output/balance",
         "/bow/speed",  # A4 wants it slow
         "/bow/pressure",
@@ -562,7 +563,7 @@ def test_notes_of_bundles_keep_their_distances_beside_notes_of_now(stage, wire):
     for number in range(60):
         stage.tell("/bend", 0.01 * (number % 7))
         stage.pass_time(0.01)
-    frames = stage.frames("/bow/speed")
+    frames = sorted(set(stage.frames("/vibrato/onset")))  # begins anew with each note
     assert len(frames) == 40
     assert {after - before for before, after in itertools.pairwise(frames)} == {480}
     assert stage.late() == 0
@@ -597,7 +598,7 @@ def test_a_bundle_of_the_future_makes_no_other_message_wait(stage, wire):
     assert stage.player.pitch == 72.0
     stage.pass_time(0.05)
     for address in ("/bow/position", "/bow/side"):
-        (frame,) = stage.frames(address)
+        frame = stage.frames(address)[0]
         assert 0 <= frame - arrived <= stage.player.delay + 1
 
 

@@ -17,6 +17,7 @@ from yehu_server.control.midi_names import is_wanted, stable_names
 from yehu_server.control.midi_process import Inputs
 from yehu_server.control.ports import MidiOptions, MidiPorts
 from yehu_server.params.table import ENGINE
+from yehu_server.playing.style import Style
 from yehu_server.server import ServeOptions, Server
 
 RATE, PERIOD = 48000, 1024
@@ -104,7 +105,7 @@ class Witness:
             output=OutputOptions(device="null", rate=RATE),
             midi=MidiOptions(**{"api": "jack", **midi}),
             osc=("127.0.0.1", 0),
-            settings=(("/playing/variation", 0.0),),
+            style=Style(settings=(("/playing/variation", 0.0),)),
         )
         self.server = Server(options, lambda line: self.said.append((time.monotonic(), line)))
         self.server.instrument.report_events()
@@ -237,7 +238,7 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
     assert moves("90 4a 01", "/bow/pressure") == pytest.approx(0.3, abs=0.01)
 
     for mode in ("7b", "78"):  # all notes off, all sound off
-        assert moves("90 4a 60", "/bow/side") != 0.0
+        assert moves("90 4a 60", "/bow/speed") != 0.0
         assert heard.player.pitch == 74.0
         assert moves(f"b0 {mode} 00", "/bow/side") == 0.0
         assert heard.player.pitch is None

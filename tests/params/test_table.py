@@ -93,7 +93,7 @@ def test_the_engine_holds_its_rows_in_the_order_of_the_table():
         ("/bow/sped", "/bow/speed"),
         ("bow/force", "/bow/force"),
         ("/playing/pres", "/playing/press"),
-        ("/finger/position", "/finger/1/position"),
+        ("/finger/2/positon", "/finger/2/position"),
     ],
 )
 def test_a_near_miss_is_told_what_was_meant(wrong, meant):

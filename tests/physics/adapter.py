@@ -84,7 +84,7 @@ def kernel_state(model: Any, state: ref.RefState) -> Any:
 def control_row(controls: ref.RefControls) -> Any:
     """One row of the kernel's controls [shape=(1, columns)]."""
     fingers = np.stack([controls.x_f, controls.press], axis=1).ravel()
-    bow = [controls.F_N, controls.v_b, controls.x_b, controls.f_hammer]
+    bow = [controls.F_N, controls.v_b, controls.x_b, controls.f_hammer, 0.0, 0.0]
     return np.array([[*bow, *fingers]])
 
 

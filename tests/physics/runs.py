@@ -10,7 +10,14 @@ from yehu_server.physics import kernel, layout
 from yehu_server.physics.energy import stored_energy
 from yehu_server.physics.quantities import Quantities
 
-COLUMNS = {"F_N": layout.F_N, "v_b": layout.V_B, "x_b": layout.X_B, "hammer": layout.F_HAMMER}
+COLUMNS = {
+    "F_N": layout.F_N,
+    "v_b": layout.V_B,
+    "x_b": layout.X_B,
+    "hammer": layout.F_HAMMER,
+    "pluck": layout.F_PLUCK,
+    "x_pluck": layout.X_PLUCK,
+}
 PROBES = {
     "bridge_force": layout.BRIDGE_FORCE,
     "bridge_velocity": layout.BRIDGE_VELOCITY,

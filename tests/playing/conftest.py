@@ -8,25 +8,14 @@ from typing import NamedTuple
 import mido
 import pytest
 
-from yehu_server.params.spec import Curve
+from yehu_server.params.spec import Curve, Place
+from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import Bind, Mapping
 from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Performer
 
-ENGINE = {
-    "/bow/speed",
-    "/bow/side",
-    "/bow/force",
-    "/bow/pressure",
-    "/bow/assist",
-    "/bow/position",
-    "/finger/1/position",
-    "/finger/1/press",
-    "/output/gain",
-    "/output/level",
-    "/output/balance",
-    "/body/blend",
-}
+ENGINE = {param.address for param in TABLE if param.place is Place.ENGINE}
+FINGERS = (1, 2, 3, 4)
 
 
 class Move(NamedTuple):
@@ -66,9 +55,30 @@ class Listener:
     def where(self) -> tuple[str, float | None]:
         """The string bowed, and how many semitones above it the finger stops it, if it does."""
         string = {1.0: "F", -1.0: "C", 0.0: "none"}[self["/bow/side"]]
-        if self["/finger/1/press"] == 0.0:
+        if self.press == 0.0:
             return string, None
-        return string, round(self["/finger/1/position"] * 100.0, 6)
+        return string, round(self.place * 100.0, 6)
+
+    @property
+    def finger(self) -> int | None:
+        """The finger that is down, by the last word."""
+        down = [
+            number
+            for number in FINGERS
+            if (moves := self.of(f"/finger/{number}/press")) and moves[-1].value > 0.0
+        ]
+        assert len(down) <= 1
+        return down[0] if down else None
+
+    @property
+    def press(self) -> float:
+        """How hard the finger that is down presses (N)."""
+        return 0.0 if self.finger is None else self[f"/finger/{self.finger}/press"]
+
+    @property
+    def place(self) -> float:
+        """Where it is (m)."""
+        return self[f"/finger/{self.finger}/position"]
 
 
 class Ruler:

@@ -12,8 +12,8 @@ from yehu_server.playing.performer import Key, Performer
 
 def test_the_finger_waits_at_a_pitch_for_the_bow(player, listener):
     assert player.slide(69.5) == 69.5
-    assert listener["/finger/1/position"] == pytest.approx(0.045)
-    assert listener["/finger/1/press"] == 1.5
+    assert listener.place == pytest.approx(0.045)
+    assert listener.press == 1.5
     assert not listener.of("/bow/side")  # nobody bows yet
     assert player.draw(0.2, 0.7) == (0.2, 0.7)
     assert (listener["/bow/speed"], listener["/bow/force"]) == (0.2, 0.7)

@@ -118,11 +118,11 @@ def test_the_bend_of_one_channel_does_not_choose_the_string_for_another(midi, li
 
 def test_channel_pressure_presses_the_finger(midi, listener):
     midi.on(75)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
     midi.touch(127)
-    assert listener["/finger/1/press"] == HARDEST
+    assert listener.press == HARDEST
     midi.touch(0)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
 
 
 def test_channel_pressure_lasts_through_the_next_note(midi, listener):
@@ -130,13 +130,13 @@ def test_channel_pressure_lasts_through_the_next_note(midi, listener):
     midi.touch(127)
     midi.off(75)
     midi.on(77)
-    assert listener["/finger/1/press"] == HARDEST
+    assert listener.press == HARDEST
 
 
 def test_the_pressure_of_another_channel_does_not_press_the_finger(midi, listener):
     midi.on(75, channel=1)
     midi.touch(127, channel=2)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
 
 
 def test_the_pressure_of_one_channel_stays_on_it(midi, listener):
@@ -144,16 +144,16 @@ def test_the_pressure_of_one_channel_stays_on_it(midi, listener):
     midi.touch(127, channel=1)
     midi.off(75, channel=1)
     midi.on(77, channel=2)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
 
 
 def test_poly_pressure_presses_the_finger_of_its_own_note_only(midi, listener):
     midi.on(75)
     midi.on(77)
     midi.send("polytouch", note=75, value=127)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
     midi.send("polytouch", note=77, value=127)
-    assert listener["/finger/1/press"] == HARDEST
+    assert listener.press == HARDEST
 
 
 @pytest.mark.parametrize("after", [75, 77])
@@ -162,7 +162,7 @@ def test_poly_pressure_ends_with_its_note(midi, listener, after):
     midi.send("polytouch", note=75, value=127)
     midi.off(75)
     midi.on(after)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
 
 
 # ---------------------------------------------------------------- controllers
@@ -214,21 +214,21 @@ def test_reset_all_controllers_puts_back_all_but_the_volume(midi, player, listen
     midi.touch(127)
     midi.cc(121, 0)
     assert listener.where() == ("C", 5)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
     assert listener["/bow/speed"] == 0.2
     assert listener["/output/level"] == pytest.approx((64 / 127) ** 2)
     midi.off(77)
     assert player.sounding is None  # the pedal is up
     midi.on(77)
     assert listener.where() == ("C", 5)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
 
 
 def test_reset_all_controllers_ends_poly_pressure(midi, listener):
     midi.on(75)
     midi.send("polytouch", note=75, value=127)
     midi.cc(121, 0)
-    assert listener["/finger/1/press"] == PRESS
+    assert listener.press == PRESS
 
 
 def test_reset_all_controllers_keeps_the_bend_range_but_closes_data_entry(midi, player):
@@ -254,4 +254,4 @@ def test_reset_all_controllers_does_not_bend_the_note_of_another_channel(midi, l
     midi.touch(127, channel=1)
     midi.cc(121, 0, channel=2)
     assert listener.where() == ("C", 7)
-    assert listener["/finger/1/press"] == HARDEST
+    assert listener.press == HARDEST

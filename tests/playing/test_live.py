@@ -13,7 +13,7 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.playing.live import Arrivals, LivePlayer
-from yehu_server.playing.mapping import load
+from yehu_server.playing.style import Style
 
 RATE = 48000.0
 INDEX = {slot: address for address, slot in SLOT.items()}
@@ -28,7 +28,7 @@ def instrument() -> Instrument:
 
 @pytest.fixture
 def live(instrument) -> LivePlayer:
-    return LivePlayer(instrument, load("keyboard"), delay_ms=3.0)
+    return LivePlayer(instrument, Style(), delay_ms=3.0)
 
 
 def play(instrument: Instrument, frames: int) -> np.ndarray:

@@ -21,8 +21,8 @@ def key(note: int) -> Key:
         ("/bow/side", 0.5, 1.0),
         ("/bow/pressure", 1.1, 0.77),
         ("/bow/assist", 0.3, 0.9),
-        ("/finger/1/position", 0.2, 0.05),
-        ("/finger/1/press", 4.0, 2.2),
+        ("/bow/position", 0.2, 0.13),
+        ("/finger/1/press", 4.0, 0.0),  # the next note has the next finger
     ],
 )
 def test_a_direct_write_takes_one_parameter_over_until_the_next_note(
@@ -47,8 +47,8 @@ def test_a_direct_write_leaves_the_other_parameters_to_the_player(player, listen
     player.write("/playing/press", 2.2)
     player.write("/playing/bend", 1.0)
     player.write("/playing/pressure", 0.9)
-    assert listener["/finger/1/press"] == 2.2
-    assert listener["/finger/1/position"] == pytest.approx(0.04)
+    assert listener.press == 2.2
+    assert listener.place == pytest.approx(0.04)
     assert listener["/bow/pressure"] == 0.9
     assert listener["/bow/speed"] == 0.11
 
@@ -111,11 +111,10 @@ def test_the_next_note_takes_the_level_back_too(player, listener):
     assert listener["/output/level"] == pytest.approx(0.0625)
 
 
-@pytest.mark.parametrize("address", ["/bow/position", "/output/gain"])
-def test_what_the_player_never_moves_stays_as_written(player, listener, address):
-    player.write(address, 0.3)
+def test_what_the_player_never_moves_stays_as_written(player, listener):
+    player.write("/output/gain", 0.3)
     player.note_on(key(75))
-    assert [move.value for move in listener.of(address)] == [0.3]
+    assert [move.value for move in listener.of("/output/gain")] == [0.3]
 
 
 def test_a_held_wish_stays_whatever_controllers_say_until_release(player, listener):

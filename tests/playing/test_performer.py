@@ -71,13 +71,39 @@ def test_no_note_is_played_on_the_f_string_where_the_finger_would_crowd_the_bow(
     assert listener.where() == ("C", 14)
 
 
-def test_a_finger_already_down_slides_to_the_next_note_in_the_glide_time(player, listener):
-    player.write("/playing/glide", 70.0)
+def test_a_slurred_note_is_a_step_of_the_next_finger(player, listener):
+    for note, finger in zip((66, 68, 70, 67, 66, 68), (1, 2, 3, 4, 1, 2), strict=True):
+        player.note_on(key(note))
+        assert listener.finger == finger
+        assert listener.of(f"/finger/{finger}/position")[-1].ramp_ms == 0.0
+
+
+def test_a_finger_lands_before_the_one_before_it_leaves(player, listener):
+    player.note_on(key(66))
+    player.note_on(key(68))
+    (landing,) = listener.of("/finger/2/press")
+    lifting = listener.of("/finger/1/press")[-1]
+    assert listener.moves.index(landing) < listener.moves.index(lifting)
+    assert (landing.value, lifting.value) == (1.5, 0.0)
+    assert landing.ramp_ms < lifting.ramp_ms
+
+
+def test_with_portamento_the_finger_slides_in_its_time(player, listener):
+    player.write("/playing/portamento", 1.0)
+    player.write("/playing/portamento_time", 70.0)
     player.note_on(key(66))
     player.note_on(key(68))
     first, second = listener.of("/finger/1/position")
     assert first.ramp_ms == 0.0
     assert second.ramp_ms == 70.0
+    assert listener.where() == ("F", 3)
+
+
+def test_the_same_place_on_the_other_string_takes_the_same_finger(player, listener):
+    player.note_on(key(69))
+    player.note_on(key(76))
+    assert listener.finger == 1
+    assert listener.where() == ("C", 4)
 
 
 # ---------------------------------------------------------------- one note at a time
@@ -147,7 +173,7 @@ def test_all_sound_off_silences_the_instrument_at_its_frame(player, listener):
 def test_after_all_sound_off_the_hand_is_off_the_strings(player, listener):
     player.note_on(key(71))
     player.all_sound_off()
-    assert listener["/finger/1/press"] == 0.0
+    assert listener.press == 0.0
     player.note_on(key(74))  # 9 cm up the F string, where the hand no longer is
     assert listener.where() == ("C", 2)
 
@@ -217,7 +243,7 @@ def test_speed_pressure_and_press_reach_the_sounding_note(player, listener):
     player.write("/playing/press", 3.0)
     assert listener["/bow/speed"] == -0.3
     assert listener["/bow/pressure"] == 0.7
-    assert listener["/finger/1/press"] == 3.0
+    assert listener.press == 3.0
 
 
 def test_the_bow_stays_still_and_the_finger_up_when_no_note_sounds(player, listener):
@@ -232,7 +258,7 @@ def test_the_bow_stays_still_and_the_finger_up_when_no_note_sounds(player, liste
 def test_pressing_harder_does_not_close_an_open_string(player, listener):
     player.note_on(key(65))
     player.write("/playing/press", 5.0)
-    assert listener["/finger/1/press"] == 0.0
+    assert listener.press == 0.0
 
 
 # ---------------------------------------------------------------- bending
@@ -291,9 +317,10 @@ def by_octaves(note: int) -> int:
         (RangePolicy.SKIP, lambda note: note if 65 <= note <= 89 else None),
     ],
 )
-def test_notes_out_of_range_go_where_the_policy_says(listener, ruler, policy, expected):
+def test_notes_out_of_range_go_where_the_policy_says(listener_type, ruler, policy, expected):
     above = {"F": 65, "C": 72}
     for note in range(128):
+        listener = listener_type()
         player = Performer(listener, ruler, policy)
         player.write("/playing/variation", 0.0)
         heard = len(listener.moves)
@@ -358,10 +385,10 @@ def test_a_bend_keeps_the_variation_of_its_note(listener, ruler):
     player = Performer(listener, ruler, seed=5)
     player.write("/playing/variation", 1.0)
     player.note_on(key(75))
-    before = listener["/finger/1/position"]
+    before = listener.place
     player.write("/playing/bend", 1.0)
     player.write("/playing/bend", 0.0)
-    assert listener["/finger/1/position"] == before
+    assert listener.place == before
 
 
 # ---------------------------------------------------------------- level

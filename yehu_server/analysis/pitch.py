@@ -79,7 +79,7 @@ def _refine(like: Array, period: float) -> float:
         reach = 0.25 * period
         start = round(periods * period - reach)
         near = start + int(np.argmax(like[start : round(periods * period + reach) + 1]))
-        if like[near] < CLEAR:
+        if like[near] < CLEAR or len(_peaks(like[: near + 2], near)) == 0:
             break
         period = _vertex(like, near) / periods
         periods = max(periods + 1, int(1.5 * periods))

@@ -6,8 +6,14 @@ import argparse
 import contextlib
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from yehu_server.errors import ParameterError
+
+if TYPE_CHECKING:
+    from yehu_server.playing.style import Style
 
 
 class Parser(argparse.ArgumentParser):
@@ -41,19 +47,35 @@ def add_playing(group: Any) -> None:
     """Add what tells how the instrument is played, live and from files alike."""
     group.add_argument(
         "--mapping",
-        default="keyboard",
         metavar="FILE",
         help="what controllers do: a shipped mapping's name or a file (default: keyboard)",
+    )
+    group.add_argument(
+        "--mpe",
+        action="store_true",
+        help="begin with one MPE zone of 15 member channels; with no --mapping, take mpe",
     )
     group.add_argument(
         "--set",
         action="append",
         default=[],
         metavar="ADDRESS=VALUE",
-        help="hold a parameter at a value, such as /bow/position=0.1; may be repeated",
+        help="hold a parameter at a value, such as /playing/bow_position=0.1; may be repeated",
     )
     group.add_argument(
         "--a4", type=a4, default=440.0, metavar="HZ", help="reference pitch (default: 440)"
+    )
+    group.add_argument(
+        "--tuning",
+        type=Path,
+        metavar="FILE.scl",
+        help="a Scala scale, its first note on C (default: equal temperament)",
+    )
+    group.add_argument(
+        "--keyboard-map",
+        type=Path,
+        metavar="FILE.kbm",
+        help="a Scala keyboard map for it, which fixes its pitch in Hz",
     )
     group.add_argument(
         "--range",
@@ -73,6 +95,28 @@ def add_playing(group: Any) -> None:
         default=0,
         metavar="N",
         help="of the chance in /playing/variation (default: 0)",
+    )
+
+
+def style_of(arguments: argparse.Namespace) -> Style:
+    """What `add_playing` was told. Errors: YehuError for files and values that are wrong."""
+    from yehu_server.params.table import assignment
+    from yehu_server.playing.fingering import OpenStrings, RangePolicy
+    from yehu_server.playing.mapping import DEFAULT, MPE, load
+    from yehu_server.playing.style import Style
+    from yehu_server.playing.tuning import EQUAL, read_tuning
+
+    if arguments.keyboard_map is not None and arguments.tuning is None:
+        raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
+    mapping = load(arguments.mapping or (MPE if arguments.mpe else DEFAULT))
+    return Style(
+        mapping=replace(mapping, mpe=mapping.mpe or arguments.mpe),
+        settings=tuple(assignment(text) for text in arguments.set),
+        a4=arguments.a4,
+        tuning=read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL,
+        policy=RangePolicy(arguments.range),
+        open_strings=OpenStrings(arguments.open_strings),
+        seed=arguments.seed,
     )
 
 

@@ -19,6 +19,7 @@ from yehu_server.cli.arguments import (
     decibels,
     progress_bar,
     seconds,
+    style_of,
     whole,
 )
 
@@ -27,7 +28,7 @@ examples:
   yehu-server render tune.mid -o tune.wav
   yehu-server render tune.mid -o tune.flac --rate 48000 --normalize
   yehu-server render suite-1.mid suite-2.mid -o suite.wav --channel 1
-  yehu-server render tune.mid -o close.wav --set /bow/position=0.08 --gain-db 6
+  yehu-server render tune.mid -o close.wav --set /playing/bow_position=0.08 --gain-db 6
 """
 
 
@@ -99,12 +100,9 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.audio.file import format_of
     from yehu_server.engine.native import warm_up
     from yehu_server.files import check_target
-    from yehu_server.params.table import assignment
     from yehu_server.physics.grid import check_rate
     from yehu_server.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibration import calibration_for
-    from yehu_server.playing.fingering import OpenStrings, RangePolicy
-    from yehu_server.playing.mapping import load
     from yehu_server.render import Options, render
     from yehu_server.score.smf import concatenate, read_score
 
@@ -119,12 +117,7 @@ def run(arguments: argparse.Namespace) -> int:
         tail_s=arguments.tail,
         gain_db=arguments.gain_db,
         normalize=arguments.normalize,
-        mapping=load(arguments.mapping),
-        settings=tuple(assignment(text) for text in arguments.set),
-        a4=arguments.a4,
-        seed=arguments.seed,
-        policy=RangePolicy(arguments.range),
-        open_strings=OpenStrings(arguments.open_strings),
+        style=style_of(arguments),
         quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
     )
     score = concatenate([read_score(path) for path in arguments.midi])
@@ -134,7 +127,9 @@ def run(arguments: argparse.Namespace) -> int:
         warm_up()
     with progress_bar(arguments, "calibrating", "notes") as progress:
         rate = float(options.rate)
-        calibration = calibration_for(rate, options.quantities, a4=options.a4, progress=progress)
+        calibration = calibration_for(
+            rate, options.quantities, a4=options.style.a4, progress=progress
+        )
     options = replace(options, calibration=calibration)
     with progress_bar(arguments, "rendering") as progress:
         summary = render(score, arguments.output, options, progress)

@@ -22,6 +22,7 @@ from yehu_server.cli.arguments import (
     compiling,
     positive,
     progress_bar,
+    style_of,
     whole,
     within,
 )
@@ -207,10 +208,7 @@ def _options(arguments: argparse.Namespace) -> Any:
     from yehu_server.audio.output import OutputOptions
     from yehu_server.control.addresses import Allowed, parse_address
     from yehu_server.control.ports import MidiOptions
-    from yehu_server.params.table import assignment
     from yehu_server.physics.grid import check_rate
-    from yehu_server.playing.fingering import OpenStrings, RangePolicy
-    from yehu_server.playing.mapping import load
     from yehu_server.server import ServeOptions
 
     if arguments.rate is not None:
@@ -228,12 +226,7 @@ def _options(arguments: argparse.Namespace) -> Any:
         else None,
         osc=parse_address(arguments.osc, "127.0.0.1", 9000),
         allowed=Allowed(arguments.osc_allow),
-        mapping=load(arguments.mapping),
-        settings=tuple(assignment(text) for text in arguments.set),
-        a4=arguments.a4,
-        seed=arguments.seed,
-        policy=RangePolicy(arguments.range),
-        open_strings=OpenStrings(arguments.open_strings),
+        style=style_of(arguments),
         jitter_ms=arguments.jitter_buffer,
         record=arguments.record,
         capture=arguments.capture,

@@ -14,15 +14,30 @@ import numpy as np
 
 from yehu_server.jit import compiled
 from yehu_server.params.table import ENGINE, SLOT
-from yehu_server.physics.layout import F_HAMMER, F_N, FINGER_CONTROLS, STRINGS, V_B, X_B
+from yehu_server.physics.layout import (
+    CONTROLS_PER_FINGER,
+    F_HAMMER,
+    F_N,
+    F_PLUCK,
+    FINGER_CONTROLS,
+    MAX_FINGERS,
+    STRINGS,
+    V_B,
+    X_B,
+    X_PLUCK,
+)
 from yehu_server.physics.quantities import Quantities
 
 Array = Any
 
 SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 FORCE, SHARE, ASSIST = SLOT["/bow/force"], SLOT["/bow/pressure"], SLOT["/bow/assist"]
-POSITION = SLOT["/bow/position"]
-FINGER, PRESS = SLOT["/finger/1/position"], SLOT["/finger/1/press"]
+POSITION, TREMOLO = SLOT["/bow/position"], SLOT["/bow/tremolo"]
+# Position and press take turns, finger by finger.
+FINGERS = SLOT["/finger/1/position"]
+DEPTH, ROCK = SLOT["/vibrato/depth"], SLOT["/vibrato/press"]
+RATE, ONSET = SLOT["/vibrato/rate"], SLOT["/vibrato/onset"]
+PLUCK, PLUCK_POSITION = SLOT["/pluck/force"], SLOT["/pluck/position"]
 FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
 GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
 BALANCE, BLEND = SLOT["/output/balance"], SLOT["/body/blend"]
@@ -36,7 +51,14 @@ PARK_AFTER_S = 0.03
 # A fast bow needs a larger share of Schelleng's limit, or notes jump to the octave. Measured
 # over F4 to F6: shares from 0.35 hold at 0.12 m/s, from 0.5 at 0.2, from 0.75 at 0.3.
 FAST_SHARE, FAST = 0.6, 0.35  # m/s
+LET_GO_S = 0.3e-3  # in which a plucked string slips off the fingertip
 FOLLOW_S = 0.01  # how fast the bow follows the sounding length
+ONSET_FROM = 0.4  # share of /vibrato/onset before there is any
+# A tremolo stroke is at full speed for most of its time: the sine that turns the bow, cut off.
+TURN = 3.0
+LAST_STROKES = 12.0  # a second, that bring the bow back to its direction as tremolo ends
+
+FORWARD = 0.25  # turns at which the bow goes as speed says
 
 GESTURE = np.dtype(
     [
@@ -46,12 +68,16 @@ GESTURE = np.dtype(
         ("slope", np.float64, SLOTS),
         ("remaining", np.int64, SLOTS),
         ("sounding_from", np.float64),  # m; where the sounding length begins
-        ("finger_up", np.int64),  # frames since the finger was lifted
+        ("finger_up", np.int64, MAX_FINGERS),  # frames since each was lifted
+        ("second", np.float64),  # frames
+        ("vibrato", np.float64),  # turns of the vibrato, and of the tremolo
+        ("tremolo", np.float64),
         ("follow", np.float64),
         ("park_after", np.int64),
         ("bridge_x", np.float64),
         # 2 Z / (mu_S - mu_C) of each string: Schelleng's upper limit is this v / beta.
         ("schelleng", np.float64, STRINGS),
+        ("let_go", np.int64),  # frames
         ("silence_in", np.int64),  # frames until the model is put to rest; 0: not asked
     ],
     align=True,
@@ -66,6 +92,9 @@ def prepare_gesture(quantities: Quantities, rate: float) -> Any:
     gesture["follow"] = 1.0 - math.exp(-1.0 / (FOLLOW_S * rate))
     gesture["park_after"] = round(PARK_AFTER_S * rate)
     gesture["finger_up"] = gesture["park_after"]
+    gesture["second"] = rate
+    gesture["let_go"] = max(1, round(LET_GO_S * rate))
+    gesture["tremolo"] = FORWARD
     gesture["bridge_x"] = quantities.bridge_x
     grip = quantities.bow.mu_S - quantities.bow.mu_C
     for i, string in enumerate(quantities.strings):
@@ -76,12 +105,15 @@ def prepare_gesture(quantities: Quantities, rate: float) -> Any:
 
 def settle(gesture: Any) -> None:
     """Let a record of dtype GESTURE be where it is bound, with nothing on its way; in place."""
+    gesture["target"][PLUCK] = 0.0
     gesture["value"] = gesture["target"]
     gesture["remaining"] = 0
     gesture["silence_in"] = 0
-    is_down = gesture["value"][PRESS] > 0.0
-    gesture["finger_up"] = 0 if is_down else gesture["park_after"]
-    gesture["sounding_from"] = gesture["value"][FINGER] if is_down else 0.0
+    hand = gesture["value"][FINGERS : FINGERS + CONTROLS_PER_FINGER * MAX_FINGERS].reshape(-1, 2)
+    is_down = hand[:, 1] > 0.0
+    gesture["finger_up"] = np.where(is_down, 0, gesture["park_after"])
+    gesture["sounding_from"] = hand[is_down, 0].max(initial=0.0)
+    gesture["tremolo"] = FORWARD
 
 
 @compiled
@@ -122,6 +154,69 @@ def level(g: Any) -> float:
 
 
 @compiled
+def vibrate(g: Any) -> float:
+    """Where the vibrato is, from -1 to 1, as far as it has come in; and turn it on."""
+    if g.value[DEPTH] == 0.0 and g.value[ROCK] == 0.0:
+        g.vibrato = 0.0
+        return 0.0
+    g.vibrato += g.value[RATE] / g.second
+    g.vibrato -= math.floor(g.vibrato)
+    come = max(0.0, (g.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM))
+    return float(come * come * (3.0 - 2.0 * come) * math.sin(2.0 * math.pi * g.vibrato))
+
+
+@compiled
+def turn_bow(g: Any) -> float:
+    """Share of its speed that the bow has in a tremolo stroke, with its direction."""
+    strokes = g.value[TREMOLO]
+    if strokes == 0.0:
+        if g.tremolo == FORWARD:
+            return 1.0
+        strokes = LAST_STROKES
+    before = g.tremolo
+    g.tremolo += 0.5 * strokes / g.second
+    if g.value[TREMOLO] == 0.0 and before < FORWARD <= g.tremolo:
+        g.tremolo = FORWARD
+    g.tremolo -= math.floor(g.tremolo)
+    return float(max(-1.0, min(1.0, TURN * math.sin(2.0 * math.pi * g.tremolo))))
+
+
+@compiled
+def stop_strings(g: Any, control: Array) -> None:
+    """Place the fingers, with their vibrato; let the sounding length follow the nearest one."""
+    rocking = vibrate(g)
+    stretch, harder = 1.0, 1.0
+    if rocking != 0.0:
+        stretch = 2.0 ** (-rocking * g.value[DEPTH] / 1200.0)
+        harder = 1.0 + rocking * g.value[ROCK]
+    stop = 0.0
+    for j in range(MAX_FINGERS):
+        slot, column = FINGERS + 2 * j, FINGER_CONTROLS + CONTROLS_PER_FINGER * j
+        x_f, press = g.value[slot], g.value[slot + 1]
+        if press > 0.0:
+            g.finger_up[j] = 0
+            stop = max(stop, x_f)
+            if rocking != 0.0:
+                x_f = g.bridge_x - (g.bridge_x - x_f) * stretch
+                press *= harder
+        else:
+            g.finger_up[j] += 1
+            if g.finger_up[j] >= g.park_after:
+                x_f = PARK_X
+        control[column], control[column + 1] = x_f, press
+    g.sounding_from += g.follow * (stop - g.sounding_from)
+
+
+@compiled
+def pluck(g: Any) -> float:
+    """Force (N) on the string that is pulled aside; once it is all there, let go."""
+    force = g.value[PLUCK]
+    if force != 0.0 and g.remaining[PLUCK] == 0:
+        take(g, PLUCK, 0.0, g.let_go, 0)
+    return float(force)
+
+
+@compiled
 def write_controls(g: Any, control: Array) -> None:
     """Turn the parameters of this frame into the kernel's controls.
 
@@ -129,21 +224,17 @@ def write_controls(g: Any, control: Array) -> None:
     F_max = 2 Z v_b / (beta (mu_S - mu_C)) [Schelleng] and a share of it that is the
     pressure and a little more for a fast bow; the side fades it in and out.
     """
-    press = g.value[PRESS]
-    g.finger_up = 0 if press > 0.0 else g.finger_up + 1
-    stop = g.value[FINGER] if press > 0.0 else 0.0
-    g.sounding_from += g.follow * (stop - g.sounding_from)
-
-    speed, beta, side = g.value[SPEED], g.value[POSITION], g.value[SIDE]
+    stop_strings(g, control)
+    speed, beta, side = g.value[SPEED] * turn_bow(g), g.value[POSITION], g.value[SIDE]
     string = 0 if side >= 0.0 else 1
     limit = g.schelleng[string] * abs(speed) / beta
     assist = g.value[ASSIST]
     share = g.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
     force = assist * share * limit + (1.0 - assist) * g.value[FORCE]
+    sounding = g.bridge_x - g.sounding_from
     control[F_N] = side * force
     control[V_B] = speed
-    control[X_B] = g.bridge_x - beta * (g.bridge_x - g.sounding_from)
+    control[X_B] = g.bridge_x - beta * sounding
     control[F_HAMMER] = 0.0
-    parked = g.finger_up >= g.park_after
-    control[FINGER_CONTROLS] = PARK_X if parked else g.value[FINGER]
-    control[FINGER_CONTROLS + 1] = press
+    control[F_PLUCK] = pluck(g)
+    control[X_PLUCK] = g.bridge_x - g.value[PLUCK_POSITION] * sounding

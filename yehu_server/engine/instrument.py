@@ -16,6 +16,7 @@ from yehu_server.params.table import SLOT, find
 from yehu_server.physics import kernel
 from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.grid import check_rate
+from yehu_server.physics.layout import MAX_FINGERS
 from yehu_server.physics.quantities import Quantities
 
 Array = Any
@@ -61,7 +62,7 @@ class Instrument:
             else np.frombuffer(memory, native.RIG, count=1)
         )
         self._address = self._rig.ctypes.data
-        self._rig["model"] = kernel.prepare(self.quantities, rate)
+        self._rig["model"] = kernel.prepare(self.quantities, rate, MAX_FINGERS)
         self._rig["mail"]["budget"] = RING if memory is None else LIVE_BUDGET
         prepare_output(self._rig["output"], rate, channels)
         self.reset()

@@ -11,6 +11,7 @@ from yehu_server.jit import compiled
 from yehu_server.physics.layout import (
     BRIDGE_FORCE,
     ITERATIONS,
+    MAX_FINGERS,
     PRESSURE,
     control_columns,
     probe_columns,
@@ -35,8 +36,8 @@ OUTPUT = np.dtype(
         ("pressure", np.float64),  # input and output of the DC blocker (Pa)
         ("swing", np.float64),
         ("blocker", np.float64),
-        ("controls", np.float64, (CHUNK, control_columns(1))),
-        ("probes", np.float64, (CHUNK, probe_columns(1))),
+        ("controls", np.float64, (CHUNK, control_columns(MAX_FINGERS))),
+        ("probes", np.float64, (CHUNK, probe_columns(MAX_FINGERS))),
         ("gain", np.float64, CHUNK),
         ("blend", np.float64, CHUNK),
     ],

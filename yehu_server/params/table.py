@@ -5,6 +5,24 @@ from __future__ import annotations
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve, Param, Place
 
+FINGERS = (1, 2, 3, 4)
+
+
+def _finger(number: int) -> tuple[Param, Param]:
+    return (
+        Param(
+            f"/finger/{number}/position", "x_f", "m", 0.008, 0.28, 0.05,
+            f"Where finger {number} stops the strings, from the restraining loop.",
+            place=Place.ENGINE, owned=True,
+        ),
+        Param(
+            f"/finger/{number}/press", "-f_ext", "N", 0.0, 10.0, 0.0,
+            f"How hard finger {number} presses; 0 lifts it.",
+            place=Place.ENGINE, smooth_ms=10.0, owned=True,
+        ),
+    )  # fmt: skip
+
+
 TABLE: tuple[Param, ...] = (
     Param(
         "/bow/speed", "v_b", "m/s", -2.0, 2.0, 0.0,
@@ -37,14 +55,40 @@ TABLE: tuple[Param, ...] = (
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
-        "/finger/1/position", "x_f", "m", 0.008, 0.28, 0.05,
-        "Where the finger stops the strings, from the restraining loop.",
+        "/bow/tremolo", "", "1/s", 0.0, 20.0, 0.0,
+        "Strokes a second, back and forth; 0 leaves the bow's direction to speed.",
+        place=Place.ENGINE, owned=True,
+    ),
+    *(row for number in FINGERS for row in _finger(number)),
+    Param(
+        "/vibrato/depth", "", "cents", 0.0, 200.0, 0.0,
+        "How far the fingers that are down rock to either side.",
+        place=Place.ENGINE, smooth_ms=20.0, owned=True,
+    ),
+    Param(
+        "/vibrato/press", "", "1", 0.0, 1.0, 0.0,
+        "How much harder and softer they press in turn, as a share of the press.",
+        place=Place.ENGINE, smooth_ms=20.0, owned=True,
+    ),
+    Param(
+        "/vibrato/rate", "", "Hz", 0.5, 12.0, 5.5,
+        "How often they rock.",
+        place=Place.ENGINE, smooth_ms=20.0, owned=True,
+    ),
+    Param(
+        "/vibrato/onset", "", "1", 0.0, 1.0, 1.0,
+        "How far the vibrato has come in: nothing up to 0.4, then gently to all of it.",
         place=Place.ENGINE, owned=True,
     ),
     Param(
-        "/finger/1/press", "-f_ext", "N", 0.0, 10.0, 0.0,
-        "How hard the finger presses; 0 lifts it.",
-        place=Place.ENGINE, smooth_ms=10.0, owned=True,
+        "/pluck/force", "F_p", "N", -5.0, 5.0, 0.0,
+        "Plucks: pulls a string aside as hard as this, and lets go. Above 0 the inner (F4).",
+        place=Place.ENGINE, smooth_ms=12.0, owned=True,
+    ),
+    Param(
+        "/pluck/position", "", "1", 0.05, 0.9, 0.3,
+        "Where, from the bridge, as a share of the sounding length.",
+        place=Place.ENGINE, owned=True,
     ),
     Param(
         "/output/gain", "", "dB", -60.0, 24.0, 0.0,
@@ -71,16 +115,48 @@ TABLE: tuple[Param, ...] = (
         "From the body's own loudness of each note (0) to notes that are equally loud (1).",
     ),
     Param(
-        "/playing/speed", "", "m/s", 0.03, 0.6, 0.2,
-        "Bow speed of a sounding note, as far as the note bears it.", curve=Curve.EXP,
+        "/playing/dynamics", "", "1", 0.0, 1.0, 1.0,
+        "From nothing, where the bow is lifted, to all that speed and volume give.",
     ),
     Param(
-        "/playing/pressure", "", "1", 0.1, 1.0, 0.4,
-        "Bow force of a note as a share of Schelleng's upper limit.",
+        "/playing/speed", "", "m/s", 0.03, 0.6, 0.2,
+        "Bow speed of a note at full dynamics, as far as the note bears it.", curve=Curve.EXP,
+    ),
+    Param(
+        "/playing/pressure", "", "1", 0.05, 2.0, 0.4,
+        "Bow force for its speed: flautando below 0.25, scratching from about 1 up.",
+    ),
+    Param(
+        "/playing/bow_position", "", "1", 0.05, 0.3, 0.13,
+        "Distance of the bow from the bridge as a share of the sounding length.",
+    ),
+    Param(
+        "/playing/tremolo", "", "1/s", 0.0, 20.0, 0.0,
+        "Strokes a second, back and forth; 0 for one stroke a note.",
+    ),
+    Param(
+        "/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
+        "From 0.5 up notes are plucked, harder with more pressure.",
     ),
     Param(
         "/playing/press", "", "N", 0.3, 6.0, 1.5,
         "How hard the finger presses a stopped note.",
+    ),
+    Param(
+        "/playing/vibrato", "", "cents", 0.0, 100.0, 0.0,
+        "How far the finger rocks to either side.",
+    ),
+    Param(
+        "/playing/vibrato_press", "", "1", 0.0, 1.0, 0.0,
+        "How much harder and softer it presses in turn, as a share of the press.",
+    ),
+    Param(
+        "/playing/vibrato_rate", "", "Hz", 2.0, 10.0, 5.5,
+        "How often it rocks.",
+    ),
+    Param(
+        "/playing/vibrato_delay", "", "ms", 0.0, 3000.0, 500.0,
+        "Time in which the vibrato of a note comes in: none for 0.4 of it, then gently.",
     ),
     Param(
         "/playing/bend", "", "semitones", -48.0, 48.0, 0.0,
@@ -115,8 +191,12 @@ TABLE: tuple[Param, ...] = (
         "Time in which the bow leaves the string at the end of a note.",
     ),
     Param(
-        "/playing/glide", "", "ms", 1.0, 2000.0, 25.0,
-        "Time in which the finger slides from one note to the next.",
+        "/playing/portamento", "", "1", 0.0, 1.0, 0.0,
+        "From 0.5 up the finger slides from note to note; else it steps.",
+    ),
+    Param(
+        "/playing/portamento_time", "", "ms", 5.0, 2000.0, 120.0,
+        "How long such a slide takes.",
     ),
 )  # fmt: skip
 

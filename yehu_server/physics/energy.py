@@ -12,6 +12,7 @@ from typing import Any
 from yehu_server.jit import compiled
 from yehu_server.physics.bow import hair_velocity
 from yehu_server.physics.layout import F_HAMMER, F_N, GHOST, LEVELS, MAX_MODES, STRINGS, V_B
+from yehu_server.physics.pluck import pluck_power
 from yehu_server.physics.stencil import read
 
 Array = Any
@@ -100,6 +101,7 @@ def book(model: Any, s: Any, control: Array, row: Array) -> None:
         bridge_velocity += velocity
         Q += s.q[next_, m]
     power = control[F_HAMMER] * bridge_velocity - s.f_b * control[V_B]
+    power += pluck_power(model, s, control, s.u[next_], s.u[prev])
     for j in range(model.fingers):
         power += s.f_ext[j] * (s.U[next_, j] - s.U[prev, j]) / (2.0 * k)
         for i in range(STRINGS):

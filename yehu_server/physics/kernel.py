@@ -55,6 +55,7 @@ from yehu_server.physics.layout import (
     STRINGS,
     V_B,
 )
+from yehu_server.physics.pluck import pull_aside
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
 from yehu_server.physics.string import advance_strings, prepare_strings, support
@@ -118,8 +119,9 @@ def advance(model: Array, state: Array, controls: Array, probes: Array, ledger: 
     model, state : ndarray [shape=(1,)]
         From `prepare` and `at_rest`; `state` is changed.
     controls : ndarray [shape=(frames, control_columns)]
-        F_N (N, signed), v_b (m/s), x_b (m), hammer force (N), then x_f (m) and press
-        (N, positive) of each finger. Finite: a caller checks what comes from outside.
+        F_N (N, signed), v_b (m/s), x_b (m), hammer force (N), plucking force (N, its sign
+        chooses the string as F_N does) and place (m), then x_f (m) and press (N, positive)
+        of each finger. Finite: a caller checks what comes from outside.
     probes : ndarray [shape=(frames, probe_columns)]
         Written: columns as named in ``layout``.
     ledger : ndarray [shape=(frames, len(LEDGER))] or [shape=(0, 0)]
@@ -153,6 +155,7 @@ def step(m: Any, s: Any, control: Array) -> None:
 
     # Strings and modes free of contacts, eq. (58), then tied together, eqs. (43)-(45).
     advance_strings(m, u_next, u, u_prev)
+    pull_aside(m, s, control, u_next)
     tighten(m, s, u_next, u, u_prev)
     Q = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
     close_bridge(m, s, u_next, Q)

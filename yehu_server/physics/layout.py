@@ -112,6 +112,11 @@ STATE = np.dtype(
         ("slack", np.float64, STRINGS),
         ("give", np.float64, STRINGS),
         ("T_more", np.float64, STRINGS),
+        # where a string is pulled aside (pluck.py)
+        ("x_pluck", np.float64),
+        ("pluck_string", np.int64),
+        ("pluck_first", np.int64),
+        ("pluck_weights", np.float64, STENCIL),
         # forces of the current step, and scratch of the contact solve
         ("f_c", np.float64, STRINGS),
         ("f_b", np.float64),
@@ -142,7 +147,7 @@ STATE = np.dtype(
 )
 
 # Columns of the controls, one row a sample. Fingers follow in pairs (x_f, press).
-F_N, V_B, X_B, F_HAMMER, FINGER_CONTROLS = range(5)
+F_N, V_B, X_B, F_HAMMER, F_PLUCK, X_PLUCK, FINGER_CONTROLS = range(7)
 CONTROLS_PER_FINGER = 2
 
 

@@ -1,4 +1,4 @@
-"""A plucked start: one string let go from a triangle."""
+"""Plucking: a string pulled aside by a force and let go, or let go from a triangle."""
 
 from __future__ import annotations
 
@@ -6,9 +6,38 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.physics.layout import GHOST, POINTS
-from yehu_server.physics.stencil import read
+from yehu_server.jit import compiled
+from yehu_server.physics.layout import F_PLUCK, GHOST, POINTS, X_PLUCK
+from yehu_server.physics.stencil import place_cubic, read, spread
 from yehu_server.physics.string import support
+
+Array = Any
+
+
+@compiled
+def pull_aside(model: Any, s: Any, control: Array, u_next: Array) -> None:
+    """Pull a string aside, towards the finger's side; the force's sign chooses which. Eq. (30)."""
+    force = control[F_PLUCK]
+    if force == 0.0:
+        return
+    i = 0 if force > 0.0 else 1
+    x = control[X_PLUCK]
+    if x != s.x_pluck or i != s.pluck_string:
+        s.x_pluck, s.pluck_string = x, i
+        position = max(1.0, min(x / model.h[i], model.N[i] - 1.0))
+        s.pluck_first = place_cubic(position, model.N[i], s.pluck_weights)
+    spread(u_next[i], s.pluck_first, s.pluck_weights, model.spread[i] * abs(force))
+
+
+@compiled
+def pluck_power(model: Any, s: Any, control: Array, u_next: Array, u_prev: Array) -> float:
+    """Work that the plucking force does in a step (W)."""
+    if control[F_PLUCK] == 0.0:
+        return 0.0
+    i = s.pluck_string
+    travel = read(u_next[i], s.pluck_first, s.pluck_weights)
+    travel -= read(u_prev[i], s.pluck_first, s.pluck_weights)
+    return float(abs(control[F_PLUCK]) * travel / (2.0 * model.k))
 
 
 def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: float) -> None:

@@ -16,11 +16,9 @@ from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import ENGINE, TABLE, find
 from yehu_server.playing.calibration import Calibration
-from yehu_server.playing.fingering import OpenStrings, RangePolicy
-from yehu_server.playing.intonation import Intonation
-from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Key, Performer
+from yehu_server.playing.performer import Key
+from yehu_server.playing.style import Style
 
 ELSEWHERE = -1  # the channel of notes that come from no MIDI port
 
@@ -83,23 +81,17 @@ class LivePlayer:
     def __init__(
         self,
         instrument: Instrument,
-        mapping: Mapping,
+        style: Style,
         *,
         calibration: Calibration | None = None,
-        policy: RangePolicy = RangePolicy.TRANSPOSE,
-        seed: int = 0,
-        open_strings: OpenStrings = OpenStrings.ALWAYS,
         delay_ms: float,
     ) -> None:
         self.instrument = instrument
         self.delay = instrument.frames(delay_ms)
         self._turn = threading.RLock()
         self._targets = Targets(instrument)
-        intonation = Intonation(calibration, instrument.quantities)
-        self._performer = Performer(
-            self._targets, intonation, policy=policy, seed=seed, open_strings=open_strings
-        )
-        self._midi = MidiPlayer(self._performer, mapping)
+        self._performer = style.performer(self._targets, calibration, instrument.quantities)
+        self._midi = MidiPlayer(self._performer, style.mapping)
         self._decided = 0  # the latest frame of a decision
         self._written = 0  # and of anything
 
@@ -207,8 +199,7 @@ class LivePlayer:
         """The same, and put every parameter back to its default."""
         with self._turn:
             frame = self._in_order(max(frame, self._written))
-            for param in sorted(TABLE, key=lambda param: param.place is Place.ENGINE):
-                self._midi.write(param.address, param.default, frame=frame)
+            self._midi.begin_again(frame=frame)
             self.panic(frame=frame)
 
 

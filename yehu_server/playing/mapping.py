@@ -17,10 +17,12 @@ from yehu_server.params.spec import Curve, Place
 from yehu_server.params.table import find
 
 SOURCES = ("bend", "pressure", "poly-pressure", "velocity")
-# Data entry, sustain, RPN and NRPN, channel mode messages: see messages.py.
-RESERVED = {6, 38, 64, *range(96, 102), *range(120, 128)}
+# Data entry, RPN and NRPN, channel mode messages: see messages.py.
+# Sustain (64) has its meaning unless a mapping gives it another.
+RESERVED = {6, 38, *range(96, 102), *range(120, 128)}
 _CC = re.compile(r"cc (0|[1-9][0-9]{0,2})")
-DEFAULT = "keyboard"
+DEFAULT, MPE = "keyboard", "mpe"
+ENTRIES = ("name", "mpe", "start", "bind")
 
 
 def mapping_folder() -> Path:
@@ -53,10 +55,16 @@ class Bind:
 
 @dataclass(frozen=True)
 class Mapping:
-    """A named set of binds; several may share a source or a target (the last move counts)."""
+    """A named set of binds; several may share a source or a target (the last move counts).
+
+    `start` are parameters with the values they begin with; `mpe` is whether every port begins
+    as an MPE zone.
+    """
 
     name: str
     binds: tuple[Bind, ...]
+    start: tuple[tuple[str, float], ...] = ()
+    mpe: bool = False
 
     def of(self, source: str) -> tuple[Bind, ...]:
         """The binds of one source."""
@@ -82,9 +90,10 @@ def load(name_or_path: str) -> Mapping:
         raise MappingError(f"{path}: {error.strerror}") from error
     except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
         raise MappingError(f"{path}: not a mapping file ({error})") from error
-    unknown = set(data) - {"name", "bind"}
+    unknown = set(data) - set(ENTRIES)
     if unknown:
-        raise MappingError(f"{path}: unknown entry {min(unknown)!r} (known: name, bind)")
+        known = ", ".join(ENTRIES)
+        raise MappingError(f"{path}: unknown entry {min(unknown)!r} (known: {known})")
     entries = data.get("bind", [])
     if not isinstance(entries, list):
         raise MappingError(f"{path}: write each bind as [[bind]]")
@@ -94,7 +103,26 @@ def load(name_or_path: str) -> Mapping:
             binds.append(_bind(entry))
         except ParameterError as error:
             raise MappingError(f"{path}: bind {number}: {error}") from error
-    return Mapping(str(data.get("name", path.stem)), tuple(binds))
+    mpe = data.get("mpe", False)
+    if not isinstance(mpe, bool):
+        raise MappingError(f"{path}: mpe: expected true or false, got {mpe!r}")
+    try:
+        start = _start(data.get("start", {}))
+    except ParameterError as error:
+        raise MappingError(f"{path}: start: {error}") from error
+    return Mapping(str(data.get("name", path.stem)), tuple(binds), start, mpe)
+
+
+def _start(entries: Any) -> tuple[tuple[str, float], ...]:
+    if not isinstance(entries, dict):
+        raise ParameterError("expected a table of addresses and values")
+    for address, value in entries.items():
+        param = find(address)
+        if param.place is not Place.PLAYER:
+            raise ParameterError(f"{address} is moved by the player; set one under /playing")
+        if param.accept(value) != value:
+            raise ParameterError(f"{address}: {value} is not within {param.range_text}")
+    return tuple((address, float(value)) for address, value in entries.items())
 
 
 def _bind(entry: Any) -> Bind:

@@ -8,16 +8,17 @@ from dataclasses import dataclass, field
 import mido
 
 from yehu_server.params.spec import Place
-from yehu_server.params.table import find
+from yehu_server.params.table import TABLE, find
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
+from yehu_server.playing.zones import Zones
 
 DATA_ENTRY, DATA_ENTRY_FINE, SUSTAIN = 6, 38, 64
 INCREMENT, DECREMENT = 96, 97
 NRPN_FINE, NRPN, RPN_FINE, RPN = 98, 99, 100, 101
 ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
 NULL = (127, 127)
-BEND_RANGE = (0, 0)
+BEND_RANGE, MPE_CONFIGURATION = (0, 0), (0, 6)
 CHANNELS = 16  # of a port
 PERCUSSION = 9  # channel 10, counted from 0
 
@@ -52,7 +53,8 @@ class MidiPlayer:
     Parameters
     ----------
     channels : set of int, optional
-        Channels that play, counted from 0; all but the percussion channel by default.
+        Channels that play, counted from 0; all by default but the percussion channel, unless
+        it is a member of an MPE zone.
     """
 
     def __init__(
@@ -61,12 +63,14 @@ class MidiPlayer:
         self._performer = performer
         performer.expression = self._expression
         self._mapping = mapping
-        self._plays = channels if channels is not None else set(range(16)) - {PERCUSSION}
+        self._plays = channels
+        self._zones: defaultdict[int, Zones] = defaultdict(lambda: Zones(whole=mapping.mpe))
         self._channels: defaultdict[int, Channel] = defaultdict(Channel)
         self._heard: Key | None = None  # whose note sounds, or sounded last
         self._set: dict[str, Moved] = {}  # targets as they were before, or as `write` left them
         self._moves = 0
         self.notes_by_channel: Counter[int] = Counter()
+        self._set_out()
 
     def receive(self, message: mido.Message, *, frame: int | None = None, port: int = 0) -> None:
         """Act on a channel message, or on a system reset; others are ignored.
@@ -76,7 +80,7 @@ class MidiPlayer:
         if message.type == "reset":
             self._start_anew(frame)
             return
-        if not hasattr(message, "channel") or message.channel not in self._plays:
+        if not hasattr(message, "channel") or not self._listens_to(message.channel, port):
             return
         channel, kind = CHANNELS * port + message.channel, message.type
         if kind == "note_on" and message.velocity > 0:
@@ -107,10 +111,38 @@ class MidiPlayer:
             if channel in self._channels:
                 self._performer.all_notes_off(frame=frame, channel=channel)
                 del self._channels[channel]
+        self._zones.pop(port, None)
+
+    def begin_again(self, *, frame: int | None = None) -> None:
+        """Put every parameter to where the mapping begins, and the rest to their defaults."""
+        for param in sorted(TABLE, key=lambda param: param.place is Place.ENGINE):
+            self.write(param.address, param.default, frame=frame)
+        self._set_out(frame)
+
+    def _set_out(self, frame: int | None = None) -> None:
+        for address, value in self._mapping.start:
+            self.write(address, value, frame=frame)
+
+    def _listens_to(self, channel: int, port: int) -> bool:
+        if self._plays is not None:
+            return channel in self._plays
+        return channel != PERCUSSION or self._zones[port].master(channel) is not None
+
+    def _master(self, channel: int) -> int | None:
+        """The master of a virtual channel in an MPE zone."""
+        port, own = divmod(channel, CHANNELS)
+        master = self._zones[port].master(own)
+        return None if master is None else CHANNELS * port + master
+
+    def _zone(self, channel: int) -> list[int]:
+        """A channel and, where it is the master of a zone, its members."""
+        port, own = divmod(channel, CHANNELS)
+        return [channel, *(CHANNELS * port + member for member in self._zones[port].members(own))]
 
     def _start_anew(self, frame: int | None) -> None:
         self._performer.all_notes_off(frame=frame)
         self._channels.clear()
+        self._zones.clear()
         for address, (_, value) in self._set.items():
             self._performer.write(address, value, frame=frame)
 
@@ -119,7 +151,7 @@ class MidiPlayer:
         state = self._channels[key.channel]
         if self._performer.holds(key) and key not in state.let_go and frame is not None:
             state.struck_again[key.note] = frame
-        state.let_go.discard(key)
+        self._forget_let_go(key)
         before, touched = state.velocity.get(key.note), state.touch.pop(key.note, None)
         state.velocity[key.note] = self._stamped(velocity)
         self._remember("velocity")
@@ -134,26 +166,31 @@ class MidiPlayer:
         state = self._channels[key.channel]
         if frame is not None and state.struck_again.pop(key.note, None) == frame:
             return  # the end of the stroke before, which some files write after the new one
+        master = self._master(key.channel)
         if state.sustain:
             state.let_go.add(key)
+        elif master is not None and self._channels[master].sustain:
+            self._channels[master].let_go.add(key)
         else:
             self._performer.notes_off([key], frame=frame)
 
     def _control(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
-        if control == SUSTAIN:
+        if control == SUSTAIN and not self._mapping.of("cc 64"):
             state.sustain = value >= 64
             if not state.sustain:
                 self._performer.notes_off(state.let_go, frame=frame)
                 state.let_go.clear()
         elif control == ALL_SOUND_OFF:
             state.let_go.clear()
-            self._performer.all_sound_off(frame=frame, channel=channel)
+            for each in self._zone(channel):
+                self._performer.all_sound_off(frame=frame, channel=each)
         elif control >= ALL_NOTES_OFF:  # the mode messages 124-127 include it
-            if state.sustain:
-                state.let_go.update(self._performer.held(channel))
-            else:
-                self._performer.all_notes_off(frame=frame, channel=channel)
+            for each in self._zone(channel):
+                if state.sustain:
+                    state.let_go.update(self._performer.held(each))
+                else:
+                    self._performer.all_notes_off(frame=frame, channel=each)
         elif control == RESET_CONTROLLERS:
             self._reset_controllers(channel, frame)
         elif control in (RPN, RPN_FINE):
@@ -179,9 +216,11 @@ class MidiPlayer:
 
     def _data_entry(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
+        if state.rpn == MPE_CONFIGURATION and control == DATA_ENTRY:
+            self._configure_zone(channel, value, frame)
         if state.rpn != BEND_RANGE:
             return
-        semitones, cents = divmod(round(self._bend_range(state) * 100.0), 100)
+        semitones, cents = divmod(round(self._bend_range(channel) * 100.0), 100)
         if control == DATA_ENTRY:
             semitones = value
         elif control == DATA_ENTRY_FINE:
@@ -190,13 +229,32 @@ class MidiPlayer:
             semitones += 1 if control == INCREMENT else -1
         limits = find("/playing/bend_range")
         state.bend_range = limits.accept(semitones + cents / 100.0)
+        master = self._master(channel)
+        if master is not None:  # what one member is told holds for all of them
+            for member in self._zone(master)[1:]:
+                self._channels[member].bend_range = state.bend_range
         self._follow("bend", channel, frame)
 
-    def _bend_range(self, state: Channel) -> float:
-        asked = self._performer.value("/playing/bend_range")
-        if state.bend_range is None or self._performer.keeps("/playing/bend_range"):
-            return asked
-        return state.bend_range
+    def _configure_zone(self, channel: int, members: int, frame: int | None) -> None:
+        """Make or end an MPE zone; its notes end, and its channels begin anew."""
+        port, own = divmod(channel, CHANNELS)
+        affected = self._zone(channel)
+        if not self._zones[port].configure(own, members):
+            return
+        for each in {*affected, *self._zone(channel)}:
+            self._performer.all_notes_off(frame=frame, channel=each)
+            self._channels.pop(each, None)
+        self._channels[channel].rpn = MPE_CONFIGURATION
+
+    def _bend_range(self, channel: int) -> float:
+        if self._performer.keeps("/playing/bend_range"):
+            return self._performer.value("/playing/bend_range")
+        port, own = divmod(channel, CHANNELS)
+        usual = self._zones[port].bend_range(own)
+        told = self._channels[channel].bend_range
+        if told is not None:
+            return told
+        return self._performer.value("/playing/bend_range") if usual is None else usual
 
     def _move(self, source: str, channel: int, place: float, frame: int | None) -> None:
         self._channels[channel].moved[source] = self._stamped(place)
@@ -214,8 +272,8 @@ class MidiPlayer:
         """Let the sounding note follow what its channel just did."""
         self._remember(source)
         heard = self._performer.sounding or self._heard
-        if heard is None or heard.channel == channel:
-            asked = self._asked(channel, heard.note if heard is not None else -1)
+        if heard is None or channel in (heard.channel, self._master(heard.channel)):
+            asked = self._asked(heard.channel if heard else channel, heard.note if heard else -1)
             for bind in self._mapping.of(source):
                 self._performer.write(bind.target, asked[bind.target], frame=frame)
 
@@ -228,25 +286,42 @@ class MidiPlayer:
         """Values of all targets that were ever moved, for a note of this channel.
 
         Of several sources of one target the one moved last counts, a direct write among them;
-        where this channel moved none, the target is as it was before any channel did.
+        where this channel moved none, the target is as it was before any channel did. A note
+        in an MPE zone has its master's bend besides its own, and its master's other moves
+        where it has none of its own.
         """
-        state = self._channels[channel]
         asked = dict(self._set)
+        master = self._master(channel)
         for bind in self._mapping.binds:
-            if bind.source == "poly-pressure":
-                moved = state.touch.get(note)
-            elif bind.source == "velocity":
-                moved = state.velocity.get(note)
-            else:
-                moved = state.moved.get(bind.source)
+            moved = self._moved(bind.source, channel, note)
+            if moved is None and master is not None:
+                moved = self._moved(bind.source, master, note)
             if moved is None or moved[0] < asked.get(bind.target, (0, 0.0))[0]:
                 continue
             when, place = moved
             value = bind.apply(place)
             if bind.source == "bend" and bind.span is None and bind.target == "/playing/bend":
-                value = (2.0 * place - 1.0) * self._bend_range(state)
+                value = self._bend(channel) + (0.0 if master is None else self._bend(master))
             asked[bind.target] = (when, value)
         return {address: value for address, (_, value) in asked.items()}
+
+    def _moved(self, source: str, channel: int, note: float) -> Moved | None:
+        state = self._channels[channel]
+        if source == "poly-pressure":
+            return state.touch.get(note)
+        if source == "velocity":
+            return state.velocity.get(note)
+        return state.moved.get(source)
+
+    def _bend(self, channel: int) -> float:
+        """Bend of a channel (semitones)."""
+        _, place = self._channels[channel].moved.get("bend", (0, 0.5))
+        return (2.0 * place - 1.0) * self._bend_range(channel)
+
+    def _forget_let_go(self, key: Key) -> None:
+        master = self._master(key.channel)
+        for channel in (key.channel, *(() if master is None else (master,))):
+            self._channels[channel].let_go.discard(key)
 
 
 def _restore(moved: dict[float, Moved], note: float, before: Moved | None) -> None:

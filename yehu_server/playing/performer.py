@@ -1,9 +1,6 @@
-"""A player of one instrument: notes and wishes in, moves of bow and finger out.
+"""A player of one instrument: notes and wishes in, moves of bow and fingers out.
 
-Who owns the bow and the fingers: this player, as long as notes sound. A direct write to
-a parameter marked ``owned`` takes that one over until the next note begins or `release`
-is called. Any parameter written with ``hold`` stays as it is until `release`, whatever
-notes and controllers say (decisions/0006).
+Who owns the bow and the fingers: this player, as long as notes sound; see ``ownership``.
 """
 
 from __future__ import annotations
@@ -11,27 +8,16 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
-from yehu_server.playing.bowing import ORDINARY, manner
 from yehu_server.playing.calibration import OPEN_NOTES
 from yehu_server.playing.fingering import Fingering, OpenStrings, RangePolicy, choose, stay
 from yehu_server.playing.intonation import Intonation
-
-
-class Sink(Protocol):
-    """What a player moves: an ``engine.instrument.Instrument``, or a stand-in."""
-
-    def write(
-        self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
-    ) -> float:
-        """Let a parameter of the engine move to a value."""
-
-    def silence(self, *, frame: int | None = None) -> None:
-        """Stop the sound at once."""
+from yehu_server.playing.left_hand import LIFTING_MS, LeftHand
+from yehu_server.playing.ownership import Ownership, Sink
+from yehu_server.playing.right_hand import SLURRED_MS, RightHand
 
 
 @dataclass(frozen=True)
@@ -45,20 +31,25 @@ class Key:
     note: float
 
 
-SILENCED = ("/bow/speed", "/bow/side", "/finger/1/press")
-# A finger that is up may be put elsewhere at once; one that is down slides.
 BEND_RAMP_MS = find("/playing/bend").smooth_ms
-LANDING_MS = 5.0
-CROSSING_MS = 20.0  # from one string to the other
+TURNED_ON = 0.5  # from which value on a switch is on
 # A loud note before a soft one has to die away before it may be turned up.
 RISING_MS, FALLING_MS = 90.0, 15.0
+# The power of dynamics that the level follows: with the slower bow 0.5 is some 12 dB below 1,
+# 0.1 some 35. By ear.
+SWELL = 1.5
 # Standard deviations at full variation. By ear.
 VARIED_SHARE = 0.1  # of bow speed and force
 VARIED_CENTS = 6.0
 
 
+def as_it_is(note: float) -> float | None:
+    """The tuning of a key that sounds its own number."""
+    return note
+
+
 class Performer:
-    """Plays one note at a time, the last one; see the module's docstring for ownership.
+    """Plays one note at a time, the last one.
 
     Parameters
     ----------
@@ -70,6 +61,8 @@ class Performer:
         When C5 is played open.
     seed : int
         Of the variation between notes; the same seed plays the same.
+    tuning : callable
+        The pitch of a key, both as fractional MIDI notes; None for a key without one.
 
     Attributes
     ----------
@@ -85,33 +78,36 @@ class Performer:
         policy: RangePolicy = RangePolicy.TRANSPOSE,
         seed: int = 0,
         open_strings: OpenStrings = OpenStrings.ALWAYS,
+        tuning: Callable[[float], float | None] = as_it_is,
     ) -> None:
-        self._sink = sink
+        self._own = Ownership(sink)
+        self._value = {p.address: p.default for p in TABLE if p.place is Place.PLAYER}
+        self._left = LeftHand(self._own, self._value.__getitem__)
+        self._right = RightHand(self._own, self._value.__getitem__)
         self._open_strings = open_strings
         self._intonation = intonation or Intonation()
         self._policy = policy
+        self._tuning = tuning
         self._chance = random.Random(seed)  # noqa: S311 - for music, not secrets
-        self._deviation = (0.0, 0.0, 0.0)  # of this note: speed, pressure, pitch; normal
-        self._value = {p.address: p.default for p in TABLE if p.place is Place.PLAYER}
+        self._stray = 0.0  # of this note from its pitch, as a normal deviation
         self._held: dict[Key, float] = {}  # in the order pressed; values are fitted notes
         self._sounding: Key | None = None
-        self._fingering: Fingering | None = None
-        self._direction = -1.0  # so that the first stroke is a down-bow, v_b > 0
         self._began: int | None = None  # the frame of the stroke of the bow
-        self._taken: set[str] = set()
-        self._kept: set[str] = set()
         self._by_hand = False  # the bow is drawn by `draw`
-        # The bow's relative position as asked, and as the note has it.
-        self._beta = self._beta_now = find("/bow/position").default
         self._balance = 0.0  # dB
-        self._bowing = ORDINARY  # how the sounding pitch is bowed
         # What a parameter of the player moves while a note sounds.
         self._followers: dict[str, tuple[Callable[[int | None], None], ...]] = {
             "/playing/bend": (self._follow_bend,),
             "/playing/press": (self._press,),
+            "/playing/dynamics": (self._draw, self._follow_bend, self._set_level),
             # A faster bow pulls the pitch.
-            "/playing/speed": (lambda frame: self._draw(frame, None), self._follow_bend),
+            "/playing/speed": (self._draw, self._follow_bend),
             "/playing/pressure": (self._lean,),
+            "/playing/bow_position": (self._lean,),
+            "/playing/tremolo": (self._draw,),
+            "/playing/vibrato": (self._left.rock,),
+            "/playing/vibrato_press": (self._left.rock,),
+            "/playing/vibrato_rate": (self._left.rock,),
             "/playing/assist": (self._set_assist,),
             "/playing/volume": (self._set_level,),
             "/playing/expression": (self._set_level,),
@@ -120,6 +116,8 @@ class Performer:
         self.expression: Callable[[Key], Mapping[str, float]] = lambda _key: {}
         self.notes_played = 0
         self.notes_out_of_range = 0
+
+    # -- parameters --------------------------------------------------------------------------
 
     @property
     def pitch(self) -> float | None:
@@ -148,16 +146,15 @@ class Performer:
         param = find(address)
         accepted = param.accept(value)
         if param.place is Place.ENGINE:
-            if address == "/bow/position":  # what later notes start from
-                self._beta = self._beta_now = accepted
             if param.owned:
-                (self._kept if hold else self._taken).add(address)
+                self._own.give_up(address, hold=hold)
                 if address == "/bow/force":  # raw newtons are heard only without assist
-                    self._take_over("/bow/assist", 0.0, frame, hold)
-            return self._sink.write(address, accepted, frame=frame)
+                    self._own.give_up("/bow/assist", hold=hold)
+                    self._own.sink.write("/bow/assist", 0.0, frame=frame)
+            return self._own.sink.write(address, accepted, frame=frame)
         if hold:
-            self._kept.add(address)
-        elif address in self._kept:
+            self._own.give_up(address, hold=True)
+        elif self._own.keeps(address):
             return self._value[address]
         if self._value[address] == accepted:
             return accepted
@@ -168,13 +165,14 @@ class Performer:
 
     def release(self) -> None:
         """Give every parameter that was taken over back to the player."""
-        self._taken.clear()
-        self._kept.clear()
+        self._own.release()
         self._by_hand = False
 
     def keeps(self, address: str) -> bool:
         """Whether a parameter was written with ``hold``."""
-        return address in self._kept
+        return self._own.keeps(address)
+
+    # -- notes -------------------------------------------------------------------------------
 
     def holds(self, key: Key) -> bool:
         """Whether a key is held."""
@@ -190,13 +188,14 @@ class Performer:
         Keys struck at one frame are one stroke, of the last of them.
         Returns whether there is such a note.
         """
-        note = self._policy.fit(key.note)
-        if note != key.note:
+        tuned = self._tuning(key.note)
+        note = None if tuned is None else self._policy.fit(tuned)
+        if note is None or note != tuned:
             self.notes_out_of_range += 1
         if note is None:
             return False
         self.notes_played += 1
-        self._taken.clear()
+        self._own.take_back()
         self._by_hand = False
         legato = self._sounding is not None and self._sounding != key
         at_once = legato and frame is not None and frame == self._began
@@ -220,7 +219,8 @@ class Performer:
         if self._held:
             self._start(next(reversed(self._held)), frame, legato=True)
         else:
-            self._stop(frame)
+            self._sounding = None
+            self._right.lift(self._value["/playing/release"], frame)
 
     def all_notes_off(self, *, frame: int | None = None, channel: int | None = None) -> None:
         """End every note, or every note of one channel, as if the keys were let go."""
@@ -231,12 +231,13 @@ class Performer:
         """The same, and what still rings ends at once, unless another channel's note sounds."""
         self.all_notes_off(frame=frame, channel=channel)
         if self._sounding is None:
-            self._fingering = None  # the hand comes off
             self._by_hand = False
-            self._taken -= set(SILENCED)
-            for address in SILENCED:
-                self._move(address, 0.0, frame, LANDING_MS)
-            self._sink.silence(frame=frame)
+            self._own.take_back("/bow/speed", "/bow/side")
+            self._right.lift(LIFTING_MS, frame)
+            self._left.leave(frame)
+            self._own.sink.silence(frame=frame)
+
+    # -- by hand -----------------------------------------------------------------------------
 
     def slide(self, pitch: float, *, frame: int | None = None) -> float:
         """Move the finger to a pitch (fractional MIDI note); return the one it takes.
@@ -248,10 +249,9 @@ class Performer:
             self._held[self._sounding] = pitch
             self._follow_bend(frame)
             return pitch
-        fingering = self._choose(pitch, self._fingering)
-        self._place(fingering, frame, BEND_RAMP_MS)
+        self._left.stop(self._choose(pitch), frame, slide_ms=BEND_RAMP_MS)
         if self._by_hand:
-            self._sink.write("/bow/side", self._side, frame=frame, ramp_ms=CROSSING_MS)
+            self._own.sink.write("/bow/side", self._left.side, frame=frame)
         return pitch
 
     def draw(self, speed: float, force: float, *, frame: int | None = None) -> tuple[float, float]:
@@ -263,7 +263,7 @@ class Performer:
         speed = self.write("/bow/speed", speed, frame=frame)
         force = self.write("/bow/force", force, frame=frame)
         self._by_hand = speed != 0.0 or force != 0.0
-        side = (self._side or 1.0) if self._by_hand else 0.0
+        side = (self._left.side or 1.0) if self._by_hand else 0.0
         self.write("/bow/side", side, frame=frame)
         return speed, force
 
@@ -271,142 +271,95 @@ class Performer:
         """Lift the bow where it is drawn by hand, and take it back."""
         if self._by_hand:
             for address in ("/bow/speed", "/bow/side"):
-                self._sink.write(address, 0.0, frame=frame)
+                self._own.sink.write(address, 0.0, frame=frame)
         self.release()
 
+    # -- what a note takes -------------------------------------------------------------------
+
     def _start(self, key: Key, frame: int | None, *, legato: bool, at_once: bool = False) -> None:
-        was = self._fingering
         self._sounding = key
         for address, wish in self.expression(key).items():
-            if address not in self._kept:
+            if not self._own.keeps(address):
                 self._value[address] = find(address).accept(wish)
-        self._deviation = (
-            self._chance.gauss(0.0, 1.0),
-            self._chance.gauss(0.0, 1.0),
-            self._chance.gauss(0.0, 1.0),
-        )
-        if not legato:
-            self._direction = -self._direction
-        fingering = self._choose(self._pitch, was)
-        self._place(fingering, frame, 0.0 if at_once else self._value["/playing/glide"])
-        slurred = legato and not at_once
-        crossing = slurred and was is not None and was.side != self._side
-        attack = self._value["/playing/attack"]
+        hurry, weight, self._stray = (self._chance.gauss(0.0, 1.0) for _ in range(3))
+        varied = self._value["/playing/variation"] * VARIED_SHARE
+        self._right.hurry, self._right.weight = 1.0 + varied * hurry, 1.0 + varied * weight
+        slide_ms = None
+        if at_once:
+            slide_ms = 0.0
+        elif self._is_on("/playing/portamento"):
+            slide_ms = self._value["/playing/portamento_time"]
+        pitch = self._pitch
+        self._left.stop(self._choose(pitch), frame, pitch=pitch, slide_ms=slide_ms)
+        self._left.rock(frame)
+        self._left.begin_rocking(frame)
         self._set_assist(frame)
         self._set_level(frame)
         self._even_out(frame)
         self._lean(frame)
-        self._move("/bow/side", self._side, frame, CROSSING_MS if crossing else attack / 4.0)
-        self._draw(frame, self._value["/playing/glide"] if slurred else attack)
+        if not legato:
+            self._right.turn()
+        if self._is_on("/playing/pizzicato"):
+            self._right.pluck(self._left.side, frame)
+        else:
+            slurred = legato and not at_once
+            self._draw(frame, SLURRED_MS if slurred else self._value["/playing/attack"])
 
-    def _choose(self, pitch: float, hand: Fingering | None) -> Fingering:
-        speed = self._speed_at(pitch)
-        return choose(pitch, hand, self._intonation, speed, self._open_strings)
-
-    def _stop(self, frame: int | None) -> None:
-        self._sounding = None
-        release = self._value["/playing/release"]
-        self._move("/bow/speed", 0.0, frame, release)
-        self._move("/bow/side", 0.0, frame, release)
-
-    @property
-    def _side(self) -> float:
-        return self._fingering.side if self._fingering else 0.0
+    def _choose(self, pitch: float) -> Fingering:
+        speed = self._right.speed_at(pitch)
+        return choose(pitch, self._left.fingering, self._intonation, speed, self._open_strings)
 
     @property
     def _pitch(self) -> float:
         """Fractional MIDI note the finger aims at."""
         note = self._held[self._sounding] if self._sounding is not None else 0
-        stray = self._varied(2, VARIED_CENTS / 100.0)
+        stray = self._value["/playing/variation"] * self._stray * VARIED_CENTS / 100.0
         return note + self._value["/playing/bend"] + stray
 
-    def _varied(self, which: int, spread: float) -> float:
-        return self._value["/playing/variation"] * spread * self._deviation[which]
+    def _is_on(self, address: str) -> bool:
+        return self._value[address] >= TURNED_ON
 
     def _set_assist(self, frame: int | None) -> None:
-        self._move("/bow/assist", self._value["/playing/assist"], frame)
+        self._own.move("/bow/assist", self._value["/playing/assist"], frame)
 
     def _set_level(self, frame: int | None) -> None:
         level = (self._value["/playing/volume"] * self._value["/playing/expression"]) ** 2
-        self._move("/output/level", level, frame)
+        level *= self._value["/playing/dynamics"] ** SWELL
+        self._own.move("/output/level", level, frame)
 
-    def _speed_at(self, pitch: float) -> float:
-        """Bow speed (m/s) for a pitch: as wished, as far as the note bears it."""
-        wish = self._value["/playing/speed"] * (1.0 + self._varied(0, VARIED_SHARE))
-        return min(wish, manner(pitch).top_speed)
-
-    def _adapt(self, frame: int | None) -> None:
-        """Bow a pitch that has slid as it wants to be bowed."""
-        if manner(self._pitch) is not self._bowing:
-            self._lean(frame)
-            self._draw(frame, None)
+    def _draw(self, frame: int | None, ramp_ms: float | None = None) -> None:
+        if self._sounding is not None and not self._is_on("/playing/pizzicato"):
+            self._right.draw(self._pitch, self._left.side, frame, ramp_ms)
 
     def _lean(self, frame: int | None) -> None:
-        wish = self._value["/playing/pressure"] * (1.0 + self._varied(1, VARIED_SHARE))
-        if self._sounding is None:
-            self._move("/bow/pressure", wish, frame)
-            return
-        self._bowing = manner(self._pitch)
-        self._move("/bow/pressure", self._bowing.pressure(wish), frame)
-        position = self._beta * self._bowing.farther
-        if position != self._beta_now and self._is_ours("/bow/position"):
-            self._beta_now = position
-            self._move("/bow/position", position, frame)
+        self._right.lean(None if self._sounding is None else self._pitch, frame)
+
+    def _press(self, frame: int | None) -> None:
+        self._left.press(frame, None if self._sounding is None else self._pitch)
 
     def _even_out(self, frame: int | None) -> None:
         """Let the note be as loud as the others, as far as asked."""
-        if self._sounding is None or self._fingering is None:
+        fingering = self._left.fingering
+        if self._sounding is None or fingering is None:
             return
-        pitch, string = self._pitch, self._fingering.string
-        heard = float(OPEN_NOTES[string]) if self._fingering.position is None else pitch
-        speed, wish = self._speed_at(pitch), self._value["/playing/speed"]
+        pitch, string = self._pitch, fingering.string
+        heard = float(OPEN_NOTES[string]) if fingering.position is None else pitch
+        speed, wish = self._right.speed_at(pitch), self._right.wished_speed
         balance = self._intonation.balance_db(string, heard, speed, wish)
         balance *= self._value["/body/evenness"]
         ramp_ms = RISING_MS if balance > self._balance else FALLING_MS
         self._balance = balance
-        self._move("/output/balance", balance, frame, ramp_ms)
-
-    def _draw(self, frame: int | None, ramp_ms: float | None) -> None:
-        if self._sounding is not None:
-            speed = self._direction * self._speed_at(self._pitch)
-            self._move("/bow/speed", speed, frame, ramp_ms)
-
-    def _place(self, fingering: Fingering, frame: int | None, glide_ms: float) -> None:
-        was_down = self._fingering is not None and self._fingering.position is not None
-        self._fingering = fingering
-        if fingering.position is not None:
-            ramp = glide_ms if was_down else 0.0
-            self._move("/finger/1/position", fingering.position, frame, ramp)
-        self._press(frame)
-
-    def _press(self, frame: int | None) -> None:
-        down = self._fingering is not None and self._fingering.position is not None
-        press = self._value["/playing/press"] if down else 0.0
-        if down and self._sounding is not None:
-            press = max(press, manner(self._pitch).press)
-        self._move("/finger/1/press", press, frame, LANDING_MS)
+        self._own.move("/output/balance", balance, frame, ramp_ms)
 
     def _follow_bend(self, frame: int | None) -> None:
-        if self._sounding is None or self._fingering is None:
+        if self._sounding is None or self._left.fingering is None:
             return
-        pitch, string = self._pitch, self._fingering.string
-        fingering = stay(pitch, string, self._intonation, self._speed_at(pitch))
-        crossing = fingering.string != self._fingering.string
-        self._adapt(frame)
-        self._place(fingering, frame, BEND_RAMP_MS)
+        pitch, string = self._pitch, self._left.fingering.string
+        fingering = stay(pitch, string, self._intonation, self._right.speed_at(pitch))
+        if not self._right.bows_alike(pitch):
+            self._lean(frame)
+            self._draw(frame)
+        self._left.stop(fingering, frame, pitch=pitch, slide_ms=BEND_RAMP_MS)
         self._even_out(frame)
-        if crossing:
-            self._move("/bow/side", self._side, frame, CROSSING_MS)
-
-    def _take_over(self, address: str, value: float, frame: int | None, hold: bool) -> None:
-        (self._kept if hold else self._taken).add(address)
-        self._sink.write(address, value, frame=frame)
-
-    def _move(
-        self, address: str, value: float, frame: int | None, ramp_ms: float | None = None
-    ) -> None:
-        if self._is_ours(address):
-            self._sink.write(address, value, frame=frame, ramp_ms=ramp_ms)
-
-    def _is_ours(self, address: str) -> bool:
-        return address not in self._taken and address not in self._kept
+        if fingering.string != string:
+            self._draw(frame)

@@ -38,6 +38,8 @@ CONTROLS = {
     "bow_force": Control(layout.F_N, -50.0, 50.0, 0.0, "N"),
     "bow_velocity": Control(layout.V_B, -10.0, 10.0, 0.0, "m/s"),
     "bow_position": Control(layout.X_B, 0.0, 1.0, 0.255, "m"),
+    "pluck_force": Control(layout.F_PLUCK, -50.0, 50.0, 0.0, "N"),
+    "pluck_position": Control(layout.X_PLUCK, 0.0, 1.0, 0.2, "m"),
     "finger_position": Control(layout.FINGER_CONTROLS, 0.0, 1.0, 0.1, "m"),
     "press_force": Control(layout.FINGER_CONTROLS + 1, 0.0, 100.0, 0.0, "N"),
 }

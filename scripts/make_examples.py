@@ -1,0 +1,405 @@
+"""Write the scores in examples/ that show what each controller does to the sound.
+
+    python scripts/make_examples.py [NAME...] [-o FOLDER]
+
+- slow_air: swells (CC 11), late vibrato (CC 1), slides (CC 65, CC 5); keyboard-expressive.
+- bow_pressure: from flautando to scratch (CC 71), from tasto to ponticello (CC 74); the same.
+- mpe_phrase: bend, pressure and bow position of each note's own, drawn by hand; mpe.
+
+The tunes are new, in B flat: the open strings are its sol and re. Where they turn to A flat
+or a low A, and to E flat or a high one, that is the colour of Chaozhou's "heavy" mode.
+All by rule and without chance: each run writes the same bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import islice, pairwise
+from pathlib import Path
+
+from make_shi_bei_jiu import QUARTER, track
+from mido import Message, MetaMessage, MidiFile, bpm2tempo
+
+FOLDER = Path(__file__).resolve().parent.parent / "examples"
+
+# PITCH:BEATS, r:BEATS a rest, (N) the dynamics from there on, smoothly up to the next (N).
+# A pitch may have cents (81-35) or glide by semitones within its note (74^5). Marks:
+# ~ slurred into the next note, > slides into it, / slides into this one from below,
+# p a soft attack, f a firm one.
+TOKEN = re.compile(
+    r"(?P<pitch>\d+|r)(?P<cents>[+-]\d+)?(\^(?P<glide>\d+))?:(?P<beats>[\d.]+)(?P<marks>[~>/pf]*)"
+)
+
+AIR_BPM = 63
+AIR = """
+r:1 (34) 65:0.5p~ 67:0.5~ 70:3 (64) 72:0.5~ 70:0.5 74:1.5 (80) 72:0.5~ 70:1~ 67:1 65:3.5p (20)
+r:0.5 (36) 67:1p~ 70:1 72:0.5~ 70:0.5~ 74:1.5> (68) 77:2.5 (88) 79:0.5~ 77:0.5~ 74:1
+72:0.5~ 70:0.5~ 74:3.5 (26)
+r:0.5 (48) 77:1~ 80:1 82:2 (80) 80:0.5~ 82:0.5~ 80:1> (92) 84:3f (100) 82:0.5~ 80:0.5~ 77:1
+75:1.5~ (70) 72:0.5 75:1~ 77:2.5 (32)
+r:0.5 (44) 74:1.5p~ 72:0.5~ 70:1~ (66) 67:1 72:1~ 70:1> 67:2 (40) 65:0.5p~ 67:0.5~ 70:4 (8)
+"""
+RITARDANDO = ((8, 60), (6, 57), (5, 54))  # beats from the end, and the tempo from there on
+
+STUDY_BPM = 88
+SWEEPS = "67:3.75 r:0.25 70:3.75 r:0.25 74:3.75 r:0.25 79:3.75 r:0.25"
+PHRASE = "67:0.5~ 70:0.5 74:0.75~ 77:0.25 74:0.5~ 72:0.5 70:0.75 r:0.25"
+STUDY = f"r:2 (84) {SWEEPS} {SWEEPS} {PHRASE} {PHRASE} {PHRASE}"
+FORCES = (8, 40, 100)  # flautando, ordinary, pressed: CC 71 in the three phrases
+
+MPE_BPM = 76
+MPE = """
+r:1 (40) 74:1.5/p 77:0.5~ (68) 79:2 77:0.5~ 75+35:0.5~ 77:1 (44)
+74^5:3.5p (86) 82:0.5~ 81-35:0.5~ 79:0.5~ 77:1 (54)
+82:0.5/~ 84:2.5f (106) 82:0.5~ 81-35:0.5~ 77:1~ 75+35:1 (60)
+77:0.5~ 75+35:0.5~ 72:0.5~ 70:0.5~ 67:1.5/ (76) 70:0.5~ 72:0.5~ 74:0.5 (58) 70:4/ (10)
+"""
+MEMBERS = 15
+MASTER_RANGE, MEMBER_RANGE = 200, 4800  # cents either way, as the MPE specification has them
+
+VELOCITY = {"p": 28, "": 68, "f": 106}
+OVERLAP = 16  # ticks by which a slurred note reaches into the next
+GAP = 20  # ticks of air between two bow strokes
+TAIL = 2 * QUARTER  # from the end of the last note to the end of the track
+SAMPLE_S, BEND_SAMPLE_S = 0.020, 0.010
+OPEN_STRINGS = (65, 72)  # where no finger could shake
+LONG = 3 * QUARTER // 2  # from here on a note has vibrato
+SWELL = 14  # what a note of two beats or more adds to the dynamics in its middle
+VIBRATO_HZ, VIBRATO_CENTS = 5.5, 25.0
+VIBRATO_FROM_S, VIBRATO_FADE_S = 0.5, 0.4  # after the note's begin, before its end
+SLIDE_CENTS, SLIDE_S = 180.0, 0.22
+
+ORDINARY_FORCE, ORDINARY_POSITION = 40, 64  # CC 71, CC 74
+EXPRESSION, VIBRATO, FORCE, POSITION, GLIDE_TIME, GLIDE = 11, 1, 71, 74, 5, 65
+
+Event = tuple[int, Message]  # at its tick
+Curve = Callable[[float], float]  # of ticks
+
+
+@dataclass
+class Note:
+    """One note of a part; times are ticks."""
+
+    pitch: int
+    cents: float
+    glide: float  # semitones that it moves up
+    start: int
+    length: int  # up to the next note or rest
+    marks: str
+
+    @property
+    def slurred(self) -> bool:
+        return "~" in self.marks or ">" in self.marks
+
+    @property
+    def until(self) -> int:
+        """Where its own curves stop."""
+        return self.start + self.length - (0 if self.slurred else GAP)
+
+    @property
+    def end(self) -> int:
+        return self.until + (OVERLAP if self.slurred else 0)
+
+    @property
+    def velocity(self) -> int:
+        return VELOCITY["p" if "p" in self.marks else "f" if "f" in self.marks else ""]
+
+    @property
+    def shaken(self) -> bool:
+        return self.length >= LONG and self.pitch not in OPEN_STRINGS
+
+    def place(self, tick: float) -> float:
+        """0 at its begin, 1 at its end."""
+        return min(max((tick - self.start) / (self.until - self.start), 0.0), 1.0)
+
+
+# ---------------------------------------------------------------- curves
+
+
+def step(x: float) -> float:
+    """From 0 to 1 as `x` does, level at both ends."""
+    x = min(max(x, 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)
+
+
+def hill(x: float) -> float:
+    """0 at the ends, 1 in the middle, level at all three."""
+    return 16.0 * x * x * (1.0 - x) * (1.0 - x)
+
+
+def sampled(curve: Curve, start: int, end: int, every: int) -> Iterator[tuple[int, int]]:
+    """The curve as whole numbers: the first one, then each that differs, to the end itself."""
+    before = None
+    for tick in (*range(start, end, every), end):
+        value = round(curve(tick))
+        if value != before:
+            yield tick, value
+        before = value
+
+
+def dynamics(notes: list[Note], levels: list[tuple[int, int]]) -> Curve:
+    """The levels joined smoothly, and a swell on each note of two beats or more."""
+
+    def curve(tick: float) -> float:
+        level = float(levels[0][1] if tick < levels[0][0] else levels[-1][1])
+        for (start, low), (end, high) in pairwise(levels):
+            if start <= tick < end:
+                level = low + (high - low) * step((tick - start) / (end - start))
+        swells = (hill(note.place(tick)) for note in notes if note.length >= 2 * QUARTER)
+        return min(level + SWELL * sum(swells), 127.0)
+
+    return curve
+
+
+def vibrato(note: Note, bpm: int, depth: float) -> Curve:
+    """How deep: none as the note begins (or glides), growing, calm again at its end."""
+    second = QUARTER * bpm / 60
+    fade = note.until - VIBRATO_FADE_S * second
+    first = note.start + (0.75 * note.length if note.glide else VIBRATO_FROM_S * second)
+
+    def curve(tick: float) -> float:
+        grown = step((tick - first) / (fade - first))
+        return depth * grown * step((note.until - tick) / (note.until - fade))
+
+    return curve
+
+
+# ---------------------------------------------------------------- a part and its file
+
+
+def read(part: str) -> tuple[list[Note], list[tuple[int, int]]]:
+    """The notes of a part, and its dynamics as levels at ticks."""
+    notes: list[Note] = []
+    levels: list[tuple[int, int]] = []
+    now = 0
+    for word in part.split():
+        if word.startswith("("):
+            levels.append((now, int(word.strip("()"))))
+            continue
+        token = TOKEN.fullmatch(word)
+        if token is None:
+            raise ValueError(f"not a note: {word}")
+        length = round(float(token["beats"]) * QUARTER)
+        if token["pitch"] != "r":
+            cents, glide = float(token["cents"] or 0), float(token["glide"] or 0)
+            notes.append(Note(int(token["pitch"]), cents, glide, now, length, token["marks"]))
+        now += length
+    return notes, levels
+
+
+def ticks(seconds: float, bpm: int) -> int:
+    return round(seconds * QUARTER * bpm / 60)
+
+
+def control(number: int, value: int, channel: int = 0) -> Message:
+    return Message("control_change", channel=channel, control=number, value=value)
+
+
+def parameter(number: int, value: int, channel: int = 0) -> list[Event]:
+    """Set a registered parameter (RPN), and leave none selected."""
+    words = ((101, 0), (100, number), (6, value), (38, 0), (101, 127), (100, 127))
+    return [(0, control(*word, channel)) for word in words]
+
+
+def strokes(note: Note, channel: int = 0) -> list[Event]:
+    on, off = (
+        Message(kind, channel=channel, note=note.pitch, velocity=velocity)
+        for kind, velocity in (("note_on", note.velocity), ("note_off", 64))
+    )
+    return [(note.start, on), (note.end, off)]
+
+
+def file(name: str, about: str, tempos: list[tuple[int, float]], events: list[Event]) -> MidiFile:
+    """A file of a conductor's track and the yehu's.
+
+    At one tick, controls come before the notes they shape, as `events` has them.
+    """
+    conductor = [
+        (0, MetaMessage("text", text=about)),
+        (0, MetaMessage("time_signature", numerator=2, denominator=4)),
+        (0, MetaMessage("key_signature", key="Bb")),
+        *((tick, MetaMessage("set_tempo", tempo=bpm2tempo(bpm))) for tick, bpm in tempos),
+    ]
+    events = sorted(events, key=lambda event: event[0])
+    written = MidiFile(type=1, ticks_per_beat=QUARTER)
+    written.tracks.append(track(name, conductor))
+    written.tracks.append(
+        track("Yehu", [*events, (events[-1][0] + TAIL, MetaMessage("end_of_track"))])
+    )
+    return written
+
+
+def at_rest() -> list[Event]:
+    """All that a keyboard-expressive score moves, as it is before the first note."""
+    rest = (
+        (VIBRATO, 0),
+        (GLIDE_TIME, 64),
+        (GLIDE, 0),
+        (FORCE, ORDINARY_FORCE),
+        (POSITION, ORDINARY_POSITION),
+    )
+    return [(0, control(*each)) for each in rest]
+
+
+# ---------------------------------------------------------------- the scores
+
+
+def vibrato_depths(notes: list[Note], loudness: Curve, bpm: int) -> list[Event]:
+    """CC 1 over the long notes, deeper where they are louder."""
+    events: list[Event] = []
+    for note in notes:
+        if note.shaken:
+            depth = 20.0 + 0.6 * loudness(note.start + 0.7 * note.length)
+            shape = vibrato(note, bpm, depth)
+            drawn = sampled(shape, note.start, note.until, ticks(SAMPLE_S, bpm))
+            events += ((tick, control(VIBRATO, value)) for tick, value in drawn)
+    return events
+
+
+def slides(notes: list[Note]) -> list[Event]:
+    """Portamento on from just before the second note of a slide to its end; wide ones slower."""
+    events: list[Event] = []
+    for note, target in pairwise(notes):
+        if ">" in note.marks:
+            before = target.start - QUARTER // 8
+            events.append((before, control(GLIDE_TIME, 32 + 10 * abs(target.pitch - note.pitch))))
+            events.append((before, control(GLIDE, 127)))
+            events.append((target.until, control(GLIDE, 0)))
+    return events
+
+
+def slow_air() -> MidiFile:
+    notes, levels = read(AIR)
+    end = notes[-1].start + notes[-1].length
+    loudness = dynamics(notes, levels)
+    swells = sampled(loudness, 0, notes[-1].until, ticks(SAMPLE_S, AIR_BPM))
+    events = [
+        *at_rest(),
+        *((tick, control(EXPRESSION, value)) for tick, value in swells),
+        *vibrato_depths(notes, loudness, AIR_BPM),
+        *slides(notes),
+        *(event for note in notes for event in strokes(note)),
+    ]
+    slowing = [(end - left * QUARTER, float(bpm)) for left, bpm in RITARDANDO]
+    about = "A slow air: swells by CC 11, vibrato by CC 1, slides by CC 65. For keyboard-expressive"
+    return file("Slow Air", about, [(0, AIR_BPM), *slowing], events)
+
+
+def sweep(note: Note, number: int) -> Iterator[Event]:
+    """A controller from 0 to 127 and back, over one note."""
+
+    def curve(tick: float) -> float:
+        return 127.0 * hill(note.place(tick))
+
+    for tick, value in sampled(curve, note.start, note.until, ticks(SAMPLE_S, STUDY_BPM)):
+        yield tick, control(number, value)
+
+
+def bow_pressure() -> MidiFile:
+    notes, levels = read(STUDY)
+    events = [*at_rest(), (0, control(EXPRESSION, levels[0][1]))]
+    left = iter(notes)
+    for swept, other, ordinary in (
+        (FORCE, POSITION, ORDINARY_POSITION),
+        (POSITION, FORCE, ORDINARY_FORCE),
+    ):
+        for note in islice(left, len(read(SWEEPS)[0])):
+            events.append((note.start, control(other, ordinary)))
+            events += sweep(note, swept)
+    for force in FORCES:
+        first, *_ = islice(left, len(read(PHRASE)[0]))
+        events.append((first.start, control(FORCE, force)))
+        events.append((first.start, control(POSITION, ORDINARY_POSITION)))
+    events += (event for note in notes for event in strokes(note))
+    about = "A study in bow force (CC 71) and bow position (CC 74). For keyboard-expressive"
+    return file("Bow Pressure", about, [(0, STUDY_BPM)], events)
+
+
+def pitch_of(note: Note) -> Curve:
+    """Cents from the written pitch: slide, glide and vibrato."""
+    shaking = vibrato(note, MPE_BPM, VIBRATO_CENTS)
+    second = QUARTER * MPE_BPM / 60
+
+    def curve(tick: float) -> float:
+        since = (tick - note.start) / second
+        cents = note.cents
+        if "/" in note.marks:
+            cents -= SLIDE_CENTS * (1.0 - min(since / SLIDE_S, 1.0)) ** 2
+        if note.glide:
+            cents += 100.0 * note.glide * step((note.place(tick) - 0.3) / 0.45)
+        if note.shaken:
+            cents += shaking(tick) * math.sin(2.0 * math.pi * VIBRATO_HZ * since)
+        return cents
+
+    return curve
+
+
+def drawn_note(note: Note, channel: int, loudness: Curve) -> Iterator[Event]:
+    """A note on its own channel, with all that is drawn of it; each first value precedes it."""
+    pitch = pitch_of(note)
+    steps = sampled(
+        lambda tick: pitch(tick) / MEMBER_RANGE * 8192,
+        note.start,
+        note.until,
+        ticks(BEND_SAMPLE_S, MPE_BPM),
+    )
+    for tick, value in steps:
+        yield tick, Message("pitchwheel", channel=channel, pitch=value)
+    every = ticks(SAMPLE_S, MPE_BPM)
+    for tick, value in sampled(loudness, note.start, note.until, every):
+        yield tick, Message("aftertouch", channel=channel, value=value)
+    # A louder bow goes nearer to the bridge.
+    places = sampled(lambda tick: 36.0 + 0.45 * loudness(tick), note.start, note.until, every)
+    for tick, value in places:
+        yield tick, control(POSITION, value, channel)
+    yield from strokes(note, channel)
+
+
+def zone() -> list[Event]:
+    """The MPE Configuration Message, the bend ranges, and everything at rest."""
+    members = range(1, MEMBERS + 1)
+    events = [*parameter(6, MEMBERS), *parameter(0, MASTER_RANGE // 100)]
+    for channel in members:
+        events += parameter(0, MEMBER_RANGE // 100, channel)
+    for channel in (0, *members):
+        events.append((0, Message("pitchwheel", channel=channel, pitch=0)))
+    for channel in members:
+        events.append((0, Message("aftertouch", channel=channel, value=0)))
+        events.append((0, control(POSITION, ORDINARY_POSITION, channel)))
+    return events
+
+
+def mpe_phrase() -> MidiFile:
+    notes, levels = read(MPE)
+    loudness = dynamics(notes, levels)
+    events = zone()
+    for number, note in enumerate(notes):
+        events += drawn_note(note, 1 + number % MEMBERS, loudness)
+    last = notes[-1]
+    dip = sampled(
+        lambda tick: -8192.0 * hill(step((last.place(tick) - 0.3) / 0.5)),
+        last.start,
+        last.until,
+        ticks(BEND_SAMPLE_S, MPE_BPM),
+    )
+    events += ((tick, Message("pitchwheel", channel=0, pitch=value)) for tick, value in dip)
+    about = "Bend, pressure and bow position of each note's own, drawn by hand. For mpe"
+    return file("MPE Phrase", about, [(0, MPE_BPM)], events)
+
+
+SCORES = {"slow_air": slow_air, "bow_pressure": bow_pressure, "mpe_phrase": mpe_phrase}
+
+if __name__ == "__main__":
+    words = argparse.ArgumentParser(description="Write the example scores as MIDI files.")
+    names = [*SCORES, "all"]
+    words.add_argument(
+        "names", nargs="*", choices=names, default="all", metavar="NAME", help=", ".join(names)
+    )
+    words.add_argument("-o", dest="folder", type=Path, default=FOLDER, help="default: examples")
+    asked = words.parse_args()
+    for name in SCORES if "all" in asked.names else asked.names:
+        SCORES[name]().save(asked.folder / f"{name}.mid")

@@ -1,0 +1,688 @@
+"""Two pictures that show how the instrument plays: a score as it sounds, and where notes speak.
+
+    .venv/bin/python scripts/pictures.py score IN.mid [-o OUT.png] [--mapping NAME] [--rate HZ]
+                                                      [--from S] [--to S]
+    .venv/bin/python scripts/pictures.py schelleng [-o OUT.png] [--note F C] [--rate HZ]
+
+`score` plays a MIDI file and draws, over one time axis, its waveform and level, the pitches heard
+over the score and over what the player aims at, and a spectrogram; it prints how many notes are
+in tune, which are worst, and how large the jumps of the waveform are where notes meet.
+
+`schelleng` bows one stopped note of each string at many forces, places and speeds of the bow, in
+raw newtons, and draws what comes of it beside Schelleng's limits.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from figures import BLUE, RED, save
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
+
+from yehu_server.analysis.level import a_weighted_db
+from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.engine.gesture import FAST, FAST_SHARE
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.output import BRIDGE_PRESSURE
+from yehu_server.errors import ParameterError, ScoreError, YehuError
+from yehu_server.params.table import find
+from yehu_server.physics.quantities import Body, Quantities, StringQuantities
+from yehu_server.playing.bowing import FIRM, LIGHT, Manner, manner
+from yehu_server.playing.calibration import HIGHEST_NOTES, OPEN_NOTES, calibration_for, frequency_hz
+from yehu_server.playing.intonation import Intonation
+from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.messages import PERCUSSION
+from yehu_server.playing.style import Style
+from yehu_server.render import Options, Performance
+from yehu_server.score.smf import Score, read_score
+
+Array = Any
+NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
+
+
+def name(note: int) -> str:
+    """A MIDI note as musicians call it."""
+    return f"{NAMES[note % 12]}{note // 12 - 1}"
+
+
+def heard_hz(samples: Array, rate: float, lo: float, hi: float) -> float:
+    """`pitch_hz`, and NaN too where its refinement loses the period on the way."""
+    try:
+        found = pitch_hz(samples, rate, lo=lo, hi=hi)
+    except ValueError:
+        return math.nan
+    return found if 0.9 * lo < found < 1.1 * hi else math.nan
+
+
+# ---------------------------------------------------------------- a score, played
+
+BLOCK = 128  # frames between two looks at the player
+WINDOW_S, STEP_S = 0.04, 0.01  # of pitch
+LEVEL_S = 0.03
+IN_TUNE_CENTS, ASTRAY_CENTS = 10.0, 50.0
+FEWEST = 3  # windows in the middle of a note that can be checked
+WORST = 8  # notes to name
+BEFORE_S, AFTER_S, SETTLED_S = 0.002, 0.015, 0.03  # about a border, and where a note is inside
+COLUMNS = 4000  # of the picture
+FFT_S, TOP_HZ, RANGE_DB = 0.046, 6000.0, 80.0
+PAPER, INK, AIM, WAVE = "#d5dfeb", "#8ea5c0", "#e08a00", "#9db8d6"
+
+
+@dataclass(frozen=True)
+class Span:
+    """A time (frames) in which one note sounds."""
+
+    start: int
+    end: int
+
+
+@dataclass(frozen=True)
+class Take:
+    """What was played: samples, and what the player aimed at from each of `starts` (frames) on."""
+
+    rate: float
+    samples: Array
+    starts: Array
+    aims: Array  # fractional MIDI notes; NaN while none sounds
+    spans: tuple[Span, ...]
+
+    def aim(self, start: int, end: int) -> float:
+        """The mean pitch aimed at between two frames of a note."""
+        first, last = np.searchsorted(self.starts, (start, end - 1), side="right")
+        return float(np.nanmean(self.aims[first - 1 : last]))
+
+
+@dataclass(frozen=True)
+class Heard:
+    """Pitch in one window of a note."""
+
+    time_s: float
+    aim: float
+    pitch: float  # fractional MIDI note; NaN for none
+
+    @property
+    def error(self) -> float:
+        """Cents above the aim."""
+        return 100.0 * (self.pitch - self.aim)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How a note came out: error (cents) in its middle, NaN where it has no pitch there."""
+
+    time_s: float
+    seconds: float
+    aim: float
+    error: float
+
+
+def take(score: Score, options: Options, end_s: float) -> Take:
+    """Play a score, up to a time at most, and watch the player."""
+    performance = Performance(score, options)
+    performer = performance.performer
+    blocks, starts, aims, marks = [], [], [], []
+    frame, end = 0, end_s * options.rate
+    for samples in performance.blocks():
+        blocks.append(samples)
+        starts.append(frame)
+        aims.append(math.nan if performer.pitch is None else performer.pitch)
+        marks.append((performer.notes_played, performer.sounding))
+        frame += len(samples)
+        if frame >= end:
+            break
+    if not blocks:
+        raise ScoreError(f"{score.name}: has nothing to play")
+    borders = [at for at in range(1, len(marks)) if marks[at] != marks[at - 1]]
+    places = pairwise([0, *borders, len(marks)])
+    spans = tuple(
+        Span(starts[first], starts[last] if last < len(starts) else frame)
+        for first, last in places
+        if marks[first][1] is not None
+    )
+    sound = np.concatenate(blocks)
+    return Take(float(options.rate), sound, np.array(starts), np.array(aims), spans)
+
+
+def listen(played: Take, span: Span, a4: float) -> list[Heard]:
+    """Pitch in every window that lies within a note, from half an octave below it up.
+
+    Not from lower down: a finger stops both strings, a fifth apart, and where the other one rings
+    along, both together repeat an octave below a note that nobody would hear there.
+    """
+    window, step = round(WINDOW_S * played.rate), round(STEP_S * played.rate)
+    heard = []
+    for start in range(span.start, span.end - window + 1, step):
+        aim = played.aim(start, start + window)
+        wanted = frequency_hz(aim, a4)
+        part = played.samples[start : start + window]
+        found = heard_hz(part, played.rate, 0.7 * wanted, 3.2 * wanted)
+        pitch = aim + cents(found, wanted) / 100.0 if math.isfinite(found) else math.nan
+        heard.append(Heard((start + 0.5 * window) / played.rate, aim, pitch))
+    return heard
+
+
+def judge(played: Take, span: Span, heard: Sequence[Heard]) -> Verdict | None:
+    """How far the middle half of a note is off; None where it is too short to tell."""
+    start, end = span.start / played.rate, span.end / played.rate
+    quarter = 0.25 * (end - start)
+    middle = [one for one in heard if start + quarter <= one.time_s <= end - quarter]
+    if len(middle) < FEWEST:
+        return None
+    errors = [one.error for one in middle if math.isfinite(one.error)]
+    error = float(np.median(errors)) if 2 * len(errors) >= len(middle) else math.nan
+    aim = float(np.median([one.aim for one in middle]))
+    return Verdict(start, end - start, aim, error)
+
+
+def jumps(played: Take) -> list[tuple[float, float]]:
+    """Times (s) of the borders of notes, and the jump there as a share of the largest inside."""
+    size = np.abs(np.diff(played.samples))
+    before, after, settled = (round(s * played.rate) for s in (BEFORE_S, AFTER_S, SETTLED_S))
+    around: dict[int, list[float]] = {}
+    for span in played.spans:
+        inside = size[span.start + settled : span.end - before]
+        largest = [float(inside.max())] if len(inside) else []
+        for border in (span.start, span.end):
+            around.setdefault(border, []).extend(largest)
+    found = []
+    for border, largest in around.items():
+        here = size[max(border - before, 0) : border + after]
+        if len(here) and max(largest, default=0.0) > 0.0:
+            found.append((border / played.rate, float(here.max()) / max(largest)))
+    return found
+
+
+def score_bars(score: Score, options: Options) -> list[tuple[float, float, float]]:
+    """The keys of a score (no pedal), fitted into the range: begin and end (s), note."""
+    held: dict[tuple[int, int], float] = {}
+    bars = []
+
+    def let_go(key: tuple[int, int], time_s: float) -> None:
+        begin, note = held.pop(key, math.inf), options.style.policy.fit(key[1])
+        if begin < time_s and note is not None:
+            bars.append((begin, time_s, note))
+
+    for event in score.events:
+        message = event.message
+        if message.type == "reset":
+            for key in list(held):
+                let_go(key, event.time_s)
+        elif message.type in ("note_on", "note_off") and message.channel != PERCUSSION:
+            key = (message.channel, message.note)
+            let_go(key, event.time_s)
+            if message.type == "note_on" and message.velocity > 0:
+                held[key] = event.time_s
+    for key in list(held):
+        let_go(key, score.duration_s)
+    return bars
+
+
+def draw_wave(axes: Any, played: Take, begin: int, end: int) -> None:
+    """The waveform as an envelope, and over it the level."""
+    part = played.samples[begin:end]
+    size = max(1, len(part) // COLUMNS)
+    columns = part[: len(part) // size * size].reshape(-1, size)
+    times = (begin + size * np.arange(len(columns))) / played.rate
+    axes.fill_between(times, columns.min(axis=1), columns.max(axis=1), color=WAVE, lw=0.3)
+    peak = 1.1 * float(np.abs(part).max(initial=1e-3))
+    axes.set(ylim=(-peak, peak), ylabel="waveform,\nof full scale")
+
+    window = round(LEVEL_S * played.rate)
+    starts = np.arange(begin, max(end - window, begin + 1), max(window // 3, size))
+    levels = [a_weighted_db(played.samples[at : at + window], played.rate) for at in starts]
+    right = axes.twinx()
+    right.plot((starts + 0.5 * window) / played.rate, levels, AIM, lw=1.2)
+    right.set(ylim=(-70, 0), yticks=range(-60, 1, 20))
+    right.set_ylabel("level, dB(A)\nof full scale", color=AIM)
+    right.tick_params(axis="y", colors=AIM)
+
+
+def draw_pitches(
+    axes: Any, played: Take, heard: Sequence[Heard], bars: Sequence[tuple[float, float, float]]
+) -> None:
+    """The score as bars, the aim as a line, what is heard as dots; red where it is astray."""
+    begins, ends, notes = (np.array(column) for column in zip(*bars, strict=True))
+    axes.barh(notes, ends - begins, 0.8, begins, color=PAPER, edgecolor=INK, lw=0.5, label="score")
+    axes.plot(played.starts / played.rate, played.aims, color=AIM, lw=1.4, label="aim")
+    low, high = reach([note for _, _, note in bars] + [one.aim for one in heard])
+    times, pitches, errors = (
+        np.array([getattr(one, field) for one in heard]) for field in ("time_s", "pitch", "error")
+    )
+    astray = np.abs(errors) > ASTRAY_CENTS
+    close = np.abs(errors) <= ASTRAY_CENTS
+    axes.plot(times[close], pitches[close], ".", color=BLUE, ms=3.5, label="heard")
+    off = f"more than {ASTRAY_CENTS:g} cents off"
+    axes.plot(times[astray], pitches[astray], ".", color=RED, ms=5, label=off)
+    for beyond, marker, edge in ((pitches > high, "^", high), (pitches < low, "v", low)):
+        inner = edge - math.copysign(0.05 * (high - low), edge - 0.5 * (low + high))
+        label = "beyond the picture" if marker == "v" else None
+        axes.plot(times[beyond], np.full(beyond.sum(), inner), marker, color=RED, ms=5, label=label)
+    mute = np.isnan(pitches)
+    bottom = np.full(mute.sum(), low + 0.015 * (high - low))
+    axes.plot(times[mute], bottom, "|", color="k", ms=8, label="no clear pitch")
+    ticks = [note for note in range(math.ceil(low), math.floor(high) + 1) if name(note)[1] != "#"]
+    axes.set(ylim=(low, high), yticks=ticks, yticklabels=[name(note) for note in ticks])
+    axes.grid(axis="y", color="0.9", lw=0.6)
+    axes.set_axisbelow(True)
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False, fontsize=9)
+
+
+def reach(pitches: Sequence[float]) -> tuple[float, float]:
+    """The pitches that a picture shows: those given and a little more."""
+    return min(pitches) - 2.5, max(pitches) + 2.5
+
+
+def draw_spectrogram(axes: Any, played: Take, begin: int, end: int) -> None:
+    """Spectrogram over RANGE_DB, in at most COLUMNS columns however long it is."""
+    size = round(FFT_S * played.rate)
+    part = np.pad(played.samples, size // 2 + 1)[begin:]  # a column is at its window's middle
+    count = max(2, min(COLUMNS, (end - begin) // (size // 8)))
+    starts = np.linspace(0, end - begin, count).astype(int)
+    rows = int(min(TOP_HZ * size / played.rate + 2, size // 2))
+    power = np.empty((rows, count), np.float32)
+    window = np.hanning(size)
+    for column, start in enumerate(starts):
+        power[:, column] = np.abs(np.fft.rfft(part[start : start + size] * window)[:rows]) ** 2
+    level = 10.0 * np.log10(power + 1e-20)
+    peak = float(level.max())
+    extent = (
+        begin / played.rate,
+        end / played.rate,
+        -0.5 * played.rate / size,
+        (rows - 0.5) * played.rate / size,
+    )
+    axes.imshow(
+        level, cmap="magma", vmin=peak - RANGE_DB, vmax=peak, extent=extent, aspect="auto",
+        origin="lower", interpolation="bilinear",
+    )  # fmt: skip
+    axes.set(ylim=(0, TOP_HZ), yticks=range(0, 6001, 2000), yticklabels=(0, 2, 4, 6))
+    axes.set_ylabel("kHz")
+
+
+def table(checked: Sequence[Verdict], spans: int, borders: Sequence[tuple[float, float]]) -> str:
+    """What is printed of a take."""
+    good = [one for one in checked if abs(one.error) <= IN_TUNE_CENTS]
+    lines = [
+        f"notes that sounded          {spans}",
+        f"long enough to be checked   {len(checked)}",
+        f"within {IN_TUNE_CENTS:g} cents             {len(good)} ({share(good, checked)})",
+        "worst:    at s  lasts s   note   off by cents",
+    ]
+    worst = sorted(checked, key=lambda one: -size_of(one.error))
+    for one in worst[:WORST]:
+        off = f"{one.error:+9.1f}" if math.isfinite(one.error) else "no pitch"
+        note = f"{name(round(one.aim)):>4}{100.0 * (one.aim - round(one.aim)):+4.0f}"
+        lines.append(f"      {one.time_s:9.3f} {one.seconds:7.3f} {note}     {off}")
+    if borders:
+        time_s, ratio = max(borders, key=lambda border: border[1])
+        usual = float(np.median([border[1] for border in borders]))
+        lines.append(
+            f"jumps where notes meet, of the largest inside the notes around: "
+            f"{ratio:.2f} at most ({time_s:.3f} s), usually {usual:.2f}"
+        )
+    return "\n".join(lines)
+
+
+def size_of(error: float) -> float:
+    """How bad an error is: no pitch is the worst."""
+    return abs(error) if math.isfinite(error) else math.inf
+
+
+def share(some: Sequence[Any], of_all: Sequence[Any]) -> str:
+    """Per cent."""
+    return f"{100.0 * len(some) / max(len(of_all), 1):.1f} %"
+
+
+def score_picture(arguments: argparse.Namespace) -> None:
+    """Play, print and draw."""
+    options = Options(
+        rate=arguments.rate, style=Style(mapping=load(arguments.mapping)), block=BLOCK
+    )
+    score = read_score(arguments.midi)
+    if not arguments.begin < arguments.end:
+        raise ScoreError(f"{score.name}: --from has to be before --to")
+    for warning in score.warnings:
+        print(f"{score.name}: {warning}", file=sys.stderr)
+    played = take(score, options, arguments.end + FFT_S)
+    begin, end = (
+        int(min(max(at * played.rate, 0.0), float(len(played.samples))))
+        for at in (arguments.begin, arguments.end)
+    )
+    shown = [span for span in played.spans if span.end > begin and span.start < end]
+    bars = [
+        (max(first, begin / played.rate), min(last, end / played.rate), note)
+        for first, last, note in score_bars(score, options)
+        if last * played.rate > begin and first * played.rate < end
+    ]
+    if not shown or not bars:
+        raise ScoreError(f"{score.name}: no note sounds in that time")
+    heard = [listen(played, span, options.style.a4) for span in shown]
+    verdicts = [judge(played, span, own) for span, own in zip(shown, heard, strict=True)]
+    checked = [verdict for verdict in verdicts if verdict is not None]
+    borders = [one for one in jumps(played) if begin <= one[0] * played.rate <= end]
+    print(table(checked, len(shown), borders))
+
+    seconds = (end - begin) / played.rate
+    width = min(max(3.0 + 0.8 * seconds, 14.0), 45.0)
+    figure, panels = plt.subplots(
+        3, 1, figsize=(width, 9), height_ratios=(1, 2.4, 1.3), sharex=True, layout="constrained"
+    )
+    draw_wave(panels[0], played, begin, end)
+    draw_pitches(panels[1], played, [one for own in heard for one in own], bars)
+    draw_spectrogram(panels[2], played, begin, end)
+    panels[2].set(xlim=(begin / played.rate, end / played.rate), xlabel="s")
+    good = [one for one in checked if abs(one.error) <= IN_TUNE_CENTS]
+    panels[0].set_title(
+        f"{score.name}, mapping {options.style.mapping.name}, {options.rate / 1000:g} kHz: "
+        f"{len(good)} of {len(checked)} notes within {IN_TUNE_CENTS:g} cents",
+        loc="left",
+    )
+    save(figure, arguments.output or Path(f"{arguments.midi.stem}.png"))
+
+
+# ---------------------------------------------------------------- Schelleng's diagram
+
+STRINGS = ("F", "C")
+BETAS = np.geomspace(0.04, 0.4, 16)
+FORCES = np.geomspace(0.03, 5.0, 14)  # N
+BOW_SPEEDS = (0.1, 0.2, 0.3)  # m/s
+MANY_SPEEDS = np.geomspace(0.03, 0.6, 16)
+USUAL_BETA = find("/bow/position").default
+RAMP_MS, CELL_S, LAST_S = 40.0, 0.45, 0.15
+ON_NOTE_CENTS, REGISTER_CENTS = 30.0, 600.0
+# Shares of the bridge force of Helmholtz motion. Notes on pitch have 0.9 to 1.1 of it with one
+# slip a period (near nodes, far from the bridge, up to 2) and 0.3 to 0.6 with several.
+FULL, BARELY = 0.7, 0.15
+
+KINDS = (
+    ("Helmholtz motion: on the note, in full", "#3f9b57"),
+    ("on the note but weak: several slips a period", "#b5dba0"),
+    ("higher register: flageolet, multiple slip", "#4a86c5"),
+    (f"pulled off the note, {ON_NOTE_CENTS:g} to {REGISTER_CENTS:g} cents", "#f2d35b"),
+    ("lower register: raucous, anomalous low", "#d9762b"),
+    ("no clear pitch: scratch", "#8b3a3a"),
+    ("barely sounding", "#ececec"),
+)
+HELMHOLTZ, WEAK, HIGHER, PULLED, LOWER, SCRATCH, FAINT = range(len(KINDS))
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A stopped note of one string, on the instrument in tune."""
+
+    string: int
+    note: int
+    quantities: Quantities
+    intonation: Intonation
+    rate: float
+
+    @property
+    def silk(self) -> StringQuantities:
+        """The string."""
+        return self.quantities.strings[self.string]
+
+    @property
+    def impedance(self) -> float:
+        """Wave impedance Z of the string (kg/s)."""
+        return math.sqrt(self.silk.T * self.silk.rho_A)
+
+    @property
+    def grip(self) -> float:
+        """How much more the hair holds sticking than sliding."""
+        return self.quantities.bow.mu_S - self.quantities.bow.mu_C
+
+    @property
+    def frequency(self) -> float:
+        """What it should sound (Hz)."""
+        return frequency_hz(self.note, 440.0)
+
+    def highest_force(self, speed: Array, beta: Array) -> Array:
+        """Schelleng's upper limit (N)."""
+        return 2.0 * self.impedance * speed / (beta * self.grip)
+
+    def lowest_force(self, speed: Array, beta: Array) -> Array:
+        """Schelleng's lower limit (N)."""
+        resistance = bridge_resistance(self.quantities.body, self.frequency)
+        return self.impedance**2 * speed / (2.0 * resistance * beta**2 * self.grip)
+
+
+def bridge_resistance(body: Body, frequency: float) -> float:
+    """The resistance R (kg/s) of Schelleng's lower limit, Re(1/Y) at the note's fundamental.
+
+    Y is the bridge's admittance, the sum of the body's modes: j w / (M (w_m^2 - w^2) + j w R_m)
+    each. Schelleng's bridge is a bare resistance, where Re(1/Y) and 1/Re(Y) are the same; between
+    its modes this one is mostly mass or spring, and Re(1/Y) is then by far the smaller, so that
+    the limit comes out high: about where the model, whose finger and strings lose too, has it.
+    """
+    w = 2.0 * math.pi * frequency
+    admittance = sum(
+        1j * w / (mass * (w_m**2 - w**2) + 1j * w * damping)
+        for mass, damping, w_m in zip(body.mass, body.damping, body.omega, strict=True)
+    )
+    return float((1.0 / admittance).real)
+
+
+def bow(stop: Stop, speed: float, beta: float, force: float) -> int:
+    """Bow a note in raw newtons and tell the kind of motion at its end.
+
+    Listens to the bare force on the bridge, which the body does not colour: Helmholtz motion makes
+    it a sawtooth with jumps of 2 Z v_b / beta, whatever the bow force.
+    """
+    instrument = Instrument(stop.rate, stop.quantities)
+    place = stop.intonation.position(stop.string, stop.note, speed)
+    press = max(find("/playing/press").default, manner(stop.note).press)
+    for address, value in (
+        ("/body/blend", 1.0),
+        ("/bow/assist", 0.0),
+        ("/bow/force", force),
+        ("/bow/position", beta),
+        ("/finger/1/position", place),
+        ("/finger/1/press", press),
+    ):
+        instrument.write(address, value, ramp_ms=0.0)
+    instrument.write("/bow/side", 1.0 if stop.string == 0 else -1.0)
+    instrument.write("/bow/speed", speed, ramp_ms=RAMP_MS)
+    out = np.zeros(round(CELL_S * stop.rate), np.float32)
+    instrument.process(out)
+    last = out[-round(LAST_S * stop.rate) :]
+    helmholtz = BRIDGE_PRESSURE * 2.0 * stop.impedance * speed / beta / math.sqrt(12.0)
+    found = heard_hz(last, stop.rate, 0.22 * stop.frequency, 6.5 * stop.frequency)
+    error = cents(found, stop.frequency) if math.isfinite(found) else math.nan
+    return kind(error, float(last.std()) / helmholtz)
+
+
+def kind(error: float, strength: float) -> int:
+    """The kind of motion by its error in pitch (cents) and its part of the full force."""
+    if strength < BARELY:
+        return FAINT
+    if math.isnan(error):
+        return SCRATCH
+    if abs(error) <= ON_NOTE_CENTS:
+        return HELMHOLTZ if strength >= FULL else WEAK
+    if abs(error) < REGISTER_CENTS:
+        return PULLED
+    return HIGHER if error > 0.0 else LOWER
+
+
+def edges(values: Array) -> Array:
+    """The edges of cells about values that lie evenly on a logarithmic axis."""
+    half = math.sqrt(values[1] / values[0])
+    return np.append(values / half, values[-1] * half)
+
+
+def along(values: Array) -> Array:
+    """Points of a line over all cells about values."""
+    first, *_, last = edges(values)
+    return np.geomspace(float(first), float(last), 60)
+
+
+def player_force(stop: Stop, speed: Array, beta: float, wish: float) -> Array:
+    """The force (N) that the player's assist chooses for a value of ``/playing/pressure``."""
+    fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
+    return (manner(stop.note).pressure(wish) + fast) * stop.highest_force(speed, beta)
+
+
+def draw_map(axes: Any, x: Array, kinds: Sequence[int]) -> None:
+    """Cells of force over `x`, in rows of FORCES."""
+    colours = ListedColormap([colour for _, colour in KINDS])
+    norm = BoundaryNorm(np.arange(len(KINDS) + 1) - 0.5, len(KINDS))
+    cells = np.reshape(kinds, (len(FORCES), len(x)))
+    axes.pcolormesh(edges(x), edges(FORCES), cells, cmap=colours, norm=norm, edgecolors="w", lw=0.4)
+    x_edges, y_edges = edges(x), edges(FORCES)
+    axes.set(xscale="log", yscale="log", xlim=x_edges[[0, -1]], ylim=y_edges[[0, -1]])
+    axes.set_yticks([0.05, 0.1, 0.2, 0.5, 1, 2, 5], labels=["0.05", "0.1", "0.2", "0.5", 1, 2, 5])
+    axes.minorticks_off()
+
+
+def draw_limits(axes: Any, x: Array, highest: Array, lowest: Array) -> None:
+    """Schelleng's two lines, with a halo."""
+    halo = [withStroke(linewidth=3.5, foreground="w")]
+    axes.plot(x, highest, "k-", lw=1.6, path_effects=halo)
+    axes.plot(x, lowest, "k--", lw=1.6, path_effects=halo)
+
+
+def draw_over_beta(axes: Any, stop: Stop, speed: float, kinds: Sequence[int]) -> None:
+    """Force over the bow's place, at one speed."""
+    draw_map(axes, BETAS, kinds)
+    x = along(BETAS)
+    draw_limits(axes, x, stop.highest_force(speed, x), stop.lowest_force(speed, x))
+    bowing = manner(stop.note)
+    if speed <= bowing.top_speed:
+        beta = USUAL_BETA * bowing.farther
+        ends = [float(player_force(stop, speed, beta, wish)) for wish in (LIGHT, FIRM)]
+        axes.plot([beta, beta], ends, color="k", lw=2.5, marker="_", ms=9, mew=2.5)
+    axes.set_xticks([0.05, 0.1, 0.2, 0.4], labels=["0.05", "0.1", "0.2", "0.4"])
+    axes.set(title=f"{title(stop)}, {speed:g} m/s", xlabel="bow position β")
+
+
+def draw_over_speed(axes: Any, stop: Stop, kinds: Sequence[int]) -> None:
+    """Force over speed, where the bow is usually."""
+    draw_map(axes, MANY_SPEEDS, kinds)
+    x = along(MANY_SPEEDS)
+    draw_limits(axes, x, stop.highest_force(x, USUAL_BETA), stop.lowest_force(x, USUAL_BETA))
+    bowing: Manner = manner(stop.note)
+    if bowing.farther == 1.0:
+        borne = x[x <= bowing.top_speed]
+        for wish in (LIGHT, FIRM):
+            axes.plot(borne, player_force(stop, borne, USUAL_BETA, wish), "k:", lw=2.0)
+    axes.set_xticks([0.03, 0.1, 0.2, 0.3, 0.6], labels=["0.03", "0.1", "0.2", "0.3", "0.6"])
+    axes.set(title=f"{title(stop)}, β = {USUAL_BETA:g}", xlabel="bow speed, m/s")
+
+
+def title(stop: Stop) -> str:
+    """The note and its string."""
+    return f"{name(stop.note)} on {STRINGS[stop.string]}"
+
+
+def schelleng_picture(arguments: argparse.Namespace) -> None:
+    """Bow every cell, print and draw."""
+    for string, note, lowest, highest in zip(
+        STRINGS, arguments.note, OPEN_NOTES, HIGHEST_NOTES, strict=True
+    ):
+        if not lowest < note <= highest:
+            raise ParameterError(f"{string} string: stopped notes are {lowest + 1} to {highest}")
+    rate = float(arguments.rate)
+    calibration = calibration_for(rate)
+    quantities, intonation = calibration.tuned(Quantities()), Intonation(calibration)
+    stops = [Stop(i, note, quantities, intonation, rate) for i, note in enumerate(arguments.note)]
+    jobs = []
+    for stop in stops:
+        for speed in BOW_SPEEDS:
+            jobs += [(stop, speed, beta, force) for force in FORCES for beta in BETAS]
+        jobs += [(stop, speed, USUAL_BETA, force) for force in FORCES for speed in MANY_SPEEDS]
+    with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
+        kinds = list(workers.map(lambda job: bow(*job), jobs))
+
+    across, size = len(BOW_SPEEDS) + 1, len(FORCES) * len(BETAS)
+    figure, panels = plt.subplots(
+        len(stops), across, figsize=(16, 4.2 * len(stops) + 1.2), sharey=True, layout="constrained"
+    )
+    for row, stop in enumerate(stops):
+        for column, axes in enumerate(panels[row]):
+            at = (row * across + column) * size
+            own = kinds[at : at + size]
+            if column < len(BOW_SPEEDS):
+                draw_over_beta(axes, stop, BOW_SPEEDS[column], own)
+            else:
+                draw_over_speed(axes, stop, own)
+            print(summary(axes.get_title(), own))
+        panels[row][0].set_ylabel("bow force, N")
+    figure.legend(handles=legend(), loc="outside lower center", ncols=4, frameon=False)
+    save(figure, arguments.output or Path("schelleng.png"))
+
+
+def summary(what: str, kinds: Sequence[int]) -> str:
+    """One line: how much of a panel is of each kind, in per cent."""
+    counts = np.bincount(kinds, minlength=len(KINDS)) * 100.0 / len(kinds)
+    words = ("full", "weak", "higher", "pulled", "lower", "scratch", "faint")
+    parts = (f"{word} {count:2.0f}" for word, count in zip(words, counts, strict=True))
+    return f"{what:24} per cent: {', '.join(parts)}"
+
+
+def legend() -> list[Any]:
+    """What colours and lines mean."""
+    patches = [Patch(facecolor=colour, edgecolor="0.6", label=text) for text, colour in KINDS]
+    lines = [
+        Line2D([], [], color="k", ls="-", label="Schelleng's upper limit"),
+        Line2D([], [], color="k", ls="--", label="Schelleng's lower limit, R = Re(1/Y)"),
+        Line2D([], [], marker="|", ms=13, mew=2.5, color="k", ls="", label="the player's forces"),
+        Line2D([], [], color="k", ls=":", lw=2.0, label="the player's lightest and firmest"),
+    ]
+    return [*patches, *lines]
+
+
+# ---------------------------------------------------------------- the command line
+
+
+def parser() -> argparse.ArgumentParser:
+    """Both commands."""
+    whole = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    commands = whole.add_subparsers(required=True)
+    common = argparse.ArgumentParser(add_help=False)
+    common.add_argument("-o", "--output", type=Path, metavar="OUT.png")
+    common.add_argument("--rate", type=int, default=44100, metavar="HZ")
+    score = commands.add_parser("score", parents=[common], help="a MIDI file as it sounds")
+    score.add_argument("midi", type=Path, metavar="IN.mid")
+    score.add_argument("--mapping", default=DEFAULT, metavar="NAME")
+    score.add_argument("--from", dest="begin", type=float, default=0.0, metavar="S")
+    score.add_argument("--to", dest="end", type=float, default=math.inf, metavar="S")
+    score.set_defaults(run=score_picture)
+    diagram = commands.add_parser("schelleng", parents=[common], help="where notes speak")
+    diagram.add_argument(
+        "--note",
+        nargs=2,
+        type=int,
+        default=(70, 77),
+        metavar=STRINGS,
+        help="a MIDI note stopped on each string (default: 70 77)",
+    )
+    diagram.set_defaults(run=schelleng_picture)
+    return whole
+
+
+def main() -> None:
+    """Draw what is asked for."""
+    whole = parser()
+    arguments = whole.parse_args()
+    try:
+        arguments.run(arguments)
+    except YehuError as error:
+        whole.exit(2, f"{whole.prog}: {error}\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,343 @@
+"""Scala tunings: known scales, keyboard maps, and how errors read."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from yehu_server.errors import ParameterError
+from yehu_server.playing.tuning import EQUAL, Tuning, read_tuning
+
+TWELVE = [f"{100 * step}.0" for step in range(1, 12)] + ["2/1"]
+MAJOR = ["9/8", "5/4", "4/3", "3/2", "5/3", "15/8", "2"]
+WHITE = ["0", "x", "1", "x", "2", "3", "x", "4", "x", "5", "x", "6"]
+
+
+def scl(*notes: str) -> str:
+    return "\n".join(["! a comment", "A scale", f" {len(notes)} ", "!", *notes]) + "\n"
+
+
+def kbm(
+    *degrees: str, size=None, first=0, last=127, middle=60, reference=69, hz="440.0", octave=0
+) -> str:
+    size = len(degrees) if size is None else size
+    return "\n".join(map(str, (size, first, last, middle, reference, hz, octave, *degrees)))
+
+
+@pytest.fixture
+def read(tmp_path):
+    def from_text(scale: str | bytes, keyboard: str | bytes | None = None) -> Tuning:
+        paths = [tmp_path / "mine.scl", tmp_path / "mine.kbm"]
+        for path, text in zip(paths, (scale, keyboard), strict=True):
+            if text is not None:
+                path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return read_tuning(paths[0], None if keyboard is None else paths[1])
+
+    return from_text
+
+
+def cents(tuning: Tuning, low: int = 60, high: int = 72) -> list[float]:
+    keys = range(low, high + 1)
+    return [100 * (tuning.pitch(key, 440.0) - tuning.pitch(low, 440.0)) for key in keys]
+
+
+# ---------------------------------------------------------------- scales
+
+
+@pytest.mark.parametrize("note", [-3.0, 0.0, 60.3, 69.0, 127.0, 130.5])
+def test_equal_temperament_changes_nothing(note):
+    assert EQUAL.pitch(note, 432.0) == note
+
+
+@pytest.mark.parametrize("a4", [432.0, 440.0])
+def test_twelve_equal_steps_are_equal_temperament_at_any_a4(read, a4):
+    tuning = read(scl(*TWELVE))
+    for note in (0, 59, 60, 61.25, 69, 126.5, 127):
+        assert tuning.pitch(note, a4) == pytest.approx(note, abs=1e-9)
+
+
+def test_pythagorean(read):
+    ratios = "256/243 9/8 32/27 81/64 4/3 729/512 3/2 128/81 27/16 16/9 243/128 2/1"
+    expected = [0, 90.22, 203.91, 294.13, 407.82, 498.04, 611.73]
+    expected += [701.96, 792.18, 905.87, 996.09, 1109.78, 1200]
+    assert cents(read(scl(*ratios.split()))) == pytest.approx(expected, abs=0.01)
+
+
+def test_quarter_comma_meantone(read):
+    below = "76.049 193.15686 310.26471 5/4 503.42157 579.47057"
+    above = "696.57843 25/16 889.73529 1006.84314 1082.89214 2/1"
+    tuning = read(scl(*below.split(), *above.split()))
+    fifth = 1200 * math.log2(5**0.25)
+    assert cents(tuning)[7] == pytest.approx(fifth, abs=1e-4)
+    assert cents(tuning)[4] == pytest.approx(386.3137, abs=1e-4)
+    assert cents(tuning)[9] == pytest.approx(3 * fifth - 1200, abs=1e-4)
+    assert tuning.pitch(69, 440.0) == pytest.approx(68.8974, abs=1e-4)  # C keeps its place
+
+
+@pytest.mark.parametrize("steps", [7, 19])
+def test_equal_divisions_put_each_step_on_the_next_key(read, steps):
+    tuning = read(scl(*(f"{1200 * n / steps:.6f}" for n in range(1, steps)), "2/1"))
+    for key in (0, 30, 60, 61, 69, 90, 127):
+        assert tuning.pitch(key, 440.0) == pytest.approx(60 + 12 * (key - 60) / steps, abs=1e-6)
+
+
+def test_a_scale_repeats_at_its_last_note_octave_or_not(read):
+    bohlen_pierce = "27/25 25/21 9/7 7/5 75/49 5/3 9/5 49/25 15/7 7/3 63/25 25/9 3/1"
+    tuning = read(scl(*bohlen_pierce.split()))
+    tritave = 12 * math.log2(3)
+    assert tuning.pitch(73, 440.0) == pytest.approx(60 + tritave)
+    assert tuning.pitch(47, 440.0) == pytest.approx(60 - tritave)
+    assert tuning.pitch(46, 440.0) == pytest.approx(60 - tritave + 12 * math.log2(25 / 27))
+
+
+def test_between_keys_the_pitch_is_between_theirs(read):
+    tuning = read(scl(*MAJOR))
+    tone, third = 12 * math.log2(9 / 8), 12 * math.log2(5 / 4)
+    assert tuning.pitch(61.25, 440.0) == pytest.approx(60 + 0.75 * tone + 0.25 * third)
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("81/64", 407.82),
+        ("408.0", 408),
+        ("408.", 408),
+        (".5", 0.5),
+        ("5", 2786.3137),
+        ("-5.0", -5),
+        ("10/20", -1200),
+        ("100.0 cents", 100),
+        ("100.0C#", 100),
+        ("100.0 5", 100),
+        ("\t5/4   E\\", 386.3137),
+        ("3 / 2 a fifth", 701.955),
+        ("2 / octave", 1200),
+        ("3/2! fifth", 701.955),
+        ("4294967296/2147483648", 1200),
+        (f"{2**400}/{2**399}", 1200),
+    ],
+)
+def test_a_note_is_cents_or_a_ratio_and_what_follows_is_ignored(read, line, expected):
+    assert cents(read(scl(line)), 60, 61)[1] == pytest.approx(expected, abs=1e-3)
+
+
+def test_a_scale_without_notes_has_its_first_only(read):
+    tuning = read("nothing\n0\n")
+    assert tuning.pitch(60, 440.0) == 60.0
+    assert tuning.pitch(61, 440.0) is None
+    assert tuning.pitch(60.5, 440.0) is None
+
+
+def test_a_scale_is_named_by_its_description(read):
+    assert read(scl("2/1")).name == "A scale"
+    assert read("\n1\n2/1").name == "mine"
+    assert read("Größe\n1\n2/1").name == "Größe"
+    assert read("Größe\n1\n2/1".encode("latin-1")).name == "Größe"
+    assert read(b"\xef\xbb\xbfmarked\n1\n2/1").name == "marked"
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_any_line_ends_and_lines_after_the_last_note(read, end):
+    text = scl("3/2", "2/1") + "whatever follows\n"
+    assert cents(read(text.replace("\n", end)), 60, 62) == pytest.approx([0, 701.955, 1200])
+
+
+def test_an_old_text_ends_at_its_end_mark(read):
+    assert read(scl("2/1") + "\x1a").pitch(61, 440.0) == pytest.approx(72)
+    with pytest.raises(ParameterError, match="ends before note 2"):
+        read("A scale\n2\n3/2\n\x1a2/1")
+
+
+# ---------------------------------------------------------------- keyboard maps
+
+
+def test_a_reference_frequency_is_in_hz_wherever_a4_is(read):
+    tuning = read(scl(*TWELVE), kbm(reference=69, hz=432))
+    assert tuning.pitch(69, 432.0) == pytest.approx(69)
+    assert tuning.pitch(69, 440.0) == pytest.approx(69 + 12 * math.log2(432 / 440))
+    assert tuning.pitch(57, 216.0) == pytest.approx(69)
+
+
+def test_the_reference_key_sounds_its_frequency_whatever_the_scale(read):
+    tuning = read(scl(*MAJOR), kbm(*WHITE, octave=7))
+    assert tuning.pitch(69, 440.0) == pytest.approx(69)
+    assert tuning.pitch(60, 440.0) == pytest.approx(69 - 12 * math.log2(5 / 3))
+
+
+def test_white_keys_play_a_seven_note_scale_and_black_ones_nothing(read):
+    tuning = read(scl(*MAJOR), kbm(*WHITE, "12", size=12, octave=7, reference=60, hz=264))
+    just = [1, 9 / 8, 5 / 4, 4 / 3, 3 / 2, 5 / 3, 15 / 8, 2]
+    for key, ratio in zip((60, 62, 64, 65, 67, 69, 71, 72), just, strict=True):
+        assert tuning.pitch(key, 264.0) == pytest.approx(69 + 12 * math.log2(ratio))
+        assert tuning.pitch(key - 24, 264.0) == pytest.approx(45 + 12 * math.log2(ratio))
+    silent = {key for key in range(60, 72) if tuning.pitch(key, 440.0) is None}
+    assert silent == {61, 63, 66, 68, 70}
+
+
+def test_over_an_unmapped_key_the_pitch_goes_from_one_mapped_key_to_the_next(read):
+    tuning = read(scl(*MAJOR), kbm(*WHITE, octave=7))
+    low, high = tuning.pitch(60, 440.0), tuning.pitch(62, 440.0)
+    assert tuning.pitch(60.5, 440.0) == pytest.approx(low + (high - low) / 4)
+    assert tuning.pitch(61.5, 440.0) == pytest.approx(low + (high - low) * 3 / 4)
+
+
+def test_keys_beyond_the_first_and_last_are_unmapped(read):
+    tuning = read(scl(*TWELVE), kbm(first=50, last=80))
+    found = [key for key in range(-1, 129) if tuning.pitch(key, 440.0) is not None]
+    assert found == list(range(50, 81))
+    assert tuning.pitch(49.5, 440.0) is None
+    assert tuning.pitch(80.5, 440.0) is None
+    assert tuning.pitch(math.nan, 440.0) is None
+
+
+def test_the_reference_may_be_a_key_that_is_not_played(read):
+    assert read(scl(*TWELVE), kbm(last=60)).pitch(60, 440.0) == pytest.approx(60)
+
+
+def test_a_linear_map_starts_the_scale_on_the_middle_key(read):
+    tuning = read(scl("3/2", "2/1"), kbm(middle=62, reference=62, hz=440, octave=2))
+    assert tuning.pitch(63, 440.0) == pytest.approx(69 + 12 * math.log2(3 / 2))
+    assert tuning.pitch(60, 440.0) == pytest.approx(57)
+
+
+@pytest.mark.parametrize(("octave", "interval"), [(0, 24), (1, 12), (3, 36)])
+def test_the_map_repeats_at_its_octave_degree_or_at_the_end_of_the_scale(read, octave, interval):
+    tuning = read(scl("2/1", "4/1"), kbm("0", "x", octave=octave, reference=60))
+    assert tuning.pitch(62, 440.0) - tuning.pitch(60, 440.0) == pytest.approx(interval)
+
+
+def test_keys_left_out_at_the_end_of_a_map_are_unmapped(read):
+    tuning = read(scl(*TWELVE), kbm("0", "13", size=3, octave=12, reference=60, hz=440))
+    assert tuning.pitch(61, 440.0) == pytest.approx(69 + 13)  # on into the next octave
+    assert tuning.pitch(62, 440.0) is None
+    assert tuning.pitch(63, 440.0) == pytest.approx(69 + 12)
+
+
+# ---------------------------------------------------------------- errors
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "says"),
+    [
+        ("", 1, "ends before the number of notes"),
+        ("! only\n! comments", 2, "ends before the description"),
+        ("A scale", 1, "ends before the number of notes"),
+        ("A scale\nmany", 2, "expected the number of notes, got 'many'"),
+        ("A scale\n-1", 2, "-1 is not within 0 to 1024"),
+        ("A scale\n1025\n", 2, "1025 is not within"),
+        ("A scale\n2.0\n3/2\n2/1", 2, "expected the number"),
+        ("A scale\n2\n3/2\n", 4, "ends before note 2 of 2"),
+        ("A scale\n!\n1\nfifth", 4, "expected cents or a ratio, got 'fifth'"),
+        (scl("-3/2"), 5, "above zero"),
+        (scl("3/-2"), 5, "above zero"),
+        (scl("2/1", "0"), 6, "above zero"),
+        (scl("1/0"), 5, "above zero"),
+        (scl("3/2/1"), 5, "expected cents or a ratio"),
+        (scl("3/2.5"), 5, "expected cents or a ratio"),
+        (scl("3 / 2.5"), 5, "expected cents or a ratio"),
+        (scl("701,955"), 5, "expected cents or a ratio"),
+        (scl("7.0e2"), 5, "expected cents or a ratio"),
+        (scl("1.2.3"), 5, "expected cents or a ratio"),
+        (scl("nan"), 5, "expected cents or a ratio"),
+        (scl("inf"), 5, "expected cents or a ratio"),
+        (scl("."), 5, "expected cents or a ratio"),
+        (scl("٣/٢"), 5, "expected cents or a ratio"),
+        (scl("9" * 400 + "."), 5, "too far"),
+        (scl("9" * 1000), 5, "too far"),
+        (scl("9" * 5000), 5, "expected cents or a ratio"),
+    ],
+)
+def test_a_malformed_scale_is_refused_by_line(read, text, line, says):
+    with pytest.raises(ParameterError, match=rf"mine\.scl: line {line}: .*{says}"):
+        read(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "says"),
+    [
+        ("", 1, "ends before the size of the map"),
+        ("0\n0\n127", 3, "ends before the middle key"),
+        (kbm(size=-1), 1, "size of the map: -1 is not within"),
+        (kbm(size=1025), 1, "size of the map: 1025 is not within"),
+        (kbm(last=128), 3, "last key: 128 is not within"),
+        (kbm(first=61, last=60), 3, "last key: 60 is not within 61 to 127"),
+        (kbm(middle="x"), 4, "expected the middle key, got 'x'"),
+        (kbm(reference=200), 5, "reference key: 200"),
+        (kbm(hz=0), 6, "reference frequency: '0' is not within"),
+        (kbm(hz=-440), 6, "reference frequency: '-440' is not within"),
+        (kbm(hz="1e999"), 6, "is not within"),
+        (kbm(hz="nan"), 6, "expected the reference frequency"),
+        (kbm(hz="A440"), 6, "expected the reference frequency"),
+        (kbm(octave=-1), 7, "degree of the octave: -1"),
+        (kbm("0", "y"), 9, "expected a degree of the scale, or x, got 'y'"),
+        (kbm("0 1 2", size=3), 8, "expected a degree"),
+        (kbm("-1"), 8, "-1 is not within"),
+        (kbm("0", "x", reference=61), 5, "reference key 61 is not mapped"),
+    ],
+)
+def test_a_malformed_map_is_refused_by_line(read, text, line, says):
+    with pytest.raises(ParameterError, match=rf"mine\.kbm: line {line}: .*{says}"):
+        read(scl(*TWELVE), text)
+
+
+def test_a_map_must_map_a_key(read):
+    with pytest.raises(ParameterError, match=r"mine\.kbm: maps no key"):
+        read(scl(*TWELVE), kbm("0", "x", reference=60, first=61, last=61))
+
+
+def test_pitches_no_number_can_hold_are_refused(read):
+    with pytest.raises(ParameterError, match=r"mine\.scl: key 0 would be"):
+        read(scl("200000.0"))
+
+
+@pytest.mark.parametrize("data", [bytes(100), b"\x89PNG\r\n\x1a\n\x00", "A\n1\n2".encode("utf-16")])
+def test_what_is_no_text_is_refused(read, data):
+    with pytest.raises(ParameterError, match=r"mine\.scl: not a text file"):
+        read(data)
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path):
+    for path, says in [
+        (tmp_path / "none.scl", "No such file"),
+        (tmp_path, "directory|denied"),
+        (tmp_path / "a\0b", "null"),
+    ]:
+        with pytest.raises(ParameterError, match=says):
+            read_tuning(path)
+
+
+LINES = st.lists(
+    st.one_of(
+        st.sampled_from([*TWELVE, *MAJOR, "x", "!", "", "0", "7", "12", "60", "127", "440.0"]),
+        st.integers(-200, 2000).map(str),
+        st.text(alphabet="0123456789./-+eE x!,", max_size=12),
+    ),
+    max_size=24,
+).map("\n".join)
+FILES = st.one_of(
+    st.binary(max_size=100), LINES.map(str.encode), st.text(max_size=60).map(str.encode)
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(scale=FILES, keyboard=st.none() | FILES, a4=st.floats(300.0, 600.0))
+@example(scale=scl(*MAJOR).encode(), keyboard=kbm(*WHITE, octave=7).encode(), a4=440.0)
+def test_any_file_is_a_tuning_of_finite_pitches_or_a_clear_refusal(scale, keyboard, a4):
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [Path(folder, "a.scl"), Path(folder, "a.kbm")]
+        for path, data in zip(paths, (scale, keyboard), strict=True):
+            path.write_bytes(data or b"")
+        try:
+            tuning = read_tuning(paths[0], None if keyboard is None else paths[1])
+        except ParameterError as error:
+            assert "\n" not in str(error)  # noqa: PT017 (one clear line)
+            return
+    pitches = [tuning.pitch(step / 2, a4) for step in range(255)]
+    assert any(pitch is not None for pitch in pitches)
+    for pitch in pitches:
+        assert pitch is None or math.isfinite(a4 * 2 ** ((pitch - 69) / 12))

@@ -1,0 +1,43 @@
+"""How the instrument is tuned and played: what live and rendered playing have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibration import Calibration
+from yehu_server.playing.fingering import OpenStrings, RangePolicy
+from yehu_server.playing.intonation import Intonation
+from yehu_server.playing.mapping import DEFAULT, Mapping, load
+from yehu_server.playing.ownership import Sink
+from yehu_server.playing.performer import Performer
+from yehu_server.playing.tuning import EQUAL, Tuning
+
+
+@dataclass(frozen=True)
+class Style:
+    """See ``yehu-server render --help``; `settings` are held parameters and their values."""
+
+    mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
+    settings: tuple[tuple[str, float], ...] = ()
+    a4: float = 440.0  # Hz
+    tuning: Tuning = EQUAL
+    policy: RangePolicy = RangePolicy.TRANSPOSE
+    open_strings: OpenStrings = OpenStrings.ALWAYS
+    seed: int = 0
+
+    def performer(
+        self,
+        sink: Sink,
+        calibration: Calibration | None = None,
+        quantities: Quantities | None = None,
+    ) -> Performer:
+        """A player of this style for one instrument."""
+        return Performer(
+            sink,
+            Intonation(calibration, quantities),
+            policy=self.policy,
+            seed=self.seed,
+            open_strings=self.open_strings,
+            tuning=lambda note: self.tuning.pitch(note, self.a4),
+        )

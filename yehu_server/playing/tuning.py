@@ -1,0 +1,256 @@
+"""Scala tunings: which pitch a key sounds.
+
+A scale (``.scl``) lists intervals above its first note, 1/1; a keyboard map (``.kbm``) says
+which key plays which of them, and which key is how many Hz.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from yehu_server.errors import ParameterError
+from yehu_server.files import read_text
+
+KEYS = range(128)
+MIDDLE_C, A4 = 60, 69
+# Hz; the pitches of a tuning that is fixed in Hz are kept relative to this A4.
+USUAL_A4 = 440.0
+MOST_NOTES = 1024  # of a scale or a map
+MOST_DEGREE = 100_000
+# No key may be further off: the frequency of such a pitch is still a finite number.
+MOST_SEMITONES = 10_000.0
+LEAST_HZ, MOST_HZ = 1e-6, 1e9
+
+# What follows a pitch is ignored, unless it looks as if the pitch went on.
+_CENTS = re.compile(r"([+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+))(?![0-9./]|,[0-9]|[eE][+-]?[0-9])")
+_RATIO = re.compile(
+    r"([+-]?[0-9]{1,1000}+)(?:[ \t]*/[ \t]*([+-]?[0-9]{1,1000}+))?+(?![0-9./]|,[0-9])"
+)
+_WHOLE = re.compile(r"[+-]?[0-9]{1,18}")
+_FREQUENCY = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_LINE_END = re.compile(r"\r\n|\r|\n")
+_NO_TEXT = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f]")  # 1a (hex) ends a DOS text
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """The pitch of every key.
+
+    `keys` has the pitches of keys 0 to 127 (fractional MIDI notes; None for an unmapped
+    key), or is None where each key sounds its own number. They are relative to A4, whatever
+    it is; if `fixed`, to an A4 of 440 Hz, and stay where they are when A4 moves.
+    """
+
+    name: str
+    keys: tuple[float | None, ...] | None = None
+    fixed: bool = False
+
+    def pitch(self, note: float, a4: float) -> float | None:
+        """Return what a key sounds, as a fractional MIDI note relative to `a4` (Hz).
+
+        Between keys (a fractional `note`) the pitch goes straight from the next mapped key
+        below to the next above. None for an unmapped key and beyond the outermost mapped ones.
+        """
+        if self.keys is None:
+            return note
+        if not KEYS[0] <= note <= KEYS[-1]:  # also refuses NaN
+            return None
+        below, above = math.floor(note), math.ceil(note)
+        if below != above:
+            while below > KEYS[0] and self.keys[below] is None:
+                below -= 1
+            while above < KEYS[-1] and self.keys[above] is None:
+                above += 1
+        low, high = self.keys[below], self.keys[above]
+        if low is None or high is None:
+            return None
+        if below != above:
+            low += (high - low) * (note - below) / (above - below)
+        return low - 12.0 * math.log2(a4 / USUAL_A4) if self.fixed else low
+
+
+EQUAL = Tuning("12-tone equal temperament")
+
+
+def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
+    """Read a Scala scale and, if given, a Scala keyboard map.
+
+    Without a map the scale's 1/1 is on key 60, which keeps its place in equal temperament,
+    and every key plays the next note of the scale. With a map the pitches are fixed in Hz.
+    Errors: ParameterError, naming the file and mostly the line.
+    """
+    name, notes = _read_scale(scale)
+    layout = _Keyboard() if keyboard is None else _read_keyboard(keyboard)
+    reference = layout.interval(layout.reference, notes)
+    if reference is None:
+        where = f"{keyboard}: line {layout.reference_line}"
+        raise ParameterError(f"{where}: the reference key {layout.reference} is not mapped")
+    above = layout.reference_pitch - reference
+    keys: list[float | None] = [None] * len(KEYS)
+    for key in range(layout.first, layout.last + 1):
+        interval = layout.interval(key, notes)
+        if interval is not None:
+            pitch = above + interval
+            if abs(pitch) > MOST_SEMITONES:
+                raise ParameterError(f"{scale}: key {key} would be {pitch:.0f} semitones away")
+            keys[key] = pitch
+    if all(key is None for key in keys):
+        raise ParameterError(f"{keyboard}: maps no key")
+    return Tuning(name, tuple(keys), fixed=keyboard is not None)
+
+
+@dataclass(frozen=True)
+class _Keyboard:
+    """A keyboard map; as it is, the one for scales that come without.
+
+    `degrees` are the scale's notes from the `middle` key up, None for no note; they repeat
+    `octave` degrees higher (0: one scale higher). Without any, keys follow the scale.
+    """
+
+    first: int = KEYS[0]
+    last: int = KEYS[-1]
+    middle: int = MIDDLE_C
+    reference: int = MIDDLE_C
+    reference_line: int = 0
+    reference_pitch: float = float(MIDDLE_C)
+    octave: int = 0
+    degrees: tuple[int | None, ...] = ()
+
+    def interval(self, key: int, notes: tuple[float, ...]) -> float | None:
+        """Semitones from the scale's 1/1 on the middle key to any key; None if unmapped."""
+        steps = key - self.middle
+        if not self.degrees:
+            return _interval(steps, notes)
+        turns, place = divmod(steps, len(self.degrees))
+        degree = self.degrees[place]
+        octave = _interval(self.octave or len(notes), notes)
+        own = None if degree is None else _interval(degree, notes)
+        return None if own is None or octave is None else own + turns * octave
+
+
+def _interval(degree: int, notes: tuple[float, ...]) -> float | None:
+    """Semitones from 1/1 to a degree; the last note of a scale is the 1/1 of its repetition.
+
+    A scale without notes has only degree 0.
+    """
+    if not notes:
+        return 0.0 if degree == 0 else None
+    turns, place = divmod(degree, len(notes))
+    return turns * notes[-1] + (notes[place - 1] if place else 0.0)
+
+
+class _Lines:
+    """The lines of a file without its comments, taken one by one."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.number = 0  # of the line taken last
+        try:
+            text = read_text(path)
+        except UnicodeDecodeError as error:
+            text = error.object.decode("latin-1")
+        except (OSError, ValueError) as error:  # a name may have a NUL
+            reason = error.strerror if isinstance(error, OSError) else None
+            raise ParameterError(f"{path}: {reason or error}") from error
+        if _NO_TEXT.search(text):
+            raise ParameterError(f"{path}: not a text file")
+        self._lines = _LINE_END.split(text.removeprefix("\ufeff").partition("\x1a")[0])
+
+    def error(self, message: str) -> ParameterError:
+        """Make an error about the line taken last."""
+        return ParameterError(f"{self.path}: line {max(self.number, 1)}: {message}")
+
+    def title(self) -> str:
+        """Take the first line, which may be empty."""
+        while self.number < len(self._lines):
+            line = self._lines[self.number]
+            self.number += 1
+            if not line.startswith("!"):
+                return line.strip()
+        raise self.error("the file ends before the description")
+
+    def next(self) -> str | None:
+        """Take the next line that says anything; None at the end."""
+        while self.number < len(self._lines):
+            line = self._lines[self.number].partition("!")[0].strip()
+            self.number += 1
+            if line:
+                return line
+        return None
+
+    def take(self, what: str) -> str:
+        """Take the next line, which there must be."""
+        line = self.next()
+        if line is None:
+            raise self.error(f"the file ends before {what}")
+        return line
+
+    def whole(self, what: str, lo: int, hi: int) -> int:
+        """Take a whole number within bounds."""
+        return self.check(self.take(what), what, lo, hi)
+
+    def check(self, line: str, what: str, lo: int, hi: int) -> int:
+        """Read a line just taken as a whole number within bounds."""
+        if not _WHOLE.fullmatch(line):
+            raise self.error(f"expected {what}, got {_quote(line)}")
+        if not lo <= int(line) <= hi:
+            raise self.error(f"{what}: {int(line)} is not within {lo} to {hi}")
+        return int(line)
+
+
+def _read_scale(path: Path) -> tuple[str, tuple[float, ...]]:
+    """Read a scale's name and its notes (semitones above 1/1)."""
+    lines = _Lines(path)
+    name = lines.title() or path.stem
+    count = lines.whole("the number of notes", 0, MOST_NOTES)
+    return name, tuple(_note(lines, f"note {n} of {count}") for n in range(1, count + 1))
+
+
+def _note(lines: _Lines, what: str) -> float:
+    line = lines.take(what)
+    if cents := _CENTS.match(line):
+        semitones = float(cents[1]) / 100.0
+    elif ratio := _RATIO.match(line):
+        over, under = int(ratio[1]), int(ratio[2] or 1)
+        if over <= 0 or under <= 0:
+            raise lines.error(f"{what}: a ratio must be above zero, not {_quote(line)}")
+        semitones = 12.0 * (math.log2(over) - math.log2(under))
+    else:
+        raise lines.error(f"{what}: expected cents or a ratio, got {_quote(line)}")
+    if abs(semitones) > MOST_SEMITONES:
+        raise lines.error(f"{what}: {_quote(line)} is too far away")
+    return semitones
+
+
+def _read_keyboard(path: Path) -> _Keyboard:
+    lines = _Lines(path)
+    lowest, highest = KEYS[0], KEYS[-1]
+    size = lines.whole("the size of the map", 0, MOST_NOTES)
+    first = lines.whole("the first key", lowest, highest)
+    last = lines.whole("the last key", first, highest)
+    middle = lines.whole("the middle key", lowest, highest)
+    reference = lines.whole("the reference key", lowest, highest)
+    reference_line = lines.number
+    line = lines.take("the reference frequency")
+    if not _FREQUENCY.fullmatch(line):
+        raise lines.error(f"expected the reference frequency, got {_quote(line)}")
+    if not LEAST_HZ <= float(line) <= MOST_HZ:
+        bounds = f"{LEAST_HZ:g} to {MOST_HZ:g} Hz"
+        raise lines.error(f"the reference frequency: {_quote(line)} is not within {bounds}")
+    pitch = A4 + 12.0 * math.log2(float(line) / USUAL_A4)
+    octave = lines.whole("the degree of the octave", 0, MOST_DEGREE)
+    degrees: list[int | None] = [None] * size  # unmapped keys at the end may be left out
+    for place in range(size):
+        entry = lines.next()
+        if entry is None:
+            break
+        if entry not in {"x", "X"}:
+            degrees[place] = lines.check(entry, "a degree of the scale, or x", 0, MOST_DEGREE)
+    return _Keyboard(first, last, middle, reference, reference_line, pitch, octave, tuple(degrees))
+
+
+def _quote(line: str) -> str:
+    return repr(line if len(line) <= 40 else f"{line[:40]}...")

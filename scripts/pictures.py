@@ -42,7 +42,7 @@ from yehu_server.errors import ParameterError, ScoreError, YehuError
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Body, Quantities, StringQuantities
 from yehu_server.playing.bowing import FIRM, LIGHT, Manner, manner
-from yehu_server.playing.calibration import HIGHEST_NOTES, OPEN_NOTES, calibration_for, frequency_hz
+from yehu_server.playing.calibration import OPEN_NOTES, PITCHES, calibration_for, frequency_hz
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.messages import PERCUSSION
@@ -533,7 +533,7 @@ def along(values: Array) -> Array:
 def player_force(stop: Stop, speed: Array, beta: float, wish: float) -> Array:
     """The force (N) that the player's assist chooses for a value of ``/playing/pressure``."""
     fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
-    return (manner(stop.note).pressure(wish) + fast) * stop.highest_force(speed, beta)
+    return (manner(stop.note).pressure(wish, stop.note) + fast) * stop.highest_force(speed, beta)
 
 
 def draw_map(axes: Any, x: Array, kinds: Sequence[int]) -> None:
@@ -591,7 +591,7 @@ def title(stop: Stop) -> str:
 def schelleng_picture(arguments: argparse.Namespace) -> None:
     """Bow every cell, print and draw."""
     for string, note, lowest, highest in zip(
-        STRINGS, arguments.note, OPEN_NOTES, HIGHEST_NOTES, strict=True
+        STRINGS, arguments.note, OPEN_NOTES, [max(each) for each in PITCHES], strict=True
     ):
         if not lowest < note <= highest:
             raise ParameterError(f"{string} string: stopped notes are {lowest + 1} to {highest}")

@@ -1,11 +1,16 @@
-"""Play every note at many dynamics and print which are in tune, and from when on.
+"""Play every note in many ways and print whether it is in tune, in time and without clicks.
 
-    .venv/bin/python scripts/playability.py [--rate HZ]
+    .venv/bin/python scripts/playability.py [grid|steady|legato|bends|clicks|evenness] [--rate HZ]
 
-Notes F4 to F6 with velocities 20 to 127 and the mod wheel untouched, at 0, 64 and 127, through
-the keyboard mapping: 500 notes of 0.8 s. A dot is a note within 10 cents (open strings 12) from
-0.1 s to its end; `a` one whose attack takes longer; a number how many cents it is off in the
-end; `O` and `U` a register above or below, `?` none.
+grid      F4 to F6 with velocities 20 to 127 and the mod wheel untouched, at 0, 64 and 127,
+          through the keyboard mapping: 500 notes of 0.8 s. A dot is a note within 10 cents
+          (open strings 12) from 0.1 s to its end; `a` one whose attack takes longer; a number how
+          many cents it is off in the end; `O` and `U` a register above or below, `?` none.
+steady    Cents off at steady state, velocities 40 to 127 and six places of the wheel.
+legato    Slurred steps of 1 to 5 semitones: when the new note is within 10 cents, for good.
+bends     Two semitones up and back within a second, and glides of a fourth: cents off the aim.
+clicks    The largest jump between two samples where notes meet, of that in the notes around.
+evenness  Loudness (dB, A-weighted) of every note at several dynamics.
 """
 
 from __future__ import annotations
@@ -13,55 +18,111 @@ from __future__ import annotations
 import argparse
 import math
 import os
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from typing import Any
 
 import mido
 import numpy as np
 
+from yehu_server.analysis.level import a_weighted_db
 from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import OPEN_NOTES, calibration_for, frequency_hz
-from yehu_server.playing.intonation import Intonation
-from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.calibration import OPEN_NOTES, Calibration, calibration_for, frequency_hz
 from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Performer
+from yehu_server.playing.style import Style
 
+NOTES = range(65, 90)
 VELOCITIES = (20, 50, 80, 110, 127)
 WHEELS = (None, 0, 64, 127)
-SECONDS = 0.8
-MOMENTS_S = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
-STEADY = 4  # moments from which on a note has settled
 LISTEN_S = 0.06
 NONE = 9999.0
+Sound = Any
 
 
-def errors(rate: float, note: int, wheel: int | None, velocity: int) -> list[float]:
-    """How many cents a note is off, at each of MOMENTS_S; NONE where it has no pitch."""
+@cache
+def calibrated(rate: float) -> tuple[Calibration, Quantities]:
+    """The instrument in tune."""
     calibration = calibration_for(rate)
-    instrument = Instrument(rate, calibration.tuned(Quantities()))
-    midi = MidiPlayer(Performer(instrument, Intonation(calibration)), load(DEFAULT))
-    if wheel is not None:
-        midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
-    midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
-    out = np.zeros(round(SECONDS * rate), np.float32)
-    instrument.process(out)
-    wanted = frequency_hz(note, 440.0)
-    found = []
-    for moment in MOMENTS_S:
-        window = out[round(moment * rate) : round((moment + LISTEN_S) * rate)]
-        pitch = pitch_hz(window, rate, lo=0.4 * wanted, hi=3.2 * wanted)
-        found.append(cents(pitch, wanted) if math.isfinite(pitch) else NONE)
-    return found
+    return calibration, calibration.tuned(Quantities())
 
 
-def mark(note: int, found: list[float]) -> str:
+class Take:
+    """One performance on one instrument, through the keyboard mapping, without chance."""
+
+    def __init__(self, rate: float) -> None:
+        self.rate = rate
+        calibration, quantities = calibrated(rate)
+        self.instrument = Instrument(rate, quantities)
+        style = Style(settings=(("/playing/variation", 0.0),))
+        self.performer: Performer = style.performer(self.instrument, calibration)
+        self.performer.write("/playing/variation", 0.0, hold=True)
+        self.midi = MidiPlayer(self.performer, style.mapping)
+
+    def at(self, seconds: float, kind: str, **fields: int) -> None:
+        """Send a message at a time."""
+        frame = self.instrument.frames(1e3 * seconds)
+        self.midi.receive(mido.Message(kind, **fields), frame=frame)
+
+    def on(self, seconds: float, note: int, velocity: int = 80) -> None:
+        """Strike a key."""
+        self.at(seconds, "note_on", note=note, velocity=velocity)
+
+    def off(self, seconds: float, note: int) -> None:
+        """Let it go."""
+        self.at(seconds, "note_off", note=note)
+
+    def wheel(self, place: int | None) -> None:
+        """Put the mod wheel somewhere before the first note; None leaves it alone."""
+        if place is not None:
+            self.at(0.0, "control_change", control=1, value=place)
+
+    def play(self, seconds: float) -> Sound:
+        """What it sounds like."""
+        out = np.zeros(self.instrument.frames(1e3 * seconds), np.float32)
+        self.instrument.process(out)
+        return out
+
+
+def off_by(sound: Sound, rate: float, start_s: float, seconds: float, pitch: float) -> float:
+    """How many cents a part of a sound is off a pitch (fractional MIDI note); NONE without one."""
+    wanted = frequency_hz(pitch, 440.0)
+    part = sound[round(start_s * rate) : round((start_s + seconds) * rate)]
+    found = pitch_hz(part, rate, lo=0.4 * wanted, hi=3.2 * wanted)
+    return cents(found, wanted) if math.isfinite(found) else NONE
+
+
+def bound(note: int) -> float:
+    """Within how many cents a note counts as right."""
+    return 12.0 if note in OPEN_NOTES else 10.0
+
+
+def in_parallel(work: Callable[..., Any], jobs: Iterable[Sequence[Any]]) -> list[Any]:
+    """Do each job; the model runs without the GIL."""
+    with ThreadPoolExecutor(os.cpu_count()) as workers:
+        return list(workers.map(lambda job: work(*job), jobs))
+
+
+# ---------------------------------------------------------------- grid
+
+MOMENTS_S = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
+STEADY = 4  # moments from which on a note has settled
+
+
+def struck(rate: float, note: int, wheel: int | None, velocity: int) -> str:
     """One place of the map."""
-    bound = 12.0 if note in OPEN_NOTES else 10.0
-    if all(abs(error) <= bound for error in found):
+    take = Take(rate)
+    take.wheel(wheel)
+    take.on(0.0, note, velocity)
+    sound = take.play(0.8)
+    found = [off_by(sound, rate, moment, LISTEN_S, note) for moment in MOMENTS_S]
+    if all(abs(error) <= bound(note) for error in found):
         return "."
     settled = found[STEADY:]
-    if all(abs(error) <= bound for error in settled):
+    if all(abs(error) <= bound(note) for error in settled):
         return "a"
     if NONE in settled:
         return "?"
@@ -71,23 +132,194 @@ def mark(note: int, found: list[float]) -> str:
     return "O" if middle > 0.0 else "U"
 
 
-def main() -> None:
+def grid(rate: float) -> None:
     """Print the map and the sum."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--rate", type=float, default=44100.0)
-    rate = parser.parse_args().rate
-    jobs = [(n, w, v) for n in range(65, 90) for w in WHEELS for v in VELOCITIES]
-    with ThreadPoolExecutor(os.cpu_count()) as workers:
-        marks = list(workers.map(lambda job: mark(job[0], errors(rate, *job)), jobs))
+    jobs = [(rate, n, w, v) for n in NOTES for w in WHEELS for v in VELOCITIES]
+    marks = in_parallel(struck, jobs)
     print("note   wheel untouched       wheel 0               wheel 64              wheel 127")
     per_note = len(WHEELS) * len(VELOCITIES)
     for row in range(0, len(jobs), per_note):
         cells = marks[row : row + per_note]
         groups = [cells[at : at + len(VELOCITIES)] for at in range(0, per_note, len(VELOCITIES))]
         lines = ["".join(f"{cell:>4}" for cell in group) for group in groups]
-        print(f"{jobs[row][0]:4} {'  '.join(lines)}")
+        print(f"{jobs[row][1]:4} {'  '.join(lines)}")
     good = marks.count(".")
     print(f"{good} of {len(marks)} ({100.0 * good / len(marks):.1f} %)")
+
+
+# ---------------------------------------------------------------- steady
+
+STEADY_WHEELS = (None, 0, 32, 64, 96, 127)
+STEADY_VELOCITIES = (40, 60, 80, 100, 127)
+
+
+def sustained(rate: float, note: int, wheel: int | None, velocity: int) -> float:
+    """Cents off in the end."""
+    take = Take(rate)
+    take.wheel(wheel)
+    take.on(0.0, note, velocity)
+    return off_by(take.play(0.75), rate, 0.45, 0.3, note)
+
+
+def steady(rate: float) -> None:
+    """Print each note's largest error."""
+    cases = [(w, v) for w in STEADY_WHEELS for v in STEADY_VELOCITIES]
+    errors = in_parallel(sustained, [(rate, note, *case) for note in NOTES for case in cases])
+    table = np.abs(np.array(errors)).reshape(len(NOTES), len(cases))
+    right = 0
+    for note, row in zip(NOTES, table, strict=True):
+        allowed = 12.0 if note in OPEN_NOTES else 5.0
+        right += int((row <= allowed).sum())
+        print(f"{note}: {row.max():6.1f} cents at most, {(row > allowed).sum():2} over {allowed:g}")
+    print(f"{right} of {table.size} ({100.0 * right / table.size:.1f} %)")
+
+
+# ---------------------------------------------------------------- legato
+
+SPEED_WHEELS = (26, 84, 122)  # 0.14, 0.2 and 0.25 m/s
+STEP_S, WINDOW_S = 0.4, 0.02
+
+
+def slurred(rate: float, note: int, target: int, wheel: int) -> float:
+    """Milliseconds until the second note is right for good, at most 200."""
+    take = Take(rate)
+    take.wheel(wheel)
+    take.on(0.0, note)
+    take.on(STEP_S, target)
+    take.off(STEP_S + 0.01, note)
+    sound = take.play(STEP_S + 0.3)
+    late = 0.0
+    for ms in range(0, 200, 2):
+        if abs(off_by(sound, rate, STEP_S + 1e-3 * ms, WINDOW_S, target)) > bound(target):
+            late = ms + 2.0
+    return late
+
+
+def legato(rate: float) -> None:
+    """Print how soon slurred notes come, by the note they go to."""
+    steps = [step for size in range(1, 6) for step in (-size, size)]
+    jobs = [
+        (rate, target + step, target, wheel)
+        for target in NOTES
+        for step in steps
+        for wheel in SPEED_WHEELS
+        if target + step in NOTES
+    ]
+    times = np.array(in_parallel(slurred, jobs))
+    for target in NOTES:
+        own = times[[job[2] == target for job in jobs]]
+        print(
+            f"to {target}: median {np.median(own):3.0f} ms, {100.0 * (own <= 60.0).mean():3.0f} %"
+        )
+    within = 100.0 * (times <= 60.0).mean()
+    print(f"{within:.1f} % of {len(times)} within 60 ms, median {np.median(times):.0f} ms")
+
+
+# ---------------------------------------------------------------- bends
+
+
+def bent(rate: float, note: int, semitones: float) -> list[float]:
+    """Cents off the aim while the wheel goes up and comes back, 20 ms later than it moves."""
+    take = Take(rate)
+    take.performer.write("/playing/bend_range", abs(semitones), hold=True)
+    take.on(0.0, note)
+    begin, length, lag, window = 0.3, 1.0, 0.012, 0.03
+
+    def curve(t: float) -> float:
+        rise = 0.5 - 0.5 * math.cos(2.0 * math.pi * min(max((t - begin) / length, 0.0), 1.0))
+        return math.copysign(rise, semitones)
+
+    for step in range(200):
+        time = begin + length * step / 199
+        take.at(time, "pitchwheel", pitch=round(8191 * curve(time)))
+    sound = take.play(begin + length + 0.2)
+    times = np.arange(begin, begin + length, 0.02)
+    aims = [note + abs(semitones) * curve(t + 0.5 * window - lag) for t in times]
+    return [off_by(sound, rate, t, window, aim) for t, aim in zip(times, aims, strict=True)]
+
+
+def bends(rate: float) -> None:
+    """Print how well bends are followed."""
+    for semitones in (2.0, -2.0, 5.0):
+        notes = [n for n in NOTES if n + semitones in NOTES and n not in OPEN_NOTES]
+        found = np.abs(np.array(in_parallel(bent, [(rate, n, semitones) for n in notes])))
+        print(f"{semitones:+g} semitones: {100.0 * (found <= 10.0).mean():.1f} % within 10 cents")
+        for note, row in zip(notes, found, strict=True):
+            if (row > 10.0).any():
+                worst = "no pitch" if row.max() == NONE else f"{row.max():.0f} cents at most"
+                print(f"   {note}: {100.0 * (row > 10.0).mean():.0f} % of the time off, {worst}")
+
+
+# ---------------------------------------------------------------- clicks
+
+
+def jump(rate: float, note: int, target: int, gap_s: float | None) -> float:
+    """The largest jump where two notes meet, of the largest inside them; None: slurred."""
+    take = Take(rate)
+    take.on(0.0, note)
+    if gap_s is None:
+        take.on(0.5, target)
+        take.off(0.505, note)
+    else:
+        take.off(0.5 - gap_s, note)
+        take.on(0.5, target)
+    take.off(1.0, target)
+    steps = np.abs(np.diff(take.play(1.3)))
+
+    def largest(start_s: float, end_s: float) -> float:
+        return float(steps[round(start_s * rate) : round(end_s * rate)].max())
+
+    meeting = largest(0.5 - (gap_s or 0.0) - 0.001, 0.58)
+    return max(
+        meeting / max(largest(0.3, 0.46), largest(0.75, 0.98)),
+        largest(0.999, 1.25) / largest(0.75, 0.98),
+    )
+
+
+def clicks(rate: float) -> None:
+    """Print the ratios."""
+    steps = (-12, -7, -5, -3, -2, -1, 1, 2, 3, 5, 7, 12)
+    pairs = [(n, n + step) for n in NOTES for step in steps if n + step in NOTES]
+    for name, gap_s in (("slurred", None), ("bow changes", 0.0), ("detached", 0.02)):
+        ratios = np.array(in_parallel(jump, [(rate, *pair, gap_s) for pair in pairs]))
+        worst = pairs[int(ratios.argmax())]
+        print(
+            f"{name}: median {np.median(ratios):.2f}, 95 % below {np.quantile(ratios, 0.95):.2f}, "
+            f"largest {ratios.max():.2f} ({worst[0]} to {worst[1]})"
+        )
+
+
+# ---------------------------------------------------------------- evenness
+
+
+def loudness(rate: float, note: int, wheel: int | None, velocity: int) -> float:
+    """Of a held note (dB, A-weighted)."""
+    take = Take(rate)
+    take.wheel(wheel)
+    take.on(0.0, note, velocity)
+    return a_weighted_db(take.play(0.8)[round(0.3 * rate) :], rate)
+
+
+def evenness(rate: float) -> None:
+    """Print how much notes differ, and neighbours."""
+    for wheel, velocity in ((None, 80), (0, 80), (64, 110), (127, 127)):
+        levels = np.array(in_parallel(loudness, [(rate, n, wheel, velocity) for n in NOTES]))
+        print(
+            f"wheel {'untouched' if wheel is None else wheel}, velocity {velocity}: "
+            f"within {np.ptp(levels):.1f} dB, neighbours {np.abs(np.diff(levels)).max():.1f} dB"
+        )
+
+
+MEASURES = {each.__name__: each for each in (grid, steady, legato, bends, clicks, evenness)}
+
+
+def main() -> None:
+    """Measure what is asked."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("measure", nargs="?", choices=MEASURES, default="grid")
+    parser.add_argument("--rate", type=float, default=44100.0)
+    arguments = parser.parse_args()
+    MEASURES[arguments.measure](arguments.rate)
 
 
 if __name__ == "__main__":

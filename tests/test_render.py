@@ -493,3 +493,57 @@ def test_progress_is_told_in_seconds_up_to_the_end(phrase, tmp_path):
     done = [value for value, _ in told]
     assert done == sorted(done)
     assert done[-1] == pytest.approx(summary.duration_s)
+
+
+# ---------------------------------------------------------------- tunings, MPE
+
+MEANTONE = """\
+! meantone.scl
+quarter-comma meantone
+ 12
+ 76.04900
+ 193.15686
+ 310.26471
+ 5/4
+ 503.42157
+ 579.47057
+ 696.57843
+ 25/16
+ 889.73529
+ 1006.84314
+ 1082.89214
+ 2/1
+"""
+
+
+@pytest.fixture
+def meantone(tmp_path) -> Path:
+    path = tmp_path / "meantone.scl"
+    path.write_text(MEANTONE, encoding="utf-8")
+    return path
+
+
+def test_a_scala_scale_tunes_the_notes(play, midi, meantone):
+    """E5 is a pure third above C5: 14 cents below equal temperament."""
+    score = midi(*notes((0, 1.0, 76, 80)))
+    still = ("--set", "/playing/variation=0", "--tail", 0.1)
+    pitches = [
+        pitch_of(play(score, *still, *words)[1][13000:35000], 44100.0)
+        for words in ((), ("--tuning", meantone))
+    ]
+    assert cents(pitches[1], pitches[0]) == pytest.approx(-13.7, abs=5.0)
+
+
+def test_a_keyboard_map_needs_a_scale(midi, tmp_path, capsys):
+    arguments = ["render", str(midi(*notes((0, 0.1, 76, 80)))), "-o", str(tmp_path / "out.wav")]
+    assert main([*arguments, "--keyboard-map", "white.kbm"]) != 0
+    assert "--tuning" in capsys.readouterr().err
+
+
+def test_mpe_bends_a_note_by_48_semitones(play, midi):
+    """On a member channel half the wheel's way is two octaves, and a sixteenth three semitones."""
+    bend = mido.Message("pitchwheel", channel=1, pitch=512)
+    score = midi((0.0, bend), *notes((0, 1.0, 70, 80), channel=2))
+    summary, sound = play(score, "--mpe", "--set", "/playing/variation=0", "--tail", 0.1)
+    assert summary["notes_played"] == 1
+    assert abs(cents(pitch_of(sound[13000:35000], 44100.0), 554.37)) < 15.0

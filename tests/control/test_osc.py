@@ -395,6 +395,7 @@ def test_pitch_slides_the_sounding_note_steplessly(stage):
         "/output/balance",
         "/bow/speed",  # A4 wants it slow
         "/bow/pressure",
+        "/bow/position",
     }
     places = [place for _, address, place in stage.events if address == "/finger/1/position"]
     assert len(places) == 30
@@ -518,7 +519,7 @@ def test_reset_puts_every_parameter_back_and_tells(stage):
 
 
 def test_a_note_takes_back_what_was_written_directly(stage):
-    stage.tell("/note", 67, 90)
+    stage.tell("/note", 74, 90)
     stage.tell("/bow/speed", 0.05)
     stage.tell("/playing/speed", 0.3)
     assert stage.player.value("/bow/speed") == f32(0.05)

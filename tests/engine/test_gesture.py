@@ -9,7 +9,7 @@ import pytest
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import ENGINE, SLOT
-from yehu_server.physics.layout import F_N, F_PLUCK, FINGER_CONTROLS, V_B, X_B
+from yehu_server.physics.layout import F_N, FINGER_CONTROLS, V_B, X_B
 
 RATE = 44100
 BRIDGE_X = 0.30  # m
@@ -57,20 +57,10 @@ def test_a_ramp_goes_straight_and_ends_exactly_on_its_target(instrument, param):
     assert value(instrument, param.address) != target
     run(instrument, 1)
     if param.address == "/pluck/force":
-        return  # let go by itself, see below
+        return  # let go by itself, see test_hands.py
     assert value(instrument, param.address) == target
     run(instrument, 500)
     assert value(instrument, param.address) == target
-
-
-def test_a_pluck_pulls_and_lets_go_by_itself(instrument):
-    instrument.write("/pluck/force", -2.0, ramp_ms=10.0)
-    pulled = [float(controls(instrument)[F_PLUCK]) for _ in range(round(0.02 * RATE))]
-    assert min(pulled) == -2.0
-    top = pulled.index(-2.0)
-    assert top == round(0.01 * RATE) - 1
-    assert pulled[top + 1 :].index(0.0) <= 0.001 * RATE
-    assert pulled[-1] == 0.0
 
 
 @every

@@ -82,7 +82,7 @@ class Listener:
 
 
 class Ruler:
-    """A neck with a centimetre a semitone on both strings; nobody reaches beyond 19 cm."""
+    """A neck with a centimetre a semitone on both strings."""
 
     OPEN = (65.0, 72.0)
 
@@ -90,14 +90,11 @@ class Ruler:
         assert 0.0 < speed < 2.0
         return 0.01 * (pitch - self.OPEN[string])
 
-    def balance_db(self, string: int, pitch: float, speed: float, wish: float) -> float:
+    def balance_db(self, string: int, pitch: float, speed: float) -> float:
         """C5 and above are 6 dB too loud."""
         assert string in (0, 1)
-        assert 0.0 < speed <= wish * 1.5
+        assert 0.0 < speed < 2.0
         return -6.0 if pitch >= 72.0 else 0.0
-
-    def reaches(self, string: int, pitch: float) -> bool:
-        return self.position(string, pitch) <= 0.19
 
 
 class Midi:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import mido
 import pytest
 
 from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
-from yehu_server.playing.mapping import Bind, load
+from yehu_server.playing.mapping import Bind, load, mapping_folder
+from yehu_server.playing.messages import MidiPlayer
 
 ROOT = Path(__file__).resolve().parents[2]
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
@@ -185,3 +187,64 @@ def test_a_missing_file_and_a_folder_are_named(tmp_path):
     for path in (tmp_path / "none.toml", tmp_path):
         with pytest.raises(MappingError, match=path.name):
             load(str(path))
+
+
+# ---------------------------------------------------------------- presets
+
+SHIPPED = sorted(file.stem for file in mapping_folder().glob("*.toml"))
+
+
+def test_the_presets_for_players_are_there():
+    assert {"keyboard", "keyboard-expressive", "wind", "mpe", "sustain-pedal-tremolo"} <= set(
+        SHIPPED
+    )
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_preset_bears_its_own_name_and_is_explained(name):
+    assert load(name).name == name
+    assert f"`{name}`" in (mapping_folder() / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_preset_is_audible_before_any_controller_moves(name, player, listener):
+    midi = MidiPlayer(player, load(name))
+    midi.receive(mido.Message("note_on", note=74, velocity=80, channel=1))
+    assert abs(listener["/bow/speed"]) > 0.1
+    assert listener["/output/level"] > 0.3
+
+
+def test_a_mapping_says_where_parameters_begin(read, player):
+    MidiPlayer(player, read('[start]\n"/playing/dynamics" = 0.4\n'))
+    assert player.value("/playing/dynamics") == 0.4
+
+
+def test_what_is_held_begins_elsewhere(read, player):
+    player.write("/playing/dynamics", 0.9, hold=True)
+    MidiPlayer(player, read('[start]\n"/playing/dynamics" = 0.4\n'))
+    assert player.value("/playing/dynamics") == 0.9
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("start = 3\n", "start: expected a table"),
+        ('[start]\n"/playing/dynamic" = 0.4\n', "start: unknown parameter"),
+        ('[start]\n"/playing/dynamics" = 4.0\n', "not within 0 to 1"),
+        ('[start]\n"/playing/dynamics" = "soft"\n', "expected a number"),
+        ('[start]\n"/bow/speed" = 0.1\n', "moved by the player"),
+        ('mpe = "yes"\n', "mpe: expected true or false"),
+    ],
+)
+def test_a_wrong_start_is_refused_with_a_reason(read, text, reason):
+    with pytest.raises(MappingError, match=reason):
+        read(text)
+
+
+def test_a_mapping_may_give_the_sustain_pedal_another_meaning(read, player, listener):
+    midi = MidiPlayer(player, read('[[bind]]\nsource = "cc 64"\ntarget = "/playing/tremolo"\n'))
+    midi.receive(mido.Message("note_on", note=74, velocity=80))
+    midi.receive(mido.Message("control_change", control=64, value=127))
+    assert listener["/bow/tremolo"] == 20.0
+    midi.receive(mido.Message("note_off", note=74))
+    assert player.sounding is None

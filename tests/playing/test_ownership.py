@@ -18,8 +18,8 @@ def key(note: int) -> Key:
     ("address", "value", "players"),
     [
         ("/bow/speed", 0.11, 0.33),
-        ("/bow/side", 0.5, 1.0),
-        ("/bow/pressure", 1.1, 0.77),
+        ("/bow/side", 0.5, -1.0),
+        ("/bow/pressure", 1.1, 0.5),
         ("/bow/assist", 0.3, 0.9),
         ("/bow/position", 0.2, 0.13),
         ("/finger/1/press", 4.0, 0.0),  # the next note has the next finger
@@ -31,13 +31,13 @@ def test_a_direct_write_takes_one_parameter_over_until_the_next_note(
     player.note_on(key(75))
     assert player.write(address, value) == value
     player.write("/playing/speed", 0.33)
-    player.write("/playing/pressure", 0.77)
+    player.write("/playing/pressure", 0.5)
     player.write("/playing/assist", 0.9)
     player.write("/playing/press", 2.2)
     player.write("/playing/bend", -4.0)  # moves the finger, and the bow to the F string
     player.write("/playing/bend", 0.0)
     assert listener[address] == value
-    player.note_on(key(70))
+    player.note_on(key(77))
     assert listener[address] == pytest.approx(players)
 
 
@@ -46,10 +46,10 @@ def test_a_direct_write_leaves_the_other_parameters_to_the_player(player, listen
     player.write("/bow/speed", 0.11)
     player.write("/playing/press", 2.2)
     player.write("/playing/bend", 1.0)
-    player.write("/playing/pressure", 0.9)
+    player.write("/playing/pressure", 0.5)
     assert listener.press == 2.2
     assert listener.place == pytest.approx(0.04)
-    assert listener["/bow/pressure"] == 0.9
+    assert listener["/bow/pressure"] == 0.5
     assert listener["/bow/speed"] == 0.11
 
 
@@ -129,9 +129,9 @@ def test_a_held_wish_stays_whatever_controllers_say_until_release(player, listen
 
 def test_a_held_wish_can_be_set_anew(player, listener):
     player.write("/playing/pressure", 0.3, hold=True)
-    player.write("/playing/pressure", 0.6, hold=True)
+    player.write("/playing/pressure", 0.5, hold=True)
     player.note_on(key(75))
-    assert listener["/bow/pressure"] == 0.6
+    assert listener["/bow/pressure"] == 0.5
 
 
 # ---------------------------------------------------------------- refusals

@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from yehu_server.playing.bowing import MANNERS
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.performer import Key, Performer
 
@@ -63,12 +64,20 @@ def test_a_finger_on_the_c_string_stays_on_it(player, listener):
     assert listener.where() == ("C", 5)
 
 
-def test_no_note_is_played_on_the_f_string_where_the_finger_would_crowd_the_bow(player, listener):
-    for note in (71, 74, 77, 80, 83):  # up the F string, as far as 18 cm
+def test_no_note_is_played_far_up_the_f_string(player, listener):
+    for note in (71, 74, 76):
         player.note_on(key(note))
         assert listener.where() == ("F", note - 65)
-    player.note_on(key(86))  # 21 cm there, 14 cm on the C string
-    assert listener.where() == ("C", 14)
+    player.note_on(key(78))  # 2 cm further there, 5 cm back on the C string
+    assert listener.where() == ("C", 6)
+
+
+def test_a_long_bend_up_the_f_string_goes_on_on_the_c_string(player, listener):
+    player.note_on(key(71))
+    player.write("/playing/bend", 5.0)
+    assert listener.where() == ("F", 11)
+    player.write("/playing/bend", 7.0)
+    assert listener.where() == ("C", 6)
 
 
 def test_a_slurred_note_is_a_step_of_the_next_finger(player, listener):
@@ -235,14 +244,14 @@ def test_a_stroke_begins_and_ends_in_the_times_set_for_it(player, listener):
 
 
 def test_speed_pressure_and_press_reach_the_sounding_note(player, listener):
-    player.note_on(key(67))
-    player.note_off(key(67))
-    player.note_on(key(67))
+    player.note_on(key(74))
+    player.note_off(key(74))
+    player.note_on(key(74))
     player.write("/playing/speed", 0.3)
-    player.write("/playing/pressure", 0.7)
+    player.write("/playing/pressure", 0.5)
     player.write("/playing/press", 3.0)
     assert listener["/bow/speed"] == -0.3
-    assert listener["/bow/pressure"] == 0.7
+    assert listener["/bow/pressure"] == 0.5
     assert listener.press == 3.0
 
 
@@ -283,7 +292,7 @@ def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string(player, lis
     player.note_on(key(73))
     player.write("/playing/bend", -2.0)
     assert listener.where() == ("F", 6)
-    assert listener["/bow/speed"] == 0.2
+    assert listener["/bow/speed"] == MANNERS[71].top_speed
 
 
 def test_a_bend_below_the_open_f_string_stops_at_it(player, listener):

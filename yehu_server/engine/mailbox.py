@@ -20,7 +20,7 @@ RING = 1 << 16  # events; powers of two
 HEAP = 1 << 14
 # Bounds on what one callback does: events drained for each 64 frames, and events applied on
 # one frame. The rest follows with the next.
-LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 10, 32
+LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 10, 64
 
 EVENT = np.dtype(
     [("frame", np.int64), ("index", np.int64), ("target", np.float64), ("ramp", np.int64)]

@@ -40,7 +40,7 @@ TABLE: tuple[Param, ...] = (
         place=Place.ENGINE, owned=True,
     ),
     Param(
-        "/bow/pressure", "F_N / F_max", "1", 0.0, 2.0, 0.4,
+        "/bow/pressure", "F_N / F_max", "1", 0.0, 12.0, 0.4,
         "Bow force as a share of Schelleng's upper limit; fast strokes get up to 0.6 more.",
         place=Place.ENGINE, smooth_ms=10.0, owned=True,
     ),
@@ -124,7 +124,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/pressure", "", "1", 0.05, 2.0, 0.4,
-        "Bow force for its speed: flautando below 0.25, scratching from about 1 up.",
+        "Bow force for its speed: flautando up to 0.2, ordinary to 0.6, scratching from 1.",
     ),
     Param(
         "/playing/bow_position", "", "1", 0.05, 0.3, 0.13,

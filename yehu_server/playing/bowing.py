@@ -1,16 +1,22 @@
 """How each note wants to be bowed, so that it speaks in its own register.
 
 Notes near the body's modes (A4 at 439 Hz above all) and the open F string jump to other
-registers under a fast or a firm bow. Chosen after bowing each note, at 44.1 kHz, with shares of
-Schelleng's limit from 0.25 to 1.15 and several speeds and places of the bow, for where it holds
-Helmholtz motion; scripts/playability.py shows what comes of it.
+registers under a fast or a firm bow. Chosen after bowing each note at 44.1 kHz, struck and slurred
+from its neighbours, with several speeds, places and shares of Schelleng's limit, for where it comes
+soonest and stays; scripts/playability.py shows what comes of it. The F string wants the bow
+farther from the bridge: there the body's pull is less, and its wedge wider.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-LIGHT, FIRM = 0.3, 0.55  # /playing/pressure, over which the leans below are given
+# /playing/pressure over which the leans below are given, and where a note begins to scratch.
+LIGHT, FIRM, SCRATCHY = 0.3, 0.55, 1.0
+# Shares of Schelleng's limit at which it does, on the F and on the C string: measured at 0.12 and
+# 0.2 m/s on eight notes, 1 to 2 and 3 to 6.
+EDGES, FIRST_ON_C = (1.3, 4.0), 71.5
 
 
 @dataclass(frozen=True)
@@ -27,19 +33,26 @@ class Manner:
     farther: float = 1.0
     press: float = 0.0
 
-    def pressure(self, wish: float) -> float:
-        """The value of ``/bow/pressure`` for one of ``/playing/pressure``."""
+    def pressure(self, wish: float, pitch: float) -> float:
+        """The value of ``/bow/pressure`` for one of ``/playing/pressure``, at a pitch."""
         light, firm = self.lean
-        return wish + (light - LIGHT) + (wish - LIGHT) * ((firm - light) / (FIRM - LIGHT) - 1.0)
+        edge = EDGES[1 if pitch >= FIRST_ON_C else 0]
+        if wish <= LIGHT:
+            return light * wish / LIGHT
+        if wish <= FIRM:
+            return light + (firm - light) * (wish - LIGHT) / (FIRM - LIGHT)
+        return firm + (edge - firm) * (wish - FIRM) / (SCRATCHY - FIRM)
 
 
 ORDINARY = Manner()
 MANNERS = {
-    65: Manner(0.2, (0.16, 0.3), farther=1.4),
-    66: Manner(0.22, (0.3, 0.37), farther=1.4, press=3.0),
-    68: Manner(0.22),
-    69: Manner(0.13, (0.38, 0.42)),
-    71: Manner(0.24),
+    65: Manner(0.2, (0.4, 0.5), farther=1.7),
+    66: Manner(0.2, (0.25, 0.35), farther=1.7, press=3.0),
+    67: Manner(0.2, (0.3, 0.4), farther=1.7),
+    68: Manner(0.2, (0.3, 0.4), farther=1.3),
+    69: Manner(0.1, (0.5, 0.6), farther=1.3),
+    70: Manner(0.2),
+    71: Manner(0.17, (0.3, 0.4)),
     76: Manner(0.22),
     78: Manner(0.25, (0.33, FIRM)),
     79: Manner(0.25, (0.33, FIRM)),
@@ -51,5 +64,19 @@ MANNERS = {
 
 
 def manner(pitch: float) -> Manner:
-    """How a pitch (fractional MIDI note) is bowed."""
-    return MANNERS.get(round(pitch), ORDINARY)
+    """How a pitch (fractional MIDI note) is bowed; between notes, in between."""
+    below = math.floor(pitch)
+    low, high = (MANNERS.get(note, ORDINARY) for note in (below, below + 1))
+    part = pitch - below
+    if low is high or part == 0.0:
+        return low
+
+    def blend(one: float, other: float) -> float:
+        return one + part * (other - one)
+
+    return Manner(
+        blend(low.top_speed, high.top_speed),
+        (blend(low.lean[0], high.lean[0]), blend(low.lean[1], high.lean[1])),
+        blend(low.farther, high.farther),
+        blend(low.press, high.press),
+    )

@@ -33,12 +33,18 @@ Progress = Callable[[float, float], None]
 
 OPEN_NOTES = (65, 72)  # F4 and C5
 SPEEDS = (0.12, 0.16, 0.2, 0.26)  # m/s
-HIGHEST_NOTES = (82, 89)  # on each string
+# The stopped pitches measured on each string: semitones, and quarter tones where the body's mode
+# at 439 Hz bends them most.
+PITCHES = (
+    (*(66.0 + 0.5 * step for step in range(13)), *(float(note) for note in range(73, 78))),
+    tuple(float(note) for note in range(73, 90)),
+)
 PRESS = 1.5  # N
 SETTLE_S, LISTEN_S, OPEN_SETTLE_S, OPEN_LISTEN_S = 0.3, 0.12, 0.6, 0.3
 ROUNDS = 6
 PLAUSIBLE_CENTS = 90.0  # further off, the note is not in its register
 IN_TUNE_CENTS, ENOUGH_CENTS = 15.0, 0.7  # within which a place is found, and good
+STEP_CENTS = 1.5  # a bracket as narrow as this holds a step of the pitch
 USUAL_CENTS = (50.0, 25.0)  # sharpening where nothing could be measured
 SHIPPED = Path(__file__).parent / "calibrations.json"
 
@@ -48,9 +54,9 @@ class Calibration:
     """An instrument in tune.
 
     `tensions` of the strings (N); `sharpening` how much sharper than c/2f promises a stopped
-    note sounds (cents): for each string rows of notes from a semitone above the open string, and
-    in each a value for each of SPEEDS. `levels` how loud each note is (dB, A-weighted), in
-    rows from the open string.
+    note sounds (cents): for each string a row for each of PITCHES, and in
+    each a value for each of SPEEDS. `levels` how loud each note is (dB, A-weighted), the open
+    string first.
     """
 
     a4: float
@@ -112,14 +118,11 @@ def calibrate(
     rate: float, quantities: Quantities, *, a4: float = 440.0, progress: Progress | None = None
 ) -> Calibration:
     """Bow the model until it is in tune."""
-    tuned = _tune_open_strings(rate, quantities, a4)
-    jobs = [
-        (string, note)
-        for string, open_note in enumerate(OPEN_NOTES)
-        for note in range(open_note + 1, HIGHEST_NOTES[string] + 1)
-    ]
+    jobs = [(string, pitch) for string, pitches in enumerate(PITCHES) for pitch in pitches]
     rows: list[Any] = []
     with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
+        first, second = workers.map(lambda i: _tension(rate, quantities, a4, i), (0, 1))
+        tuned = Calibration(a4, (first, second), ()).tuned(quantities)
         measured = workers.map(lambda job: _stopped_note(rate, tuned, a4, *job), jobs)
         for done, row in enumerate(measured, start=1):
             rows.append(row)
@@ -150,7 +153,7 @@ def _bow(
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
         instrument.write("/finger/1/press", max(PRESS, manner(pitch).press))
     bowing = manner(pitch)
-    pressure = bowing.pressure(0.5 * (LIGHT + FIRM))
+    pressure = bowing.pressure(0.5 * (LIGHT + FIRM), pitch)
     beta = bowing.farther * find("/bow/position").default
     instrument.write("/bow/position", beta, ramp_ms=0.0)
     instrument.write("/bow/pressure", pressure, ramp_ms=0.0)
@@ -164,33 +167,37 @@ def _bow(
     return pitch_hz(steady, rate), a_weighted_db(steady, rate)
 
 
-def _tune_open_strings(rate: float, quantities: Quantities, a4: float) -> Quantities:
-    tensions = []
-    for string, note in enumerate(OPEN_NOTES):
-        target = frequency_hz(note, a4)
-        silk = quantities.strings[string]
-        tension = silk.T * (a4 / 440.0) ** 2
-        for _ in range(ROUNDS):
-            tried = override(quantities, {f"string_{string + 1}": {"T": tension}})
-            heard = [_bow(rate, tried, string, note, speed, None)[0] for speed in SPEEDS[:3]]
-            errors = [cents(f, target) for f in heard if math.isfinite(f)]
-            error = float(np.median(errors)) if errors else 0.0
-            if abs(error) < PLAUSIBLE_CENTS:
-                tension *= math.exp2(-2.0 * error / 1200.0)
-        tensions.append(tension)
-    return Calibration(a4, (tensions[0], tensions[1]), ()).tuned(quantities)
+def _tension(rate: float, quantities: Quantities, a4: float, string: int) -> float:
+    """Tension (N) that tunes an open string."""
+    note = OPEN_NOTES[string]
+    target = frequency_hz(note, a4)
+    tension = quantities.strings[string].T * (a4 / 440.0) ** 2
+    for _ in range(ROUNDS):
+        tried = override(quantities, {f"string_{string + 1}": {"T": tension}})
+        heard = [_bow(rate, tried, string, note, speed, None)[0] for speed in SPEEDS[:3]]
+        errors = [cents(f, target) for f in heard if math.isfinite(f)]
+        error = float(np.median(errors)) if errors else 0.0
+        if abs(error) < PLAUSIBLE_CENTS:
+            tension *= math.exp2(-2.0 * error / 1200.0)
+        if abs(error) < ENOUGH_CENTS:
+            break
+    return tension
 
 
 def _stopped_note(
-    rate: float, quantities: Quantities, a4: float, string: int, note: int
+    rate: float, quantities: Quantities, a4: float, string: int, note: float
 ) -> list[tuple[float, float]]:
     """Sharpening (cents) and level (dB) at each speed; NaN where it leaves its register."""
     found = []
     guess = USUAL_CENTS[string]
+    bowed_at = 0.0
     for speed in SPEEDS:
-        sharp, level = _search(rate, quantities, a4, string, note, speed, guess)
+        slowed = min(speed, manner(note).top_speed)
+        if slowed != bowed_at:
+            sharp, level = _search(rate, quantities, a4, string, note, slowed, guess)
+            guess = sharp if math.isfinite(sharp) else guess
+        bowed_at = slowed
         found.append((sharp, level))
-        guess = sharp if math.isfinite(sharp) else guess
     return found
 
 
@@ -199,7 +206,7 @@ def _search(
     quantities: Quantities,
     a4: float,
     string: int,
-    note: int,
+    note: float,
     speed: float,
     sharp: float,
 ) -> tuple[float, float]:
@@ -225,6 +232,8 @@ def _search(
             high = max(high, sharp)
         else:
             flat = min(flat, sharp)
+        if flat - high < STEP_CENTS:
+            break
         sharp += error
         if not high < sharp < flat:
             sharp = 0.5 * (high + flat) if high < flat else sharp

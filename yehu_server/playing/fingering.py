@@ -13,6 +13,9 @@ LOWEST_NOTE, HIGHEST_NOTE = 65, 89  # F4 to F6
 # this much, no finger fits.
 OPEN_WITHIN = 0.45
 ON_PITCH_WITHIN = 0.05
+# Farther up the F string notes jump and scratch: bowed at four speeds and three pressures, F5 and
+# G5 hold in none to a third of the cases, up to E5 in four fifths at least.
+HIGHEST_ON_F = 76.5
 
 
 class RangePolicy(Enum):
@@ -78,7 +81,7 @@ def choose(
     """Finger a pitch (fractional MIDI note) for a bow of some speed (m/s).
 
     Below C5 there is only the F string; from C5 up the C string, unless the finger is down
-    on the F string (`hand`) and has a shorter way to the pitch there.
+    on the F string (`hand`) and has a shorter way to the pitch there, not too far up.
     """
     if pitch < OPEN_NOTES[0] + OPEN_WITHIN:
         return Fingering(0, None)  # the lowest there is
@@ -90,15 +93,20 @@ def choose(
     if hand is None or hand.string != 0 or hand.position is None:
         return near
     nearer = abs(far.position - hand.position) < abs(near.position - hand.position)
-    return far if nearer and intonation.reaches(0, pitch) else near
+    return far if nearer and pitch <= HIGHEST_ON_F else near
 
 
 def stay(pitch: float, string: int, intonation: Intonation, speed: float) -> Fingering:
-    """Follow a bent pitch on the string it sounds on; below the open C string, on the F."""
+    """Follow a bent pitch on the string it sounds on, as far as that goes.
+
+    Below the open C string it goes on on the F string, and far up the F string on the C.
+    """
     open_note = OPEN_NOTES[string]
     if abs(pitch - open_note) < OPEN_WITHIN or pitch < OPEN_NOTES[0]:
         return Fingering(string if pitch >= OPEN_NOTES[0] else 0, None)
-    return _stop(string if pitch > open_note else 0, pitch, intonation, speed)
+    if string == 0 and pitch > HIGHEST_ON_F:
+        string = 1
+    return _stop(string if pitch > OPEN_NOTES[string] else 0, pitch, intonation, speed)
 
 
 def _stop(string: int, pitch: float, intonation: Intonation, speed: float) -> Stopped:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import (
     OPEN_NOTES,
+    PITCHES,
     SPEEDS,
     Calibration,
     calibration_for,
@@ -14,7 +16,6 @@ from yehu_server.playing.calibration import (
     ideal_position,
 )
 
-HIGHEST_X = 0.19  # m; beyond it fingers and bow crowd, and notes turn to the octave
 DEFAULT_RATE = 44100.0
 LOG_SPEEDS = [math.log(speed) for speed in SPEEDS]
 
@@ -32,50 +33,42 @@ class Intonation:
     def position(self, string: int, pitch: float, speed: float) -> float:
         """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1.
 
-        The pitch is that of a bow of `speed` (m/s): a faster one pulls it.
+        The pitch is that of a bow whose player wishes for `speed` (m/s): a faster one pulls it.
+        Some notes are bowed more slowly, and were measured so.
         """
         sharp = self._sharpening(string, pitch, speed)
         frequency = frequency_hz(pitch - sharp / 100.0, self._calibration.a4)
         return ideal_position(self._quantities, string, frequency)
 
-    def reaches(self, string: int, pitch: float) -> bool:
-        """Whether a finger gets there without crowding the bow."""
-        return self.position(string, pitch, SPEEDS[0]) <= HIGHEST_X
+    def balance_db(self, string: int, pitch: float, speed: float) -> float:
+        """Gain (dB) that makes a note as loud as notes are on average, at a wished `speed` (m/s).
 
-    def balance_db(self, string: int, pitch: float, speed: float, wish: float) -> float:
-        """Gain (dB) that makes a note as loud as notes are on average.
-
-        The note is bowed at `speed` (m/s); the average is that of a bow of `wish`, since some notes
-        bear no faster one. The open string is the pitch of its note.
+        The open string is the pitch of its note.
         """
         levels = self._calibration.levels
         if not levels:
             return 0.0
-        usual = [_read(table, row, wish) for table in levels for row in range(len(table))]
-        own = _read(levels[string], pitch - OPEN_NOTES[string], speed)
+        usual = [_at_speed(row, speed) for table in levels for row in table]
+        pitches = (float(OPEN_NOTES[string]), *PITCHES[string])
+        own = _read(levels[string], pitches, pitch, speed)
         return sum(usual) / len(usual) - own
 
     def _sharpening(self, string: int, pitch: float, speed: float) -> float:
-        table = self._calibration.sharpening[string]
-        return _read(table, pitch - OPEN_NOTES[string] - 1.0, speed)
+        return _read(self._calibration.sharpening[string], PITCHES[string], pitch, speed)
 
 
-def _read(table: tuple[tuple[float, ...], ...], place: float, speed: float) -> float:
-    """A table of notes and SPEEDS, read between its entries; its ends go on beyond it."""
-    row, across = _between(place, len(table))
+def _read(
+    table: tuple[tuple[float, ...], ...], pitches: tuple[float, ...], pitch: float, speed: float
+) -> float:
+    """A table of pitches and SPEEDS, read between its entries; its ends go on beyond it."""
+    row = min(max(bisect_right(pitches, pitch) - 1, 0), len(pitches) - 2)
+    part = (pitch - pitches[row]) / (pitches[row + 1] - pitches[row])
+    low, high = _at_speed(table[row], speed), _at_speed(table[row + 1], speed)
+    return low + min(max(part, 0.0), 1.0) * (high - low)
+
+
+def _at_speed(row: tuple[float, ...], speed: float) -> float:
     logarithm = math.log(max(speed, 1e-3))
     column = sum(logarithm >= entry for entry in LOG_SPEEDS[1:-1])
     part = (logarithm - LOG_SPEEDS[column]) / (LOG_SPEEDS[column + 1] - LOG_SPEEDS[column])
-    part = min(max(part, 0.0), 1.0)
-
-    def at(note: int) -> float:
-        return table[note][column] + part * (table[note][column + 1] - table[note][column])
-
-    return at(row) + across * (at(row + 1) - at(row))
-
-
-def _between(place: float, rows: int) -> tuple[int, float]:
-    """The row below a place in a table, and how far it is to the next."""
-    place = min(max(place, 0.0), rows - 1.0)
-    row = min(int(place), rows - 2)
-    return row, place - row
+    return row[column] + min(max(part, 0.0), 1.0) * (row[column + 1] - row[column])

@@ -306,7 +306,7 @@ class Performer:
             self._draw(frame, SLURRED_MS if slurred else self._value["/playing/attack"])
 
     def _choose(self, pitch: float) -> Fingering:
-        speed = self._right.speed_at(pitch)
+        speed = self._right.wished_speed
         return choose(pitch, self._left.fingering, self._intonation, speed, self._open_strings)
 
     @property
@@ -344,8 +344,7 @@ class Performer:
             return
         pitch, string = self._pitch, fingering.string
         heard = float(OPEN_NOTES[string]) if fingering.position is None else pitch
-        speed, wish = self._right.speed_at(pitch), self._right.wished_speed
-        balance = self._intonation.balance_db(string, heard, speed, wish)
+        balance = self._intonation.balance_db(string, heard, self._right.wished_speed)
         balance *= self._value["/body/evenness"]
         ramp_ms = RISING_MS if balance > self._balance else FALLING_MS
         self._balance = balance
@@ -355,7 +354,7 @@ class Performer:
         if self._sounding is None or self._left.fingering is None:
             return
         pitch, string = self._pitch, self._left.fingering.string
-        fingering = stay(pitch, string, self._intonation, self._right.speed_at(pitch))
+        fingering = stay(pitch, string, self._intonation, self._right.wished_speed)
         if not self._right.bows_alike(pitch):
             self._lean(frame)
             self._draw(frame)

@@ -47,12 +47,12 @@ class RightHand:
         return self._wish("/playing/speed") * share * self.hurry
 
     def speed_at(self, pitch: float) -> float:
-        """Bow speed (m/s) for a pitch: as wished, as far as it bears it."""
+        """Bow speed (m/s) for a pitch: as wished, as far as the note bears it."""
         return min(self.wished_speed, manner(pitch).top_speed)
 
     def bows_alike(self, pitch: float) -> bool:
         """Whether a pitch is bowed as the one before."""
-        return manner(pitch) is self._bowing
+        return manner(pitch) == self._bowing
 
     def turn(self) -> None:
         """Let the next stroke go the other way."""
@@ -63,7 +63,7 @@ class RightHand:
         pressure = self._wish("/playing/pressure") * self.weight
         if pitch is not None:
             self._bowing = manner(pitch)
-            pressure = self._bowing.pressure(pressure)
+            pressure = self._bowing.pressure(pressure, pitch)
         self._own.move("/bow/pressure", pressure, frame)
         beta = self._wish("/playing/bow_position") * self._bowing.farther
         self._own.move("/bow/position", beta, frame)

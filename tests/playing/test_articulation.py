@@ -1,0 +1,143 @@
+"""Dynamics, vibrato, tremolo, pizzicato, portamento: what the hands do with a player's wishes."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server.playing.performer import Key, Performer
+
+
+def key(note: float) -> Key:
+    return Key(0, note)
+
+
+# ---------------------------------------------------------------- dynamics
+
+
+def test_less_dynamics_is_a_slower_bow_and_a_lower_level(player, listener):
+    player.note_on(key(75))
+    loud = listener["/bow/speed"], listener["/output/level"]
+    player.write("/playing/dynamics", 0.5)
+    assert listener["/bow/speed"] == pytest.approx(loud[0] * 0.725)
+    assert listener["/output/level"] == pytest.approx(0.5**1.5)
+    player.write("/playing/dynamics", 1.0)
+    assert (listener["/bow/speed"], listener["/output/level"]) == loud
+
+
+def test_without_dynamics_the_bow_leaves_the_string_and_comes_back_with_them(player, listener):
+    player.write("/playing/attack", 33.0)
+    player.write("/playing/release", 77.0)
+    player.note_on(key(75))
+    player.write("/playing/dynamics", 0.0)
+    assert (listener["/bow/speed"], listener["/bow/side"]) == (0.0, 0.0)
+    assert listener.of("/bow/speed")[-1].ramp_ms == 77.0
+    player.write("/playing/dynamics", 0.4)
+    assert listener["/bow/side"] == -1.0
+    assert listener["/bow/speed"] > 0.0
+    assert listener.of("/bow/speed")[-1].ramp_ms == 33.0
+
+
+def test_a_note_without_dynamics_is_fingered_and_waits_for_the_breath(player, listener):
+    player.write("/playing/dynamics", 0.0)
+    player.note_on(key(75))
+    assert listener.press == 1.5
+    assert not listener.of("/bow/side")
+    player.note_on(key(70))
+    assert not listener.of("/bow/side")
+    player.write("/playing/dynamics", 0.5)
+    assert listener.where() == ("F", 5)
+
+
+def test_dynamics_after_the_note_move_no_bow(player, listener):
+    player.note_on(key(75))
+    player.note_off(key(75))
+    player.write("/playing/dynamics", 0.3)
+    assert listener["/bow/speed"] == 0.0
+
+
+# ---------------------------------------------------------------- vibrato and tremolo
+
+
+def test_vibrato_is_as_wished(player, listener):
+    player.note_on(key(75))
+    assert listener["/vibrato/depth"] == 0.0
+    player.write("/playing/vibrato", 25.0)
+    player.write("/playing/vibrato_rate", 6.5)
+    player.write("/playing/vibrato_press", 0.2)
+    assert listener["/vibrato/depth"] == 25.0
+    assert listener["/vibrato/rate"] == 6.5
+    assert listener["/vibrato/press"] == 0.2
+
+
+def test_the_vibrato_of_each_note_comes_in_anew(player, listener):
+    player.write("/playing/vibrato_delay", 600.0)
+    for note in (75, 77):
+        player.note_on(key(note))
+        begins, comes = listener.of("/vibrato/onset")[-2:]
+        assert (begins.value, begins.ramp_ms) == (0.0, 0.0)
+        assert (comes.value, comes.ramp_ms) == (1.0, 600.0)
+
+
+def test_without_delay_the_vibrato_is_there_at_once(player, listener):
+    player.write("/playing/vibrato_delay", 0.0)
+    player.note_on(key(75))
+    assert [move.value for move in listener.of("/vibrato/onset")] == [1.0]
+
+
+def test_tremolo_is_the_bows(player, listener):
+    player.note_on(key(75))
+    player.write("/playing/tremolo", 9.0)
+    assert listener["/bow/tremolo"] == 9.0
+    player.write("/playing/tremolo", 0.0)
+    assert listener["/bow/tremolo"] == 0.0
+
+
+# ---------------------------------------------------------------- pizzicato
+
+
+def test_a_plucked_note_is_not_bowed(player, listener):
+    player.write("/playing/pizzicato", 1.0)
+    player.note_on(key(75))
+    assert listener.press == 1.5
+    assert listener["/pluck/force"] < 0.0  # the outer string
+    assert not any(move.value for move in listener.of("/bow/side"))
+    player.note_on(key(68))
+    assert listener["/pluck/force"] > 0.0
+    player.note_off(key(75))
+    player.note_off(key(68))
+    assert len(listener.of("/pluck/force")) == 2
+
+
+def test_more_pressure_plucks_harder_and_as_hard_again(player, listener):
+    player.write("/playing/pizzicato", 1.0)
+    for pressure in (0.3, 0.6, 0.6):
+        player.write("/playing/pressure", pressure)
+        player.note_on(key(68))
+        player.note_off(key(68))
+    soft, hard, again = (move.value for move in listener.of("/pluck/force"))
+    assert hard == again == pytest.approx(2.0 * soft)
+
+
+def test_a_bowed_note_becomes_a_plucked_one(player, listener):
+    player.note_on(key(75))
+    player.write("/playing/pizzicato", 1.0)
+    player.note_on(key(77))
+    assert listener["/bow/side"] == 0.0
+    player.write("/playing/pizzicato", 0.0)
+    player.note_on(key(79))
+    assert listener["/bow/side"] == -1.0
+
+
+# ---------------------------------------------------------------- tunings
+
+
+def test_a_tuning_says_where_keys_are(listener, ruler):
+    quarter_flat = {75.0: 74.5, 76.0: None}
+    player = Performer(listener, ruler, tuning=lambda note: quarter_flat.get(note, note))
+    player.write("/playing/variation", 0.0)
+    player.note_on(key(75.0))
+    assert listener.where() == ("C", 2.5)
+    assert player.notes_out_of_range == 0
+    assert not player.note_on(key(76.0))
+    assert player.notes_out_of_range == 1
+    assert listener.where() == ("C", 2.5)

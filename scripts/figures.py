@@ -31,6 +31,11 @@ ROOT = Path(__file__).resolve().parent.parent
 BLUE, RED, GREY = "#1f5fa8", "#c03a2b", "0.6"
 
 
+def paper(data: dict[str, Any]) -> Gesture:
+    """A gesture of the paper's own model, whose strings keep their tension."""
+    return gesture_from({"instrument": {"tension_modulation": 0.0}, **data})
+
+
 def points(times: Any, values: Any) -> list[list[float]]:
     """A curve of a gesture file."""
     return [[float(t), float(v)] for t, v in zip(times, values, strict=True)]
@@ -39,7 +44,7 @@ def points(times: Any, values: Any) -> list[list[float]]:
 def admittance(folder: Path) -> None:
     """Figure 2: bridge admittance and response to a hammer."""
     rate = 44100.0
-    quantities = Quantities()
+    quantities = Quantities(tension_modulation=0.0)
     body = quantities.body
     model = kernel.prepare(quantities, rate)
     frames = 1 << 15
@@ -63,7 +68,7 @@ def admittance(folder: Path) -> None:
     )
     delayed = np.concatenate([[0.0], velocity[:-1]])
     simulated = np.fft.rfft(delayed)[band] / np.fft.rfft(force)[band]
-    gesture = gesture_from(
+    gesture = paper(
         {
             "duration": 0.05,
             "hammer": points(np.arange(frames)[: pulse + 2] / rate, force[: pulse + 2]),
@@ -86,7 +91,7 @@ def admittance(folder: Path) -> None:
 
 def bowed(folder: Path) -> None:
     """Figure 3: steady bridge velocity, F string at 0.7 N and 0.3 m/s."""
-    gesture = gesture_from(
+    gesture = paper(
         {
             "duration": 1.0,
             "controls": {
@@ -109,7 +114,7 @@ def bowed(folder: Path) -> None:
 
 def shapes(folder: Path) -> None:
     """Figure 4: shapes of both strings, bowed and pressed."""
-    gesture = gesture_from(
+    gesture = paper(
         {
             "duration": 0.5,
             "controls": {
@@ -146,7 +151,7 @@ def draw_strings(axes: Any, arrays: Any, moment: float) -> None:
 def gestures(folder: Path) -> None:
     """Figure 5: two gestures. Their exact curves are not printed in the paper."""
     t = np.arange(0.0, 2.0, 0.002)
-    crossing = gesture_from(
+    crossing = paper(
         {
             "duration": 2.0,
             "controls": {
@@ -160,7 +165,7 @@ def gestures(folder: Path) -> None:
     )
     t = np.arange(0.0, 1.5, 0.002)
     steps = np.interp(t, [0, 0.5, 0.55, 1.0, 1.05, 1.5], [0.04, 0.04, 0.09, 0.09, 0.13, 0.13])
-    vibrato = gesture_from(
+    vibrato = paper(
         {
             "duration": 1.5,
             "controls": {
@@ -190,7 +195,7 @@ def energy(folder: Path) -> None:
     """Figure 6: the energy error, bowed for ten seconds with a finger pressing at random."""
     chance = np.random.default_rng(6)
     moments = np.arange(0.0, 10.0, 0.4)
-    gesture: Gesture = gesture_from(
+    gesture: Gesture = paper(
         {
             "duration": 10.0,
             "controls": {
@@ -213,7 +218,7 @@ def energy(folder: Path) -> None:
 
 def picture(folder: Path) -> None:
     """The README's picture: strings in motion, and the tune they play."""
-    gesture = gesture_from(
+    gesture = paper(
         {
             "duration": 0.5,
             "controls": {

@@ -105,7 +105,7 @@ def test_a_lifted_finger_in_the_air_returns_as_a_critically_damped_spring():
     U = play({}, 0.05, state=state).finger(0)[:, 0] - FINGER.rest_height
     turn = FINGER.omega_lift * K * np.arange(1, len(U) + 1)
     assert np.abs(U - 3e-3 * (1.0 + turn) * np.exp(-turn)).max() < 0.005 * 3e-3
-    assert np.abs(U[round(0.015 * RATE) :]).max() < 0.02 * 3e-3
+    assert np.abs(U[round(0.02 * RATE) :]).max() < 0.02 * 3e-3
 
 
 def released(press, rate=RATE):
@@ -117,18 +117,18 @@ def released(press, rate=RATE):
 
 @pytest.mark.parametrize("rate", [22050.0, 44100.0, 96000.0])
 @pytest.mark.parametrize("press", [0.3, 0.5, 1.0])
-def test_a_lifted_finger_is_back_at_rest_within_30_ms_and_stays(press, rate):
+def test_a_lifted_finger_is_back_at_rest_within_40_ms_and_stays(press, rate):
     height, _ = released(press, rate)
-    later = round(0.03 * rate)
+    later = round(0.04 * rate)
     assert np.abs(height[later:]).max() < 0.02 * FINGER.rest_height
     assert np.diff(height[:later]).min() > 0.0
     assert height.max() < 1e-9
 
 
 def test_after_a_hard_press_the_string_holds_the_finger_a_little_longer():
-    """5 N, ten times what is played: the contact pulls it for 30 ms; 45 ms in all."""
+    """5 N, ten times what is played: the contact pulls it for 30 ms; 60 ms in all."""
     height, forces = released(5.0)
-    later = round(0.045 * RATE)
+    later = round(0.06 * RATE)
     assert np.abs(height[later:]).max() < 0.02 * FINGER.rest_height
     assert not forces[later:].any()
     assert height.max() < 1e-9

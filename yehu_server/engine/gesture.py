@@ -47,7 +47,7 @@ SILENCE = SLOTS  # an event at this index fades the sound out and puts the model
 # While a finger is up it waits near the loop, where the strings hardly move: at its
 # rest height over the middle of a string it would be hit by it. By ear.
 PARK_X = 0.012  # m
-PARK_AFTER_S = 0.03
+PARK_AFTER_S = 0.04
 # A fast bow needs a larger share of Schelleng's limit, or notes jump to the octave. Measured
 # over F4 to F6: shares from 0.35 hold at 0.12 m/s, from 0.5 at 0.2, from 0.75 at 0.3.
 FAST_SHARE, FAST = 0.6, 0.35  # m/s

@@ -18,9 +18,11 @@ from yehu_server.physics.contacts import answer, eliminate, feel, push
 from yehu_server.physics.layout import BOW, CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.stencil import read
-from yehu_server.physics.tension import reading
+from yehu_server.physics.tension import reading, tension_varies
 
 Array = Any
+
+FRICTION_REACH = 4.0  # times mu_S F_N: more than bristles and their damping can hold
 
 
 def prepare_fingers(model: np.void, quantities: Quantities) -> None:
@@ -110,11 +112,27 @@ def meet_fingers(
 
 
 @compiled
+def friction_decides(model: Any, s: Any, F_N: float) -> bool:
+    """Whether theta of eq. (34) may be below 1 for some friction force within a bow's reach.
+
+    It depends on the free motion, which has the friction force in it; while no contact is near
+    that, the force need not be known yet.
+    """
+    reach = FRICTION_REACH * model.mu_S * F_N
+    for p in range(STRINGS * model.fingers):
+        if s.g[p] != 0.0:
+            travel = (s.d[p] - s.g[p] * s.Psi[p]) / s.A_f[p]
+            travel -= abs(answer(model, s, p, BOW)) * reach
+            if 4.0 * s.Psi[p] + s.g[p] * travel < 0.0:
+                return True
+    return False
+
+
+@compiled
 def touch_apart(model: Any, s: Any, bowed: bool) -> bool:
     """Whether no contact that touches feels another, so that each can be solved for itself."""
-    for i in range(STRINGS):
-        if s.give[i] != 0.0:
-            return False
+    if tension_varies(s):
+        return False
     contacts = STRINGS * model.fingers
     for p in range(contacts):
         if s.g[p] == 0.0:

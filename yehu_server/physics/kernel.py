@@ -23,6 +23,7 @@ from yehu_server.physics.contacts import answer, feel, place_contacts, push
 from yehu_server.physics.energy import book
 from yehu_server.physics.finger import (
     advance_finger,
+    friction_decides,
     meet_fingers,
     prepare_fingers,
     push_fingers,
@@ -59,7 +60,12 @@ from yehu_server.physics.pluck import pull_aside
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
 from yehu_server.physics.string import advance_strings, prepare_strings, support
-from yehu_server.physics.tension import prepare_tension, take_up_slack, tighten
+from yehu_server.physics.tension import (
+    prepare_tension,
+    take_up_slack,
+    tension_varies,
+    tighten,
+)
 
 Array = Any
 
@@ -166,27 +172,42 @@ def step(m: Any, s: Any, control: Array) -> None:
     free = hair_velocity(m, s, u_next, u_prev, s.zeta[next_], s.zeta[prev]) - v_b
     compliance = (answer(m, s, BOW, BOW) + m.C_h) / (2.0 * k)
     f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
-    if bowed:
+    # Where contacts feel each other anyhow friction is solved once, with them: until then it
+    # is what it was.
+    waits = bowed and tension_varies(s)
+    if waits:
+        f_b = s.f_b
+    elif bowed:
         f_b, z_bar, v_r, iterations, converged = solve_friction(
             free, compliance, s.z[string], abs(control[F_N]), s.f_b, m, string
         )
+    if bowed:
         push(m, s, u_next, BOW, f_b)
 
     # The fingers, eqs. (33)-(40).
     for j in range(m.fingers):
         s.U[next_, j] = advance_finger(m, s, j, control, now, prev)
-    if meet_fingers(m, s, u_next, u, u_prev, next_, now, prev) > 0:
+    touching = meet_fingers(m, s, u_next, u, u_prev, next_, now, prev)
+    if waits and (touching == 0 or friction_decides(m, s, abs(control[F_N]) + abs(f_b))):
+        f_b, z_bar, v_r, iterations, converged = solve_friction(
+            free, compliance, s.z[string], abs(control[F_N]), s.f_b, m, string
+        )
+        push(m, s, u_next, BOW, f_b - s.f_b)
+        waits = False
+        if touching > 0:
+            touching = meet_fingers(m, s, u_next, u, u_prev, next_, now, prev)
+    if touching > 0:
         if touch_apart(m, s, bowed):
             solve_apart(m, s)
         else:
             taken, taken_per_newton = solve_jointly(m, s)
             more = 0.0
-            if bowed and (taken != 0.0 or taken_per_newton != 0.0):
+            if waits or (bowed and (taken != 0.0 or taken_per_newton != 0.0)):
                 first = f_b
                 free -= (taken - taken_per_newton * first) / (2.0 * k)
                 compliance += taken_per_newton / (2.0 * k)
                 f_b, z_bar, v_r, again, converged = solve_friction(
-                    free, compliance, s.z[string], abs(control[F_N]), f_b, m, string
+                    free, compliance, s.z[string], abs(control[F_N]), first, m, string
                 )
                 iterations += again
                 more = f_b - first

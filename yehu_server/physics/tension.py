@@ -61,6 +61,12 @@ def tighten(model: Any, s: Any, u_next: Array, u: Array, u_prev: Array) -> None:
 
 
 @compiled
+def tension_varies(s: Any) -> bool:
+    """Whether any string is tightened in this step."""
+    return bool(s.give[0] != 0.0 or s.give[1] != 0.0)
+
+
+@compiled
 def reading(s: Any, u_next: Array, i: int, first: int, weights: Array, bend: float) -> float:
     """I u^{n+1} of string `i` within a step; `bend` is I Delta u^n there."""
     return float(read(u_next[i], first, weights) + s.slack[i] * bend)

@@ -67,6 +67,9 @@ GESTURE = np.dtype(
         ("target", np.float64, SLOTS),
         ("slope", np.float64, SLOTS),
         ("remaining", np.int64, SLOTS),
+        ("moving", np.int64),  # how many parameters are on their way
+        ("gain_db", np.float64),  # what `factor` was worked out of
+        ("factor", np.float64),
         ("sounding_from", np.float64),  # m; where the sounding length begins
         ("finger_up", np.int64, MAX_FINGERS),  # frames since each was lifted
         ("second", np.float64),  # frames
@@ -89,6 +92,7 @@ def prepare_gesture(quantities: Quantities, rate: float) -> Any:
     gesture = np.zeros(1, GESTURE)
     defaults = [param.default for param in ENGINE]
     gesture["value"][0] = gesture["target"][0] = defaults
+    gesture["factor"] = 1.0
     gesture["follow"] = 1.0 - math.exp(-1.0 / (FOLLOW_S * rate))
     gesture["park_after"] = round(PARK_AFTER_S * rate)
     gesture["finger_up"] = gesture["park_after"]
@@ -108,6 +112,7 @@ def settle(gesture: Any) -> None:
     gesture["target"][PLUCK] = 0.0
     gesture["value"] = gesture["target"]
     gesture["remaining"] = 0
+    gesture["moving"] = 0
     gesture["silence_in"] = 0
     hand = gesture["value"][FINGERS : FINGERS + CONTROLS_PER_FINGER * MAX_FINGERS].reshape(-1, 2)
     is_down = hand[:, 1] > 0.0
@@ -126,22 +131,27 @@ def take(g: Any, index: int, target: float, ramp: int, silence_frames: int) -> N
     if index < 0 or index >= SLOTS:
         return
     g.target[index] = target
+    g.moving -= 1 if g.remaining[index] > 0 else 0
     if ramp <= 0:
         g.value[index] = target
         g.remaining[index] = 0
     else:
         g.slope[index] = (target - g.value[index]) / ramp
         g.remaining[index] = ramp
+        g.moving += 1
 
 
 @compiled
 def move(g: Any) -> None:
     """Let every parameter take one step of its ramp, ending exactly on its target."""
+    if g.moving == 0:
+        return
     for index in range(SLOTS):
         if g.remaining[index] > 0:
             g.remaining[index] -= 1
             if g.remaining[index] == 0:
                 g.value[index] = g.target[index]
+                g.moving -= 1
             else:
                 g.value[index] += g.slope[index]
 
@@ -150,7 +160,9 @@ def move(g: Any) -> None:
 def level(g: Any) -> float:
     """Amplitude at full scale of one pascal at this frame."""
     gain_db = g.value[GAIN] + g.value[BALANCE]
-    return float(g.value[LEVEL] * 10.0 ** (gain_db / 20.0) / FULL_SCALE_PRESSURE)
+    if gain_db != g.gain_db:
+        g.gain_db, g.factor = gain_db, 10.0 ** (gain_db / 20.0)
+    return float(g.value[LEVEL] * g.factor / FULL_SCALE_PRESSURE)
 
 
 @compiled

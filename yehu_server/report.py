@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.audio.devices import AudioDevice
+from yehu_server.params.table import find
 from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.render import Summary
 from yehu_server.replay import Replayed
 from yehu_server.simulate import Simulation
@@ -105,6 +107,32 @@ def devices_report(
     for name in midi:
         table.add_row(name)
     console.print(table if midi else f"no MIDI inputs{_because(midi_problem)}")
+
+
+def mapping_report(mapping: ControllerMapping) -> None:
+    """Print a mapping as a table: what moves what, from where to where."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(markup=False, highlight=False)
+    console.print(f"{mapping.name}: {mapping.about}" if mapping.about else mapping.name)
+    table = Table()
+    for column in ("you move", "what moves", "from", "to", "curve"):
+        table.add_column(column, overflow="fold")
+    for bind in mapping.binds:
+        param = find(bind.target)
+        unit = "" if param.unit == "1" else f" {param.unit}"
+        ends = [f"{end:g}{unit}" for end in bind.ends]
+        if bind.is_by_range:
+            ends = ["- bend range", "+ bend range"]
+        table.add_row(bind.source, bind.target, *ends, bind.curve.value)
+    console.print(table)
+    for address, value in mapping.start:
+        param = find(address)
+        unit = "" if param.unit == "1" else f" {param.unit}"
+        console.print(f"begins with {address} = {value:g}{unit}")
+    if mapping.mpe:
+        console.print("begins with one MPE zone of 15 member channels on every port")
 
 
 def _because(problem: str) -> str:

@@ -22,7 +22,7 @@ SOURCES = ("bend", "pressure", "poly-pressure", "velocity")
 RESERVED = {6, 38, *range(96, 102), *range(120, 128)}
 _CC = re.compile(r"cc (0|[1-9][0-9]{0,2})")
 DEFAULT, MPE = "keyboard", "mpe"
-ENTRIES = ("name", "mpe", "start", "bind")
+ENTRIES = ("name", "about", "mpe", "start", "bind")
 
 
 def mapping_folder() -> Path:
@@ -46,11 +46,20 @@ class Bind:
     span: tuple[float, float] | None = None
     curve: Curve = Curve.LIN
 
+    @property
+    def is_by_range(self) -> bool:
+        """Whether it spans what the bend range (RPN 0) says."""
+        return self.source == "bend" and self.span is None and self.target == "/playing/bend"
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The target's values at the two ends of the controller's way."""
+        param = find(self.target)
+        return self.span or (param.lo, param.hi)
+
     def apply(self, unit: float) -> float:
         """Map the controller's place, 0 to 1, to the target's value."""
-        param = find(self.target)
-        lo, hi = self.span or (param.lo, param.hi)
-        return self.curve.bend(unit, lo, hi)
+        return self.curve.bend(unit, *self.ends)
 
 
 @dataclass(frozen=True)
@@ -58,17 +67,23 @@ class Mapping:
     """A named set of binds; several may share a source or a target (the last move counts).
 
     `start` are parameters with the values they begin with; `mpe` is whether every port begins
-    as an MPE zone.
+    as an MPE zone; `about` says in a line what it is for.
     """
 
     name: str
     binds: tuple[Bind, ...]
     start: tuple[tuple[str, float], ...] = ()
     mpe: bool = False
+    about: str = ""
 
     def of(self, source: str) -> tuple[Bind, ...]:
         """The binds of one source."""
         return tuple(bind for bind in self.binds if bind.source == source)
+
+
+def shipped_mappings() -> list[str]:
+    """Names of the mappings that come with the package."""
+    return sorted(file.stem for file in mapping_folder().glob("*.toml"))
 
 
 def load(name_or_path: str) -> Mapping:
@@ -81,7 +96,7 @@ def load(name_or_path: str) -> Mapping:
     if is_name:
         shipped = mapping_folder() / f"{name_or_path}.toml"
         if not shipped.exists():
-            names = ", ".join(sorted(file.stem for file in mapping_folder().glob("*.toml")))
+            names = ", ".join(shipped_mappings())
             raise MappingError(f"no mapping {name_or_path!r} (shipped: {names}; or name a file)")
         path = shipped
     try:
@@ -110,7 +125,10 @@ def load(name_or_path: str) -> Mapping:
         start = _start(data.get("start", {}))
     except ParameterError as error:
         raise MappingError(f"{path}: start: {error}") from error
-    return Mapping(str(data.get("name", path.stem)), tuple(binds), start, mpe)
+    about = data.get("about", "")
+    if not isinstance(about, str):
+        raise MappingError(f"{path}: about: expected a line of text, got {about!r}")
+    return Mapping(str(data.get("name", path.stem)), tuple(binds), start, mpe, about)
 
 
 def _start(entries: Any) -> tuple[tuple[str, float], ...]:

@@ -300,7 +300,7 @@ class MidiPlayer:
                 continue
             when, place = moved
             value = bind.apply(place)
-            if bind.source == "bend" and bind.span is None and bind.target == "/playing/bend":
+            if bind.is_by_range:
                 value = self._bend(channel) + (0.0 if master is None else self._bend(master))
             asked[bind.target] = (when, value)
         return {address: value for address, (_, value) in asked.items()}

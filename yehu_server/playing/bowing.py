@@ -57,7 +57,7 @@ MANNERS = {
     78: Manner(0.25, (0.33, FIRM)),
     79: Manner(0.25, (0.33, FIRM)),
     80: Manner(0.25, (0.33, FIRM)),
-    83: Manner(farther=1.15),
+    83: Manner(0.2, farther=1.15, press=3.0),
     85: Manner(0.26),
     89: Manner(0.25),
 }

@@ -59,15 +59,6 @@ def name(note: int) -> str:
     return f"{NAMES[note % 12]}{note // 12 - 1}"
 
 
-def heard_hz(samples: Array, rate: float, lo: float, hi: float) -> float:
-    """`pitch_hz`, and NaN too where its refinement loses the period on the way."""
-    try:
-        found = pitch_hz(samples, rate, lo=lo, hi=hi)
-    except ValueError:
-        return math.nan
-    return found if 0.9 * lo < found < 1.1 * hi else math.nan
-
-
 # ---------------------------------------------------------------- a score, played
 
 BLOCK = 128  # frames between two looks at the player
@@ -169,7 +160,7 @@ def listen(played: Take, span: Span, a4: float) -> list[Heard]:
         aim = played.aim(start, start + window)
         wanted = frequency_hz(aim, a4)
         part = played.samples[start : start + window]
-        found = heard_hz(part, played.rate, 0.7 * wanted, 3.2 * wanted)
+        found = pitch_hz(part, played.rate, lo=0.7 * wanted, hi=3.2 * wanted)
         pitch = aim + cents(found, wanted) / 100.0 if math.isfinite(found) else math.nan
         heard.append(Heard((start + 0.5 * window) / played.rate, aim, pitch))
     return heard
@@ -500,7 +491,7 @@ def bow(stop: Stop, speed: float, beta: float, force: float) -> int:
     instrument.process(out)
     last = out[-round(LAST_S * stop.rate) :]
     helmholtz = BRIDGE_PRESSURE * 2.0 * stop.impedance * speed / beta / math.sqrt(12.0)
-    found = heard_hz(last, stop.rate, 0.22 * stop.frequency, 6.5 * stop.frequency)
+    found = pitch_hz(last, stop.rate, lo=0.22 * stop.frequency, hi=6.5 * stop.frequency)
     error = cents(found, stop.frequency) if math.isfinite(found) else math.nan
     return kind(error, float(last.std()) / helmholtz)
 

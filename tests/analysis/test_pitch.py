@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from yehu_server.analysis import pitch
 from yehu_server.analysis.pitch import cents, pitch_hz, track
 
 RATES = (22050.0, 44100.0, 48000.0, 96000.0)
@@ -59,3 +60,9 @@ def test_a_track_follows_a_glide():
     times, pitches = track(np.sin(phase) + 0.5 * np.sin(2.0 * phase), rate)
     expected = 440.0 * 2.0 ** (2.0 * times / 12.0)
     assert max(abs(cents(p, e)) for p, e in zip(pitches, expected, strict=True)) < 2.0
+
+
+def test_where_no_later_period_is_like_the_first_the_first_one_stays():
+    """A likeness that only falls has no peak to refine by; its slope must not be taken for one."""
+    falling = 0.8 + 0.2 * np.exp(-np.arange(200) / 50.0)
+    assert pitch._refine(falling, 13.77) == 13.77

@@ -56,6 +56,7 @@ def test_each_finger_is_where_it_is_put(instrument):
 def test_the_bow_follows_the_finger_nearest_to_it_that_is_down(instrument):
     put(instrument, bow_position=0.1, finger_1_position=0.05, finger_1_press=1.0)
     put(instrument, finger_2_position=0.15, finger_2_press=1.0, finger_3_position=0.2)
+    put(instrument, finger_4_position=0.03, finger_4_press=1.0)
     assert rows(instrument, 0.2)[-1][X_B] == pytest.approx(BRIDGE_X - 0.1 * 0.15, abs=1e-6)
     put(instrument, finger_2_press=0.0)
     assert rows(instrument, 0.2)[-1][X_B] == pytest.approx(BRIDGE_X - 0.1 * 0.25, abs=1e-6)

@@ -141,3 +141,19 @@ def test_a_tuning_says_where_keys_are(listener, ruler):
     assert not player.note_on(key(76.0))
     assert player.notes_out_of_range == 1
     assert listener.where() == ("C", 2.5)
+
+
+@pytest.mark.parametrize(("tuned", "played"), [(64.9999, ("F", None)), (64.6, ("F", None))])
+def test_a_tuning_a_little_below_the_open_string_is_the_open_string(listener, ruler, tuned, played):
+    player = Performer(listener, ruler, tuning=lambda _note: tuned)
+    player.note_on(key(65))
+    assert listener.where() == played
+    assert player.notes_out_of_range == 0
+
+
+def test_a_tuning_far_below_is_moved_by_octaves(listener, ruler):
+    player = Performer(listener, ruler, tuning=lambda note: note - 0.5)
+    player.write("/playing/variation", 0.0)
+    player.note_on(key(65))
+    assert listener.where() == ("C", 4.5)
+    assert player.notes_out_of_range == 1

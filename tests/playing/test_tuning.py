@@ -341,3 +341,20 @@ def test_any_file_is_a_tuning_of_finite_pitches_or_a_clear_refusal(scale, keyboa
     assert any(pitch is not None for pitch in pitches)
     for pitch in pitches:
         assert pitch is None or math.isfinite(a4 * 2 ** ((pitch - 69) / 12))
+
+
+# ---------------------------------------------------------------- what ships
+
+
+def test_the_chaozhou_table_has_seven_equal_steps_from_the_open_f_string():
+    tuning = read_tuning(Path("chaozhou-seven-equal"), Path("chaozhou-keys"))
+    steps = (65, 67, 69, 70, 72, 74, 76, 77)
+    pitches = [tuning.pitch(key, 440.0) for key in steps]
+    assert pitches == pytest.approx([65.0 + 12.0 * step / 7.0 for step in range(8)], abs=1e-4)
+    assert tuning.pitch(71, 440.0) == tuning.pitch(70, 440.0)
+    assert tuning.pitch(66, 440.0) is None
+
+
+def test_a_name_that_is_no_tuning_lists_those_there_are():
+    with pytest.raises(ParameterError, match=r"'chaozou'.*chaozhou-seven-equal"):
+        read_tuning(Path("chaozou"))

@@ -69,13 +69,13 @@ def add_playing(group: Any) -> None:
         "--tuning",
         type=Path,
         metavar="FILE.scl",
-        help="a Scala scale, its first note on C (default: equal temperament)",
+        help="a Scala scale, or a shipped one's name, from C up (default: equal temperament)",
     )
     group.add_argument(
         "--keyboard-map",
         type=Path,
         metavar="FILE.kbm",
-        help="a Scala keyboard map for it, which fixes its pitch in Hz",
+        help="a Scala keyboard map for it, or a shipped one's name; it fixes the pitch in Hz",
     )
     group.add_argument(
         "--range",

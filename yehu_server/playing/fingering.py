@@ -26,9 +26,12 @@ class RangePolicy(Enum):
     SKIP = "skip"
 
     def fit(self, note: float) -> float | None:
-        """Return the note to play instead of `note`, or None for none."""
-        if LOWEST_NOTE <= note <= HIGHEST_NOTE:
-            return note
+        """Return the note to play instead of `note`, or None for none.
+
+        One that a tuning has put less than a quarter tone beyond an end is the last there is.
+        """
+        if LOWEST_NOTE - OPEN_WITHIN < note < HIGHEST_NOTE + OPEN_WITHIN:
+            return min(max(note, LOWEST_NOTE), HIGHEST_NOTE)
         if self is RangePolicy.SKIP:
             return None
         if self is RangePolicy.CLAMP:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import MappingError, ParameterError
-from yehu_server.files import read_text
+from yehu_server.files import read_text, shipped_folder
 from yehu_server.params.spec import Curve, Place
 from yehu_server.params.table import find
 
@@ -26,10 +26,8 @@ ENTRIES = ("name", "about", "mpe", "start", "bind")
 
 
 def mapping_folder() -> Path:
-    """Where the shipped mappings are: in the package, or beside it in a checkout."""
-    package = Path(__file__).parent.parent
-    inside = package / "mappings"
-    return inside if inside.is_dir() else package.parent / "mappings"
+    """Where the shipped mappings are."""
+    return shipped_folder("mappings")
 
 
 @dataclass(frozen=True)

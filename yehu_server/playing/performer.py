@@ -13,7 +13,14 @@ from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.calibration import OPEN_NOTES
-from yehu_server.playing.fingering import Fingering, OpenStrings, RangePolicy, choose, stay
+from yehu_server.playing.fingering import (
+    OPEN_WITHIN,
+    Fingering,
+    OpenStrings,
+    RangePolicy,
+    choose,
+    stay,
+)
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.left_hand import LIFTING_MS, LeftHand
 from yehu_server.playing.ownership import Ownership, Sink
@@ -190,7 +197,7 @@ class Performer:
         """
         tuned = self._tuning(key.note)
         note = None if tuned is None else self._policy.fit(tuned)
-        if note is None or note != tuned:
+        if tuned is None or note is None or abs(note - tuned) > OPEN_WITHIN:
             self.notes_out_of_range += 1
         if note is None:
             return False

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from yehu_server.errors import ParameterError
-from yehu_server.files import read_text
+from yehu_server.files import read_text, shipped_folder
 
 KEYS = range(128)
 MIDDLE_C, A4 = 60, 69
@@ -76,12 +76,14 @@ EQUAL = Tuning("12-tone equal temperament")
 
 
 def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
-    """Read a Scala scale and, if given, a Scala keyboard map.
+    """Read a Scala scale and, if given, a Scala keyboard map; a bare name is a shipped one's.
 
     Without a map the scale's 1/1 is on key 60, which keeps its place in equal temperament,
     and every key plays the next note of the scale. With a map the pitches are fixed in Hz.
     Errors: ParameterError, naming the file and mostly the line.
     """
+    scale = _found(scale, ".scl")
+    keyboard = None if keyboard is None else _found(keyboard, ".kbm")
     name, notes = _read_scale(scale)
     layout = _Keyboard() if keyboard is None else _read_keyboard(keyboard)
     reference = layout.interval(layout.reference, notes)
@@ -100,6 +102,18 @@ def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
     if all(key is None for key in keys):
         raise ParameterError(f"{keyboard}: maps no key")
     return Tuning(name, tuple(keys), fixed=keyboard is not None)
+
+
+def _found(path: Path, ending: str) -> Path:
+    """The file of a path, or of the name of a shipped one."""
+    if path.suffix or path.name != str(path) or path.exists():
+        return path
+    folder = shipped_folder("tunings")
+    shipped = folder / f"{path}{ending}"
+    if not shipped.exists():
+        names = ", ".join(sorted(file.stem for file in folder.glob(f"*{ending}")))
+        raise ParameterError(f"no {ending} {str(path)!r} (shipped: {names}; or name a file)")
+    return shipped
 
 
 @dataclass(frozen=True)

@@ -268,7 +268,8 @@ def record(server: str, channels: int) -> None:
     def connect() -> None:
         for number, port in enumerate(inputs):
             until(lambda: client.get_ports("yehu-server:out_"), 10.0, "the instrument's ports")
-            client.connect(f"yehu-server:out_{number}", port)
+            if not client.get_all_connections(port):
+                client.connect(f"yehu-server:out_{number}", port)
 
     print("ready", flush=True)  # noqa: T201
     for line in sys.stdin:

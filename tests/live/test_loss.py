@@ -61,7 +61,9 @@ def wait_for_frames(osc, frames: int) -> dict:
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
-def test_without_its_audio_server_it_says_so_and_plays_on(number, jackd, serve, recorder, tmp_path):
+def test_without_its_audio_server_it_says_so_and_plays_on(
+    number, jackd, serve, recorder, tmp_path, until
+):
     jackd.start()
     server, osc = begun(serve, tmp_path)
     before = wait_for_frames(osc, 12_000)
@@ -88,7 +90,13 @@ def test_without_its_audio_server_it_says_so_and_plays_on(number, jackd, serve, 
     assert back["device"] == DEVICE
     assert back["problem"] == ""
     assert back["note"] == before["note"]
-    assert peak(heard.recording().samples[0, -4800:]) > SOUNDS
+
+    def sounds() -> bool:
+        """Whether it is heard; on a busy machine JACK may take its time, and cut a wire."""
+        samples = heard.connected().recording().samples[0, -4800:]
+        return samples.size > 0 and peak(samples) > SOUNDS
+
+    until(sounds, 8.0, "the instrument to be heard again")
 
     assert server.end() == 0
     recorded, again = same_again(tmp_path)

@@ -219,7 +219,7 @@ def legato(rate: float) -> None:
 
 
 def bent(rate: float, note: int, semitones: float) -> list[float]:
-    """Cents off the aim while the wheel goes up and comes back, 20 ms later than it moves."""
+    """Cents off the aim while the wheel goes up and comes back, 12 ms later than it moves."""
     take = Take(rate)
     take.performer.write("/playing/bend_range", abs(semitones), hold=True)
     take.on(0.0, note)

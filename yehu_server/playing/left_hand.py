@@ -15,8 +15,8 @@ from yehu_server.playing.fingering import Fingering
 from yehu_server.playing.ownership import Ownership
 
 # A finger lands in about three milliseconds and leaves a little more gently. Chosen by trying
-# landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps up and down both strings: with these
-# every one was within 10 cents of its pitch after 56 ms at most, half of them after 23.
+# landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps up and down both strings; half of these
+# are within 10 cents of their pitch after 21 ms (scripts/playability.py legato tries more).
 LANDING_MS, LIFTING_MS = 3.0, 5.0
 # The next place is reached by a slide if it is this near: no finger fits beside another.
 SAME_PLACE = 2e-3  # m

@@ -8,7 +8,7 @@ import pytest
 
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve, Param, Place
-from yehu_server.params.table import ENGINE, TABLE, assignment, find
+from yehu_server.params.table import ENGINE, TABLE, assignment, find, read
 
 rows = pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
 
@@ -60,6 +60,30 @@ def test_zero_to_one_is_the_whole_range_and_nothing_beyond(param: Param):
     assert steps[-1] == param.hi
     assert param.from_unit(-1.0) == param.lo
     assert param.from_unit(2.0) == param.hi
+
+
+@rows
+def test_each_unit_comes_back_from_its_value(param: Param):
+    for n in range(101):
+        assert param.to_unit(param.from_unit(n / 100)) == pytest.approx(n / 100, abs=1e-9)
+    assert param.to_unit(param.lo - 1.0) == 0.0
+    assert param.to_unit(param.hi + 1.0) == 1.0
+
+
+@pytest.mark.parametrize("curve", Curve)
+@pytest.mark.parametrize("ends", [(1.0, 5.0), (5.0, 1.0), (0.2, 0.3)])
+def test_a_curve_is_undone_also_where_it_falls(curve: Curve, ends):
+    for n in range(101):
+        value = curve.bend(n / 100, *ends)
+        assert curve.unbend(value, *ends) == pytest.approx(n / 100, abs=1e-9)
+    assert curve.unbend(2.0, 3.0, 3.0) == 0.0
+
+
+@rows
+def test_a_value_is_read_as_it_is_or_as_unit(param: Param):
+    values = {param.address: param.from_unit(0.25)}
+    assert read(values, param.address) == param.from_unit(0.25)
+    assert read(values, param.address + "/unit") == pytest.approx(0.25)
 
 
 @rows

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 from yehu_server.control.packets import pack, shortened
 from yehu_server.control.peers import Peer
+from yehu_server.params.table import read
 
 FLUSH_S = 1.0 / 60.0
 MOST_SUBSCRIBERS = 64
@@ -25,6 +26,7 @@ class Client:
 
     peer: Peer
     until: float = 0.0  # when its subscription ends (monotonic s)
+    form: str = ""  # of the addresses it is told: plain, or UNIT
     to_tell: dict[str, None] = field(default_factory=dict)  # addresses, in order
     patience: float = ERRORS_AT_ONCE  # errors it may still be sent
     complained: float = field(default_factory=time.monotonic)
@@ -80,13 +82,17 @@ class Clients:
         self._client(peer).to_tell.update(dict.fromkeys(addresses))
         self._is_waiting = True
 
-    def subscribe(self, peer: Peer, seconds: float) -> bool:
-        """Tell a peer of every change for some time; return whether there was room."""
+    def subscribe(self, peer: Peer, seconds: float, form: str = "") -> bool:
+        """Tell a peer of every change for some time; return whether there was room.
+
+        `form` is nothing for plain values, or UNIT for 0 to 1.
+        """
         if self._client(peer).until <= time.monotonic() and self.subscribers >= MOST_SUBSCRIBERS:
             return False
         client = self._client(peer)
         client.until = time.monotonic() + seconds
-        client.to_tell.update(dict.fromkeys(self._values()))
+        client.form = form
+        client.to_tell.update(dict.fromkeys(address + form for address in self._values()))
         self._is_waiting = True
         return True
 
@@ -134,9 +140,9 @@ class Clients:
         packets: dict[str, bytes] = {}
         for client in list(self._clients.values()):  # sending may end one
             if client.until > now:
-                client.to_tell.update(changed)
+                client.to_tell.update({address + client.form: None for address in changed})
             for address in client.to_tell:
                 if address not in packets:
-                    packets[address] = pack(self._prefix + address, values[address])
+                    packets[address] = pack(self._prefix + address, read(values, address))
                 client.peer.send(packets[address])
             client.to_tell.clear()

@@ -18,7 +18,8 @@ from yehu_server.control.patterns import PatternError, is_pattern, matches
 from yehu_server.control.peers import Peer
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.errors import YehuError
-from yehu_server.params.table import BY_ADDRESS, TABLE, find
+from yehu_server.params.spec import Param
+from yehu_server.params.table import BY_ADDRESS, TABLE, UNIT, find, read
 from yehu_server.playing.live import Arrivals, LivePlayer
 
 log = logging.getLogger(__name__)
@@ -114,6 +115,7 @@ class OscHandler:
             "/params": self._params,
             "/status": self._status,
             "/subscribe": self._subscribe,
+            "/subscribe/unit": lambda call: self._subscribe(call, UNIT),
             "/unsubscribe": self._unsubscribe,
             "/record/start": self._record_start,
             "/record/stop": self._record_stop,
@@ -121,6 +123,7 @@ class OscHandler:
         }
         for param in TABLE:
             self._calls[param.address] = self._setter(param.address)
+            self._calls[param.address + UNIT] = self._unit_setter(param)
 
     @property
     def waiting(self) -> int:
@@ -205,11 +208,24 @@ class OscHandler:
         self._player.write(address, value, frame=call.frame)
         self.clients.echo(call.peer, [address])
 
+    def _unit_setter(self, param: Param) -> Callable[[Call], None]:
+        def set_unit(call: Call) -> None:
+            (unit,) = call.numbers(1)
+            self._player.write(param.address, param.from_unit(unit), frame=call.frame)
+            self.clients.echo(call.peer, [param.address + UNIT])
+
+        return set_unit
+
     def _get(self, call: Call) -> None:
         wanted = call.word().removeprefix(PREFIX)
-        addresses = fitting(wanted, BY_ADDRESS) if is_pattern(wanted) else [wanted]
+        if is_pattern(wanted):
+            known = (*BY_ADDRESS, *(address + UNIT for address in BY_ADDRESS))
+            addresses = fitting(wanted, known)
+        else:
+            addresses = [find(wanted.removesuffix(UNIT)).address + _form(wanted)]
+        values = self._player.values()
         for address in addresses:
-            call.peer.send(pack(PREFIX + address, self._player.value(address)))
+            call.peer.send(pack(PREFIX + address, read(values, address)))
 
     def _params(self, call: Call) -> None:
         values = self._player.values()
@@ -259,12 +275,12 @@ class OscHandler:
             is_long = isinstance(value, int) and abs(value) > INT_MAX  # not read by Pd and Max
             call.peer.send(pack(f"{PREFIX}/status/{name}", float(value) if is_long else value))
 
-    def _subscribe(self, call: Call) -> None:
+    def _subscribe(self, call: Call, form: str = "") -> None:
         numbers = call.numbers(0, 2)
         seconds = numbers[0] if numbers else SUBSCRIBED_S
         seconds = min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
         peer = call.peer.at(_port(numbers[1])) if len(numbers) == 2 else call.peer
-        if not self.clients.subscribe(peer, seconds):
+        if not self.clients.subscribe(peer, seconds, form):
             raise RefusedError("there are too many subscribers")
         peer.send(pack(f"{PREFIX}/subscribed", seconds))
 
@@ -281,6 +297,11 @@ class OscHandler:
     def _record_stop(self, call: Call) -> None:
         name = self._desk.stop_recording()
         call.peer.send(pack(f"{PREFIX}/record/stopped", name))
+
+
+def _form(address: str) -> str:
+    """What comes after the parameter's own address."""
+    return UNIT if address.endswith(UNIT) else ""
 
 
 def _number(argument: Any) -> float:
@@ -301,7 +322,7 @@ def _near(address: str) -> str:
     if not address.startswith(PREFIX + "/"):
         return f"unknown address (all begin with {PREFIX}/)"
     try:
-        find(address.removeprefix(PREFIX)[:LONGEST_PATTERN])
+        find(address.removeprefix(PREFIX)[:LONGEST_PATTERN].removesuffix(UNIT))
     except YehuError as error:
         return str(error)
     return "unknown address"

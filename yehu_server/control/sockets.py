@@ -17,6 +17,7 @@ import sys
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from typing import Protocol
 
 from yehu_server.control.addresses import Address, Allowed, is_here
@@ -79,6 +80,8 @@ class OscPorts:
         self.host = str(self._udp.getsockname()[0])
         self.traffic.buffer_bytes = _widen(self._udp)
         self._wake_here, self._wake_there = socket.socketpair()
+        self._wake_there.setblocking(False)
+        self._asked: deque[Callable[[], None]] = deque()
         for readable in (self._udp, self._tcp, self._wake_here):
             readable.setblocking(False)
             self._selector.register(readable, selectors.EVENT_READ)
@@ -102,6 +105,17 @@ class OscPorts:
                 key.fileobj.close()  # type: ignore[union-attr]
         self._wake_there.close()
         self._selector.close()
+
+    def receive(self, packet: bytes, peer: Peer) -> None:
+        """Take in a packet that came another way; any thread may call."""
+        arrived_ns = time.monotonic_ns()
+        self.call_soon(lambda: self._enqueue(packet, peer, arrived_ns))
+
+    def call_soon(self, action: Callable[[], None]) -> None:
+        """Let the thread that serves do something; any thread may call."""
+        self._asked.append(action)
+        with contextlib.suppress(OSError):  # it is full, so that the thread will wake anyway
+            self._wake_there.send(b"!")
 
     def _run(self) -> None:
         while not self._ending:
@@ -148,11 +162,19 @@ class OscPorts:
             self._read_datagrams()
         elif key.fileobj is self._tcp:
             self._accept()
+        elif key.fileobj is self._wake_here:
+            self._do_asked()
         elif isinstance(key.data, TcpPeer):
             if events & selectors.EVENT_WRITE:
                 key.data.flush()
             if events & selectors.EVENT_READ and key.data.reads:
                 self._read_stream(key.data)
+
+    def _do_asked(self) -> None:
+        with contextlib.suppress(BlockingIOError):
+            self._wake_here.recv(DATAGRAM_BYTES)
+        while self._asked:
+            self._asked.popleft()()
 
     def _read_datagrams(self) -> None:
         """Empty the socket, as far as one turn goes."""

@@ -24,6 +24,18 @@ class Curve(Enum):
             unit = unit * unit * (3.0 - 2.0 * unit)
         return lo + (hi - lo) * unit
 
+    def unbend(self, value: float, lo: float, hi: float) -> float:
+        """Find the unit in 0..1 that `bend` maps to `value`; a value beyond an end is at it."""
+        if lo == hi:
+            return 0.0
+        value = min(max(value, min(lo, hi)), max(lo, hi))
+        if self is Curve.EXP:
+            return math.log(value / lo) / math.log(hi / lo)
+        unit = (value - lo) / (hi - lo)
+        if self is Curve.S:
+            return 0.5 - math.sin(math.asin(1.0 - 2.0 * unit) / 3.0)
+        return unit
+
 
 class Place(Enum):
     """Who holds the value: the compiled engine, or the player who decides in Python."""
@@ -73,3 +85,7 @@ class Param:
     def from_unit(self, unit: float) -> float:
         """Map 0..1 over the whole range, along the parameter's curve."""
         return self.curve.bend(min(max(unit, 0.0), 1.0), self.lo, self.hi)
+
+    def to_unit(self, value: float) -> float:
+        """Where a value lies in the range, as 0..1 along the parameter's curve."""
+        return self.curve.unbend(value, self.lo, self.hi)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve, Param, Place
 
@@ -200,6 +202,8 @@ TABLE: tuple[Param, ...] = (
     ),
 )  # fmt: skip
 
+UNIT = "/unit"  # an address with this at its end is the parameter as 0 to 1
+
 BY_ADDRESS = {param.address: param for param in TABLE}
 ENGINE: tuple[Param, ...] = tuple(param for param in TABLE if param.place is Place.ENGINE)
 SLOT = {param.address: slot for slot, param in enumerate(ENGINE)}
@@ -215,6 +219,13 @@ def find(address: str) -> Param:
         near = difflib.get_close_matches(address, BY_ADDRESS, n=1, cutoff=0.4)
         hint = f"; did you mean {near[0]}?" if near else ""
         raise ParameterError(f"unknown parameter {address!r}{hint}") from None
+
+
+def read(values: Mapping[str, float], address: str) -> float:
+    """Look up a parameter's value, or at ADDRESS/unit the same as 0 to 1."""
+    plain = address.removesuffix(UNIT)
+    value = values[plain]
+    return value if plain == address else BY_ADDRESS[plain].to_unit(value)
 
 
 def assignment(text: str) -> tuple[str, float]:

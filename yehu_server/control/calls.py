@@ -1,0 +1,78 @@
+"""The calls beside the parameters, as OSC, OSCQuery and the surfaces know them.
+
+What each does is in ``osc.OscHandler``; people read of them in docs/osc.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from yehu_server.params.table import find
+
+
+@dataclass(frozen=True)
+class Argument:
+    """One argument of a call: a number (``f``) within its range, or a word (``s``)."""
+
+    name: str
+    kind: str = "f"
+    lo: float | None = None
+    hi: float | None = None
+    unit: str = "1"
+
+
+@dataclass(frozen=True)
+class Call:
+    """One call: its address after the prefix, what it takes, and what it does."""
+
+    address: str
+    doc: str
+    arguments: tuple[Argument, ...] = ()
+
+
+def _of(address: str, name: str) -> Argument:
+    """An argument with the range of a parameter."""
+    param = find(address)
+    return Argument(name, lo=param.lo, hi=param.hi, unit=param.unit)
+
+
+NOTE = Argument("note", lo=0.0, hi=127.0, unit="MIDI note")
+SECONDS = Argument("seconds", lo=0.0, hi=3600.0, unit="s")
+NAME = Argument("name", "s")
+
+CALLS: tuple[Call, ...] = (
+    Call(
+        "/note",
+        "Begins a note; velocity 0 ends it.",
+        (NOTE, Argument("velocity", lo=0.0, hi=127.0)),
+    ),
+    Call("/note/off", "Ends a note.", (NOTE,)),
+    Call("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", (NOTE,)),
+    Call(
+        "/bend",
+        "Slides the finger away from the note.",
+        (_of("/playing/bend", "semitones"),),
+    ),
+    Call(
+        "/press",
+        "How hard the finger presses a stopped note.",
+        (_of("/playing/press", "newtons"),),
+    ),
+    Call(
+        "/bow",
+        "Draws the bow by hand; no speed and no force lifts it.",
+        (_of("/bow/speed", "speed"), _of("/bow/force", "force")),
+    ),
+    Call("/release", "Gives back to the player what direct writes took over."),
+    Call("/panic", "Ends all notes and all sound, and forgets what waits for its time."),
+    Call("/reset", "The same, and puts every parameter back."),
+    Call("/get", "Tells the value of a parameter.", (Argument("address", "s"),)),
+    Call("/params", "Tells all parameters: value, range, default, unit, meaning."),
+    Call("/status", "Tells how things stand."),
+    Call("/subscribe", "Tells of every change for some time.", (SECONDS,)),
+    Call("/subscribe/unit", "The same, with values as 0 to 1, at ADDRESS/unit.", (SECONDS,)),
+    Call("/unsubscribe", "Tells no more."),
+    Call("/record/start", "Records into the recordings folder.", (NAME,)),
+    Call("/record/stop", "Ends the recording."),
+    Call("/ping", "Answers with the same arguments."),
+)

@@ -76,6 +76,211 @@ def test_a_subscriber_may_be_told_of_zero_to_one(stage):
     assert values(stage.ear.heard()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
 
 
+@every_param
+def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(house, param):
+    client = house.client()
+    at = param.address
+    third = f32(param.lo + (param.hi - param.lo) / 3.0)
+    for sent, accepted in ((param.hi, param.hi), (param.lo, param.lo), (third, third)):
+        client.tell(at, sent)
+        assert client.value(at) == f32(accepted)
+    for sent, accepted in ((1e30, param.hi), (-1e30, param.lo), (param.default, param.default)):
+        client.tell(at, sent)
+        while client.wait_for(at) != [f32(accepted)]:  # after echoes of what was set before
+            pass
+        assert client.value(at) == f32(accepted)
+    if param.place is Place.ENGINE:
+        house.settle()
+        assert house.target(at) == pytest.approx(param.default, rel=1e-6)
+    assert house.is_well()
+
+
+@every_param
+def test_every_parameter_takes_ints_doubles_and_truth(house, param):
+    client = house.client()
+
+    def accepted(value: float) -> float:
+        return f32(min(max(value, param.lo), param.hi))
+
+    for value, tags in (
+        (1, "i"),
+        (-3, "i"),
+        (2**31 - 1, "i"),
+        (2**62, "h"),
+        (0.37, "d"),
+        (-1e300, "d"),
+        (True, "T"),
+        (False, "F"),
+    ):
+        client.tell(param.address, value, tags=tags)
+        assert client.value(param.address) == accepted(value)
+    client.tell(param.address, param.default)
+    client.sync()
+    assert house.is_well()
+
+
+@every_param
+def test_what_no_parameter_can_take_is_answered_and_changes_nothing(house, param):
+    client = house.client()
+    before = house.player.values()
+    wrong = [
+        (),
+        (0.5, 0.5),
+        ("0.5",),
+        (b"0.5",),
+        (None,),
+        *((value,) for value in INFINITE),
+    ]
+    for arguments in wrong:
+        client.tell(param.address, *arguments)
+        address, reason = client.wait_for("/error")
+        assert address == "/yehu" + param.address
+        assert reason
+    client.take(
+        b"/yehu"
+        + param.address.encode()
+        + b"\0" * (4 - len("/yehu" + param.address) % 4)
+        + b",[f]\0\0\0\0\x3f\0\0\0"
+    )
+    assert client.wait_for("/error")[0] == "/yehu" + param.address
+    client.sync()
+    assert house.player.values() == before
+    assert house.is_well()
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "/yehu",
+        "/yehu/",
+        "/yehu/bow",  # that takes two
+        "/yehu/bow/",
+        "/yehu/bow/forc",
+        "/yehu/bow/force/",
+        "/yehu//bow/force",
+        "/bow/force",
+        "/yehubow/force",
+        "/YEHU/bow/force",
+        "/yehu/bow/force ",
+        "/",
+        "//",
+        "/yehu/bow/fôrce",
+        "/ÿehu/" + "x" * 300,
+    ],
+)
+def test_an_unknown_address_is_answered_and_changes_nothing(house, wire, address):
+    client = house.client()
+    before, counted = house.player.values(), house.handler.counts.errors
+    client.take(wire.message(address, 0.123))
+    assert client.wait_for("/error")[0] == address
+    assert house.player.values() == before
+    assert house.handler.counts.errors == counted + 1
+    assert house.is_well()
+
+
+def test_a_near_name_is_suggested(house):
+    client = house.client()
+    client.tell("/bow/forc", 0.5)
+    assert "/bow/force" in client.wait_for("/error")[1]
+
+
+@pytest.mark.parametrize(
+    "packet",
+    [b"", b"\0", b"hello", b"/yehu/bow/force", b"/yehu/bow/force\0,i\0\0\0", b"#bundle\0\0"],
+    ids=repr,
+)
+def test_a_malformed_packet_is_counted_and_answered(house, packet):
+    client = house.client()
+    counted = house.handler.counts.malformed
+    client.take(packet)
+    assert "malformed" in client.wait_for("/error")[1]
+    assert house.handler.counts.malformed == counted + 1
+
+
+def test_one_who_makes_many_errors_is_told_of_few(house):
+    client, patient = house.client(), house.client()
+    counted = house.handler.counts.errors
+    started = time.monotonic()
+    for _ in range(2000):
+        client.tell("/nothing")
+    client.sync()
+    took = time.monotonic() - started
+    heard = errors(client.all())
+    assert house.handler.counts.errors == counted + 2000
+    assert len(heard) <= clients.ERRORS_AT_ONCE + clients.ERRORS_A_SECOND * (took + 1.0)
+    patient.tell("/nothing")
+    assert patient.wait_for("/error")
+
+
+def test_an_address_of_any_length_is_answered(house):
+    client = house.client()
+    client.tell("/" + "x" * 40_000)
+    assert client.next(0.5)
+
+
+def test_near_names_are_looked_for_only_where_they_are_told(stage, monkeypatch):
+    looked = []
+    monkeypatch.setattr(
+        difflib, "get_close_matches", lambda *words, **_: looked.append(words) or []
+    )
+    for number in range(500):
+        stage.tell(f"/bow/forc{number}", 1.0)
+    assert len(errors(stage.ear.heard())) == clients.ERRORS_AT_ONCE
+    assert len(looked) <= 2 * clients.ERRORS_AT_ONCE
+
+
+def test_parameters_are_listed_with_all_that_a_client_needs(house):
+    client = house.client()
+    client.tell("/params")
+    heard = list(itertools.takewhile(lambda m: m.address == "/yehu/param", iter(client.next, 0)))
+    assert [message.arguments for message in heard] == [
+        [
+            "/yehu" + param.address,
+            f32(house.player.value(param.address)),
+            *map(f32, (param.lo, param.hi, param.default)),
+            param.unit,
+            param.doc,
+        ]
+        for param in TABLE
+    ]
+
+
+def test_status_is_told_line_by_line(house):
+    client = house.client()
+    client.tell("/status")
+    heard = values(client.all())
+    status = house.server.status()
+    assert set(heard) == {f"/yehu/status/{name}" for name in status}
+    assert heard["/yehu/status/rate"] == 48000.0
+    assert heard["/yehu/status/osc_buffer_bytes"] == house.ports.traffic.buffer_bytes
+
+
+@pytest.mark.parametrize(
+    ("tags", "arguments"),
+    [
+        ("", []),
+        ("ifs", [1, 0.5, "a"]),
+        ("TFN", [True, False, None]),
+        ("h", [2**62]),
+        ("b", [b"\0\1\2"]),
+        ("i", [-(2**31)]),
+    ],
+)
+def test_a_ping_comes_back_with_what_it_brought(house, tags, arguments):
+    client = house.client()
+    client.tell("/ping", *arguments, tags=tags)
+    assert client.wait_for("/pong") == arguments
+
+
+@pytest.mark.parametrize(
+    ("tags", "arguments"),
+    [("d", [1e300]), ("b", [b""]), ("t", [1]), ("[" * 3000 + "]" * 3000, [])],
+    ids=["double", "empty blob", "time tag", "deep"],
+)
+def test_a_ping_with_anything_is_answered_and_breaks_nothing(stage, tags, arguments):
+    assert stage.ask("/ping", *arguments, tags=tags)
+
+
 # ---------------------------------------------------------------- asking for values
 
 

@@ -56,24 +56,9 @@ def test_every_parameter_also_answers_as_zero_to_one(house, param):
     client.sync()
 
 
-def test_every_call_is_described_and_every_described_call_is_there(stage):
-    of_parameters = {p.address for p in TABLE} | {f"{p.address}/unit" for p in TABLE}
-    assert {call.address for call in CALLS} == set(stage.handler._calls) - of_parameters
-
-
 def test_every_call_is_in_the_documentation():
     text = (Path(__file__).parents[2] / "docs" / "osc.md").read_text()
     assert [call.address for call in CALLS if f"`/yehu{call.address}" not in text] == []
-
-
-def test_a_subscriber_may_be_told_of_zero_to_one(stage):
-    told = values(stage.ask("/subscribe/unit", 60.0))
-    speed = stage.player.value("/playing/speed")
-    assert told["/yehu/playing/speed/unit"] == f32(find("/playing/speed").to_unit(speed))
-    assert {f"/yehu{param.address}/unit" for param in TABLE} <= set(told)
-    stage.player.write("/playing/speed", find("/playing/speed").from_unit(0.7), frame=0)
-    stage.pass_time(0.1)
-    assert values(stage.ear.heard()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
 
 
 @every_param
@@ -561,6 +546,21 @@ def test_a_note_takes_back_what_was_written_directly(stage):
     stage.tell("/release")
     stage.tell("/playing/speed", 0.4)
     assert abs(stage.player.value("/bow/speed")) == pytest.approx(0.4)
+
+
+def test_a_subscriber_may_be_told_of_zero_to_one(stage):
+    told = values(stage.ask("/subscribe/unit", 60.0))
+    speed = stage.player.value("/playing/speed")
+    assert told["/yehu/playing/speed/unit"] == f32(find("/playing/speed").to_unit(speed))
+    assert {f"/yehu{param.address}/unit" for param in TABLE} <= set(told)
+    stage.player.write("/playing/speed", find("/playing/speed").from_unit(0.7), frame=0)
+    stage.pass_time(0.1)
+    assert values(stage.ear.heard()) == {"/yehu/playing/speed/unit": pytest.approx(0.7)}
+
+
+def test_every_call_is_described_and_every_described_call_is_there(stage):
+    of_parameters = {p.address for p in TABLE} | {f"{p.address}/unit" for p in TABLE}
+    assert {call.address for call in CALLS} == set(stage.handler._calls) - of_parameters
 
 
 def test_records_are_begun_and_ended_at_the_desk(stage):

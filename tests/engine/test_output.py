@@ -17,32 +17,33 @@ KNEE = 10.0 ** (-3.0 / 20.0)
 
 ours = settings(max_examples=300, deadline=None, derandomize=True, database=None)
 sizes = st.floats(-1e300, 1e300)
+knees = st.sampled_from([KNEE, 0.063, 0.5, 1.0])
 
 
 @ours
-@given(st.floats(-KNEE, KNEE))
-def test_the_limiter_leaves_what_is_below_minus_3_dbfs(x):
-    assert limit(x) == x
+@given(st.floats(-1.0, 1.0), knees)
+def test_the_limiter_leaves_what_is_below_its_knee(share, knee):
+    assert limit(share * knee, knee) == share * knee
 
 
 @ours
-@given(sizes | st.floats(-3.0, 3.0))
-def test_the_limiter_is_odd_and_never_exceeds_full_scale(x):
-    assert abs(limit(x)) <= 1.0
-    assert limit(-x) == -limit(x)
-    assert abs(np.float32(limit(x))) <= 1.0
+@given(sizes | st.floats(-3.0, 3.0), knees)
+def test_the_limiter_is_odd_and_never_exceeds_full_scale(x, knee):
+    assert abs(limit(x, knee)) <= 1.0
+    assert limit(-x, knee) == -limit(x, knee)
+    assert abs(np.float32(limit(x, knee))) <= 1.0
 
 
 @ours
-@given(st.tuples(sizes, sizes) | st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)))
-def test_the_limiter_keeps_the_order_of_sizes(pair):
+@given(st.tuples(sizes, sizes) | st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)), knees)
+def test_the_limiter_keeps_the_order_of_sizes(pair, knee):
     low, high = sorted(pair)
-    assert limit(low) <= limit(high)
+    assert limit(low, knee) <= limit(high, knee)
 
 
 def test_the_limiter_has_no_corner():
     x = np.linspace(0.6, 1.5, 9001)
-    y = np.array([limit(value) for value in x])
+    y = np.array([limit(value, KNEE) for value in x])
     slopes = np.diff(y) / np.diff(x)
     assert slopes.max() < 1.0 + 1e-9
     assert np.abs(np.diff(slopes)).max() < 1e-3
@@ -50,8 +51,8 @@ def test_the_limiter_has_no_corner():
 
 
 def test_the_limiter_takes_the_infinite():
-    assert limit(math.inf) == 1.0
-    assert limit(-math.inf) == -1.0
+    assert limit(math.inf, KNEE) == 1.0
+    assert limit(-math.inf, KNEE) == -1.0
 
 
 def bowed(gain_db: float = 0.0, level: float = 1.0) -> np.ndarray:
@@ -83,8 +84,40 @@ def test_gain_is_in_decibels_and_level_in_amplitude(soft, gain_db, level, factor
 def test_a_loud_instrument_is_bent_and_not_clipped(soft):
     loud = bowed(gain_db=24.0)
     assert KNEE < np.abs(loud).max() <= 1.0
-    expected = [limit(10 ** (36 / 20) * float(x)) for x in soft]
+    expected = [limit(10 ** (36 / 20) * float(x), KNEE) for x in soft]
     np.testing.assert_allclose(loud, expected, atol=1e-5)
+
+
+def test_the_limiter_may_begin_lower_or_only_cut(soft):
+    def loud(limiter_db: float) -> np.ndarray:
+        instrument = Instrument(RATE)
+        instrument.write("/output/gain", 24.0, ramp_ms=0.0)
+        instrument.write("/output/limiter", limiter_db, ramp_ms=0.0)
+        instrument.write("/bow/side", 1.0)
+        instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
+        out = np.zeros(RATE // 2, np.float32)
+        instrument.process(out)
+        return out
+
+    as_it_is = 10 ** (36 / 20) * soft.astype(float)
+    np.testing.assert_allclose(loud(0.0), np.clip(as_it_is, -1.0, 1.0), atol=1e-5)
+    knee = 10 ** (-20 / 20)
+    np.testing.assert_allclose(loud(-20.0), [limit(x, knee) for x in as_it_is], atol=1e-5)
+
+
+def test_the_bodys_gain_is_of_what_it_radiates_alone():
+    def heard(gain_db: float, blend: float) -> np.ndarray:
+        instrument = Instrument(RATE)
+        instrument.write("/body/gain", gain_db, ramp_ms=0.0)
+        instrument.write("/body/blend", blend, ramp_ms=0.0)
+        instrument.write("/bow/side", 1.0)
+        instrument.write("/bow/speed", 0.2)
+        out = np.zeros(RATE // 2, np.float32)
+        instrument.process(out)
+        return out.astype(float)
+
+    assert heard(-6.0, 0.0) == pytest.approx(10 ** (-6 / 20) * heard(0.0, 0.0), abs=1e-6)
+    assert heard(-6.0, 1.0) == pytest.approx(heard(0.0, 1.0), abs=1e-6)
 
 
 def blended(blend: float) -> np.ndarray:

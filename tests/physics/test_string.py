@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from physics.runs import cents
 
-from yehu_server.physics import layout
+from yehu_server.physics import kernel, layout
 from yehu_server.physics import string as string_module
-from yehu_server.physics.grid import intervals
+from yehu_server.physics.grid import intervals, least_spacing
 from yehu_server.physics.quantities import Quantities, StringQuantities
 from yehu_server.physics.string import advance_string, prepare_strings, support
 
@@ -215,3 +215,36 @@ def test_the_grid_leaves_room_for_a_raised_tension(i):
     raised = replace(string, T=1.5 * string.T)
     assert intervals(string, k, headroom=1.5) == grid_bound(raised, k)
     assert intervals(string, k, headroom=1.5) < intervals(string, k)
+
+
+# ---------------------------------------------------------------- given other tension and loss
+
+
+@three_rates
+def test_a_string_that_is_retuned_is_as_one_made_so(rate):
+    model, state = (
+        record.copy() for record in (kernel.prepare(YEHU, rate), np.zeros(1, layout.STATE))
+    )
+    silk = YEHU.string_1
+    slacker = replace(
+        silk, T=0.999 * silk.T, sigma_0=1.5 * silk.sigma_0, sigma_1=1.01 * silk.sigma_1
+    )
+    made = kernel.prepare(replace(YEHU, string_1=slacker), rate)
+    assert made["N"][0, 0] == model["N"][0, 0]
+    state["placed"] = 1
+    kernel.retune(model, state, 0, slacker.T, slacker.sigma_0, slacker.sigma_1)
+    for field in layout.MODEL.names:
+        np.testing.assert_allclose(model[field], made[field], rtol=1e-12, err_msg=field)
+    assert state["placed"] == 0  # contacts are to look anew how the string gives way
+
+
+@both_strings
+@three_rates
+def test_no_more_loss_is_taken_than_the_grid_bears(i, rate):
+    model, state = kernel.prepare(YEHU, rate), np.zeros(1, layout.STATE)
+    silk = YEHU.strings[i]
+    kernel.retune(model, state, i, silk.T, silk.sigma_0, 1.0)
+    most = float(model["sigma_1"][0, i])
+    assert silk.sigma_1 < most < 1.0
+    spacing = least_spacing(replace(silk, sigma_1=most), 1.0 / rate)
+    assert spacing == pytest.approx(float(model["h"][0, i]), rel=1e-9)

@@ -6,9 +6,13 @@ import math
 
 import pytest
 
+from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.bowing import MANNERS
+from yehu_server.playing.calibration import calibration_for
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.performer import Key, Performer
+
+YEHU = Quantities()
 
 
 def key(note: int, channel: int = 0) -> Key:
@@ -70,6 +74,82 @@ def test_no_note_is_played_far_up_the_f_string(player, listener):
         assert listener.where() == ("F", note - 65)
     player.note_on(key(78))  # 2 cm further there, 5 cm back on the C string
     assert listener.where() == ("C", 6)
+
+
+@pytest.mark.parametrize(
+    ("wish", "note", "expected"),
+    [
+        (1.0, 72, ("F", 7)),
+        (1.0, 79, ("F", 14)),
+        (1.0, 65, ("F", None)),
+        (2.0, 74, ("C", 2)),
+        (2.0, 72, ("C", None)),
+        (2.0, 70, ("F", 5)),  # the C string has no such note
+        (0.0, 74, ("F", 9)),
+    ],
+)
+def test_a_string_may_be_wished_for(player, listener, wish, note, expected):
+    player.note_on(key(71))  # from here the F string would be nearer for 74
+    player.write("/playing/string", wish)
+    player.note_on(key(note))
+    assert listener.where() == expected
+
+
+def test_a_bend_stays_on_the_string_that_is_wished_for(player, listener):
+    player.write("/playing/string", 1.0)
+    player.note_on(key(71))
+    player.write("/playing/bend", 7.0)
+    assert listener.where() == ("F", 13)
+
+
+@pytest.mark.parametrize(
+    ("wish", "expected"), [(0.0, [1, -1, 1]), (1.0, [1] * 3), (-1.0, [-1] * 3)]
+)
+def test_strokes_go_in_turn_or_the_way_that_is_wished_for(player, listener, wish, expected):
+    player.write("/playing/direction", wish)
+    signs = []
+    for note in (66, 68, 70):
+        player.note_on(key(note))
+        signs.append(math.copysign(1, listener["/bow/speed"]))
+        player.note_off(key(note))
+    assert signs == expected
+
+
+def test_a_new_seed_begins_another_sequence_and_an_old_one_the_same(listener_type, ruler):
+    def speeds(seed: float) -> list[float]:
+        listener = listener_type()
+        player = Performer(listener, ruler)
+        player.write("/playing/variation", 1.0)
+        player.note_on(key(70))
+        player.note_off(key(70))
+        player.write("/engine/seed", seed)
+        found = []
+        for note in (66, 68, 70):
+            player.note_on(key(note))
+            found.append(abs(listener["/bow/speed"]))
+            player.note_off(key(note))
+        return found
+
+    assert speeds(3.0) == speeds(3.0)
+    assert speeds(3.0) != speeds(4.0)
+
+
+def test_without_calibration_fingers_go_to_where_an_ideal_string_is_in_tune(listener):
+    player = Performer(listener)
+    player.write("/playing/variation", 0.0)
+    player.note_on(key(79))
+    measured = listener.place
+    player.write("/engine/calibration", 0.0)
+    ideal = listener.place
+    player.write("/engine/calibration", 0.5)
+    assert min(measured, ideal) < listener.place < max(measured, ideal)
+    player.write("/engine/calibration", 1.0)
+    assert listener.place == measured
+    silk, tension = YEHU.strings[1], calibration_for(44100.0).tensions[1]
+    hz = 440.0 * 2 ** (10 / 12)
+    sounding = math.sqrt(tension / silk.rho_A) / (2.0 * hz)
+    assert ideal == pytest.approx(YEHU.bridge_x - sounding, abs=1e-9)
+    assert 1e-4 < abs(measured - ideal) < 0.01
 
 
 def test_a_long_bend_up_the_f_string_goes_on_on_the_c_string(player, listener):

@@ -107,7 +107,8 @@ def test_a_trill_alternates_between_two_notes(low):
     sound = stand.play(1.3)
     for n, time in enumerate(times):
         expected = low if n % 2 else low + 2
-        assert heard(sound, time + 0.06, 0.04) == pytest.approx(expected, abs=0.2)
+        # The open string that has just been let go of bends some of these.
+        assert heard(sound, time + 0.06, 0.04) == pytest.approx(expected, abs=0.4)
 
 
 # ---------------------------------------------------------------- bends and pressing

@@ -91,10 +91,10 @@ def add_playing(group: Any) -> None:
     )
     group.add_argument(
         "--seed",
-        type=whole,
+        type=seed,
         default=0,
         metavar="N",
-        help="of the chance in /playing/variation (default: 0)",
+        help="of the chance in /playing/variation, to 65535 (default: 0)",
     )
 
 
@@ -165,6 +165,14 @@ def whole(text: str) -> int:
         return int(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
+
+
+def seed(text: str) -> int:
+    """A whole number, 0 to 65535."""
+    value = whole(text)
+    if not 0 <= value <= 65535:
+        raise argparse.ArgumentTypeError(f"{value} is not a seed, 0 to 65535")
+    return value
 
 
 def positive(text: str) -> int:

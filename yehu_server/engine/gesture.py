@@ -41,6 +41,10 @@ PLUCK, PLUCK_POSITION = SLOT["/pluck/force"], SLOT["/pluck/position"]
 FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
 GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
 BALANCE, BLEND = SLOT["/output/balance"], SLOT["/body/blend"]
+BODY, LIMITER = SLOT["/body/gain"], SLOT["/output/limiter"]
+# Tuning and loss take turns, string by string.
+SILKS = SLOT["/string/inner/tuning"]
+NOISE = SLOT["/bow/noise"]
 SLOTS = len(ENGINE)
 SILENCE = SLOTS  # an event at this index fades the sound out and puts the model to rest
 
@@ -58,7 +62,12 @@ ONSET_FROM = 0.4  # share of /vibrato/onset before there is any
 TURN = 3.0
 LAST_STROKES = 12.0  # a second, that bring the bow back to its direction as tremolo ends
 
+GRAIN_HZ = 2000.0  # how fast the hair's grip trembles. By ear.
+
 FORWARD = 0.25  # turns at which the bow goes as speed says
+
+TO_OUTPUT, TO_BODY, TO_LIMITER = range(3)  # what is set in decibels
+DECIBELS = 3
 
 GESTURE = np.dtype(
     [
@@ -68,8 +77,16 @@ GESTURE = np.dtype(
         ("slope", np.float64, SLOTS),
         ("remaining", np.int64, SLOTS),
         ("moving", np.int64),  # how many parameters are on their way
-        ("gain_db", np.float64),  # what `factor` was worked out of
-        ("factor", np.float64),
+        ("decibels", np.float64, DECIBELS),  # what `factor` was worked out of
+        ("factor", np.float64, DECIBELS),
+        # of each string in tune, and the tuning (cents) and loss that it has
+        ("tension", np.float64, STRINGS),
+        ("sigma_0", np.float64, STRINGS),
+        ("sigma_1", np.float64, STRINGS),
+        ("silk", np.float64, (STRINGS, 2)),
+        ("grain", np.float64),  # of the hair, in its slow noise; how slow, and how large
+        ("grain_follow", np.float64),
+        ("grain_size", np.float64),
         ("sounding_from", np.float64),  # m; where the sounding length begins
         ("finger_up", np.int64, MAX_FINGERS),  # frames since each was lifted
         ("second", np.float64),  # frames
@@ -92,7 +109,7 @@ def prepare_gesture(quantities: Quantities, rate: float) -> Any:
     gesture = np.zeros(1, GESTURE)
     defaults = [param.default for param in ENGINE]
     gesture["value"][0] = gesture["target"][0] = defaults
-    gesture["factor"] = 1.0
+    gesture["factor"] = 1.0  # of 0 dB
     gesture["follow"] = 1.0 - math.exp(-1.0 / (FOLLOW_S * rate))
     gesture["park_after"] = round(PARK_AFTER_S * rate)
     gesture["finger_up"] = gesture["park_after"]
@@ -104,6 +121,13 @@ def prepare_gesture(quantities: Quantities, rate: float) -> Any:
     for i, string in enumerate(quantities.strings):
         impedance = math.sqrt(string.T * string.rho_A)
         gesture["schelleng"][0, i] = 2.0 * impedance / max(grip, 1e-3)
+        gesture["tension"][0, i] = string.T
+        gesture["sigma_0"][0, i], gesture["sigma_1"][0, i] = string.sigma_0, string.sigma_1
+        gesture["silk"][0, i] = gesture["value"][0, SILKS + 2 * i : SILKS + 2 * i + 2]
+    follow = 1.0 - math.exp(-2.0 * math.pi * GRAIN_HZ / rate)
+    gesture["grain_follow"] = follow
+    # Even chance in -1..1, once smoothed, has a deviation of a third: hardly ever beyond 1.
+    gesture["grain_size"] = math.sqrt((2.0 - follow) / (3.0 * follow))
     return gesture
 
 
@@ -157,12 +181,51 @@ def move(g: Any) -> None:
 
 
 @compiled
+def amplitude(g: Any, of: int, decibels: float) -> float:
+    """Turn decibels to a factor, worked out only when they change."""
+    if decibels != g.decibels[of]:
+        g.decibels[of], g.factor[of] = decibels, 10.0 ** (decibels / 20.0)
+    return float(g.factor[of])
+
+
+@compiled
 def level(g: Any) -> float:
     """Amplitude at full scale of one pascal at this frame."""
-    gain_db = g.value[GAIN] + g.value[BALANCE]
-    if gain_db != g.gain_db:
-        g.gain_db, g.factor = gain_db, 10.0 ** (gain_db / 20.0)
-    return float(g.value[LEVEL] * g.factor / FULL_SCALE_PRESSURE)
+    factor = amplitude(g, TO_OUTPUT, g.value[GAIN] + g.value[BALANCE])
+    return float(g.value[LEVEL] * factor / FULL_SCALE_PRESSURE)
+
+
+@compiled
+def has_new_strings(g: Any) -> bool:
+    """Whether tuning or loss of a string is not what it was at the frame before."""
+    for i in range(STRINGS):
+        for what in range(2):
+            if g.value[SILKS + 2 * i + what] != g.silk[i, what]:
+                return True
+    return False
+
+
+@compiled
+def chance(frame: int) -> float:
+    """A number of this frame's own in -1..1, like random ones.
+
+    Source: [SplitMix], its output function.
+    """
+    x = np.uint64(frame) * np.uint64(0x9E3779B97F4A7C15)
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    x = x ^ (x >> np.uint64(31))
+    return float(x >> np.uint64(11)) * 2.0**-52 - 1.0
+
+
+@compiled
+def grip(g: Any) -> float:
+    """Share of the bow force that the hair's grain leaves at this frame, about 1."""
+    noise = g.value[NOISE]
+    if noise == 0.0:
+        return 1.0
+    g.grain += g.grain_follow * (g.grain_size * chance(g.frame) - g.grain)
+    return float(max(0.0, 1.0 + noise * g.grain))
 
 
 @compiled
@@ -244,7 +307,7 @@ def write_controls(g: Any, control: Array) -> None:
     share = g.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
     force = assist * share * limit + (1.0 - assist) * g.value[FORCE]
     sounding = g.bridge_x - g.sounding_from
-    control[F_N] = side * force
+    control[F_N] = side * force * grip(g)
     control[V_B] = speed
     control[X_B] = g.bridge_x - beta * sounding
     control[F_HAMMER] = 0.0

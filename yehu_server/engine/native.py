@@ -19,7 +19,21 @@ from yehu_server.engine.atomics import (
     load_acquire,
     store_release,
 )
-from yehu_server.engine.gesture import BLEND, GESTURE, level, move, take, write_controls
+from yehu_server.engine.gesture import (
+    BLEND,
+    BODY,
+    GESTURE,
+    LIMITER,
+    SILKS,
+    TO_BODY,
+    TO_LIMITER,
+    amplitude,
+    has_new_strings,
+    level,
+    move,
+    take,
+    write_controls,
+)
 from yehu_server.engine.mailbox import (
     APPLIED_AT_ONCE,
     EVENT,
@@ -41,7 +55,7 @@ from yehu_server.engine.processor import (
 from yehu_server.engine.telemetry import METERS, account, close_window, hear, tell_time
 from yehu_server.jit import compiled, native
 from yehu_server.physics import kernel
-from yehu_server.physics.layout import MODEL, STATE
+from yehu_server.physics.layout import MODEL, STATE, STRINGS
 
 Array = Any
 
@@ -134,6 +148,17 @@ def report(rig: Any, mail: Any, frame: int, index: int, target: float, ramp: int
 
 
 @compiled
+def retune(model: Array, state: Array, g: Any) -> None:
+    """Let the strings have the tuning and loss of this frame."""
+    for i in range(STRINGS):
+        cents, loss = g.value[SILKS + 2 * i], g.value[SILKS + 2 * i + 1]
+        if cents != g.silk[i, 0] or loss != g.silk[i, 1]:
+            g.silk[i, 0], g.silk[i, 1] = cents, loss
+            T = g.tension[i] * 2.0 ** (cents / 600.0)  # frequency goes as its square root
+            kernel.retune(model, state, i, T, g.sigma_0[i] * loss, g.sigma_1[i] * loss)
+
+
+@compiled
 def play(rig: Any, out: Array) -> None:
     """Play one block into `out` [shape=(frames, channels), float32], in full scale.
 
@@ -152,8 +177,8 @@ def play(rig: Any, out: Array) -> None:
         is_full = drain(rig, mail, g.frame)
         first = g.frame
         frames = 0
-        silenced = False
-        while frames < CHUNK and done + frames < out.shape[0] and not silenced:
+        silenced, retuned = False, False
+        while frames < CHUNK and done + frames < out.shape[0] and not silenced and not retuned:
             apply(rig, mail, g, o.fade)
             if is_full:
                 is_full = drain(rig, mail, g.frame)
@@ -165,12 +190,20 @@ def play(rig: Any, out: Array) -> None:
                 gain *= g.silence_in / o.fade
                 silenced = g.silence_in == 0
             o.gain[frames] = gain
+            o.body[frames] = amplitude(g, TO_BODY, g.value[BODY])
             o.blend[frames] = g.value[BLEND]
+            o.soft[frames] = amplitude(g, TO_LIMITER, g.value[LIMITER])
+            retuned = has_new_strings(g)
             g.frame += 1
             frames += 1
-        kernel.advance(model, state, o.controls[:frames], o.probes[:frames], o.probes[:0])
+        as_before = frames - 1 if retuned else frames
+        kernel.advance(model, state, o.controls[:as_before], o.probes[:as_before], o.probes[:0])
+        if retuned:
+            retune(model, state, g)
+            last = o.controls[as_before:frames], o.probes[as_before:frames]
+            kernel.advance(model, state, last[0], last[1], o.probes[:0])
         for n in range(frames):
-            sample: Any = np.float32(play_out(o, o.probes[n], o.gain[n], o.blend[n]))
+            sample: Any = np.float32(play_out(o, n))
             tape[(first + n) & (TAPE - 1)] = sample
             hear(t, sample)
             for channel in range(out.shape[1]):

@@ -24,7 +24,6 @@ FADE_S = 0.005
 BLOCKED_HZ = 10.0  # what is slower than this is no sound
 # Pa that count for a newton at the bridge, so that a blend is about as loud at both ends.
 BRIDGE_PRESSURE = 0.1
-SOFT_ABOVE = 10.0 ** (-3.0 / 20.0)  # the limiter is transparent below -3 dBFS
 
 OUTPUT = np.dtype(
     [
@@ -39,7 +38,9 @@ OUTPUT = np.dtype(
         ("controls", np.float64, (CHUNK, control_columns(MAX_FINGERS))),
         ("probes", np.float64, (CHUNK, probe_columns(MAX_FINGERS))),
         ("gain", np.float64, CHUNK),
+        ("body", np.float64, CHUNK),
         ("blend", np.float64, CHUNK),
+        ("soft", np.float64, CHUNK),
     ],
     align=True,
 )
@@ -61,28 +62,33 @@ def rest_output(output: Any) -> None:
 
 
 @compiled
-def limit(x: float) -> float:
-    """Bend what is above -3 dBFS so that nothing exceeds full scale. Odd, smooth, memoryless."""
+def limit(x: float, soft: float) -> float:
+    """Bend what is above `soft`, 0 to 1, so that nothing exceeds full scale.
+
+    Odd, memoryless, and smooth below 1.
+    """
     size = abs(x)
-    if size <= SOFT_ABOVE:
+    if size <= soft:
         return x
-    room = 1.0 - SOFT_ABOVE
-    bent = SOFT_ABOVE + room * math.tanh((size - SOFT_ABOVE) / room)
+    room = 1.0 - soft
+    bent = 1.0 if room <= 0.0 else soft + room * math.tanh((size - soft) / room)
     return bent if x > 0.0 else -bent
 
 
 @compiled
-def play_out(o: Any, probe: Array, gain: float, blend: float) -> float:
-    """One sample of output from one row of probes; a lost state is faded, not cut."""
+def play_out(o: Any, n: int) -> float:
+    """Make one sample of output of row `n` of the probes; a lost state is faded, not cut."""
+    probe = o.probes[n]
     if probe[ITERATIONS] < 0:
         o.ghost = o.last
         o.pressure, o.swing = 0.0, 0.0
     o.ghost *= o.decay
     # A finger's press pulls at the bridge for as long as it lasts: not a sound.
-    source = (1.0 - blend) * probe[PRESSURE] + blend * BRIDGE_PRESSURE * probe[BRIDGE_FORCE]
+    radiated = o.body[n] * probe[PRESSURE]
+    source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
     o.swing = source - o.pressure + o.blocker * o.swing
     o.pressure = source
-    o.last = limit(o.swing * gain + o.ghost)
+    o.last = limit(o.swing * o.gain[n] + o.ghost, o.soft[n])
     return float(o.last)
 
 

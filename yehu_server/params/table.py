@@ -25,6 +25,21 @@ def _finger(number: int) -> tuple[Param, Param]:
     )  # fmt: skip
 
 
+def _string(name: str, which: str) -> tuple[Param, Param]:
+    return (
+        Param(
+            f"/string/{name}/tuning", "T", "cents", -200.0, 40.0, 0.0,
+            f"Tension of the {which} string, as cents from where it is in tune.",
+            place=Place.ENGINE, smooth_ms=50.0,
+        ),
+        Param(
+            f"/string/{name}/loss", "sigma_0, sigma_1", "1", 0.25, 4.0, 1.0,
+            f"Damping of the {which} string, as a factor of the measured one.",
+            place=Place.ENGINE, curve=Curve.EXP, smooth_ms=50.0,
+        ),
+    )  # fmt: skip
+
+
 TABLE: tuple[Param, ...] = (
     Param(
         "/bow/speed", "v_b", "m/s", -2.0, 2.0, 0.0,
@@ -61,6 +76,11 @@ TABLE: tuple[Param, ...] = (
         "Strokes a second, back and forth; 0 leaves the bow's direction to speed.",
         place=Place.ENGINE, owned=True,
     ),
+    Param(
+        "/bow/noise", "", "1", 0.0, 1.0, 0.0,
+        "Bow force trembles by this share of itself: 0.1 breathes, from 0.5 the tone breaks.",
+        place=Place.ENGINE, smooth_ms=20.0,
+    ),
     *(row for number in FINGERS for row in _finger(number)),
     Param(
         "/vibrato/depth", "", "cents", 0.0, 200.0, 0.0,
@@ -92,6 +112,8 @@ TABLE: tuple[Param, ...] = (
         "Where, from the bridge, as a share of the sounding length.",
         place=Place.ENGINE, owned=True,
     ),
+    *_string("inner", "inner (F4)"),
+    *_string("outer", "outer (C5)"),
     Param(
         "/output/gain", "", "dB", -60.0, 24.0, 0.0,
         "Gain of the output, before the limiter.",
@@ -106,6 +128,16 @@ TABLE: tuple[Param, ...] = (
         "/output/balance", "", "dB", -36.0, 36.0, 0.0,
         "Gain that makes this note as loud as the others.",
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
+    ),
+    Param(
+        "/output/limiter", "", "dB", -24.0, 0.0, -3.0,
+        "Level above which peaks are bent; at 0 they are cut off at full scale.",
+        place=Place.ENGINE, smooth_ms=20.0,
+    ),
+    Param(
+        "/body/gain", "", "dB", -24.0, 24.0, 0.0,
+        "Gain of what the body radiates, before the blend.",
+        place=Place.ENGINE, smooth_ms=20.0,
     ),
     Param(
         "/body/blend", "", "1", 0.0, 1.0, 0.0,
@@ -139,6 +171,14 @@ TABLE: tuple[Param, ...] = (
     Param(
         "/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
         "From 0.5 up notes are plucked, harder with more pressure.",
+    ),
+    Param(
+        "/playing/string", "", "1", 0.0, 2.0, 0.0,
+        "Which string takes the notes: 0 whichever fits, 1 the inner (F4), 2 the outer (C5).",
+    ),
+    Param(
+        "/playing/direction", "", "1", -1.0, 1.0, 0.0,
+        "Of new strokes: 0 back and forth in turn, 1 always down, -1 always up.",
     ),
     Param(
         "/playing/press", "", "N", 0.3, 6.0, 1.5,
@@ -199,6 +239,14 @@ TABLE: tuple[Param, ...] = (
     Param(
         "/playing/portamento_time", "", "ms", 5.0, 2000.0, 120.0,
         "How long such a slide takes.",
+    ),
+    Param(
+        "/engine/calibration", "", "1", 0.0, 1.0, 1.0,
+        "1: fingers go to where the model was measured to be in tune; 0: to an ideal string's.",
+    ),
+    Param(
+        "/engine/seed", "", "1", 0.0, 65535.0, 0.0,
+        "Of the chance in /playing/variation; a new one begins its sequence anew.",
     ),
 )  # fmt: skip
 

@@ -47,7 +47,6 @@ def prepare_bridge(model: np.void, quantities: Quantities) -> None:
     C_q_sum = model["C_q"].sum()
     model["C_q_sum"] = C_q_sum
     model["bridge_x"] = quantities.bridge_x
-    S_c = np.full((STRINGS, STRINGS), C_q_sum)
     for i in range(STRINGS):
         position = quantities.bridge_x / model["h"][i]
         if not 2.0 <= position <= model["N"][i] - 1.0:
@@ -56,8 +55,17 @@ def prepare_bridge(model: np.void, quantities: Quantities) -> None:
             )
         weights = model["bridge_weights"][i]
         model["bridge_first"][i] = place_cubic(position, int(model["N"][i]), weights)
-        S_c[i, i] += model["spread"][i] * (weights @ weights)
-    model["S_c"][:] = S_c
+    weigh_bridge(model)
+
+
+@compiled
+def weigh_bridge(model: Any) -> None:
+    """Write S_c of eq. (43): how modes and strings give way. Real time: safe."""
+    model.S_c[:] = model.C_q_sum
+    for i in range(STRINGS):
+        weights = model.bridge_weights[i]
+        for l in range(weights.shape[0]):
+            model.S_c[i, i] += model.spread[i] * weights[l] * weights[l]
 
 
 @compiled

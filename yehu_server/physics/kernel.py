@@ -18,6 +18,7 @@ from yehu_server.physics.bridge import (
     close_bridge,
     finish_bridge,
     prepare_bridge,
+    weigh_bridge,
 )
 from yehu_server.physics.contacts import answer, feel, place_contacts, push
 from yehu_server.physics.energy import book
@@ -59,7 +60,13 @@ from yehu_server.physics.layout import (
 from yehu_server.physics.pluck import pull_aside
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
-from yehu_server.physics.string import advance_strings, prepare_strings, support
+from yehu_server.physics.string import (
+    advance_strings,
+    most_loss,
+    prepare_strings,
+    support,
+    weigh_string,
+)
 from yehu_server.physics.tension import (
     prepare_tension,
     take_up_slack,
@@ -101,6 +108,20 @@ def at_rest(model: Any) -> Any:
     state = np.zeros(1, STATE)
     state["U"][:] = model["rest_height"][0]
     return state
+
+
+@compiled
+def retune(model: Array, state: Array, i: int, T: float, sigma_0: float, sigma_1: float) -> None:
+    """Give a sounding string another tension (N) and other losses; nothing else changes.
+
+    The grid was made for the tension of `prepare` and its headroom: up to there it is stable,
+    with as much of sigma_1 as it then bears.
+    Real time: safe.
+    """
+    m, s = model[0], state[0]
+    weigh_string(m, i, T, sigma_0, min(sigma_1, most_loss(m, i, T)))
+    weigh_bridge(m)
+    s.placed = 0  # contacts keep how much a string gives way
 
 
 @compiled

@@ -15,37 +15,44 @@ Array = Any
 
 
 def prepare_strings(model: np.void, quantities: Quantities) -> None:
-    """Write the strings' coefficients into `model`, both sides divided by A_s.
-
-    Source: [Yehu] eqs. (27), (31), (32), (57).
-    """
-    k = model["k"]
+    """Write the strings' grids and coefficients into `model`. Source: [Yehu] eq. (57)."""
     for i, string in enumerate(quantities.strings):
-        N = intervals(string, k, quantities.tension_headroom)
-        h = string.L / N
-        rho_A, EI, T = string.rho_A, string.EI, string.T
-        A_s = rho_A / k**2 + rho_A * string.sigma_0 / k
-        # D2 u = (u[l-1] - 2 u[l] + u[l+1]) / h^2, and D4 = D2 D2.
-        d2 = (T + 2.0 * rho_A * string.sigma_1 / k) / h**2
-        d4 = EI / h**4
-        model["N"][i] = N
-        model["h"][i] = h
-        model["B"][i] = (
-            (2.0 * rho_A / k**2 - 2.0 * d2 - 6.0 * d4) / A_s,
-            (d2 + 4.0 * d4) / A_s,
-            -d4 / A_s,
-        )
-        loss = 2.0 * rho_A * string.sigma_1 / (k * h**2)
-        model["C"][i] = (
-            (-rho_A / k**2 + rho_A * string.sigma_0 / k + 2.0 * loss) / A_s,
-            -loss / A_s,
-        )
-        model["spread"][i] = 1.0 / (h * A_s)
-        model["rho_A"][i] = rho_A
-        model["T"][i] = T
-        model["EI"][i] = EI
-        model["sigma_0"][i] = string.sigma_0
-        model["sigma_1"][i] = string.sigma_1
+        N = intervals(string, model["k"], quantities.tension_headroom)
+        model["N"][i], model["h"][i] = N, string.L / N
+        model["rho_A"][i], model["EI"][i] = string.rho_A, string.EI
+        weigh_string(model, i, string.T, string.sigma_0, string.sigma_1)
+
+
+@compiled
+def weigh_string(model: Any, i: int, T: float, sigma_0: float, sigma_1: float) -> None:
+    """Write the scheme's weights for a tension (N) and losses, both sides divided by A_s.
+
+    The grid stays: it must bear the tension (see `most_loss`).
+    Real time: safe. Source: [Yehu] eqs. (27), (31), (32).
+    """
+    k, h, rho_A, EI = model.k, model.h[i], model.rho_A[i], model.EI[i]
+    A_s = rho_A / k**2 + rho_A * sigma_0 / k
+    # D2 u = (u[l-1] - 2 u[l] + u[l+1]) / h^2, and D4 = D2 D2.
+    d2 = (T + 2.0 * rho_A * sigma_1 / k) / h**2
+    d4 = EI / h**4
+    model.B[i, 0] = (2.0 * rho_A / k**2 - 2.0 * d2 - 6.0 * d4) / A_s
+    model.B[i, 1] = (d2 + 4.0 * d4) / A_s
+    model.B[i, 2] = -d4 / A_s
+    loss = 2.0 * rho_A * sigma_1 / (k * h**2)
+    model.C[i, 0] = (-rho_A / k**2 + rho_A * sigma_0 / k + 2.0 * loss) / A_s
+    model.C[i, 1] = -loss / A_s
+    model.spread[i] = 1.0 / (h * A_s)
+    model.T[i], model.sigma_0[i], model.sigma_1[i] = T, sigma_0, sigma_1
+
+
+@compiled
+def most_loss(model: Any, i: int, T: float) -> float:
+    """The largest sigma_1 (m^2/s) that a string's grid bears at a tension (N): eq. (57) for it."""
+    k, h_squared = model.k, model.h[i] ** 2
+    rho_A = model.rho_A[i]
+    kappa_squared = model.EI[i] / rho_A
+    room = h_squared - 4.0 * k**2 * kappa_squared / h_squared - T / rho_A * k**2
+    return float(max(0.0, room / (4.0 * k)))
 
 
 @compiled

@@ -80,34 +80,42 @@ def choose(
     intonation: Intonation,
     speed: float,
     open_strings: OpenStrings = OpenStrings.ALWAYS,
+    wish: int | None = None,
 ) -> Fingering:
     """Finger a pitch (fractional MIDI note) for a bow of some speed (m/s).
 
     Below C5 there is only the F string; from C5 up the C string, unless the finger is down
-    on the F string (`hand`) and has a shorter way to the pitch there, not too far up.
+    on the F string (`hand`) and has a shorter way to the pitch there, not too far up. A string
+    wished for is taken wherever it has the pitch.
     """
     if pitch < OPEN_NOTES[0] + OPEN_WITHIN:
         return Fingering(0, None)  # the lowest there is
+    if wish == 0:
+        return _stop(0, pitch, intonation, speed)
     if open_strings.takes(pitch):
         return Fingering(1, None)
     if pitch < OPEN_NOTES[1] + OPEN_WITHIN:
         return _stop(0, pitch, intonation, speed)
     near, far = (_stop(string, pitch, intonation, speed) for string in (1, 0))
-    if hand is None or hand.string != 0 or hand.position is None:
+    if wish == 1 or hand is None or hand.string != 0 or hand.position is None:
         return near
     nearer = abs(far.position - hand.position) < abs(near.position - hand.position)
     return far if nearer and pitch <= HIGHEST_ON_F else near
 
 
-def stay(pitch: float, string: int, intonation: Intonation, speed: float) -> Fingering:
+def stay(
+    pitch: float, string: int, intonation: Intonation, speed: float, wish: int | None = None
+) -> Fingering:
     """Follow a bent pitch on the string it sounds on, as far as that goes.
 
-    Below the open C string it goes on on the F string, and far up the F string on the C.
+    Below the open C string it goes on on the F string, and far up the F string on the C, unless
+    the F string is wished for.
     """
+    string = string if wish is None else wish
     open_note = OPEN_NOTES[string]
     if abs(pitch - open_note) < OPEN_WITHIN or pitch < OPEN_NOTES[0]:
         return Fingering(string if pitch >= OPEN_NOTES[0] else 0, None)
-    if string == 0 and pitch > HIGHEST_ON_F:
+    if string == 0 and pitch > HIGHEST_ON_F and wish != 0:
         string = 1
     return _stop(string if pitch > OPEN_NOTES[string] else 0, pitch, intonation, speed)
 

@@ -21,7 +21,13 @@ LOG_SPEEDS = [math.log(speed) for speed in SPEEDS]
 
 
 class Intonation:
-    """Finger positions in equal temperament, for one calibrated instrument."""
+    """Finger positions in equal temperament, for one calibrated instrument.
+
+    Attributes
+    ----------
+    trust : float
+        From 0, fingers go to where an ideal string would be in tune, to 1, where this one is.
+    """
 
     def __init__(
         self, calibration: Calibration | None = None, quantities: Quantities | None = None
@@ -29,6 +35,7 @@ class Intonation:
         quantities = quantities or Quantities()
         self._calibration = calibration or calibration_for(DEFAULT_RATE, quantities)
         self._quantities = self._calibration.tuned(quantities)
+        self.trust = 1.0
 
     def position(self, string: int, pitch: float, speed: float) -> float:
         """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1.
@@ -36,7 +43,7 @@ class Intonation:
         The pitch is that of a bow whose player wishes for `speed` (m/s): a faster one pulls it.
         Some notes are bowed more slowly, and were measured so.
         """
-        sharp = self._sharpening(string, pitch, speed)
+        sharp = self.trust * self._sharpening(string, pitch, speed)
         frequency = frequency_hz(pitch - sharp / 100.0, self._calibration.a4)
         return ideal_position(self._quantities, string, frequency)
 

@@ -96,6 +96,7 @@ class Performer:
         self._policy = policy
         self._tuning = tuning
         self._chance = random.Random(seed)  # noqa: S311 - for music, not secrets
+        self._value["/engine/seed"] = find("/engine/seed").accept(seed)
         self._stray = 0.0  # of this note from its pitch, as a normal deviation
         self._held: dict[Key, float] = {}  # in the order pressed; values are fitted notes
         self._sounding: Key | None = None
@@ -119,6 +120,8 @@ class Performer:
             "/playing/volume": (self._set_level,),
             "/playing/expression": (self._set_level,),
             "/body/evenness": (self._even_out,),
+            "/engine/calibration": (self._trust, self._follow_bend),
+            "/engine/seed": (self._begin_chance,),
         }
         self.expression: Callable[[Key], Mapping[str, float]] = lambda _key: {}
         self.notes_played = 0
@@ -314,7 +317,14 @@ class Performer:
 
     def _choose(self, pitch: float) -> Fingering:
         speed = self._right.wished_speed
-        return choose(pitch, self._left.fingering, self._intonation, speed, self._open_strings)
+        hand = self._left.fingering
+        return choose(pitch, hand, self._intonation, speed, self._open_strings, self._string)
+
+    @property
+    def _string(self) -> int | None:
+        """The string that is wished for."""
+        wish = round(self._value["/playing/string"])
+        return None if wish == 0 else wish - 1
 
     @property
     def _pitch(self) -> float:
@@ -325,6 +335,12 @@ class Performer:
 
     def _is_on(self, address: str) -> bool:
         return self._value[address] >= TURNED_ON
+
+    def _trust(self, _frame: int | None) -> None:
+        self._intonation.trust = self._value["/engine/calibration"]
+
+    def _begin_chance(self, _frame: int | None) -> None:
+        self._chance.seed(int(self._value["/engine/seed"]))
 
     def _set_assist(self, frame: int | None) -> None:
         self._own.move("/bow/assist", self._value["/playing/assist"], frame)
@@ -361,7 +377,8 @@ class Performer:
         if self._sounding is None or self._left.fingering is None:
             return
         pitch, string = self._pitch, self._left.fingering.string
-        fingering = stay(pitch, string, self._intonation, self._right.wished_speed)
+        speed = self._right.wished_speed
+        fingering = stay(pitch, string, self._intonation, speed, self._string)
         if not self._right.bows_alike(pitch):
             self._lean(frame)
             self._draw(frame)

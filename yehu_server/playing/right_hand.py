@@ -55,8 +55,9 @@ class RightHand:
         return manner(pitch) == self._bowing
 
     def turn(self) -> None:
-        """Let the next stroke go the other way."""
-        self._direction = -self._direction
+        """Let the next stroke go the other way, or the way that is wished for."""
+        wish = round(self._wish("/playing/direction"))
+        self._direction = float(wish or -self._direction)
 
     def lean(self, pitch: float | None, frame: int | None) -> None:
         """Lean on the bow, and place it, as wished and as the pitch (None: none) wants it."""

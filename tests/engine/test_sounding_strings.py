@@ -1,0 +1,189 @@
+"""Strings that are tuned and damped while they sound, and hair that grips unevenly."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.engine.instrument import Instrument
+from yehu_server.params.table import ENGINE
+
+RATE = 44100
+STRINGS = [("inner", 1.0, 346.0), ("outer", -1.0, 516.0)]
+each_string = pytest.mark.parametrize(("name", "side", "about_hz"), STRINGS)
+
+
+def bow(side: float, **options) -> Instrument:
+    instrument = Instrument(RATE, **options)
+    instrument.write("/bow/side", side)
+    instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
+    return instrument
+
+
+def play(instrument: Instrument, seconds: float, block: int = 512) -> np.ndarray:
+    out = np.zeros(round(seconds * instrument.rate), np.float32)
+    for start in range(0, len(out), block):
+        instrument.process(out[start : start + block])
+    return out
+
+
+def pitch(out: np.ndarray) -> float:
+    return pitch_hz(out.astype(float), RATE, 200.0, 800.0)
+
+
+def loudness(out: np.ndarray) -> float:
+    return float(20.0 * np.log10(np.sqrt(np.mean(np.square(out, dtype=np.float64)))))
+
+
+@each_string
+@pytest.mark.parametrize("tuning", [-200.0, -50.0, 40.0])
+def test_a_string_is_tuned_by_cents_while_it_sounds(name, side, about_hz, tuning):
+    instrument = bow(side)
+    before = pitch(play(instrument, 1.0)[-RATE // 4 :])
+    instrument.write(f"/string/{name}/tuning", tuning)
+    after = pitch(play(instrument, 1.0)[-RATE // 4 :])
+    assert before == pytest.approx(about_hz, rel=0.02)
+    # The body's modes pull what the tension asks for.
+    assert cents(after, before) == pytest.approx(tuning, abs=20.0)
+
+
+@each_string
+def test_the_other_string_keeps_its_tuning(name, side, about_hz):
+    other = {"inner": "outer", "outer": "inner"}[name]
+    instrument = bow(side)
+    before = pitch(play(instrument, 1.0)[-RATE // 4 :])
+    instrument.write(f"/string/{other}/tuning", -150.0)
+    after = pitch(play(instrument, 1.0)[-RATE // 4 :])
+    assert cents(after, before) == pytest.approx(0.0, abs=6.0)
+    assert before == pytest.approx(about_hz, rel=0.02)
+
+
+def test_tuning_while_it_sounds_makes_no_click():
+    def steps(retuned: bool) -> float:
+        instrument = bow(1.0)
+        play(instrument, 1.0)
+        if retuned:
+            instrument.write("/string/inner/tuning", -100.0)
+            instrument.write("/string/inner/loss", 2.0)
+        return float(np.abs(np.diff(play(instrument, 0.3))).max())
+
+    assert steps(retuned=True) < 1.3 * steps(retuned=False)
+
+
+@each_string
+def test_a_damped_string_dies_away_sooner(name, side, about_hz):
+    del about_hz
+
+    def left(loss: float) -> float:
+        instrument = Instrument(RATE)
+        instrument.write(f"/string/{name}/loss", loss, ramp_ms=0.0)
+        instrument.write("/pluck/force", 1.0 * side)
+        play(instrument, 0.6)
+        return loudness(play(instrument, 0.2))
+
+    lively, usual, damped = (left(loss) for loss in (0.25, 1.0, 4.0))
+    assert lively > usual + 1.0
+    assert usual > damped + 6.0
+
+
+@pytest.mark.parametrize("address", [f"/string/{name}/{what}" for name, _, _ in STRINGS
+                                     for what in ("tuning", "loss")])  # fmt: skip
+def test_a_string_that_comes_back_is_as_it_was(address):
+    param = {row.address: row for row in ENGINE}[address]
+    instrument = Instrument(RATE)
+    fresh = instrument._rig["model"].copy()
+    for value in (param.lo, param.hi, param.default):
+        instrument.write(address, value)
+        play(instrument, 0.06)
+        model = instrument._rig["model"]
+        is_fresh = all(np.allclose(model[field], fresh[field], rtol=1e-13, atol=0.0)
+                       for field in model.dtype.names)  # fmt: skip
+        assert is_fresh == (value == param.default)
+
+
+@pytest.mark.parametrize("block", [1, 7, 64, 1000])
+def test_a_string_that_is_being_tuned_sounds_the_same_in_any_block(block):
+    def heard(block: int) -> bytes:
+        instrument = bow(1.0)
+        instrument.write("/string/inner/tuning", -100.0, frame=1234)
+        instrument.write("/string/outer/loss", 3.0, frame=1300)
+        instrument.write("/bow/noise", 0.5, frame=2000)
+        return play(instrument, 0.15, block).tobytes()
+
+    assert heard(block) == heard(512)
+
+
+@pytest.mark.parametrize("rate", [22050, 44100, 192000])
+@pytest.mark.parametrize("tuning", [-200.0, 40.0])
+@pytest.mark.parametrize("loss", [0.25, 4.0])
+def test_every_tuning_and_loss_is_stable(rate, tuning, loss):
+    instrument = Instrument(rate)
+    for name, _, _ in STRINGS:
+        instrument.write(f"/string/{name}/tuning", tuning, ramp_ms=0.0)
+        instrument.write(f"/string/{name}/loss", loss, ramp_ms=0.0)
+    for finger, place in ((1, 0.08), (2, 0.15)):
+        instrument.write(f"/finger/{finger}/position", place)
+        instrument.write(f"/finger/{finger}/press", 5.0)
+    instrument.write("/bow/side", 1.0)
+    instrument.write("/bow/speed", 0.3)
+    play(instrument, 0.2)
+    instrument.write("/bow/speed", 0.0)
+    for finger in (1, 2):
+        instrument.write(f"/finger/{finger}/press", 0.0)
+    instrument.write("/pluck/force", 3.0)
+    loud = play(instrument, 0.3)
+    ringing = play(instrument, 0.3)
+    assert instrument.lost_states == 0
+    assert np.abs(loud).max() > 0.01
+    assert loudness(ringing) < loudness(loud)
+
+
+def test_tuning_again_and_again_pumps_no_energy_in():
+    instrument = Instrument(RATE)
+    instrument.write("/pluck/force", 2.0)
+    before = loudness(play(instrument, 0.2)[RATE // 10 :])
+    for turn in range(40):
+        instrument.write("/string/inner/tuning", 40.0 if turn % 2 else -200.0, ramp_ms=25.0)
+        after = loudness(play(instrument, 0.025))
+    assert after < before
+    assert instrument.lost_states == 0
+
+
+def bow_forces(noise: float, rate: int = RATE, frames: int = 4000) -> np.ndarray:
+    instrument = Instrument(rate)
+    instrument.write("/bow/noise", noise, ramp_ms=0.0)
+    instrument.write("/bow/side", 1.0, ramp_ms=0.0)
+    instrument.write("/bow/assist", 0.0, ramp_ms=0.0)
+    instrument.write("/bow/force", 1.0, ramp_ms=0.0)
+    forces = []
+    for _ in range(frames):
+        instrument.process(np.zeros(1, np.float32))
+        forces.append(instrument._rig["output"]["controls"][0, 0, 0])
+    return np.array(forces)
+
+
+def test_noise_lets_the_bow_force_tremble_about_itself():
+    assert (bow_forces(0.0, frames=10) == 1.0).all()
+    half, whole = bow_forces(0.5), bow_forces(1.0)
+    assert half.mean() == pytest.approx(1.0, abs=0.05)
+    assert half.std() == pytest.approx(0.5 / 3.0, rel=0.15)
+    assert whole.std() == pytest.approx(1.0 / 3.0, rel=0.15)
+    assert whole.min() >= 0.0
+    assert np.abs(np.corrcoef(half[:-100], half[100:])[0, 1]) < 0.1
+
+
+def test_noise_is_as_large_at_any_rate():
+    assert bow_forces(0.5, 96000, 8000).std() == pytest.approx(0.5 / 3.0, rel=0.15)
+
+
+def test_noise_is_heard():
+    def spread(noise: float) -> float:
+        instrument = bow(1.0)
+        instrument.write("/bow/noise", noise)
+        spectrum = np.abs(np.fft.rfft(play(instrument, 1.2)[-RATE // 2 :] * np.hanning(RATE // 2)))
+        hz = np.fft.rfftfreq(RATE // 2, 1 / RATE)
+        band = spectrum[(hz > 1000.0) & (hz < 8000.0)]
+        return float(np.median(band) / band.max())
+
+    assert spread(0.6) > 2.0 * spread(0.0)

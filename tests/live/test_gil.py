@@ -130,7 +130,7 @@ def test_the_gil_of_the_process_that_holds_the_stream_stops_nothing(jackd):
     )
     free, held = json.loads(run.stdout)
     assert held["frame"] > 0.7 * RATE  # a busy machine misses some blocks
-    assert held["callbacks"] > 0.9 * RATE / BLOCK
+    assert held["callbacks"] > 0.7 * RATE / BLOCK
     assert held["missed"] <= free["missed"] + 1
     assert held["late_callbacks"] <= 2 * free["late_callbacks"] + 10
     assert held["underruns"] <= 2 * free["underruns"] + 10

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 from yehu_server.params.table import find
 
+PREFIX = "/yehu"  # before every address
+
 
 @dataclass(frozen=True)
 class Argument:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from yehu_server.control.calls import PREFIX
 from yehu_server.control.clients import Clients
 from yehu_server.control.packets import Message, PacketError, answer, pack, unpack
 from yehu_server.control.patterns import PatternError, is_pattern, matches
@@ -24,7 +25,6 @@ from yehu_server.playing.live import Arrivals, LivePlayer
 
 log = logging.getLogger(__name__)
 
-PREFIX = "/yehu"
 LONGEST_PATTERN = 256
 INT_MAX = (1 << 31) - 1
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0

@@ -1,0 +1,135 @@
+"""The shipped patch in a real Pure Data, on a real server."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import socket
+import subprocess
+import threading
+import time
+
+import pytest
+
+from yehu_server.params.table import TABLE
+from yehu_server.surfaces import puredata
+
+PD = shutil.which("pd") or shutil.which("puredata")
+pytestmark = pytest.mark.skipif(not PD, reason="Pure Data is not here")
+
+WATCHED = "/yehu/playing/vibrato"  # nothing but us moves it
+
+
+class Desk:
+    """A Pd with the patch open, and one that moves its sliders and watches one."""
+
+    def __init__(self, folder, port: int) -> None:
+        patch = folder / "yehu.pd"
+        patch.write_bytes(puredata.make(("127.0.0.1", port)))
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.bind(("127.0.0.1", 0))
+            self._port = probe.getsockname()[1]
+        watcher = folder / "watcher.pd"
+        watcher.write_text(
+            "#N canvas 0 0 450 300 10;\n"
+            f"#X obj 10 10 netreceive -u {self._port} 127.0.0.1;\n"
+            "#X msg 10 40 \\; \\$1 \\$2;\n"
+            f"#X obj 200 10 r {WATCHED};\n"
+            "#X obj 200 40 print watched;\n"
+            "#X connect 0 0 1 0;\n"
+            "#X connect 2 0 3 0;\n"
+        )
+        words = [PD, "-nogui", "-noaudio", "-nomidi", "-stderr", "-noprefs"]
+        self._pd = subprocess.Popen(
+            [*words, "-open", str(watcher), "-open", str(patch)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.printed: list[str] = []
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+
+    def _read(self) -> None:
+        self.printed.extend(line.strip() for line in self._pd.stderr)
+
+    def move(self, name: str, value: float | str) -> None:
+        """Send something to a slider or button of the patch."""
+        self._socket.sendto(f"list {name} {value};\n".encode(), ("127.0.0.1", self._port))
+
+    def close(self) -> None:
+        self._pd.terminate()
+        self._pd.wait(10)
+        self._reader.join()
+        self._pd.stderr.close()
+        self._socket.close()
+
+
+@pytest.fixture
+def desk(hall, patience, tmp_path):
+    hall.player.write("/playing/variation", 0.0, frame=0)
+    hall.player.write("/playing/vibrato", 12.5, frame=0)
+    with contextlib.closing(Desk(tmp_path, hall.ports.port)) as desk:
+        patience(lambda: "watched: set 12.5" in desk.printed, "what the server had")
+        yield desk
+
+
+def test_every_slider_of_the_patch_moves_its_parameter(hall, patience, desk):
+    for param in TABLE:
+        value = param.from_unit(0.3)
+        desk.move(f"/yehu{param.address}", f"{value:.9g}")
+        patience(
+            lambda param=param, value=value: (
+                hall.player.value(param.address) == pytest.approx(value, rel=1e-5)
+            ),
+            param.address,
+        )
+    assert hall.handler.counts.errors == 0
+    assert not [line for line in desk.printed if "create" in line or "error" in line]
+
+
+def test_a_slider_follows_the_server_and_says_nothing_back(hall, patience, desk):
+    client = hall.client()
+    client.tell("/playing/vibrato", 40.0)
+    patience(lambda: "watched: set 40" in desk.printed, "the change")
+    client.sync()
+    count = hall.handler.counts.messages
+    time.sleep(0.4)
+    assert hall.handler.counts.messages == count
+    assert hall.player.value("/playing/vibrato") == 40.0
+
+
+def test_what_a_slider_has_moved_comes_back_to_all_that_show_it(patience, desk):
+    desk.move(WATCHED, 25)
+    patience(lambda: "watched: set 25" in desk.printed, "the echo")
+    # Shown at once by the patch itself, and by the server when the hand has come to rest.
+    patience(lambda: desk.printed.count("watched: set 25") >= 2, "what the server tells")
+
+
+def test_the_patch_lets_go_of_a_moving_slider_only_when_it_rests(hall, patience, desk):
+    client = hall.client()
+    desk.move("/yehu/playing/speed", 0.3)
+    patience(lambda: hall.player.value("/playing/speed") == pytest.approx(0.3), "the move")
+    client.tell("/playing/vibrato", 77.0)
+    patience(lambda: "watched: set 77" in desk.printed, "the change, told late")
+
+
+def test_keys_slur_and_end_and_panic(hall, patience, desk):
+    desk.move(puredata.KEY, 2)
+    patience(lambda: hall.player.pitch == 67.0, "G4")
+    desk.move(puredata.KEY, 4)
+    patience(lambda: hall.player.pitch == 69.0, "A4")
+    desk.move(puredata.END, "bang")
+    patience(lambda: hall.player.pitch is None, "its end")
+    desk.move(puredata.KEY, 4)
+    patience(lambda: hall.player.pitch == 69.0, "the same key again")
+    desk.move(puredata.PANIC, "bang")
+    patience(lambda: hall.player.pitch is None, "panic")
+    desk.move("/yehu/bow/speed", 0.2)
+    patience(lambda: hall.player.value("/bow/speed") == pytest.approx(0.2), "the bow")
+    desk.move(puredata.LIFT, "bang")
+    patience(lambda: hall.player.value("/bow/speed") == 0.0, "the bow lifted")
+    desk.move(puredata.RELEASE, "bang")
+    assert hall.is_well()

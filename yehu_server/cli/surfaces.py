@@ -1,0 +1,81 @@
+"""``yehu-server surfaces``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+EXAMPLES = """\
+examples:
+  yehu-server surfaces -o panels
+  yehu-server surfaces -o panels --server 192.168.1.5:9000 --only yehu.pd
+  yehu-server surfaces -o mappings --check
+
+How to open each is told in docs/surfaces.md.
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "surfaces",
+        help="write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
+        description="Write control surfaces, and a page about the parameters, over older ones.",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        required=True,
+        metavar="FOLDER",
+        help="where to write; made if it is not there",
+    )
+    parser.add_argument(
+        "--server",
+        default="127.0.0.1:9000",
+        metavar="HOST:PORT",
+        help="whom Max, Pd and Open Stage Control speak to (default: 127.0.0.1:9000); in TouchOSC "
+        "it is set by hand",
+    )
+    parser.add_argument(
+        "--only",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="write this file alone, such as yehu.pd; may be repeated",
+    )
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="write nothing; leave with code 1 where a file is not as it would be written",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    from yehu_server.control.addresses import parse_address
+    from yehu_server.errors import OutputError
+    from yehu_server.surfaces.catalogue import DEFAULT_SERVER, chosen, is_fresh, write
+
+    folder: Path = arguments.output
+    server = parse_address(arguments.server, *DEFAULT_SERVER)
+    surfaces = chosen(arguments.only)
+    if arguments.check:
+        stale = [surface for surface in surfaces if not is_fresh(surface, folder, server)]
+        for surface in stale:
+            print(f"{folder / surface.name}: stale; yehu-server surfaces -o {folder} writes it")
+        return 1 if stale else 0
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror}") from error
+    for surface in surfaces:
+        print(f"{write(surface, folder, server)}: for {surface.about}")
+    return 0

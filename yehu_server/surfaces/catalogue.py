@@ -1,0 +1,65 @@
+"""The surfaces there are, writing them into a folder, and whether those there are fresh."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from yehu_server.control.addresses import Address
+from yehu_server.errors import OutputError
+from yehu_server.files import replacing
+from yehu_server.surfaces import max as max_patch
+from yehu_server.surfaces import page, puredata, stage, touchosc
+
+DEFAULT_SERVER = ("127.0.0.1", 9000)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A file for one program: made for a server at an address.
+
+    `content` gives what two files must share to be the same.
+    """
+
+    name: str
+    about: str
+    make: Callable[[Address], bytes]
+    content: Callable[[bytes], bytes] = bytes
+
+
+SURFACES = (
+    Surface("yehu.tosc", "TouchOSC", touchosc.make, touchosc.content),
+    Surface("yehu.maxpat", "Max", max_patch.make),
+    Surface("yehu.pd", "Pure Data", puredata.make),
+    Surface("open-stage-control.json", "Open Stage Control", stage.make),
+    Surface("parameters.html", "a browser", page.make),
+)
+
+
+def chosen(names: Sequence[str]) -> list[Surface]:
+    """Surfaces by the names of their files; all where none is named. Errors: OutputError."""
+    known = {surface.name: surface for surface in SURFACES}
+    for name in names:
+        if name not in known:
+            raise OutputError(f"no surface {name!r}; there are {', '.join(known)}")
+    return [surface for surface in SURFACES if not names or surface.name in names]
+
+
+def write(surface: Surface, folder: Path, server: Address = DEFAULT_SERVER) -> Path:
+    """Write a surface's file, over an older one; return its path. Errors: OutputError."""
+    target = folder / surface.name
+    data = surface.make(server)
+    with replacing(target) as partial:
+        partial.write_bytes(data)
+    return target
+
+
+def is_fresh(surface: Surface, folder: Path, server: Address = DEFAULT_SERVER) -> bool:
+    """Whether a folder has the file as it would be written now."""
+    try:
+        there = surface.content((folder / surface.name).read_bytes())
+    except (OSError, zlib.error):
+        return False
+    return there == surface.content(surface.make(server))

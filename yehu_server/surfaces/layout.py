@@ -1,0 +1,95 @@
+"""What all surfaces share: groups of parameters, the two pads, the keys, how they subscribe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from yehu_server.control.calls import PREFIX
+from yehu_server.params.spec import Param
+from yehu_server.params.table import TABLE, find
+from yehu_server.playing.fingering import HIGHEST_NOTE, LOWEST_NOTE
+
+FIRST_GROUP = "playing"  # what most players want under their hands
+NOTE_NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
+BLACK = (1, 3, 6, 8, 10)
+
+VELOCITY = 90
+# A subscription outlives one message that UDP loses.
+SUBSCRIBED_S, SUBSCRIBE_EVERY_S = 60, 25
+# As hard as the pad bows; the fader of /bow/force goes on from there.
+HARDEST_N = 2.0
+
+
+@dataclass(frozen=True)
+class Group:
+    """The parameters whose addresses begin with the same word, in the table's order."""
+
+    name: str
+    params: tuple[Param, ...]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One direction of a pad: what moves along it, in `unit`."""
+
+    name: str
+    lo: float
+    hi: float
+    start: float
+    unit: str
+
+    @property
+    def at(self) -> float:
+        """Where the pad starts, as 0 to 1."""
+        return (self.start - self.lo) / (self.hi - self.lo)
+
+    @property
+    def text(self) -> str:
+        """The axis in words."""
+        return f"{self.name} {self.lo:g} to {self.hi:g} {self.unit}"
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of the note strip."""
+
+    note: int
+
+    @property
+    def name(self) -> str:
+        """The note's name, such as F#4."""
+        return f"{NOTE_NAMES[self.note % 12]}{self.note // 12 - 1}"
+
+    @property
+    def is_black(self) -> bool:
+        """Whether it would be a black key of a piano."""
+        return self.note % 12 in BLACK
+
+
+KEYS = tuple(Key(note) for note in range(LOWEST_NOTE, HIGHEST_NOTE + 1))
+
+_FASTEST = find("/playing/speed").hi
+_PRESS = find("/playing/press")
+BOW_SPEED = Axis("speed", -_FASTEST, _FASTEST, 0.0, "m/s")
+BOW_FORCE = Axis("force", 0.0, HARDEST_N, 0.0, "N")
+STRING_PITCH = Axis("pitch", LOWEST_NOTE, HIGHEST_NOTE, LOWEST_NOTE, "MIDI")
+STRING_PRESS = Axis("press", _PRESS.lo, _PRESS.hi, _PRESS.default, _PRESS.unit)
+
+
+def groups(table: Iterable[Param] = TABLE) -> list[Group]:
+    """Sort parameters by the first word of their addresses; `FIRST_GROUP` comes first."""
+    found: dict[str, list[Param]] = {FIRST_GROUP: []}
+    for param in table:
+        found.setdefault(param.address.split("/")[1], []).append(param)
+    return [Group(name, tuple(params)) for name, params in found.items() if params]
+
+
+def label(param: Param) -> str:
+    """A parameter's name within its group: ``bow position``."""
+    return " ".join(param.address.split("/")[2:]).replace("_", " ")
+
+
+def full(address: str) -> str:
+    """An address as OSC has it."""
+    return PREFIX + address

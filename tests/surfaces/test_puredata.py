@@ -8,17 +8,26 @@ from yehu_server.params.table import TABLE
 from yehu_server.surfaces import layout, puredata
 
 
-@pytest.fixture(scope="module")
-def lines():
+def lines_of_it():
     return puredata.make(("127.0.0.1", 9000)).decode().splitlines()
 
 
-@pytest.fixture(scope="module")
-def sliders(lines):
+def sliders_of(lines):
+    """Their words, by the names they receive at."""
     words = (line.removesuffix(";").split() for line in lines if line.startswith("#X obj"))
     found = {word[12]: word for word in words if word[4] == "hsl"}
     assert len(found) == sum(" hsl " in line for line in lines)
     return found
+
+
+@pytest.fixture(scope="module")
+def lines():
+    return lines_of_it()
+
+
+@pytest.fixture(scope="module")
+def sliders(lines):
+    return sliders_of(lines)
 
 
 def test_every_parameter_has_one_slider_of_its_range(sliders):
@@ -53,10 +62,11 @@ def test_the_patch_begins_at_the_defaults(lines):
     }
 
 
-def test_sliders_numbers_and_keys_do_not_overlap(lines, sliders):
+def test_sliders_numbers_and_keys_do_not_overlap(any_table):
+    lines = lines_of_it()
     rects = [
         Rect(name, int(words[2]), int(words[3]), int(words[5]), int(words[6]))
-        for name, words in sliders.items()
+        for name, words in sliders_of(lines).items()
     ]
     for line in lines:
         words = line.removesuffix(";").split()
@@ -68,7 +78,7 @@ def test_sliders_numbers_and_keys_do_not_overlap(lines, sliders):
         elif words[:2] == ["#X", "obj"] and words[4] == "bng":
             rects.append(Rect(words[9], int(words[2]), int(words[3]), 130, int(words[5])))
     width, height = map(int, lines[0].split()[4:6])
-    assert len(rects) == 2 * len(TABLE) + 5
+    assert len(rects) == 2 * len(any_table) + 5
     assert overlapping(rects) == []
     assert all(rect.is_within(width, height) for rect in rects)
 

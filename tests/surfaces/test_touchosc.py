@@ -134,7 +134,9 @@ def controls(page):
     return list(walk(page, 0.0, 0.0))
 
 
-def test_no_two_controls_of_a_page_overlap_and_all_lie_within_it(document):
+def test_no_two_controls_of_a_page_overlap_and_all_lie_within_it(any_table):
+    document = py2tosc.loads(touchosc.make(SERVER))
+    assert len(document.find_all(type="FADER")) == len(any_table)
     (pager,) = document.find_all(type="PAGER")
     for page in pager.children:
         rects = controls(page)

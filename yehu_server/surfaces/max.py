@@ -80,7 +80,8 @@ def make(server: Address) -> bytes:
     for group, row, column in _shelves(layout.groups()):
         shelf = (MARGIN + column * CELL[0], TOP + row * CELL[1])
         wired = (MARGIN + column * WIRED[0], WIRED_TOP + row * WIRED[1])
-        panel.add(f"comment {group.name}", wired, (*shelf, 2 * CELL[0], LINE), fontface=1)
+        width = CELL[0] * len(group.params[:2])
+        panel.add(f"comment {group.name}", wired, (*shelf, width, LINE), fontface=1)
         for place, param in enumerate(group.params):
             down, across = divmod(place, COLUMNS)
             at = (wired[0] + across * WIRED[0], wired[1] + LINE + 8 + down * WIRED[1])

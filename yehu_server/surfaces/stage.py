@@ -16,6 +16,7 @@ from yehu_server.surfaces.layout import Axis, Group, full
 FORMAT = "1.30.1"  # the version of Open Stage Control whose sessions these are
 COLUMNS = 8
 DECIMALS = 5
+SENDING = {"address", "onCreate", "onTouch", "onValue"}  # what makes a widget send
 
 Widget = dict[str, Any]
 
@@ -27,12 +28,10 @@ def make(server: Address) -> bytes:
         "type": "root",
         "id": "root",
         "onCreate": _subscribing(),
-        # Inherited by nothing: each widget that sends names its target too.
-        "target": [f"{host}:{port}"],
         "tabs": [_hands(), *(_tab(group) for group in layout.groups())],
     }
     for widget in _walk(root):
-        if "address" in widget or "onValue" in widget or "onTouch" in widget:
+        if SENDING & widget.keys():
             widget["target"] = [f"{host}:{port}"]
     session = {
         "createdWith": "Open Stage Control",

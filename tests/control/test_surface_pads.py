@@ -1,0 +1,27 @@
+"""What the pads of the surfaces send, on a real server."""
+
+from __future__ import annotations
+
+from yehu_server.surfaces.layout import BOW_FORCE, BOW_SPEED, STRING_PITCH, STRING_PRESS, Axis
+
+
+def along(axis: Axis, unit: float) -> float:
+    return axis.lo + (axis.hi - axis.lo) * unit
+
+
+def test_one_hand_on_the_string_and_one_on_the_bow_sound_until_the_bow_is_lifted(hall, patience):
+    client = hall.client()
+    client.tell("/pitch", along(STRING_PITCH, 0.15))
+    client.tell("/press", along(STRING_PRESS, STRING_PRESS.at))
+    client.tell("/bow", along(BOW_SPEED, 0.7), along(BOW_FORCE, 0.25))
+    patience(lambda: hall.level() > 0.01, "sound")
+    client.tell("/bow", along(BOW_SPEED, 0.5), along(BOW_FORCE, 0.0))
+    patience(lambda: hall.target("/bow/speed") == 0.0, "the bow lifted")
+    patience(lambda: hall.level() < 1e-3, "silence")
+
+
+def test_the_pads_begin_with_a_bow_at_rest(hall):
+    client = hall.client()
+    client.tell("/bow", along(BOW_SPEED, BOW_SPEED.at), along(BOW_FORCE, BOW_FORCE.at))
+    hall.settle()
+    assert hall.level() < 1e-6

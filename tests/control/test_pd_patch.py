@@ -116,7 +116,23 @@ def test_the_patch_lets_go_of_a_moving_slider_only_when_it_rests(hall, patience,
     patience(lambda: "watched: set 77" in desk.printed, "the change, told late")
 
 
-def test_keys_slur_and_end_and_panic(hall, patience, desk):
+def test_a_key_begins_before_the_last_one_ends(hall, patience, desk, monkeypatch):
+    heard = []
+    for name in ("note_on", "note_off"):
+        call = getattr(hall.player, name)
+
+        def hear(note, *words, name=name, call=call, **named):
+            heard.append((name, note))
+            return call(note, *words, **named)
+
+        monkeypatch.setattr(hall.player, name, hear)
+    desk.move(puredata.KEY, 2)
+    desk.move(puredata.KEY, 4)
+    patience(lambda: ("note_off", 67.0) in heard, "the end of G4")
+    assert heard[-2:] == [("note_on", 69.0), ("note_off", 67.0)]
+
+
+def test_keys_end_and_panic(hall, patience, desk):
     desk.move(puredata.KEY, 2)
     patience(lambda: hall.player.pitch == 67.0, "G4")
     desk.move(puredata.KEY, 4)

@@ -23,6 +23,8 @@ class Patch:
             for line in patcher["lines"]
         ]
 
+        self.width = patcher["rect"][2]
+
     def all(self, maxclass):
         return [box for box in self.boxes.values() if box["maxclass"] == maxclass]
 
@@ -129,6 +131,8 @@ def test_boxes_do_not_overlap_in_front_or_behind(any_table, kind):
         if kind in box
     ]
     assert overlapping(rects) == []
+    if kind == "presentation_rect":  # it may be scrolled down, but not aside
+        assert all(rect.x >= 0 and rect.x + rect.w <= patch.width for rect in rects)
 
 
 def test_it_is_the_same_each_time():

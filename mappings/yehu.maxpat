@@ -1772,17 +1772,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/press",
+     "varname": "/playing/string",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.3,
-       "parameter_mmax": 6.0,
+       "parameter_longname": "/playing/string",
+       "parameter_shortname": "string",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f N"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -1806,7 +1806,7 @@
       90.0,
       18.0
      ],
-     "text": "0.3 to 6 N",
+     "text": "0 to 2",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -1833,7 +1833,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/press"
+     "text": "prepend /yehu/playing/string"
     }
    },
    {
@@ -1886,7 +1886,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/press"
+     "text": "route /yehu/playing/string"
     }
    },
    {
@@ -1922,7 +1922,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -1941,17 +1941,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato",
+     "varname": "/playing/direction",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato",
-       "parameter_shortname": "vibrato",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 100.0,
+       "parameter_longname": "/playing/direction",
+       "parameter_shortname": "direction",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f cents"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -1975,7 +1975,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 100 cents",
+     "text": "-1 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2002,7 +2002,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato"
+     "text": "prepend /yehu/playing/direction"
     }
    },
    {
@@ -2055,7 +2055,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato"
+     "text": "route /yehu/playing/direction"
     }
    },
    {
@@ -2110,17 +2110,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_press",
+     "varname": "/playing/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_press",
-       "parameter_shortname": "vibrato press",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.3,
+       "parameter_mmax": 6.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f N"
       }
      },
      "presentation": 1,
@@ -2144,7 +2144,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "0.3 to 6 N",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2171,7 +2171,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_press"
+     "text": "prepend /yehu/playing/press"
     }
    },
    {
@@ -2224,7 +2224,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_press"
+     "text": "route /yehu/playing/press"
     }
    },
    {
@@ -2260,7 +2260,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1.5"
     }
    },
    {
@@ -2279,17 +2279,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_rate",
+     "varname": "/playing/vibrato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_rate",
-       "parameter_shortname": "vibrato rate",
-       "parameter_mmin": 2.0,
-       "parameter_mmax": 10.0,
+       "parameter_longname": "/playing/vibrato",
+       "parameter_shortname": "vibrato",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 100.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f Hz"
+       "parameter_units": "%.3f cents"
       }
      },
      "presentation": 1,
@@ -2313,7 +2313,7 @@
       90.0,
       18.0
      ],
-     "text": "2 to 10 Hz",
+     "text": "0 to 100 cents",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2340,7 +2340,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_rate"
+     "text": "prepend /yehu/playing/vibrato"
     }
    },
    {
@@ -2393,7 +2393,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_rate"
+     "text": "route /yehu/playing/vibrato"
     }
    },
    {
@@ -2429,7 +2429,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2448,17 +2448,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_delay",
+     "varname": "/playing/vibrato_press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_delay",
-       "parameter_shortname": "vibrato delay",
+       "parameter_longname": "/playing/vibrato_press",
+       "parameter_shortname": "vibrato press",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 3000.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -2482,7 +2482,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 3000 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2509,7 +2509,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_delay"
+     "text": "prepend /yehu/playing/vibrato_press"
     }
    },
    {
@@ -2562,7 +2562,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_delay"
+     "text": "route /yehu/playing/vibrato_press"
     }
    },
    {
@@ -2598,7 +2598,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 500"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2617,17 +2617,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/bend",
+     "varname": "/playing/vibrato_rate",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend",
-       "parameter_shortname": "bend",
-       "parameter_mmin": -48.0,
-       "parameter_mmax": 48.0,
+       "parameter_longname": "/playing/vibrato_rate",
+       "parameter_shortname": "vibrato rate",
+       "parameter_mmin": 2.0,
+       "parameter_mmax": 10.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f Hz"
       }
      },
      "presentation": 1,
@@ -2651,7 +2651,7 @@
       90.0,
       18.0
      ],
-     "text": "-48 to 48 semitones",
+     "text": "2 to 10 Hz",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2678,7 +2678,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend"
+     "text": "prepend /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -2731,7 +2731,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend"
+     "text": "route /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -2767,7 +2767,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 5.5"
     }
    },
    {
@@ -2786,17 +2786,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/bend_range",
+     "varname": "/playing/vibrato_delay",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend_range",
-       "parameter_shortname": "bend range",
+       "parameter_longname": "/playing/vibrato_delay",
+       "parameter_shortname": "vibrato delay",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 48.0,
+       "parameter_mmax": 3000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f ms"
       }
      },
      "presentation": 1,
@@ -2820,7 +2820,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 48 semitones",
+     "text": "0 to 3000 ms",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2847,7 +2847,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend_range"
+     "text": "prepend /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -2900,7 +2900,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend_range"
+     "text": "route /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -2936,7 +2936,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 2"
+     "text": "loadmess set 500"
     }
    },
    {
@@ -2955,17 +2955,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/volume",
+     "varname": "/playing/bend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/volume",
-       "parameter_shortname": "volume",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/bend",
+       "parameter_shortname": "bend",
+       "parameter_mmin": -48.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      },
      "presentation": 1,
@@ -2989,7 +2989,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "-48 to 48 semitones",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3016,7 +3016,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/volume"
+     "text": "prepend /yehu/playing/bend"
     }
    },
    {
@@ -3069,7 +3069,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/volume"
+     "text": "route /yehu/playing/bend"
     }
    },
    {
@@ -3105,7 +3105,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3124,17 +3124,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/expression",
+     "varname": "/playing/bend_range",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/expression",
-       "parameter_shortname": "expression",
+       "parameter_longname": "/playing/bend_range",
+       "parameter_shortname": "bend range",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      },
      "presentation": 1,
@@ -3158,7 +3158,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "0 to 48 semitones",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3185,7 +3185,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/expression"
+     "text": "prepend /yehu/playing/bend_range"
     }
    },
    {
@@ -3238,7 +3238,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/expression"
+     "text": "route /yehu/playing/bend_range"
     }
    },
    {
@@ -3274,7 +3274,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 2"
     }
    },
    {
@@ -3293,12 +3293,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/assist",
+     "varname": "/playing/volume",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/assist",
-       "parameter_shortname": "assist",
+       "parameter_longname": "/playing/volume",
+       "parameter_shortname": "volume",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -3354,7 +3354,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/assist"
+     "text": "prepend /yehu/playing/volume"
     }
    },
    {
@@ -3407,7 +3407,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/assist"
+     "text": "route /yehu/playing/volume"
     }
    },
    {
@@ -3462,12 +3462,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/variation",
+     "varname": "/playing/expression",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/variation",
-       "parameter_shortname": "variation",
+       "parameter_longname": "/playing/expression",
+       "parameter_shortname": "expression",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -3523,7 +3523,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/variation"
+     "text": "prepend /yehu/playing/expression"
     }
    },
    {
@@ -3576,7 +3576,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/variation"
+     "text": "route /yehu/playing/expression"
     }
    },
    {
@@ -3612,7 +3612,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.25"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -3631,17 +3631,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/assist",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/assist",
+       "parameter_shortname": "assist",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -3665,7 +3665,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 500 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3692,7 +3692,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/assist"
     }
    },
    {
@@ -3745,7 +3745,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/assist"
     }
    },
    {
@@ -3781,7 +3781,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -3800,17 +3800,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/variation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/variation",
+       "parameter_shortname": "variation",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -3834,7 +3834,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3861,7 +3861,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/variation"
     }
    },
    {
@@ -3914,7 +3914,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/variation"
     }
    },
    {
@@ -3950,7 +3950,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 0.25"
     }
    },
    {
@@ -3969,17 +3969,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f ms"
       }
      },
      "presentation": 1,
@@ -4003,7 +4003,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "5 to 500 ms",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -4030,7 +4030,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -4083,7 +4083,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -4119,7 +4119,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 40"
     }
    },
    {
@@ -4138,12 +4138,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/release",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
        "parameter_mmin": 5.0,
        "parameter_mmax": 2000.0,
        "parameter_type": 0,
@@ -4199,7 +4199,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/release"
     }
    },
    {
@@ -4252,7 +4252,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/release"
     }
    },
    {
@@ -4288,12 +4288,350 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 60"
     }
    },
    {
     "box": {
      "id": "obj-204",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      296,
+      1158,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/playing/portamento",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      554,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-205",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      296,
+      1208,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      604,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-206",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      206,
+      1276,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-207",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      206,
+      1302,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-208",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      206,
+      1158,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-209",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      206,
+      1228,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-210",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      206,
+      1252,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-211",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      206,
+      1184,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-212",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      486,
+      1158,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      554,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-213",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      486,
+      1208,
+      90.0,
+      18.0
+     ],
+     "text": "5 to 2000 ms",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      604,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-214",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      396,
+      1276,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-215",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      396,
+      1302,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-216",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      396,
+      1158,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-217",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      396,
+      1228,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-218",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      396,
+      1252,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-219",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      396,
+      1184,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-220",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4316,7 +4654,7 @@
    },
    {
     "box": {
-     "id": "obj-205",
+     "id": "obj-221",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -4354,7 +4692,7 @@
    },
    {
     "box": {
-     "id": "obj-206",
+     "id": "obj-222",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4378,7 +4716,7 @@
    },
    {
     "box": {
-     "id": "obj-207",
+     "id": "obj-223",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4396,7 +4734,7 @@
    },
    {
     "box": {
-     "id": "obj-208",
+     "id": "obj-224",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4412,7 +4750,7 @@
    },
    {
     "box": {
-     "id": "obj-209",
+     "id": "obj-225",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4430,7 +4768,7 @@
    },
    {
     "box": {
-     "id": "obj-210",
+     "id": "obj-226",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -4449,7 +4787,7 @@
    },
    {
     "box": {
-     "id": "obj-211",
+     "id": "obj-227",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4467,7 +4805,7 @@
    },
    {
     "box": {
-     "id": "obj-212",
+     "id": "obj-228",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4485,7 +4823,7 @@
    },
    {
     "box": {
-     "id": "obj-213",
+     "id": "obj-229",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -4523,7 +4861,7 @@
    },
    {
     "box": {
-     "id": "obj-214",
+     "id": "obj-230",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4547,7 +4885,7 @@
    },
    {
     "box": {
-     "id": "obj-215",
+     "id": "obj-231",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4565,7 +4903,7 @@
    },
    {
     "box": {
-     "id": "obj-216",
+     "id": "obj-232",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4581,7 +4919,7 @@
    },
    {
     "box": {
-     "id": "obj-217",
+     "id": "obj-233",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4599,7 +4937,7 @@
    },
    {
     "box": {
-     "id": "obj-218",
+     "id": "obj-234",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -4618,7 +4956,7 @@
    },
    {
     "box": {
-     "id": "obj-219",
+     "id": "obj-235",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4636,7 +4974,7 @@
    },
    {
     "box": {
-     "id": "obj-220",
+     "id": "obj-236",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4654,7 +4992,7 @@
    },
    {
     "box": {
-     "id": "obj-221",
+     "id": "obj-237",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -4692,7 +5030,7 @@
    },
    {
     "box": {
-     "id": "obj-222",
+     "id": "obj-238",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4716,7 +5054,7 @@
    },
    {
     "box": {
-     "id": "obj-223",
+     "id": "obj-239",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4734,7 +5072,7 @@
    },
    {
     "box": {
-     "id": "obj-224",
+     "id": "obj-240",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4750,7 +5088,7 @@
    },
    {
     "box": {
-     "id": "obj-225",
+     "id": "obj-241",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4768,7 +5106,7 @@
    },
    {
     "box": {
-     "id": "obj-226",
+     "id": "obj-242",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -4787,7 +5125,7 @@
    },
    {
     "box": {
-     "id": "obj-227",
+     "id": "obj-243",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4805,7 +5143,7 @@
    },
    {
     "box": {
-     "id": "obj-228",
+     "id": "obj-244",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4823,7 +5161,7 @@
    },
    {
     "box": {
-     "id": "obj-229",
+     "id": "obj-245",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -4861,7 +5199,7 @@
    },
    {
     "box": {
-     "id": "obj-230",
+     "id": "obj-246",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4885,7 +5223,7 @@
    },
    {
     "box": {
-     "id": "obj-231",
+     "id": "obj-247",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4903,7 +5241,7 @@
    },
    {
     "box": {
-     "id": "obj-232",
+     "id": "obj-248",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4919,7 +5257,7 @@
    },
    {
     "box": {
-     "id": "obj-233",
+     "id": "obj-249",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4937,7 +5275,7 @@
    },
    {
     "box": {
-     "id": "obj-234",
+     "id": "obj-250",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -4956,7 +5294,7 @@
    },
    {
     "box": {
-     "id": "obj-235",
+     "id": "obj-251",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4974,7 +5312,7 @@
    },
    {
     "box": {
-     "id": "obj-236",
+     "id": "obj-252",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4992,7 +5330,7 @@
    },
    {
     "box": {
-     "id": "obj-237",
+     "id": "obj-253",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5030,7 +5368,7 @@
    },
    {
     "box": {
-     "id": "obj-238",
+     "id": "obj-254",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5054,7 +5392,7 @@
    },
    {
     "box": {
-     "id": "obj-239",
+     "id": "obj-255",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5072,7 +5410,7 @@
    },
    {
     "box": {
-     "id": "obj-240",
+     "id": "obj-256",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5088,7 +5426,7 @@
    },
    {
     "box": {
-     "id": "obj-241",
+     "id": "obj-257",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5106,7 +5444,7 @@
    },
    {
     "box": {
-     "id": "obj-242",
+     "id": "obj-258",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5125,7 +5463,7 @@
    },
    {
     "box": {
-     "id": "obj-243",
+     "id": "obj-259",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5143,7 +5481,7 @@
    },
    {
     "box": {
-     "id": "obj-244",
+     "id": "obj-260",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5161,7 +5499,7 @@
    },
    {
     "box": {
-     "id": "obj-245",
+     "id": "obj-261",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5199,7 +5537,7 @@
    },
    {
     "box": {
-     "id": "obj-246",
+     "id": "obj-262",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5223,7 +5561,7 @@
    },
    {
     "box": {
-     "id": "obj-247",
+     "id": "obj-263",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5241,7 +5579,7 @@
    },
    {
     "box": {
-     "id": "obj-248",
+     "id": "obj-264",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5257,7 +5595,7 @@
    },
    {
     "box": {
-     "id": "obj-249",
+     "id": "obj-265",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5275,7 +5613,7 @@
    },
    {
     "box": {
-     "id": "obj-250",
+     "id": "obj-266",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5294,7 +5632,7 @@
    },
    {
     "box": {
-     "id": "obj-251",
+     "id": "obj-267",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5312,7 +5650,7 @@
    },
    {
     "box": {
-     "id": "obj-252",
+     "id": "obj-268",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5330,7 +5668,7 @@
    },
    {
     "box": {
-     "id": "obj-253",
+     "id": "obj-269",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5368,7 +5706,7 @@
    },
    {
     "box": {
-     "id": "obj-254",
+     "id": "obj-270",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5392,7 +5730,7 @@
    },
    {
     "box": {
-     "id": "obj-255",
+     "id": "obj-271",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5410,7 +5748,7 @@
    },
    {
     "box": {
-     "id": "obj-256",
+     "id": "obj-272",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5426,7 +5764,7 @@
    },
    {
     "box": {
-     "id": "obj-257",
+     "id": "obj-273",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5444,7 +5782,7 @@
    },
    {
     "box": {
-     "id": "obj-258",
+     "id": "obj-274",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5463,7 +5801,7 @@
    },
    {
     "box": {
-     "id": "obj-259",
+     "id": "obj-275",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5481,7 +5819,7 @@
    },
    {
     "box": {
-     "id": "obj-260",
+     "id": "obj-276",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5499,7 +5837,176 @@
    },
    {
     "box": {
-     "id": "obj-261",
+     "id": "obj-277",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1436,
+      1372,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/bow/noise",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/noise",
+       "parameter_shortname": "noise",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      652,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-278",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1436,
+      1422,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      702,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-279",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1490,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/noise"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-280",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1346,
+      1516,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-281",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1372,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-282",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1346,
+      1442,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/noise"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-283",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1466,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-284",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1398,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-285",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5522,7 +6029,7 @@
    },
    {
     "box": {
-     "id": "obj-262",
+     "id": "obj-286",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5560,7 +6067,7 @@
    },
    {
     "box": {
-     "id": "obj-263",
+     "id": "obj-287",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5584,7 +6091,7 @@
    },
    {
     "box": {
-     "id": "obj-264",
+     "id": "obj-288",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5602,7 +6109,7 @@
    },
    {
     "box": {
-     "id": "obj-265",
+     "id": "obj-289",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5618,7 +6125,7 @@
    },
    {
     "box": {
-     "id": "obj-266",
+     "id": "obj-290",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5636,7 +6143,7 @@
    },
    {
     "box": {
-     "id": "obj-267",
+     "id": "obj-291",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5655,7 +6162,7 @@
    },
    {
     "box": {
-     "id": "obj-268",
+     "id": "obj-292",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5673,7 +6180,7 @@
    },
    {
     "box": {
-     "id": "obj-269",
+     "id": "obj-293",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5691,7 +6198,7 @@
    },
    {
     "box": {
-     "id": "obj-270",
+     "id": "obj-294",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5729,7 +6236,7 @@
    },
    {
     "box": {
-     "id": "obj-271",
+     "id": "obj-295",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5753,7 +6260,7 @@
    },
    {
     "box": {
-     "id": "obj-272",
+     "id": "obj-296",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5771,7 +6278,7 @@
    },
    {
     "box": {
-     "id": "obj-273",
+     "id": "obj-297",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5787,7 +6294,7 @@
    },
    {
     "box": {
-     "id": "obj-274",
+     "id": "obj-298",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5805,7 +6312,7 @@
    },
    {
     "box": {
-     "id": "obj-275",
+     "id": "obj-299",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5824,7 +6331,7 @@
    },
    {
     "box": {
-     "id": "obj-276",
+     "id": "obj-300",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5842,7 +6349,7 @@
    },
    {
     "box": {
-     "id": "obj-277",
+     "id": "obj-301",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5860,7 +6367,7 @@
    },
    {
     "box": {
-     "id": "obj-278",
+     "id": "obj-302",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5898,7 +6405,7 @@
    },
    {
     "box": {
-     "id": "obj-279",
+     "id": "obj-303",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5922,7 +6429,7 @@
    },
    {
     "box": {
-     "id": "obj-280",
+     "id": "obj-304",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5940,7 +6447,7 @@
    },
    {
     "box": {
-     "id": "obj-281",
+     "id": "obj-305",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5956,7 +6463,7 @@
    },
    {
     "box": {
-     "id": "obj-282",
+     "id": "obj-306",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5974,7 +6481,7 @@
    },
    {
     "box": {
-     "id": "obj-283",
+     "id": "obj-307",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5993,7 +6500,7 @@
    },
    {
     "box": {
-     "id": "obj-284",
+     "id": "obj-308",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6011,7 +6518,7 @@
    },
    {
     "box": {
-     "id": "obj-285",
+     "id": "obj-309",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6029,7 +6536,7 @@
    },
    {
     "box": {
-     "id": "obj-286",
+     "id": "obj-310",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6067,7 +6574,7 @@
    },
    {
     "box": {
-     "id": "obj-287",
+     "id": "obj-311",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6091,7 +6598,7 @@
    },
    {
     "box": {
-     "id": "obj-288",
+     "id": "obj-312",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6109,7 +6616,7 @@
    },
    {
     "box": {
-     "id": "obj-289",
+     "id": "obj-313",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6125,7 +6632,7 @@
    },
    {
     "box": {
-     "id": "obj-290",
+     "id": "obj-314",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6143,7 +6650,7 @@
    },
    {
     "box": {
-     "id": "obj-291",
+     "id": "obj-315",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6162,7 +6669,7 @@
    },
    {
     "box": {
-     "id": "obj-292",
+     "id": "obj-316",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6180,7 +6687,7 @@
    },
    {
     "box": {
-     "id": "obj-293",
+     "id": "obj-317",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6198,7 +6705,7 @@
    },
    {
     "box": {
-     "id": "obj-294",
+     "id": "obj-318",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6236,7 +6743,7 @@
    },
    {
     "box": {
-     "id": "obj-295",
+     "id": "obj-319",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6260,7 +6767,7 @@
    },
    {
     "box": {
-     "id": "obj-296",
+     "id": "obj-320",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6278,7 +6785,7 @@
    },
    {
     "box": {
-     "id": "obj-297",
+     "id": "obj-321",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6294,7 +6801,7 @@
    },
    {
     "box": {
-     "id": "obj-298",
+     "id": "obj-322",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6312,7 +6819,7 @@
    },
    {
     "box": {
-     "id": "obj-299",
+     "id": "obj-323",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6331,7 +6838,7 @@
    },
    {
     "box": {
-     "id": "obj-300",
+     "id": "obj-324",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6349,7 +6856,7 @@
    },
    {
     "box": {
-     "id": "obj-301",
+     "id": "obj-325",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6367,7 +6874,7 @@
    },
    {
     "box": {
-     "id": "obj-302",
+     "id": "obj-326",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6405,7 +6912,7 @@
    },
    {
     "box": {
-     "id": "obj-303",
+     "id": "obj-327",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6429,7 +6936,7 @@
    },
    {
     "box": {
-     "id": "obj-304",
+     "id": "obj-328",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6447,7 +6954,7 @@
    },
    {
     "box": {
-     "id": "obj-305",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6463,7 +6970,7 @@
    },
    {
     "box": {
-     "id": "obj-306",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6481,7 +6988,7 @@
    },
    {
     "box": {
-     "id": "obj-307",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6500,7 +7007,7 @@
    },
    {
     "box": {
-     "id": "obj-308",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6518,7 +7025,7 @@
    },
    {
     "box": {
-     "id": "obj-309",
+     "id": "obj-333",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6536,7 +7043,7 @@
    },
    {
     "box": {
-     "id": "obj-310",
+     "id": "obj-334",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6574,7 +7081,7 @@
    },
    {
     "box": {
-     "id": "obj-311",
+     "id": "obj-335",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6598,7 +7105,7 @@
    },
    {
     "box": {
-     "id": "obj-312",
+     "id": "obj-336",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6616,7 +7123,7 @@
    },
    {
     "box": {
-     "id": "obj-313",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6632,7 +7139,7 @@
    },
    {
     "box": {
-     "id": "obj-314",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6650,7 +7157,7 @@
    },
    {
     "box": {
-     "id": "obj-315",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6669,7 +7176,7 @@
    },
    {
     "box": {
-     "id": "obj-316",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6687,7 +7194,7 @@
    },
    {
     "box": {
-     "id": "obj-317",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6705,7 +7212,7 @@
    },
    {
     "box": {
-     "id": "obj-318",
+     "id": "obj-342",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6743,7 +7250,7 @@
    },
    {
     "box": {
-     "id": "obj-319",
+     "id": "obj-343",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6767,7 +7274,7 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-344",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6785,7 +7292,7 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-345",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6801,7 +7308,7 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-346",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6819,7 +7326,7 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-347",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6838,7 +7345,7 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-348",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6856,7 +7363,7 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-349",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6874,7 +7381,7 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-350",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6897,7 +7404,7 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-351",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6935,7 +7442,7 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-352",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6959,7 +7466,7 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-353",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6977,7 +7484,7 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-354",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6993,7 +7500,7 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-355",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7011,7 +7518,7 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-356",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7030,7 +7537,7 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-357",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7048,7 +7555,7 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-358",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7066,7 +7573,7 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-359",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7104,7 +7611,7 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-360",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7128,7 +7635,7 @@
    },
    {
     "box": {
-     "id": "obj-337",
+     "id": "obj-361",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7146,7 +7653,7 @@
    },
    {
     "box": {
-     "id": "obj-338",
+     "id": "obj-362",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7162,7 +7669,7 @@
    },
    {
     "box": {
-     "id": "obj-339",
+     "id": "obj-363",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7180,7 +7687,7 @@
    },
    {
     "box": {
-     "id": "obj-340",
+     "id": "obj-364",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7199,7 +7706,7 @@
    },
    {
     "box": {
-     "id": "obj-341",
+     "id": "obj-365",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7217,7 +7724,7 @@
    },
    {
     "box": {
-     "id": "obj-342",
+     "id": "obj-366",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7235,7 +7742,7 @@
    },
    {
     "box": {
-     "id": "obj-343",
+     "id": "obj-367",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7273,7 +7780,7 @@
    },
    {
     "box": {
-     "id": "obj-344",
+     "id": "obj-368",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7297,7 +7804,7 @@
    },
    {
     "box": {
-     "id": "obj-345",
+     "id": "obj-369",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7315,7 +7822,7 @@
    },
    {
     "box": {
-     "id": "obj-346",
+     "id": "obj-370",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7331,7 +7838,7 @@
    },
    {
     "box": {
-     "id": "obj-347",
+     "id": "obj-371",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7349,7 +7856,7 @@
    },
    {
     "box": {
-     "id": "obj-348",
+     "id": "obj-372",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7368,7 +7875,7 @@
    },
    {
     "box": {
-     "id": "obj-349",
+     "id": "obj-373",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7386,7 +7893,7 @@
    },
    {
     "box": {
-     "id": "obj-350",
+     "id": "obj-374",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7404,7 +7911,7 @@
    },
    {
     "box": {
-     "id": "obj-351",
+     "id": "obj-375",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7442,7 +7949,7 @@
    },
    {
     "box": {
-     "id": "obj-352",
+     "id": "obj-376",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7466,7 +7973,7 @@
    },
    {
     "box": {
-     "id": "obj-353",
+     "id": "obj-377",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7484,7 +7991,7 @@
    },
    {
     "box": {
-     "id": "obj-354",
+     "id": "obj-378",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7500,7 +8007,7 @@
    },
    {
     "box": {
-     "id": "obj-355",
+     "id": "obj-379",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7518,7 +8025,7 @@
    },
    {
     "box": {
-     "id": "obj-356",
+     "id": "obj-380",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7537,7 +8044,7 @@
    },
    {
     "box": {
-     "id": "obj-357",
+     "id": "obj-381",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7555,7 +8062,7 @@
    },
    {
     "box": {
-     "id": "obj-358",
+     "id": "obj-382",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7573,7 +8080,7 @@
    },
    {
     "box": {
-     "id": "obj-359",
+     "id": "obj-383",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7596,7 +8103,7 @@
    },
    {
     "box": {
-     "id": "obj-360",
+     "id": "obj-384",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7634,7 +8141,7 @@
    },
    {
     "box": {
-     "id": "obj-361",
+     "id": "obj-385",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7658,7 +8165,7 @@
    },
    {
     "box": {
-     "id": "obj-362",
+     "id": "obj-386",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7676,7 +8183,7 @@
    },
    {
     "box": {
-     "id": "obj-363",
+     "id": "obj-387",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7692,7 +8199,7 @@
    },
    {
     "box": {
-     "id": "obj-364",
+     "id": "obj-388",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7710,7 +8217,7 @@
    },
    {
     "box": {
-     "id": "obj-365",
+     "id": "obj-389",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7729,7 +8236,7 @@
    },
    {
     "box": {
-     "id": "obj-366",
+     "id": "obj-390",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7747,7 +8254,7 @@
    },
    {
     "box": {
-     "id": "obj-367",
+     "id": "obj-391",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7765,7 +8272,7 @@
    },
    {
     "box": {
-     "id": "obj-368",
+     "id": "obj-392",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7803,7 +8310,7 @@
    },
    {
     "box": {
-     "id": "obj-369",
+     "id": "obj-393",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7827,7 +8334,7 @@
    },
    {
     "box": {
-     "id": "obj-370",
+     "id": "obj-394",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7845,7 +8352,7 @@
    },
    {
     "box": {
-     "id": "obj-371",
+     "id": "obj-395",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7861,7 +8368,7 @@
    },
    {
     "box": {
-     "id": "obj-372",
+     "id": "obj-396",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7879,7 +8386,7 @@
    },
    {
     "box": {
-     "id": "obj-373",
+     "id": "obj-397",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7898,7 +8405,7 @@
    },
    {
     "box": {
-     "id": "obj-374",
+     "id": "obj-398",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7916,7 +8423,7 @@
    },
    {
     "box": {
-     "id": "obj-375",
+     "id": "obj-399",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7934,7 +8441,7 @@
    },
    {
     "box": {
-     "id": "obj-376",
+     "id": "obj-400",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7944,7 +8451,7 @@
       98.0,
       22
      ],
-     "text": "output",
+     "text": "string",
      "fontface": 1,
      "presentation": 1,
      "presentation_rect": [
@@ -7957,13 +8464,712 @@
    },
    {
     "box": {
-     "id": "obj-377",
+     "id": "obj-401",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       1246,
       1800,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/string/inner/tuning",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/string/inner/tuning",
+       "parameter_shortname": "inner tuning",
+       "parameter_mmin": -200.0,
+       "parameter_mmax": 40.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f cents"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      848,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-402",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1246,
+      1850,
+      90.0,
+      18.0
+     ],
+     "text": "-200 to 40 cents",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      898,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-403",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      1918,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/inner/tuning"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-404",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1156,
+      1944,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-405",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      1800,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-406",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1156,
+      1870,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/string/inner/tuning"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-407",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      1894,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-408",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      1826,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-409",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1436,
+      1800,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/string/inner/loss",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/string/inner/loss",
+       "parameter_shortname": "inner loss",
+       "parameter_mmin": 0.25,
+       "parameter_mmax": 4.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      848,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-410",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1436,
+      1850,
+      90.0,
+      18.0
+     ],
+     "text": "0.25 to 4",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      898,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-411",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1918,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/inner/loss"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-412",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1346,
+      1944,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-413",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1800,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-414",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1346,
+      1870,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/string/inner/loss"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-415",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1894,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-416",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1826,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 1"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-417",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1626,
+      1800,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/string/outer/tuning",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/string/outer/tuning",
+       "parameter_shortname": "outer tuning",
+       "parameter_mmin": -200.0,
+       "parameter_mmax": 40.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f cents"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      848,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-418",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1626,
+      1850,
+      90.0,
+      18.0
+     ],
+     "text": "-200 to 40 cents",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      898,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-419",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      1918,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/outer/tuning"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-420",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1536,
+      1944,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-421",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      1800,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-422",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1536,
+      1870,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/string/outer/tuning"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-423",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      1894,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-424",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      1826,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-425",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1816,
+      1800,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/string/outer/loss",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/string/outer/loss",
+       "parameter_shortname": "outer loss",
+       "parameter_mmin": 0.25,
+       "parameter_mmax": 4.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      848,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-426",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1816,
+      1850,
+      90.0,
+      18.0
+     ],
+     "text": "0.25 to 4",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      898,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-427",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1726,
+      1918,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/outer/loss"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-428",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1726,
+      1944,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-429",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1726,
+      1800,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-430",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1726,
+      1870,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/string/outer/loss"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-431",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1726,
+      1894,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-432",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1726,
+      1826,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 1"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-433",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      1984,
+      98.0,
+      22
+     ],
+     "text": "output",
+     "fontface": 1,
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      924,
+      224,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-434",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      106,
+      2014,
       90.0,
       48.0
      ],
@@ -7986,8 +9192,8 @@
      },
      "presentation": 1,
      "presentation_rect": [
-      688,
-      848,
+      16,
+      946,
       104,
       48
      ]
@@ -7995,13 +9201,13 @@
    },
    {
     "box": {
-     "id": "obj-378",
+     "id": "obj-435",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1246,
-      1850,
+      106,
+      2064,
       90.0,
       18.0
      ],
@@ -8010,8 +9216,8 @@
      "fontsize": 9.0,
      "presentation": 1,
      "presentation_rect": [
-      688,
-      898,
+      16,
+      996,
       104,
       22
      ]
@@ -8019,13 +9225,13 @@
    },
    {
     "box": {
-     "id": "obj-379",
+     "id": "obj-436",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1918,
+      16,
+      2132,
       170.0,
       22
      ],
@@ -8037,13 +9243,13 @@
    },
    {
     "box": {
-     "id": "obj-380",
+     "id": "obj-437",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      1944,
+      16,
+      2158,
       84.0,
       22
      ],
@@ -8053,13 +9259,13 @@
    },
    {
     "box": {
-     "id": "obj-381",
+     "id": "obj-438",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1800,
+      16,
+      2014,
       63.0,
       22
      ],
@@ -8071,13 +9277,13 @@
    },
    {
     "box": {
-     "id": "obj-382",
+     "id": "obj-439",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      1870,
+      16,
+      2084,
       170.0,
       22
      ],
@@ -8090,13 +9296,13 @@
    },
    {
     "box": {
-     "id": "obj-383",
+     "id": "obj-440",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1894,
+      16,
+      2108,
       77.0,
       22
      ],
@@ -8108,13 +9314,13 @@
    },
    {
     "box": {
-     "id": "obj-384",
+     "id": "obj-441",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1826,
+      16,
+      2040,
       86.0,
       22
      ],
@@ -8126,13 +9332,13 @@
    },
    {
     "box": {
-     "id": "obj-385",
+     "id": "obj-442",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      1800,
+      296,
+      2014,
       90.0,
       48.0
      ],
@@ -8155,8 +9361,8 @@
      },
      "presentation": 1,
      "presentation_rect": [
-      800,
-      848,
+      128,
+      946,
       104,
       48
      ]
@@ -8164,13 +9370,13 @@
    },
    {
     "box": {
-     "id": "obj-386",
+     "id": "obj-443",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1436,
-      1850,
+      296,
+      2064,
       90.0,
       18.0
      ],
@@ -8179,8 +9385,8 @@
      "fontsize": 9.0,
      "presentation": 1,
      "presentation_rect": [
-      800,
-      898,
+      128,
+      996,
       104,
       22
      ]
@@ -8188,13 +9394,13 @@
    },
    {
     "box": {
-     "id": "obj-387",
+     "id": "obj-444",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1918,
+      206,
+      2132,
       170.0,
       22
      ],
@@ -8206,13 +9412,13 @@
    },
    {
     "box": {
-     "id": "obj-388",
+     "id": "obj-445",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      1944,
+      206,
+      2158,
       84.0,
       22
      ],
@@ -8222,13 +9428,13 @@
    },
    {
     "box": {
-     "id": "obj-389",
+     "id": "obj-446",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1800,
+      206,
+      2014,
       63.0,
       22
      ],
@@ -8240,13 +9446,13 @@
    },
    {
     "box": {
-     "id": "obj-390",
+     "id": "obj-447",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      1870,
+      206,
+      2084,
       170.0,
       22
      ],
@@ -8259,13 +9465,13 @@
    },
    {
     "box": {
-     "id": "obj-391",
+     "id": "obj-448",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1894,
+      206,
+      2108,
       77.0,
       22
      ],
@@ -8277,13 +9483,13 @@
    },
    {
     "box": {
-     "id": "obj-392",
+     "id": "obj-449",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1826,
+      206,
+      2040,
       86.0,
       22
      ],
@@ -8295,13 +9501,13 @@
    },
    {
     "box": {
-     "id": "obj-393",
+     "id": "obj-450",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1626,
-      1800,
+      486,
+      2014,
       90.0,
       48.0
      ],
@@ -8324,8 +9530,8 @@
      },
      "presentation": 1,
      "presentation_rect": [
-      912,
-      848,
+      240,
+      946,
       104,
       48
      ]
@@ -8333,13 +9539,13 @@
    },
    {
     "box": {
-     "id": "obj-394",
+     "id": "obj-451",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1626,
-      1850,
+      486,
+      2064,
       90.0,
       18.0
      ],
@@ -8348,8 +9554,8 @@
      "fontsize": 9.0,
      "presentation": 1,
      "presentation_rect": [
-      912,
-      898,
+      240,
+      996,
       104,
       22
      ]
@@ -8357,13 +9563,13 @@
    },
    {
     "box": {
-     "id": "obj-395",
+     "id": "obj-452",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1918,
+      396,
+      2132,
       170.0,
       22
      ],
@@ -8375,13 +9581,13 @@
    },
    {
     "box": {
-     "id": "obj-396",
+     "id": "obj-453",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1536,
-      1944,
+      396,
+      2158,
       84.0,
       22
      ],
@@ -8391,13 +9597,13 @@
    },
    {
     "box": {
-     "id": "obj-397",
+     "id": "obj-454",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1800,
+      396,
+      2014,
       63.0,
       22
      ],
@@ -8409,13 +9615,13 @@
    },
    {
     "box": {
-     "id": "obj-398",
+     "id": "obj-455",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1536,
-      1870,
+      396,
+      2084,
       170.0,
       22
      ],
@@ -8428,13 +9634,13 @@
    },
    {
     "box": {
-     "id": "obj-399",
+     "id": "obj-456",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1894,
+      396,
+      2108,
       77.0,
       22
      ],
@@ -8446,13 +9652,13 @@
    },
    {
     "box": {
-     "id": "obj-400",
+     "id": "obj-457",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1826,
+      396,
+      2040,
       86.0,
       22
      ],
@@ -8464,12 +9670,181 @@
    },
    {
     "box": {
-     "id": "obj-401",
+     "id": "obj-458",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      676,
+      2014,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/output/limiter",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/output/limiter",
+       "parameter_shortname": "limiter",
+       "parameter_mmin": -24.0,
+       "parameter_mmax": 0.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f dB"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      946,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-459",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      16,
+      676,
+      2064,
+      90.0,
+      18.0
+     ],
+     "text": "-24 to 0 dB",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      996,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-460",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      2132,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/limiter"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-461",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      586,
+      2158,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-462",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      2014,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-463",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      586,
+      2084,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/output/limiter"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-464",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      2108,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-465",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      2040,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set -3"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-466",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      776,
       1984,
       84.0,
       22
@@ -8478,7 +9853,7 @@
      "fontface": 1,
      "presentation": 1,
      "presentation_rect": [
-      16,
+      464,
       924,
       224,
       22
@@ -8487,12 +9862,181 @@
    },
    {
     "box": {
-     "id": "obj-402",
+     "id": "obj-467",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
+      866,
+      2014,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/body/gain",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/gain",
+       "parameter_shortname": "gain",
+       "parameter_mmin": -24.0,
+       "parameter_mmax": 24.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f dB"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      946,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-468",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      866,
+      2064,
+      90.0,
+      18.0
+     ],
+     "text": "-24 to 24 dB",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      996,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-469",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      2132,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/gain"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-470",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      776,
+      2158,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-471",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      2014,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-472",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      776,
+      2084,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/gain"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-473",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      2108,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-474",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      2040,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-475",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1056,
       2014,
       90.0,
       48.0
@@ -8516,7 +10060,7 @@
      },
      "presentation": 1,
      "presentation_rect": [
-      16,
+      576,
       946,
       104,
       48
@@ -8525,12 +10069,12 @@
    },
    {
     "box": {
-     "id": "obj-403",
+     "id": "obj-476",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      106,
+      1056,
       2064,
       90.0,
       18.0
@@ -8540,7 +10084,7 @@
      "fontsize": 9.0,
      "presentation": 1,
      "presentation_rect": [
-      16,
+      576,
       996,
       104,
       22
@@ -8549,12 +10093,12 @@
    },
    {
     "box": {
-     "id": "obj-404",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
+      966,
       2132,
       170.0,
       22
@@ -8567,12 +10111,12 @@
    },
    {
     "box": {
-     "id": "obj-405",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      16,
+      966,
       2158,
       84.0,
       22
@@ -8583,12 +10127,12 @@
    },
    {
     "box": {
-     "id": "obj-406",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
+      966,
       2014,
       63.0,
       22
@@ -8601,12 +10145,12 @@
    },
    {
     "box": {
-     "id": "obj-407",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
+      966,
       2084,
       170.0,
       22
@@ -8620,12 +10164,12 @@
    },
    {
     "box": {
-     "id": "obj-408",
+     "id": "obj-481",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
+      966,
       2108,
       77.0,
       22
@@ -8638,12 +10182,12 @@
    },
    {
     "box": {
-     "id": "obj-409",
+     "id": "obj-482",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
+      966,
       2040,
       86.0,
       22
@@ -8656,12 +10200,12 @@
    },
    {
     "box": {
-     "id": "obj-410",
+     "id": "obj-483",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
+      1246,
       2014,
       90.0,
       48.0
@@ -8685,7 +10229,7 @@
      },
      "presentation": 1,
      "presentation_rect": [
-      128,
+      688,
       946,
       104,
       48
@@ -8694,12 +10238,12 @@
    },
    {
     "box": {
-     "id": "obj-411",
+     "id": "obj-484",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      296,
+      1246,
       2064,
       90.0,
       18.0
@@ -8709,7 +10253,7 @@
      "fontsize": 9.0,
      "presentation": 1,
      "presentation_rect": [
-      128,
+      688,
       996,
       104,
       22
@@ -8718,12 +10262,12 @@
    },
    {
     "box": {
-     "id": "obj-412",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
+      1156,
       2132,
       170.0,
       22
@@ -8736,12 +10280,12 @@
    },
    {
     "box": {
-     "id": "obj-413",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
+      1156,
       2158,
       84.0,
       22
@@ -8752,12 +10296,12 @@
    },
    {
     "box": {
-     "id": "obj-414",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
+      1156,
       2014,
       63.0,
       22
@@ -8770,12 +10314,12 @@
    },
    {
     "box": {
-     "id": "obj-415",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
+      1156,
       2084,
       170.0,
       22
@@ -8789,12 +10333,12 @@
    },
    {
     "box": {
-     "id": "obj-416",
+     "id": "obj-489",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
+      1156,
       2108,
       77.0,
       22
@@ -8807,12 +10351,12 @@
    },
    {
     "box": {
-     "id": "obj-417",
+     "id": "obj-490",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
+      1156,
       2040,
       86.0,
       22
@@ -8821,6 +10365,367 @@
       ""
      ],
      "text": "loadmess set 0.9"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-491",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1346,
+      1984,
+      98.0,
+      22
+     ],
+     "text": "engine",
+     "fontface": 1,
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      924,
+      224,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-492",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1436,
+      2014,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/engine/calibration",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/engine/calibration",
+       "parameter_shortname": "calibration",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      946,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-493",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1436,
+      2064,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      996,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-494",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      2132,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/engine/calibration"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-495",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1346,
+      2158,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-496",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      2014,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-497",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1346,
+      2084,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/engine/calibration"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-498",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      2108,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-499",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      2040,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 1"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-500",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1626,
+      2014,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/engine/seed",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/engine/seed",
+       "parameter_shortname": "seed",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 65535.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      946,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-501",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1626,
+      2064,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 65535",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      996,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-502",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      2132,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/engine/seed"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-503",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1536,
+      2158,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-504",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      2014,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-505",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1536,
+      2084,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/engine/seed"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-506",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      2108,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-507",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      2040,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
     }
    }
   ],
@@ -10921,7 +12826,20 @@
    {
     "patchline": {
      "source": [
-      "obj-205",
+      "obj-204",
+      0
+     ],
+     "destination": [
+      "obj-206",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-206",
       0
      ],
      "destination": [
@@ -10934,11 +12852,11 @@
    {
     "patchline": {
      "source": [
-      "obj-207",
+      "obj-208",
       0
      ],
      "destination": [
-      "obj-208",
+      "obj-209",
       0
      ],
      "order": 0
@@ -10964,7 +12882,7 @@
       0
      ],
      "destination": [
-      "obj-211",
+      "obj-204",
       0
      ],
      "order": 0
@@ -10977,7 +12895,7 @@
       0
      ],
      "destination": [
-      "obj-205",
+      "obj-204",
       0
      ],
      "order": 0
@@ -10990,7 +12908,7 @@
       0
      ],
      "destination": [
-      "obj-205",
+      "obj-214",
       0
      ],
      "order": 0
@@ -10999,7 +12917,7 @@
    {
     "patchline": {
      "source": [
-      "obj-213",
+      "obj-214",
       0
      ],
      "destination": [
@@ -11012,11 +12930,11 @@
    {
     "patchline": {
      "source": [
-      "obj-215",
-      0
-     ],
-     "destination": [
       "obj-216",
+      0
+     ],
+     "destination": [
+      "obj-217",
       0
      ],
      "order": 0
@@ -11042,7 +12960,7 @@
       0
      ],
      "destination": [
-      "obj-219",
+      "obj-212",
       0
      ],
      "order": 0
@@ -11055,20 +12973,7 @@
       0
      ],
      "destination": [
-      "obj-213",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-220",
-      0
-     ],
-     "destination": [
-      "obj-213",
+      "obj-212",
       0
      ],
      "order": 0
@@ -11467,7 +13372,20 @@
    {
     "patchline": {
      "source": [
-      "obj-262",
+      "obj-261",
+      0
+     ],
+     "destination": [
+      "obj-263",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-263",
       0
      ],
      "destination": [
@@ -11480,11 +13398,11 @@
    {
     "patchline": {
      "source": [
-      "obj-264",
+      "obj-265",
       0
      ],
      "destination": [
-      "obj-265",
+      "obj-266",
       0
      ],
      "order": 0
@@ -11510,7 +13428,7 @@
       0
      ],
      "destination": [
-      "obj-268",
+      "obj-261",
       0
      ],
      "order": 0
@@ -11523,7 +13441,7 @@
       0
      ],
      "destination": [
-      "obj-262",
+      "obj-261",
       0
      ],
      "order": 0
@@ -11536,7 +13454,7 @@
       0
      ],
      "destination": [
-      "obj-262",
+      "obj-271",
       0
      ],
      "order": 0
@@ -11545,7 +13463,7 @@
    {
     "patchline": {
      "source": [
-      "obj-270",
+      "obj-271",
       0
      ],
      "destination": [
@@ -11558,11 +13476,11 @@
    {
     "patchline": {
      "source": [
-      "obj-272",
-      0
-     ],
-     "destination": [
       "obj-273",
+      0
+     ],
+     "destination": [
+      "obj-274",
       0
      ],
      "order": 0
@@ -11588,7 +13506,7 @@
       0
      ],
      "destination": [
-      "obj-276",
+      "obj-269",
       0
      ],
      "order": 0
@@ -11601,7 +13519,7 @@
       0
      ],
      "destination": [
-      "obj-270",
+      "obj-269",
       0
      ],
      "order": 0
@@ -11614,7 +13532,7 @@
       0
      ],
      "destination": [
-      "obj-270",
+      "obj-279",
       0
      ],
      "order": 0
@@ -11623,7 +13541,7 @@
    {
     "patchline": {
      "source": [
-      "obj-278",
+      "obj-279",
       0
      ],
      "destination": [
@@ -11636,11 +13554,11 @@
    {
     "patchline": {
      "source": [
-      "obj-280",
-      0
-     ],
-     "destination": [
       "obj-281",
+      0
+     ],
+     "destination": [
+      "obj-282",
       0
      ],
      "order": 0
@@ -11666,7 +13584,7 @@
       0
      ],
      "destination": [
-      "obj-284",
+      "obj-277",
       0
      ],
      "order": 0
@@ -11679,20 +13597,7 @@
       0
      ],
      "destination": [
-      "obj-278",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-285",
-      0
-     ],
-     "destination": [
-      "obj-278",
+      "obj-277",
       0
      ],
      "order": 0
@@ -12091,7 +13996,20 @@
    {
     "patchline": {
      "source": [
-      "obj-327",
+      "obj-326",
+      0
+     ],
+     "destination": [
+      "obj-328",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-328",
       0
      ],
      "destination": [
@@ -12104,11 +14022,11 @@
    {
     "patchline": {
      "source": [
-      "obj-329",
+      "obj-330",
       0
      ],
      "destination": [
-      "obj-330",
+      "obj-331",
       0
      ],
      "order": 0
@@ -12134,7 +14052,7 @@
       0
      ],
      "destination": [
-      "obj-333",
+      "obj-326",
       0
      ],
      "order": 0
@@ -12147,7 +14065,7 @@
       0
      ],
      "destination": [
-      "obj-327",
+      "obj-326",
       0
      ],
      "order": 0
@@ -12160,7 +14078,7 @@
       0
      ],
      "destination": [
-      "obj-327",
+      "obj-336",
       0
      ],
      "order": 0
@@ -12169,7 +14087,7 @@
    {
     "patchline": {
      "source": [
-      "obj-335",
+      "obj-336",
       0
      ],
      "destination": [
@@ -12182,11 +14100,11 @@
    {
     "patchline": {
      "source": [
-      "obj-337",
-      0
-     ],
-     "destination": [
       "obj-338",
+      0
+     ],
+     "destination": [
+      "obj-339",
       0
      ],
      "order": 0
@@ -12212,7 +14130,7 @@
       0
      ],
      "destination": [
-      "obj-341",
+      "obj-334",
       0
      ],
      "order": 0
@@ -12225,7 +14143,7 @@
       0
      ],
      "destination": [
-      "obj-335",
+      "obj-334",
       0
      ],
      "order": 0
@@ -12238,7 +14156,7 @@
       0
      ],
      "destination": [
-      "obj-335",
+      "obj-344",
       0
      ],
      "order": 0
@@ -12247,7 +14165,7 @@
    {
     "patchline": {
      "source": [
-      "obj-343",
+      "obj-344",
       0
      ],
      "destination": [
@@ -12260,11 +14178,11 @@
    {
     "patchline": {
      "source": [
-      "obj-345",
-      0
-     ],
-     "destination": [
       "obj-346",
+      0
+     ],
+     "destination": [
+      "obj-347",
       0
      ],
      "order": 0
@@ -12290,7 +14208,7 @@
       0
      ],
      "destination": [
-      "obj-349",
+      "obj-342",
       0
      ],
      "order": 0
@@ -12303,20 +14221,7 @@
       0
      ],
      "destination": [
-      "obj-343",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-350",
-      0
-     ],
-     "destination": [
-      "obj-343",
+      "obj-342",
       0
      ],
      "order": 0
@@ -12403,7 +14308,20 @@
    {
     "patchline": {
      "source": [
-      "obj-360",
+      "obj-359",
+      0
+     ],
+     "destination": [
+      "obj-361",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-361",
       0
      ],
      "destination": [
@@ -12416,11 +14334,11 @@
    {
     "patchline": {
      "source": [
-      "obj-362",
+      "obj-363",
       0
      ],
      "destination": [
-      "obj-363",
+      "obj-364",
       0
      ],
      "order": 0
@@ -12446,7 +14364,7 @@
       0
      ],
      "destination": [
-      "obj-366",
+      "obj-359",
       0
      ],
      "order": 0
@@ -12459,7 +14377,7 @@
       0
      ],
      "destination": [
-      "obj-360",
+      "obj-359",
       0
      ],
      "order": 0
@@ -12472,7 +14390,7 @@
       0
      ],
      "destination": [
-      "obj-360",
+      "obj-369",
       0
      ],
      "order": 0
@@ -12481,7 +14399,7 @@
    {
     "patchline": {
      "source": [
-      "obj-368",
+      "obj-369",
       0
      ],
      "destination": [
@@ -12494,11 +14412,11 @@
    {
     "patchline": {
      "source": [
-      "obj-370",
-      0
-     ],
-     "destination": [
       "obj-371",
+      0
+     ],
+     "destination": [
+      "obj-372",
       0
      ],
      "order": 0
@@ -12524,7 +14442,7 @@
       0
      ],
      "destination": [
-      "obj-374",
+      "obj-367",
       0
      ],
      "order": 0
@@ -12537,7 +14455,7 @@
       0
      ],
      "destination": [
-      "obj-368",
+      "obj-367",
       0
      ],
      "order": 0
@@ -12550,7 +14468,7 @@
       0
      ],
      "destination": [
-      "obj-368",
+      "obj-377",
       0
      ],
      "order": 0
@@ -12563,7 +14481,7 @@
       0
      ],
      "destination": [
-      "obj-379",
+      "obj-378",
       0
      ],
      "order": 0
@@ -12585,11 +14503,24 @@
    {
     "patchline": {
      "source": [
+      "obj-380",
+      0
+     ],
+     "destination": [
+      "obj-381",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-381",
       0
      ],
      "destination": [
-      "obj-382",
+      "obj-375",
       0
      ],
      "order": 0
@@ -12602,20 +14533,7 @@
       0
      ],
      "destination": [
-      "obj-383",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-383",
-      0
-     ],
-     "destination": [
-      "obj-377",
+      "obj-375",
       0
      ],
      "order": 0
@@ -12628,7 +14546,7 @@
       0
      ],
      "destination": [
-      "obj-377",
+      "obj-386",
       0
      ],
      "order": 0
@@ -12637,7 +14555,7 @@
    {
     "patchline": {
      "source": [
-      "obj-385",
+      "obj-386",
       0
      ],
      "destination": [
@@ -12650,11 +14568,11 @@
    {
     "patchline": {
      "source": [
-      "obj-387",
-      0
-     ],
-     "destination": [
       "obj-388",
+      0
+     ],
+     "destination": [
+      "obj-389",
       0
      ],
      "order": 0
@@ -12680,7 +14598,7 @@
       0
      ],
      "destination": [
-      "obj-391",
+      "obj-384",
       0
      ],
      "order": 0
@@ -12693,7 +14611,7 @@
       0
      ],
      "destination": [
-      "obj-385",
+      "obj-384",
       0
      ],
      "order": 0
@@ -12706,7 +14624,7 @@
       0
      ],
      "destination": [
-      "obj-385",
+      "obj-394",
       0
      ],
      "order": 0
@@ -12715,7 +14633,7 @@
    {
     "patchline": {
      "source": [
-      "obj-393",
+      "obj-394",
       0
      ],
      "destination": [
@@ -12728,11 +14646,11 @@
    {
     "patchline": {
      "source": [
-      "obj-395",
-      0
-     ],
-     "destination": [
       "obj-396",
+      0
+     ],
+     "destination": [
+      "obj-397",
       0
      ],
      "order": 0
@@ -12758,7 +14676,7 @@
       0
      ],
      "destination": [
-      "obj-399",
+      "obj-392",
       0
      ],
      "order": 0
@@ -12771,7 +14689,7 @@
       0
      ],
      "destination": [
-      "obj-393",
+      "obj-392",
       0
      ],
      "order": 0
@@ -12780,11 +14698,11 @@
    {
     "patchline": {
      "source": [
-      "obj-400",
+      "obj-401",
       0
      ],
      "destination": [
-      "obj-393",
+      "obj-403",
       0
      ],
      "order": 0
@@ -12793,7 +14711,7 @@
    {
     "patchline": {
      "source": [
-      "obj-402",
+      "obj-403",
       0
      ],
      "destination": [
@@ -12806,11 +14724,11 @@
    {
     "patchline": {
      "source": [
-      "obj-404",
-      0
-     ],
-     "destination": [
       "obj-405",
+      0
+     ],
+     "destination": [
+      "obj-406",
       0
      ],
      "order": 0
@@ -12836,7 +14754,7 @@
       0
      ],
      "destination": [
-      "obj-408",
+      "obj-401",
       0
      ],
      "order": 0
@@ -12849,7 +14767,7 @@
       0
      ],
      "destination": [
-      "obj-402",
+      "obj-401",
       0
      ],
      "order": 0
@@ -12862,7 +14780,7 @@
       0
      ],
      "destination": [
-      "obj-402",
+      "obj-411",
       0
      ],
      "order": 0
@@ -12871,7 +14789,7 @@
    {
     "patchline": {
      "source": [
-      "obj-410",
+      "obj-411",
       0
      ],
      "destination": [
@@ -12884,11 +14802,11 @@
    {
     "patchline": {
      "source": [
-      "obj-412",
-      0
-     ],
-     "destination": [
       "obj-413",
+      0
+     ],
+     "destination": [
+      "obj-414",
       0
      ],
      "order": 0
@@ -12914,7 +14832,7 @@
       0
      ],
      "destination": [
-      "obj-416",
+      "obj-409",
       0
      ],
      "order": 0
@@ -12927,7 +14845,7 @@
       0
      ],
      "destination": [
-      "obj-410",
+      "obj-409",
       0
      ],
      "order": 0
@@ -12940,7 +14858,852 @@
       0
      ],
      "destination": [
-      "obj-410",
+      "obj-419",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-419",
+      0
+     ],
+     "destination": [
+      "obj-420",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-421",
+      0
+     ],
+     "destination": [
+      "obj-422",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-422",
+      0
+     ],
+     "destination": [
+      "obj-423",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-423",
+      0
+     ],
+     "destination": [
+      "obj-417",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-424",
+      0
+     ],
+     "destination": [
+      "obj-417",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-425",
+      0
+     ],
+     "destination": [
+      "obj-427",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-427",
+      0
+     ],
+     "destination": [
+      "obj-428",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-429",
+      0
+     ],
+     "destination": [
+      "obj-430",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-430",
+      0
+     ],
+     "destination": [
+      "obj-431",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-431",
+      0
+     ],
+     "destination": [
+      "obj-425",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-432",
+      0
+     ],
+     "destination": [
+      "obj-425",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-434",
+      0
+     ],
+     "destination": [
+      "obj-436",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-436",
+      0
+     ],
+     "destination": [
+      "obj-437",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-438",
+      0
+     ],
+     "destination": [
+      "obj-439",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-439",
+      0
+     ],
+     "destination": [
+      "obj-440",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-440",
+      0
+     ],
+     "destination": [
+      "obj-434",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-441",
+      0
+     ],
+     "destination": [
+      "obj-434",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-442",
+      0
+     ],
+     "destination": [
+      "obj-444",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-444",
+      0
+     ],
+     "destination": [
+      "obj-445",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-446",
+      0
+     ],
+     "destination": [
+      "obj-447",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-447",
+      0
+     ],
+     "destination": [
+      "obj-448",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-448",
+      0
+     ],
+     "destination": [
+      "obj-442",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-449",
+      0
+     ],
+     "destination": [
+      "obj-442",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-450",
+      0
+     ],
+     "destination": [
+      "obj-452",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-452",
+      0
+     ],
+     "destination": [
+      "obj-453",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-454",
+      0
+     ],
+     "destination": [
+      "obj-455",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-455",
+      0
+     ],
+     "destination": [
+      "obj-456",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-456",
+      0
+     ],
+     "destination": [
+      "obj-450",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-457",
+      0
+     ],
+     "destination": [
+      "obj-450",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-458",
+      0
+     ],
+     "destination": [
+      "obj-460",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-460",
+      0
+     ],
+     "destination": [
+      "obj-461",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-462",
+      0
+     ],
+     "destination": [
+      "obj-463",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-463",
+      0
+     ],
+     "destination": [
+      "obj-464",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-464",
+      0
+     ],
+     "destination": [
+      "obj-458",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-465",
+      0
+     ],
+     "destination": [
+      "obj-458",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-467",
+      0
+     ],
+     "destination": [
+      "obj-469",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-469",
+      0
+     ],
+     "destination": [
+      "obj-470",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-471",
+      0
+     ],
+     "destination": [
+      "obj-472",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-472",
+      0
+     ],
+     "destination": [
+      "obj-473",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-473",
+      0
+     ],
+     "destination": [
+      "obj-467",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-474",
+      0
+     ],
+     "destination": [
+      "obj-467",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-475",
+      0
+     ],
+     "destination": [
+      "obj-477",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-477",
+      0
+     ],
+     "destination": [
+      "obj-478",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-479",
+      0
+     ],
+     "destination": [
+      "obj-480",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-480",
+      0
+     ],
+     "destination": [
+      "obj-481",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-481",
+      0
+     ],
+     "destination": [
+      "obj-475",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-482",
+      0
+     ],
+     "destination": [
+      "obj-475",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-483",
+      0
+     ],
+     "destination": [
+      "obj-485",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-485",
+      0
+     ],
+     "destination": [
+      "obj-486",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-487",
+      0
+     ],
+     "destination": [
+      "obj-488",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-488",
+      0
+     ],
+     "destination": [
+      "obj-489",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-489",
+      0
+     ],
+     "destination": [
+      "obj-483",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-490",
+      0
+     ],
+     "destination": [
+      "obj-483",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-492",
+      0
+     ],
+     "destination": [
+      "obj-494",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-494",
+      0
+     ],
+     "destination": [
+      "obj-495",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-496",
+      0
+     ],
+     "destination": [
+      "obj-497",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-497",
+      0
+     ],
+     "destination": [
+      "obj-498",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-498",
+      0
+     ],
+     "destination": [
+      "obj-492",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-499",
+      0
+     ],
+     "destination": [
+      "obj-492",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-500",
+      0
+     ],
+     "destination": [
+      "obj-502",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-502",
+      0
+     ],
+     "destination": [
+      "obj-503",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-504",
+      0
+     ],
+     "destination": [
+      "obj-505",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-505",
+      0
+     ],
+     "destination": [
+      "obj-506",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-506",
+      0
+     ],
+     "destination": [
+      "obj-500",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-507",
+      0
+     ],
+     "destination": [
+      "obj-500",
       0
      ],
      "order": 0

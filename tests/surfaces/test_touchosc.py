@@ -54,7 +54,7 @@ def test_a_fader_tells_its_value_as_the_parameter_has_it(document):
         param = BY_ADDRESS[fader.get("tag")]
         script = fader.get("script")
         lo, hi = re.search(r"local lo, hi = (\S+), (\S+)", script).groups()
-        formula = re.search(r"'%.4g', (.*)\)\n", script).group(1).replace("^", "**")
+        formula = re.search(r"'%.5g', (.*)\)\n", script).group(1).replace("^", "**")
         names = {"lo": float(lo), "hi": float(hi)}
         for unit in (0.0, 0.2, 0.5, 0.9, 1.0):
             shown = eval(formula, {}, names | {"x": unit})  # noqa: S307

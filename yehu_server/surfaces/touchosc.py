@@ -57,7 +57,7 @@ SHOW = """\
 local lo, hi = {lo!r}, {hi!r}
 local function show()
   local x = self.values.x
-  self.parent.children.value.values.text = string.format('%.4g', {formula})
+  self.parent.children.value.values.text = string.format('%.5g', {formula})
 end
 function init()
   show()
@@ -236,7 +236,7 @@ def _strip(param: Param, frame: tuple[float, float, float, float]) -> Control:
         children=[
             _label("name", (0, GAP, width, LINE), layout.label(param)),
             fader,
-            _label("value", (0, height - 2 * LINE - GAP, width, LINE), f"{param.default:.4g}"),
+            _label("value", (0, height - 2 * LINE - GAP, width, LINE), f"{param.default:.5g}"),
             _label("range", (0, height - LINE - GAP, width, LINE), param.range_text, text_size=10),
         ],
     )

@@ -16,7 +16,14 @@ class ParameterError(YehuError):
 
 
 class MappingError(YehuError):
-    """A mapping file that cannot be read or does not make sense."""
+    """A mapping file that cannot be read or does not make sense.
+
+    `more` has a line for everything else that is wrong with it.
+    """
+
+    def __init__(self, message: str, *more: str) -> None:
+        super().__init__(message)
+        self.more = more
 
 
 class ScoreError(YehuError):

@@ -190,13 +190,21 @@ class OscHandler:
         known = address.removeprefix(PREFIX)
         if known in self._calls and known != address:
             return [self._calls[known]]
+        own = {address: self._mover(address) for address in self._player.addresses}
+        if address in own:
+            return [own[address]]
         if is_pattern(address):
-            return [self._calls[one] for one in fitting(address, self._calls, PREFIX)]
+            calls = {PREFIX + call: action for call, action in self._calls.items()} | own
+            return [calls[one] for one in fitting(address, calls)]
         raise UnknownError
 
     def _complain(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         self.counts.errors += 1
         self.clients.complain(peer, address, reason)
+
+    def _mover(self, address: str) -> Callable[[Call], None]:
+        """Move what the mapping has at an address of the user's own."""
+        return lambda call: self._player.move(address, call.numbers(1)[0], frame=call.frame)
 
     # -- parameters --------------------------------------------------------------------------
 

@@ -16,6 +16,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import ENGINE, TABLE, find
 from yehu_server.playing.calibration import Calibration
+from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Key
 from yehu_server.playing.style import Style
@@ -139,6 +140,23 @@ class LivePlayer:
         """Give back to the player what direct writes took over."""
         with self._turn:
             self._performer.release()
+
+    # -- the mapping -------------------------------------------------------------------------
+
+    @property
+    def addresses(self) -> tuple[str, ...]:
+        """The OSC addresses that the mapping gives a meaning."""
+        return self._midi.mapping.addresses
+
+    def move(self, address: str, argument: float, *, frame: int) -> None:
+        """Move what the mapping binds to one of its `addresses`; another moves nothing."""
+        with self._turn:
+            self._midi.move(address, argument, frame=self._in_order(frame))
+
+    def remap(self, mapping: Mapping, *, frame: int) -> None:
+        """See `MidiPlayer.remap`."""
+        with self._turn:
+            self._midi.remap(mapping, frame=self._in_order(frame))
 
     # -- notes -------------------------------------------------------------------------------
 

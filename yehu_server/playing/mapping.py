@@ -1,28 +1,23 @@
-"""Mapping files: which controller moves which parameter, how far and along which curve.
+"""Mappings: which controllers move which parameters. Found by name, with the base each names.
 
-The format is described in mappings/README.md.
+The format of the files is described in mappings/README.md.
 """
 
 from __future__ import annotations
 
-import re
-import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any
 
-from yehu_server.errors import MappingError, ParameterError
-from yehu_server.files import read_text, shipped_folder
-from yehu_server.params.spec import Curve, Place
-from yehu_server.params.table import find
+from platformdirs import user_config_path
 
-SOURCES = ("bend", "pressure", "poly-pressure", "velocity")
-# Data entry, RPN and NRPN, channel mode messages: see messages.py.
-# Sustain (64) has its meaning unless a mapping gives it another.
-RESERVED = {6, 38, *range(96, 102), *range(120, 128)}
-_CC = re.compile(r"cc (0|[1-9][0-9]{0,2})")
+from yehu_server.errors import MappingError
+from yehu_server.files import shipped_folder
+from yehu_server.playing.binds import Bind, replaced
+from yehu_server.playing.mapping_file import Complaints, Sheet, read_sheet, text_of
+from yehu_server.playing.sources import is_address
+
 DEFAULT, MPE = "keyboard", "mpe"
-ENTRIES = ("name", "about", "mpe", "start", "bind")
 
 
 def mapping_folder() -> Path:
@@ -30,34 +25,9 @@ def mapping_folder() -> Path:
     return shipped_folder("mappings")
 
 
-@dataclass(frozen=True)
-class Bind:
-    """One controller that moves one parameter.
-
-    `source` is ``cc N``, ``bend``, ``pressure``, ``poly-pressure`` or ``velocity``. The
-    controller's way, 0 to 1, is spread over `span` along `curve`; a span from high to low
-    inverts. Without a span the bend is in semitones, by the bend range.
-    """
-
-    source: str
-    target: str
-    span: tuple[float, float] | None = None
-    curve: Curve = Curve.LIN
-
-    @property
-    def is_by_range(self) -> bool:
-        """Whether it spans what the bend range (RPN 0) says."""
-        return self.source == "bend" and self.span is None and self.target == "/playing/bend"
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """The target's values at the two ends of the controller's way."""
-        param = find(self.target)
-        return self.span or (param.lo, param.hi)
-
-    def apply(self, unit: float) -> float:
-        """Map the controller's place, 0 to 1, to the target's value."""
-        return self.curve.bend(unit, *self.ends)
+def own_folder() -> Path:
+    """Where the user's mappings are, if there are any."""
+    return user_config_path("yehu-server") / "mappings"
 
 
 @dataclass(frozen=True)
@@ -65,7 +35,8 @@ class Mapping:
     """A named set of binds; several may share a source or a target (the last move counts).
 
     `start` are parameters with the values they begin with; `mpe` is whether every port begins
-    as an MPE zone; `about` says in a line what it is for.
+    as an MPE zone; `about` says in a line what it is for; `files` are what it was read from,
+    its own first and then its bases'.
     """
 
     name: str
@@ -73,113 +44,123 @@ class Mapping:
     start: tuple[tuple[str, float], ...] = ()
     mpe: bool = False
     about: str = ""
+    files: tuple[Path, ...] = field(default=(), compare=False)
 
     def of(self, source: str) -> tuple[Bind, ...]:
         """The binds of one source."""
-        return tuple(bind for bind in self.binds if bind.source == source)
+        return self._by_source.get(source, ())
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """All that moves something."""
+        return tuple(self._by_source)
+
+    @cached_property
+    def addresses(self) -> tuple[str, ...]:
+        """The sources that are OSC addresses."""
+        return tuple(source for source in self._by_source if is_address(source))
+
+    @cached_property
+    def _by_source(self) -> dict[str, tuple[Bind, ...]]:
+        found: dict[str, tuple[Bind, ...]] = {}
+        for bind in self.binds:
+            found[bind.source] = (*found.get(bind.source, ()), bind)
+        return found
 
 
 def shipped_mappings() -> list[str]:
     """Names of the mappings that come with the package."""
-    return sorted(file.stem for file in mapping_folder().glob("*.toml"))
+    return _names(mapping_folder())
+
+
+def own_mappings() -> list[str]:
+    """Names of the mappings in the user's folder."""
+    return _names(own_folder())
+
+
+def _names(folder: Path) -> list[str]:
+    return sorted(file.stem for file in folder.glob("*.toml"))
 
 
 def load(name_or_path: str) -> Mapping:
-    """Read a mapping by the name of a shipped one, or from a file.
+    """Read a mapping by its name, the user's before a shipped one, or from a file.
 
-    Errors: MappingError, naming the file and the bind.
+    Errors: MappingError, naming file and line.
     """
-    path = Path(name_or_path)
-    is_name = path.suffix == "" and path.name == name_or_path
-    if is_name:
-        shipped = mapping_folder() / f"{name_or_path}.toml"
-        if not shipped.exists():
-            names = ", ".join(shipped_mappings())
-            raise MappingError(f"no mapping {name_or_path!r} (shipped: {names}; or name a file)")
-        path = shipped
-    try:
-        data = tomllib.loads(read_text(path))
-    except OSError as error:
-        raise MappingError(f"{path}: {error.strerror}") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
-        raise MappingError(f"{path}: not a mapping file ({error})") from error
-    unknown = set(data) - set(ENTRIES)
-    if unknown:
-        known = ", ".join(ENTRIES)
-        raise MappingError(f"{path}: unknown entry {min(unknown)!r} (known: {known})")
-    entries = data.get("bind", [])
-    if not isinstance(entries, list):
-        raise MappingError(f"{path}: write each bind as [[bind]]")
-    binds = []
-    for number, entry in enumerate(entries, start=1):
-        try:
-            binds.append(_bind(entry))
-        except ParameterError as error:
-            raise MappingError(f"{path}: bind {number}: {error}") from error
-    mpe = data.get("mpe", False)
-    if not isinstance(mpe, bool):
-        raise MappingError(f"{path}: mpe: expected true or false, got {mpe!r}")
-    try:
-        start = _start(data.get("start", {}))
-    except ParameterError as error:
-        raise MappingError(f"{path}: start: {error}") from error
-    about = data.get("about", "")
-    if not isinstance(about, str):
-        raise MappingError(f"{path}: about: expected a line of text, got {about!r}")
-    return Mapping(str(data.get("name", path.stem)), tuple(binds), start, mpe, about)
+    path = find_file(name_or_path)
+    return with_bases(path, read_sheet(path))
 
 
-def _start(entries: Any) -> tuple[tuple[str, float], ...]:
-    if not isinstance(entries, dict):
-        raise ParameterError("expected a table of addresses and values")
-    for address, value in entries.items():
-        param = find(address)
-        if param.place is not Place.PLAYER:
-            raise ParameterError(f"{address} is moved by the player; set one under /playing")
-        if param.accept(value) != value:
-            raise ParameterError(f"{address}: {value} is not within {param.range_text}")
-    return tuple((address, float(value)) for address, value in entries.items())
+def find_file(name_or_path: str) -> Path:
+    """The file of a mapping; what is no plain name is a path. Errors: MappingError."""
+    if not _is_name(name_or_path):
+        return Path(name_or_path)
+    found = _named(name_or_path)
+    if found is None:
+        raise MappingError(_unknown(name_or_path, "; or name a file"))
+    return found
 
 
-def _bind(entry: Any) -> Bind:
-    known = ("source", "target", "span", "curve")
-    if not isinstance(entry, dict):
-        raise ParameterError("expected a table")
-    for name in entry:
-        if name not in known:
-            raise ParameterError(f"unknown entry {name!r} (known: {', '.join(known)})")
-    source, target = entry.get("source"), entry.get("target")
-    if not isinstance(source, str) or not isinstance(target, str):
-        raise ParameterError("needs a source and a target")
-    controller = _CC.fullmatch(source)
-    if source not in SOURCES and not (controller and int(controller[1]) <= 127):
-        raise ParameterError(f"unknown source {source!r} (cc 0-119, {', '.join(SOURCES)})")
-    if controller and int(controller[1]) in RESERVED:
-        raise ParameterError(f"{source} has a meaning of its own in MIDI")
-    param = find(target)
-    if param.place is not Place.PLAYER:
-        raise ParameterError(f"{target} is moved by the player; map to one under /playing")
-    try:
-        curve = Curve(entry.get("curve", param.curve.value))
-    except ValueError:
-        names = ", ".join(curve.value for curve in Curve)
-        raise ParameterError(f"unknown curve {entry['curve']!r} (known: {names})") from None
-    span = _span(entry.get("span"), param.lo, param.hi)
-    lo, hi = span or (param.lo, param.hi)
-    if curve is Curve.EXP and min(lo, hi) <= 0.0:
-        raise ParameterError("an exp curve needs a span above zero")
-    return Bind(source, target, span, curve)
+def with_bases(path: Path, sheet: Sheet) -> Mapping:
+    """What a file says, over what its base and the bases of that say. Errors: MappingError."""
+    sheets, files = [sheet], [path]
+    while (base := sheets[-1].base) is not None:
+        wrong = Complaints(files[-1], text_of(files[-1]))
+        below = _named(base, files[-1]) if _is_name(base) else None
+        if below is None:
+            wrong.add(("base",), f"base: {_unknown(base)}")
+        elif any(_is_same(below, file) for file in files):
+            chain = ", ".join(file.stem for file in (*files, below))
+            wrong.add(("base",), f"base: the bases go round in a circle ({chain})")
+        wrong.end()
+        assert below is not None  # noqa: S101 - or the line before has raised
+        files.append(below)
+        sheets.append(read_sheet(below))
+    mapping = Mapping(sheet.name, (), about=sheet.about, files=tuple(files))
+    for each in reversed(sheets):
+        mapping = _over(mapping, each)
+    return mapping
 
 
-def _span(value: Any, lo: float, hi: float) -> tuple[float, float] | None:
-    if value is None:
-        return None
-    numbers = isinstance(value, list) and all(
-        isinstance(end, int | float) and not isinstance(end, bool) for end in value
+def _over(below: Mapping, sheet: Sheet) -> Mapping:
+    """A mapping with what a file adds; its binds replace those of the same controller."""
+    own = {replaced(bind) for bind in sheet.binds}
+    return Mapping(
+        below.name,
+        (*(bind for bind in below.binds if replaced(bind) not in own), *sheet.binds),
+        tuple((dict(below.start) | dict(sheet.start)).items()),
+        below.mpe if sheet.mpe is None else sheet.mpe,
+        below.about,
+        below.files,
     )
-    if not numbers or len(value) != 2:
-        raise ParameterError(f"span: expected [from, to], got {value!r}")
-    for end in value:
-        if not lo <= end <= hi:  # also refuses NaN
-            raise ParameterError(f"span: {end} is not within {lo:g} to {hi:g}")
-    return float(value[0]), float(value[1])
+
+
+def _is_name(text: str) -> bool:
+    path = Path(text)
+    return path.suffix == "" and path.name == text
+
+
+def _named(name: str, of: Path | None = None) -> Path | None:
+    """The file of a name; as the base `of` a file never that file itself."""
+    for folder in (own_folder(), mapping_folder()):
+        file = folder / f"{name}.toml"
+        try:
+            if file.exists() and not (of is not None and _is_same(file, of)):
+                return file
+        except (OSError, ValueError):  # a name that no file could have
+            return None
+    return None
+
+
+def _is_same(one: Path, other: Path) -> bool:
+    try:
+        return one.samefile(other)
+    except OSError:
+        return one == other
+
+
+def _unknown(name: str, hint: str = "") -> str:
+    known = ", ".join(shipped_mappings())
+    if own := own_mappings():
+        known += f"; yours: {', '.join(own)}"
+    return f"no mapping {name!r} (shipped: {known}{hint})"

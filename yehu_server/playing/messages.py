@@ -9,6 +9,8 @@ import mido
 
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
+from yehu_server.playing import sources
+from yehu_server.playing.controllers import Controllers
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
 from yehu_server.playing.zones import Zones
@@ -18,37 +20,45 @@ INCREMENT, DECREMENT = 96, 97
 NRPN_FINE, NRPN, RPN_FINE, RPN = 98, 99, 100, 101
 ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
 NULL = (127, 127)
+SUSTAIN_SOURCE = sources.control(SUSTAIN)
 BEND_RANGE, MPE_CONFIGURATION = (0, 0), (0, 6)
 CHANNELS = 16  # of a port
 PERCUSSION = 9  # channel 10, counted from 0
 
-# Put back by "reset all controllers"; volume stays, as the recommended practice RP-015 asks.
-KEPT_ON_RESET = {"/playing/volume"}
 
+@dataclass
+class Selected:
+    """The parameter, registered or not, that data entry is for."""
 
-# When something was moved, as a running number, and to where: 0 to 1.
-Moved = tuple[int, float]
+    is_registered: bool = True
+    coarse: int | None = None  # None until told
+    fine: int | None = None
+
+    @property
+    def number(self) -> tuple[int, int] | None:
+        """Both halves, once both are told."""
+        if self.coarse is None or self.fine is None:
+            return None
+        return self.coarse, self.fine
 
 
 @dataclass
 class Channel:
     """What one MIDI channel remembers."""
 
-    moved: dict[str, Moved] = field(default_factory=dict)  # by source
-    touch: dict[float, Moved] = field(default_factory=dict)  # poly pressure, by note
-    velocity: dict[float, Moved] = field(default_factory=dict)  # by note
     struck_again: dict[float, int] = field(default_factory=dict)  # held notes, at which frame
     bend_range: float | None = None  # semitones, once RPN 0 has set it
     sustain: bool = False
     let_go: set[Key] = field(default_factory=set)  # keys up, pedal down
-    rpn: tuple[int, int] = NULL
+    selected: Selected = field(default_factory=Selected)
+
+    def has_selected(self, registered: tuple[int, int]) -> bool:
+        """Whether data entry is for a registered parameter."""
+        return self.selected.is_registered and self.selected.number == registered
 
 
 class MidiPlayer:
-    """Feeds MIDI channel messages to a performer, through a mapping.
-
-    What is moved on a channel belongs to its notes: it is heard while one of them sounds, and
-    after it until another channel's note begins.
+    """Feeds MIDI channel messages to a performer: notes at once, the rest through a mapping.
 
     Parameters
     ----------
@@ -61,16 +71,17 @@ class MidiPlayer:
         self, performer: Performer, mapping: Mapping, channels: set[int] | None = None
     ) -> None:
         self._performer = performer
-        performer.expression = self._expression
-        self._mapping = mapping
+        self._controllers = Controllers(performer, mapping, self)
         self._plays = channels
-        self._zones: defaultdict[int, Zones] = defaultdict(lambda: Zones(whole=mapping.mpe))
+        self._zones: defaultdict[int, Zones] = defaultdict(lambda: Zones(whole=self.mapping.mpe))
         self._channels: defaultdict[int, Channel] = defaultdict(Channel)
-        self._heard: Key | None = None  # whose note sounds, or sounded last
-        self._set: dict[str, Moved] = {}  # targets as they were before, or as `write` left them
-        self._moves = 0
         self.notes_by_channel: Counter[int] = Counter()
-        self._set_out()
+        self._controllers.begin(None)
+
+    @property
+    def mapping(self) -> Mapping:
+        """What controllers move; `remap` takes another."""
+        return self._controllers.mapping
 
     def receive(self, message: mido.Message, *, frame: int | None = None, port: int = 0) -> None:
         """Act on a channel message, or on a system reset; others are ignored.
@@ -89,50 +100,66 @@ class MidiPlayer:
             self.note_off(Key(channel, message.note), frame)
         elif kind == "pitchwheel":
             bend = max(-1.0, message.pitch / 8191.0)
-            self._move("bend", channel, 0.5 * (bend + 1.0), frame)
+            self._controllers.move(sources.BEND, channel, 0.5 * (bend + 1.0), frame)
         elif kind == "aftertouch":
-            self._move("pressure", channel, message.value / 127.0, frame)
+            self._controllers.move(sources.PRESSURE, channel, message.value / 127.0, frame)
         elif kind == "polytouch":
-            self._channels[channel].touch[message.note] = self._stamped(message.value / 127.0)
-            self._follow("poly-pressure", channel, frame)
+            self._controllers.touch(Key(channel, message.note), message.value / 127.0, frame)
         elif kind == "control_change":
             self._control(channel, message.control, message.value, frame)
 
+    def move(self, address: str, argument: float, *, frame: int | None = None) -> None:
+        """Move what an OSC address of the mapping is bound to, for all channels."""
+        self._controllers.move_address(address, argument, frame)
+
     def write(self, address: str, value: float, *, frame: int | None = None) -> float:
         """Set a parameter for all channels, until a controller moves it; see `Performer.write`."""
-        accepted = self._performer.write(address, value, frame=frame)
-        if find(address).place is Place.PLAYER:
-            self._set[address] = self._stamped(accepted)
-        return accepted
+        return self._controllers.write(address, value, frame)
+
+    def remap(self, mapping: Mapping, *, frame: int | None = None) -> None:
+        """Take another mapping while notes sound; see `Controllers.remap`."""
+        was_mpe = self.mapping.mpe
+        self._controllers.remap(mapping, frame)
+        if mapping.mpe != was_mpe:
+            self._start_anew(frame)
+        if mapping.of(SUSTAIN_SOURCE):  # it is no pedal any more, and shall hold nothing
+            for state in self._channels.values():
+                self._lift_pedal(state, frame)
 
     def let_go_of(self, port: int, *, frame: int | None = None) -> None:
         """End the notes of a port that is gone, and forget what was moved on it."""
         for channel in range(CHANNELS * port, CHANNELS * (port + 1)):
-            if channel in self._channels:
-                self._performer.all_notes_off(frame=frame, channel=channel)
-                del self._channels[channel]
+            self._performer.all_notes_off(frame=frame, channel=channel)
+            self._forget(channel)
         self._zones.pop(port, None)
 
     def begin_again(self, *, frame: int | None = None) -> None:
         """Put every parameter to where the mapping begins, and the rest to their defaults."""
         for param in sorted(TABLE, key=lambda param: param.place is Place.ENGINE):
             self.write(param.address, param.default, frame=frame)
-        self._set_out(frame)
-
-    def _set_out(self, frame: int | None = None) -> None:
-        for address, value in self._mapping.start:
-            self.write(address, value, frame=frame)
+        self._controllers.begin(frame)
 
     def _listens_to(self, channel: int, port: int) -> bool:
         if self._plays is not None:
             return channel in self._plays
         return channel != PERCUSSION or self._zones[port].master(channel) is not None
 
-    def _master(self, channel: int) -> int | None:
-        """The master of a virtual channel in an MPE zone."""
+    def master(self, channel: int) -> int | None:
+        """See `controllers.Channels`."""
         port, own = divmod(channel, CHANNELS)
         master = self._zones[port].master(own)
         return None if master is None else CHANNELS * port + master
+
+    def bend_range(self, channel: int) -> float:
+        """See `controllers.Channels`."""
+        if self._performer.keeps("/playing/bend_range"):
+            return self._performer.value("/playing/bend_range")
+        port, own = divmod(channel, CHANNELS)
+        usual = self._zones[port].bend_range(own)
+        told = self._channels[channel].bend_range
+        if told is not None:
+            return told
+        return self._performer.value("/playing/bend_range") if usual is None else usual
 
     def _zone(self, channel: int) -> list[int]:
         """A channel and, where it is the master of a zone, its members."""
@@ -143,8 +170,11 @@ class MidiPlayer:
         self._performer.all_notes_off(frame=frame)
         self._channels.clear()
         self._zones.clear()
-        for address, (_, value) in self._set.items():
-            self._performer.write(address, value, frame=frame)
+        self._controllers.start_anew(frame)
+
+    def _forget(self, channel: int) -> None:
+        self._channels.pop(channel, None)
+        self._controllers.forget(channel)
 
     def note_on(self, key: Key, velocity: float, frame: int | None) -> None:
         """Begin a note, struck with a velocity of 0 to 1."""
@@ -152,21 +182,18 @@ class MidiPlayer:
         if self._performer.holds(key) and key not in state.let_go and frame is not None:
             state.struck_again[key.note] = frame
         self._forget_let_go(key)
-        before, touched = state.velocity.get(key.note), state.touch.pop(key.note, None)
-        state.velocity[key.note] = self._stamped(velocity)
-        self._remember("velocity")
+        struck = self._controllers.strike(key, velocity)
         if self._performer.note_on(key, frame=frame):
             self.notes_by_channel[key.channel] += 1
-        else:  # not a note of this instrument: what was heard goes on
-            _restore(state.velocity, key.note, before)
-            _restore(state.touch, key.note, touched)
+        else:
+            self._controllers.unstrike(key, struck)
 
     def note_off(self, key: Key, frame: int | None) -> None:
         """End a note, unless the channel's pedal keeps it."""
         state = self._channels[key.channel]
         if frame is not None and state.struck_again.pop(key.note, None) == frame:
             return  # the end of the stroke before, which some files write after the new one
-        master = self._master(key.channel)
+        master = self.master(key.channel)
         if state.sustain:
             state.let_go.add(key)
         elif master is not None and self._channels[master].sustain:
@@ -176,11 +203,10 @@ class MidiPlayer:
 
     def _control(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
-        if control == SUSTAIN and not self._mapping.of("cc 64"):
+        if control == SUSTAIN and not self.mapping.of(SUSTAIN_SOURCE):
             state.sustain = value >= 64
             if not state.sustain:
-                self._performer.notes_off(state.let_go, frame=frame)
-                state.let_go.clear()
+                self._lift_pedal(state, frame)
         elif control == ALL_SOUND_OFF:
             state.let_go.clear()
             for each in self._zone(channel):
@@ -193,34 +219,54 @@ class MidiPlayer:
                     self._performer.all_notes_off(frame=frame, channel=each)
         elif control == RESET_CONTROLLERS:
             self._reset_controllers(channel, frame)
-        elif control in (RPN, RPN_FINE):
-            state.rpn = (value, state.rpn[1]) if control == RPN else (state.rpn[0], value)
-        elif control in (NRPN, NRPN_FINE):
-            state.rpn = NULL
+        elif control in (RPN, RPN_FINE, NRPN, NRPN_FINE):
+            _select(state, control, value)
         elif control in (DATA_ENTRY, DATA_ENTRY_FINE, INCREMENT, DECREMENT):
             self._data_entry(channel, control, value, frame)
         else:
-            self._move(f"cc {control}", channel, value / 127.0, frame)
+            self._move_control(channel, control, value, frame)
+
+    def _move_control(self, channel: int, control: int, value: int, frame: int | None) -> None:
+        """Move what hears this control alone, and then what hears it as half of a pair."""
+        self._controllers.move(sources.control(control), channel, value / 127.0, frame)
+        if control in sources.COARSE:
+            self._controllers.move_coarse(sources.pair(control), channel, value, frame)
+        elif (coarse := control - sources.FINE_ABOVE) in sources.COARSE:
+            self._controllers.move_fine(sources.pair(coarse), channel, value, frame)
+
+    def _lift_pedal(self, state: Channel, frame: int | None) -> None:
+        state.sustain = False
+        self._performer.notes_off(state.let_go, frame=frame)
+        state.let_go.clear()
 
     def _reset_controllers(self, channel: int, frame: int | None) -> None:
         self._control(channel, SUSTAIN, 0, frame)
-        state = self._channels[channel]
-        state.rpn = NULL
-        state.touch.clear()
-        for bind in self._mapping.binds:
-            if bind.target not in KEPT_ON_RESET:
-                state.moved.pop(bind.source, None)
-        for source in dict.fromkeys(bind.source for bind in self._mapping.binds):
-            if source != "velocity":
-                self._follow(source, channel, frame)
+        self._channels[channel].selected = Selected()
+        self._controllers.reset(channel, frame)
 
     def _data_entry(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
-        if state.rpn == MPE_CONFIGURATION and control == DATA_ENTRY:
+        if not state.selected.is_registered:
+            self._enter_nrpn(channel, control, value, frame)
+        elif state.has_selected(MPE_CONFIGURATION) and control == DATA_ENTRY:
             self._configure_zone(channel, value, frame)
-        if state.rpn != BEND_RANGE:
+        elif state.has_selected(BEND_RANGE):
+            self._enter_bend_range(channel, control, value, frame)
+
+    def _enter_nrpn(self, channel: int, control: int, value: int, frame: int | None) -> None:
+        number = self._channels[channel].selected.number
+        if number is None or number == NULL:
             return
-        semitones, cents = divmod(round(self._bend_range(channel) * 100.0), 100)
+        source = sources.nrpn(number[0] << 7 | number[1])
+        if control == DATA_ENTRY:
+            self._controllers.move_coarse(source, channel, value, frame)
+        elif control == DATA_ENTRY_FINE:
+            self._controllers.move_fine(source, channel, value, frame)
+        else:
+            self._controllers.step(source, channel, 1 if control == INCREMENT else -1, frame)
+
+    def _enter_bend_range(self, channel: int, control: int, value: int, frame: int | None) -> None:
+        semitones, cents = divmod(round(self.bend_range(channel) * 100.0), 100)
         if control == DATA_ENTRY:
             semitones = value
         elif control == DATA_ENTRY_FINE:
@@ -228,12 +274,12 @@ class MidiPlayer:
         else:
             semitones += 1 if control == INCREMENT else -1
         limits = find("/playing/bend_range")
-        state.bend_range = limits.accept(semitones + cents / 100.0)
-        master = self._master(channel)
+        told = self._channels[channel].bend_range = limits.accept(semitones + cents / 100.0)
+        master = self.master(channel)
         if master is not None:  # what one member is told holds for all of them
             for member in self._zone(master)[1:]:
-                self._channels[member].bend_range = state.bend_range
-        self._follow("bend", channel, frame)
+                self._channels[member].bend_range = told
+        self._controllers.follow(sources.BEND, channel, frame)
 
     def _configure_zone(self, channel: int, members: int, frame: int | None) -> None:
         """Make or end an MPE zone; its notes end, and its channels begin anew."""
@@ -243,89 +289,21 @@ class MidiPlayer:
             return
         for each in {*affected, *self._zone(channel)}:
             self._performer.all_notes_off(frame=frame, channel=each)
-            self._channels.pop(each, None)
-        self._channels[channel].rpn = MPE_CONFIGURATION
-
-    def _bend_range(self, channel: int) -> float:
-        if self._performer.keeps("/playing/bend_range"):
-            return self._performer.value("/playing/bend_range")
-        port, own = divmod(channel, CHANNELS)
-        usual = self._zones[port].bend_range(own)
-        told = self._channels[channel].bend_range
-        if told is not None:
-            return told
-        return self._performer.value("/playing/bend_range") if usual is None else usual
-
-    def _move(self, source: str, channel: int, place: float, frame: int | None) -> None:
-        self._channels[channel].moved[source] = self._stamped(place)
-        self._follow(source, channel, frame)
-
-    def _stamped(self, place: float) -> Moved:
-        self._moves += 1
-        return self._moves, place
-
-    def _remember(self, source: str) -> None:
-        for bind in self._mapping.of(source):
-            self._set.setdefault(bind.target, (0, self._performer.value(bind.target)))
-
-    def _follow(self, source: str, channel: int, frame: int | None) -> None:
-        """Let the sounding note follow what its channel just did."""
-        self._remember(source)
-        heard = self._performer.sounding or self._heard
-        if heard is None or channel in (heard.channel, self._master(heard.channel)):
-            asked = self._asked(heard.channel if heard else channel, heard.note if heard else -1)
-            for bind in self._mapping.of(source):
-                self._performer.write(bind.target, asked[bind.target], frame=frame)
-
-    def _expression(self, key: Key) -> dict[str, float]:
-        """What a note that begins, or comes back, is to have of its channel."""
-        self._heard = key
-        return self._asked(key.channel, key.note)
-
-    def _asked(self, channel: int, note: float) -> dict[str, float]:
-        """Values of all targets that were ever moved, for a note of this channel.
-
-        Of several sources of one target the one moved last counts, a direct write among them;
-        where this channel moved none, the target is as it was before any channel did. A note
-        in an MPE zone has its master's bend besides its own, and its master's other moves
-        where it has none of its own.
-        """
-        asked = dict(self._set)
-        master = self._master(channel)
-        for bind in self._mapping.binds:
-            moved = self._moved(bind.source, channel, note)
-            if moved is None and master is not None:
-                moved = self._moved(bind.source, master, note)
-            if moved is None or moved[0] < asked.get(bind.target, (0, 0.0))[0]:
-                continue
-            when, place = moved
-            value = bind.apply(place)
-            if bind.is_by_range:
-                value = self._bend(channel) + (0.0 if master is None else self._bend(master))
-            asked[bind.target] = (when, value)
-        return {address: value for address, (_, value) in asked.items()}
-
-    def _moved(self, source: str, channel: int, note: float) -> Moved | None:
-        state = self._channels[channel]
-        if source == "poly-pressure":
-            return state.touch.get(note)
-        if source == "velocity":
-            return state.velocity.get(note)
-        return state.moved.get(source)
-
-    def _bend(self, channel: int) -> float:
-        """Bend of a channel (semitones)."""
-        _, place = self._channels[channel].moved.get("bend", (0, 0.5))
-        return (2.0 * place - 1.0) * self._bend_range(channel)
+            self._forget(each)
+        self._channels[channel].selected = Selected(True, *MPE_CONFIGURATION)
 
     def _forget_let_go(self, key: Key) -> None:
-        master = self._master(key.channel)
+        master = self.master(key.channel)
         for channel in (key.channel, *(() if master is None else (master,))):
             self._channels[channel].let_go.discard(key)
 
 
-def _restore(moved: dict[float, Moved], note: float, before: Moved | None) -> None:
-    if before is None:
-        moved.pop(note, None)
+def _select(state: Channel, control: int, value: int) -> None:
+    """Select a parameter by one of its halves; those of RPN and NRPN do not mix."""
+    is_registered = control in (RPN, RPN_FINE)
+    if state.selected.is_registered != is_registered:
+        state.selected = Selected(is_registered)
+    if control in (RPN, NRPN):
+        state.selected.coarse = value
     else:
-        moved[note] = before
+        state.selected.fine = value

@@ -7,7 +7,11 @@ Any parameter written with ``hold`` stays as it is, whatever notes and controlle
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from typing import Protocol
+
+from yehu_server.params.table import find
 
 
 class Sink(Protocol):
@@ -29,6 +33,7 @@ class Ownership:
         self.sink = sink
         self._taken: set[str] = set()
         self._kept: set[str] = set()
+        self._glide_ms = 0.0
         self._sent: dict[str, float] = {}  # where the player last sent each parameter
 
     def move(
@@ -37,7 +42,19 @@ class Ownership:
         """Move a parameter, unless somebody else has it, or it is on its way there already."""
         if self.has(address) and self._sent.get(address) != value:
             self._sent[address] = value
+            if self._glide_ms > 0.0:
+                usual_ms = find(address).smooth_ms if ramp_ms is None else ramp_ms
+                ramp_ms = max(usual_ms, self._glide_ms)
             self.sink.write(address, value, frame=frame, ramp_ms=ramp_ms)
+
+    @contextlib.contextmanager
+    def gliding(self, glide_ms: float) -> Iterator[None]:
+        """Let each move take this long at least."""
+        before, self._glide_ms = self._glide_ms, glide_ms
+        try:
+            yield
+        finally:
+            self._glide_ms = before
 
     def forget(self, address: str) -> None:
         """Let the next move of a parameter be made, wherever it is."""

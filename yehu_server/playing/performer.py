@@ -147,10 +147,18 @@ class Performer:
             raise ParameterError(f"{address} is not held by the player") from None
 
     def write(
-        self, address: str, value: float, *, frame: int | None = None, hold: bool = False
+        self,
+        address: str,
+        value: float,
+        *,
+        frame: int | None = None,
+        hold: bool = False,
+        glide_ms: float = 0.0,
     ) -> float:
         """Set any parameter of the table; return the value it then has.
 
+        What follows from it in bow and fingers takes `glide_ms` at least; for a note that
+        begins meanwhile it is there already.
         Errors: ParameterError for an unknown address or a value that is not finite.
         """
         param = find(address)
@@ -169,8 +177,9 @@ class Performer:
         if self._value[address] == accepted:
             return accepted
         self._value[address] = accepted
-        for follow in self._followers.get(address, ()):
-            follow(frame)
+        with self._own.gliding(glide_ms):
+            for follow in self._followers.get(address, ()):
+                follow(frame)
         return accepted
 
     def release(self) -> None:

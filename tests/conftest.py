@@ -1,7 +1,10 @@
 """Settings for all tests."""
 
 import os
+from collections.abc import Iterator
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 # Set before numpy loads: the dense references work on small matrices, where the threads of
@@ -11,3 +14,18 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # The same cases on every machine, and no deadline: a first call may have to compile.
 settings.register_profile("yehu", deadline=None, derandomize=True, database=None)
 settings.load_profile("yehu")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _config_home(tmp_path_factory) -> Iterator[None]:
+    """No test reads the mappings or settings of whoever runs it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CONFIG_HOME", str(tmp_path_factory.mktemp("config")))
+        yield
+
+
+@pytest.fixture
+def config_home(tmp_path, monkeypatch) -> Path:
+    """A folder of settings for one test."""
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    return tmp_path / "config"

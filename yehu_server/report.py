@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.audio.devices import AudioDevice
+from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
+from yehu_server.playing.binds import Bind
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.render import Summary
@@ -119,13 +121,19 @@ def mapping_report(mapping: ControllerMapping) -> None:
     table = Table()
     for column in ("you move", "what moves", "from", "to", "curve"):
         table.add_column(column, overflow="fold")
+    if any(map(_terms, mapping.binds)):
+        table.add_column("terms", overflow="fold")
     for bind in mapping.binds:
         param = find(bind.target)
         unit = "" if param.unit == "1" else f" {param.unit}"
         ends = [f"{end:g}{unit}" for end in bind.ends]
         if bind.is_by_range:
             ends = ["- bend range", "+ bend range"]
-        table.add_row(bind.source, bind.target, *ends, bind.curve.value)
+        if bind.invert:
+            ends.reverse()
+        curve = bind.curve.value if isinstance(bind.curve, Curve) else "table"
+        cells = (bind.source, bind.target, *ends, curve, _terms(bind))
+        table.add_row(*cells[: len(table.columns)])
     console.print(table)
     for address, value in mapping.start:
         param = find(address)
@@ -133,6 +141,20 @@ def mapping_report(mapping: ControllerMapping) -> None:
         console.print(f"begins with {address} = {value:g}{unit}")
     if mapping.mpe:
         console.print("begins with one MPE zone of 15 member channels on every port")
+
+
+def _terms(bind: Bind) -> str:
+    """What else there is to say of a bind."""
+    terms = []
+    if bind.reach != (0.0, 1.0):
+        terms.append(f"sends {bind.reach[0]:g} to {bind.reach[1]:g}")
+    if bind.channels:
+        terms.append(f"channel {', '.join(map(str, bind.channels))}")
+    if bind.smoothing_ms:
+        terms.append(f"within {bind.smoothing_ms:g} ms")
+    if bind.is_soft:
+        terms.append("soft")
+    return "; ".join(terms)
 
 
 def _because(problem: str) -> str:

@@ -29,17 +29,20 @@ from yehu_server.control.ports import MidiOptions, MidiPorts
 from yehu_server.control.sockets import OscPorts
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
-from yehu_server.errors import OutputError
+from yehu_server.errors import MappingError, OutputError
 from yehu_server.files import check_target
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
 from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.mapping_watch import MappingWatch
 from yehu_server.playing.style import Style
 from yehu_server.score.capture import CaptureWriter
 
 log = logging.getLogger(__name__)
 
 KEEP_EVERY_S = 0.05
+LOOK_EVERY_S = 0.5  # at the mapping's files
 # A message is heard one block after it arrived, so that its frame is still to be played, and
 # this much later, which is what Python takes to act on it.
 HANDLING_MS = 1.0
@@ -58,6 +61,7 @@ class ServeOptions:
     osc: Address = ("127.0.0.1", 9000)
     allowed: Allowed = field(default_factory=Allowed)
     style: Style = field(default_factory=Style)
+    reread: Callable[[], Mapping] | None = None  # the mapping's files; None: they are not watched
     jitter_ms: float | None = None  # None: one block and HANDLING_MS
     record: Path | None = None
     capture: Path | None = None
@@ -116,6 +120,10 @@ class Server:
         self._recorder: Recorder | None = None
         self._capture: CaptureWriter | None = None
         self.midi = MidiPorts(self.player, options.midi, said) if options.midi else None
+        self._watch = (
+            MappingWatch(options.style.mapping, options.reread) if options.reread else None
+        )
+        self._next_look = 0.0
         self._ending = threading.Event()
         self._keeper = threading.Thread(target=self._keep, name="keeper", daemon=True)
         self._rests = 0
@@ -180,6 +188,20 @@ class Server:
             if self._capture is not None:
                 self._write_capture(self._capture)
             self._report_troubles()
+            if self._watch is not None and time.monotonic() >= self._next_look:
+                self._next_look = time.monotonic() + LOOK_EVERY_S
+                self._look_at(self._watch)
+
+    def _look_at(self, watch: MappingWatch) -> None:
+        """Take up the mapping if its files have changed and are right."""
+        try:
+            mapping = watch.look()
+        except MappingError as error:
+            self._said(f"{error}; the mapping stays as it was")
+            return
+        if mapping is not None:
+            self.player.remap(mapping, frame=self.player.frame_of())
+            self._said(f"the mapping {mapping.name} has changed, and is taken up")
 
     def _write_capture(self, capture: CaptureWriter) -> None:
         try:

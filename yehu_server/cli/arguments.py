@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from yehu_server.errors import ParameterError
 
 if TYPE_CHECKING:
+    from yehu_server.playing.mapping import Mapping
     from yehu_server.playing.style import Style
 
 
@@ -48,7 +49,8 @@ def add_playing(group: Any) -> None:
     group.add_argument(
         "--mapping",
         metavar="FILE",
-        help="what controllers do: a shipped mapping's name or a file (default: keyboard)",
+        help="what controllers do: the name of a mapping, yours or shipped, or a file "
+        "(default: keyboard)",
     )
     group.add_argument(
         "--mpe",
@@ -98,19 +100,25 @@ def add_playing(group: Any) -> None:
     )
 
 
+def mapping_of(arguments: argparse.Namespace) -> Mapping:
+    """The mapping that `add_playing` was told. Errors: MappingError."""
+    from yehu_server.playing.mapping import DEFAULT, MPE, load
+
+    mapping = load(arguments.mapping or (MPE if arguments.mpe else DEFAULT))
+    return replace(mapping, mpe=mapping.mpe or arguments.mpe)
+
+
 def style_of(arguments: argparse.Namespace) -> Style:
     """What `add_playing` was told. Errors: YehuError for files and values that are wrong."""
     from yehu_server.params.table import assignment
     from yehu_server.playing.fingering import OpenStrings, RangePolicy
-    from yehu_server.playing.mapping import DEFAULT, MPE, load
     from yehu_server.playing.style import Style
     from yehu_server.playing.tuning import EQUAL, read_tuning
 
     if arguments.keyboard_map is not None and arguments.tuning is None:
         raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
-    mapping = load(arguments.mapping or (MPE if arguments.mpe else DEFAULT))
     return Style(
-        mapping=replace(mapping, mpe=mapping.mpe or arguments.mpe),
+        mapping=mapping_of(arguments),
         settings=tuple(assignment(text) for text in arguments.set),
         a4=arguments.a4,
         tuning=read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL,

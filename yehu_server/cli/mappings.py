@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
+from yehu_server.errors import MappingError
+
 if TYPE_CHECKING:
+    from yehu_server.playing.binds import Bind
     from yehu_server.playing.mapping import Mapping
 
 EXAMPLES = """\
@@ -17,6 +22,7 @@ examples:
   yehu-server mappings list
   yehu-server mappings show wind
   yehu-server mappings check my-pedals.toml
+  yehu-server mappings convert wind -o my-wind.toml
 """
 
 
@@ -25,43 +31,63 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "mappings",
         help="what controllers move: the presets, and files of your own",
-        description="List the presets, show what one moves, or check files of your own.",
+        description="List the presets, show what one moves, check or convert files of your own.",
         epilog=EXAMPLES,
         formatter_class=RawDescriptionRichHelpFormatter,
         allow_abbrev=False,
     )
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
-    for name, run, text in (
-        ("list", _list, "the presets"),
-        ("show", _show, "what controllers move in one"),
-        ("check", _check, "whether files are right"),
-    ):
-        action = actions.add_parser(
-            name,
-            help=text,
-            description=f"Tell {text}.",
-            formatter_class=RawDescriptionRichHelpFormatter,
-            allow_abbrev=False,
-        )
-        action.set_defaults(run=run)
-        if name == "show":
-            action.add_argument("mapping", metavar="NAME", help="a preset's name, or a file")
-        if name == "check":
-            action.add_argument("files", nargs="+", type=Path, metavar="FILE")
-        else:
-            action.add_argument("--json", action="store_true", help="print one JSON object")
+    _add_action(actions, "list", _list, "the presets, and what is in your folder")
+    show = _add_action(actions, "show", _show, "what controllers move in one")
+    show.add_argument("mapping", metavar="NAME", help="a preset's name, or a file")
+    check = _add_action(actions, "check", _check, "whether files are right")
+    check.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    convert = _add_action(actions, "convert", _convert, "one as a file of today's form")
+    convert.add_argument(
+        "mapping",
+        metavar="FILE",
+        help="a file, also of what show --json prints, or a preset's name",
+    )
+    convert.add_argument(
+        "-o", "--output", type=Path, metavar="OUT", help="the file to write (default: print it)"
+    )
+    for action in (actions.choices["list"], show):
+        action.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _add_action(actions: Any, name: str, run: Any, text: str) -> Any:
+    action = actions.add_parser(
+        name,
+        help=text,
+        description=f"Tell {text}.",
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    action.set_defaults(run=run)
+    return action
 
 
 def _list(arguments: argparse.Namespace) -> int:
-    from yehu_server.playing.mapping import load, shipped_mappings
+    from yehu_server.playing.mapping import own_mappings, shipped_mappings
 
-    presets = {name: load(name).about for name in shipped_mappings()}
+    own = own_mappings()
+    abouts = {name: _about(name) for name in shipped_mappings() if name not in own}
+    abouts |= {name: f"yours: {_about(name)}" for name in own}
     if arguments.json:
-        print(json.dumps(presets))
+        print(json.dumps(abouts))
     else:
-        width = max(map(len, presets))
-        print("\n".join(f"{name:{width}}  {about}" for name, about in presets.items()))
+        width = max(map(len, abouts))
+        print("\n".join(f"{name:{width}}  {about}" for name, about in abouts.items()))
     return 0
+
+
+def _about(name: str) -> str:
+    from yehu_server.playing.mapping import load
+
+    try:
+        return load(name).about
+    except MappingError as error:  # one that is wrong does not hide the others
+        return str(error)
 
 
 def _show(arguments: argparse.Namespace) -> int:
@@ -80,25 +106,66 @@ def _show(arguments: argparse.Namespace) -> int:
 def _check(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.mapping import load
 
+    code = 0
     for file in arguments.files:
         # A path, also where it has no ending: a preset's name would be no file.
-        mapping = load(str(file if file.suffix else Path() / file.absolute()))
-        print(f"{file}: right, {len(mapping.binds)} binds")
+        try:
+            mapping = load(str(file if file.suffix else Path() / file.absolute()))
+        except MappingError as error:
+            code = 2
+            for line in (str(error), *error.more):
+                print(f"yehu-server: {line}", file=sys.stderr)
+        else:
+            print(f"{file}: right, {len(mapping.binds)} binds")
+    return code
+
+
+def _convert(arguments: argparse.Namespace) -> int:
+    from yehu_server.files import replacing
+    from yehu_server.playing.mapping import find_file, with_bases
+    from yehu_server.playing.mapping_file import json_of, sheet_of, text_of, toml_of
+    from yehu_server.playing.mapping_writer import as_toml, tidied
+
+    path = find_file(arguments.mapping)
+    text = text_of(path)
+    is_json = text.lstrip().startswith("{")  # as no TOML does
+    data = json_of(path, text) if is_json else toml_of(path, text)
+    sheet = sheet_of(path, data, "" if is_json else text)
+    with_bases(path, sheet)  # which it needs to be of use
+    if arguments.output is not None and sheet.name == path.stem:
+        sheet = replace(sheet, name=arguments.output.stem)
+    converted = as_toml(sheet) if is_json else tidied(sheet, text)
+    if arguments.output is None:
+        print(converted, end="")
+    else:
+        with replacing(arguments.output) as partial:
+            partial.write_text(converted, encoding="utf-8", newline="\n")
     return 0
 
 
 def _fields(mapping: Mapping) -> dict[str, Any]:
-    binds = [
-        {
-            "source": bind.source,
-            "target": bind.target,
-            "from": None if bind.is_by_range else bind.ends[0],
-            "to": None if bind.is_by_range else bind.ends[1],
-            "curve": bind.curve.value,
-        }
-        for bind in mapping.binds
-    ]
-    start = dict(mapping.start)
-    return {"name": mapping.name, "about": mapping.about, "mpe": mapping.mpe, "start": start} | {
-        "bind": binds
+    return {
+        "name": mapping.name,
+        "about": mapping.about,
+        "mpe": mapping.mpe,
+        "start": dict(mapping.start),
+        "bind": [_bind_fields(bind) for bind in mapping.binds],
+    }
+
+
+def _bind_fields(bind: Bind) -> dict[str, Any]:
+    from yehu_server.playing.sources import is_address
+
+    return {
+        "source": bind.source,
+        "target": bind.target,
+        "from": None if bind.is_by_range else bind.ends[0],
+        "to": None if bind.is_by_range else bind.ends[1],
+        "span": bind.span,
+        "curve": bind.curve.value,
+        "invert": bind.invert,
+        "smoothing": bind.smoothing_ms,
+        "channel": bind.channels or None,
+        "soft": bind.is_soft,
+        "input": bind.reach if is_address(bind.source) else None,
     }

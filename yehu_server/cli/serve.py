@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 from yehu_server.cli.arguments import (
     add_playing,
     compiling,
+    mapping_of,
     positive,
     progress_bar,
     style_of,
@@ -124,6 +126,11 @@ def _add_osc(group: Any) -> None:
 def _add_playing(group: Any) -> None:
     add_playing(group)
     group.add_argument(
+        "--watch",
+        action="store_true",
+        help="take up the mapping anew when its file changes",
+    )
+    group.add_argument(
         "--jitter-buffer",
         type=_jitter,
         metavar="MS",
@@ -227,6 +234,7 @@ def _options(arguments: argparse.Namespace) -> Any:
         osc=parse_address(arguments.osc, "127.0.0.1", 9000),
         allowed=Allowed(arguments.osc_allow),
         style=style_of(arguments),
+        reread=partial(mapping_of, arguments) if arguments.watch else None,
         jitter_ms=arguments.jitter_buffer,
         record=arguments.record,
         capture=arguments.capture,

@@ -21,6 +21,11 @@ class Table:
 
     points: tuple[tuple[float, float], ...]
 
+    @property
+    def value(self) -> list[list[float]]:
+        """As a file has it."""
+        return [list(point) for point in self.points]
+
     def at(self, unit: float) -> float:
         """The share of the span at a place of the way."""
         after = bisect_right(self.points, unit, key=lambda point: point[0])
@@ -121,7 +126,7 @@ class Bind:
             The target's.
         """
         here, there = self._share(place), self._share_of(value)
-        if abs(here - there) <= NEAR:
+        if abs(here - there) <= NEAR or self.ends[0] == self.ends[1]:
             return True
         return before is not None and (self._share(before) - there) * (here - there) < 0.0
 

@@ -6,7 +6,6 @@ The format is described in mappings/README.md.
 from __future__ import annotations
 
 import json
-import math
 import re
 import tomllib
 from collections.abc import Callable
@@ -16,8 +15,8 @@ from typing import Any, TypeVar
 
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.files import read_text
-from yehu_server.params.spec import Curve, Param, Place
-from yehu_server.params.table import find
+from yehu_server.params.spec import Curve
+from yehu_server.playing import mapping_entries as entries
 from yehu_server.playing import sources
 from yehu_server.playing.binds import Bind, Table
 from yehu_server.playing.toml_lines import Way, line_at, lines_of
@@ -26,8 +25,6 @@ ENTRIES = ("name", "about", "base", "mpe", "start", "bind")
 BIND_ENTRIES = (
     "source", "target", "input", "span", "curve", "invert", "smoothing", "channel", "soft",
 )  # fmt: skip
-LONGEST_SMOOTHING_MS = 5000.0
-MOST_POINTS = 1024
 _LINE = re.compile(r"\(at line ([0-9]+)")
 
 T = TypeVar("T")
@@ -102,9 +99,9 @@ def json_of(path: Path, text: str) -> dict[str, Any]:
         raise MappingError(f"{path}: not a mapping ({error})") from error
     if not isinstance(data, dict):
         raise MappingError(f"{path}: not a mapping")
-    entries = data.get("bind", [])
-    if isinstance(entries, list):
-        data["bind"] = [_of_json(entry) if isinstance(entry, dict) else entry for entry in entries]
+    binds = data.get("bind", [])
+    if isinstance(binds, list):
+        data["bind"] = [_of_json(bind) if isinstance(bind, dict) else bind for bind in binds]
     return _present(data)
 
 
@@ -116,8 +113,8 @@ def _of_json(entry: dict[str, Any]) -> dict[str, Any]:
     return _present(entry)
 
 
-def _present(entries: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in entries.items() if value is not None}
+def _present(table: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in table.items() if value is not None}
 
 
 # ---------------------------------------------------------------- what a file says
@@ -134,39 +131,36 @@ def sheet_of(path: Path, data: dict[str, Any], text: str = "") -> Sheet:
         return _read(data, name, reader, default, lambda what: wrong.add((name,), what))
 
     sheet = Sheet(
-        name=read("name", _words("name"), path.stem),
+        name=read("name", entries.words("name"), path.stem),
         binds=_binds(data.get("bind", []), wrong),
         start=_start(data.get("start", {}), wrong),
-        base=read("base", _words("base"), None),
-        mpe=read("mpe", _flag("mpe"), None),
-        about=read("about", _words("about"), ""),
+        base=read("base", entries.words("base"), None),
+        mpe=read("mpe", entries.flag("mpe"), None),
+        about=read("about", entries.words("about"), ""),
     )
     wrong.end()
     return sheet
 
 
-def _start(entries: Any, wrong: Complaints) -> tuple[tuple[str, float], ...]:
-    if not isinstance(entries, dict):
+def _start(values: Any, wrong: Complaints) -> tuple[tuple[str, float], ...]:
+    if not isinstance(values, dict):
         wrong.add(("start",), "start: expected a table of addresses and values")
         return ()
     start = []
-    for address, value in entries.items():
+    for address, value in values.items():
         try:
-            param = _of_player(address, "set one")
-            if param.accept(value) != value:
-                raise ParameterError(f"{address}: {value} is not within {param.range_text}")
-            start.append((address, float(value)))
+            start.append((address, entries.start(address, value)))
         except ParameterError as error:
             wrong.add(("start", address), f"start: {error}")
     return tuple(start)
 
 
-def _binds(entries: Any, wrong: Complaints) -> tuple[Bind, ...]:
-    if not isinstance(entries, list):
+def _binds(tables: Any, wrong: Complaints) -> tuple[Bind, ...]:
+    if not isinstance(tables, list):
         wrong.add(("bind",), "write each bind as [[bind]]")
         return ()
     binds = []
-    for place, entry in enumerate(entries):
+    for place, entry in enumerate(tables):
 
         def complain(name: str, what: str, place: int = place) -> None:
             wrong.add(("bind", place, name), f"bind {place + 1}: {what}")
@@ -188,25 +182,27 @@ def _bind(entry: Any, wrong: Callable[[str, str], None]) -> Bind | None:
     def read(name: str, reader: Callable[[Any], T], default: T) -> T:
         return _read(entry, name, reader, default, lambda what: wrong(name, what))
 
-    for name in ("source", "target"):
-        if not isinstance(entry.get(name), str):
-            wrong(name, "needs a source and a target")
-            return None
-    source = read("source", sources.canonical, "")
-    param = read("target", lambda text: _of_player(text, "map to one"), None)
-    if not source or param is None:
-        return None
+    missing = [name for name in ("source", "target") if not isinstance(entry.get(name), str)]
+    source, param = None, None
+    if missing:
+        wrong(missing[0], "needs a source and a target")
+    else:
+        source = read("source", sources.canonical, None)
+        param = read("target", lambda text: entries.of_player(text, "map to one"), None)
+    curve: Curve | Table | None = read("curve", entries.curve, None)
     bind = Bind(
-        source,
-        param.address,
-        span=read("span", lambda value: _span(value, param), None),
-        curve=read("curve", _curve, param.curve),
-        invert=read("invert", _flag("invert"), False),
-        smoothing_ms=read("smoothing", _smoothing, 0.0),
-        channels=read("channel", _channels, ()),
-        is_soft=read("soft", _flag("soft"), False),
-        reach=read("input", _reach, (0.0, 1.0)),
+        source or "",
+        param.address if param else "",
+        span=read("span", lambda value: entries.span(value, param), None),
+        curve=curve or (param.curve if param else Curve.LIN),
+        invert=read("invert", entries.flag("invert"), False),
+        smoothing_ms=read("smoothing", entries.smoothing, 0.0),
+        channels=read("channel", entries.channels, ()),
+        is_soft=read("soft", entries.flag("soft"), False),
+        reach=read("input", entries.reach, (0.0, 1.0)),
     )
+    if source is None or param is None:
+        return None
     for name, what in _disagreements(bind, entry):
         wrong(name, what)
     return bind
@@ -228,140 +224,17 @@ def _disagreements(bind: Bind, entry: dict[str, Any]) -> list[tuple[str, str]]:
     return found
 
 
-# ---------------------------------------------------------------- what an entry says
-
-
 def _read(
-    entries: dict[str, Any],
+    table: dict[str, Any],
     name: str,
     reader: Callable[[Any], T],
     default: T,
     wrong: Callable[[str], None],
 ) -> T:
-    if name not in entries:
+    if name not in table:
         return default
     try:
-        return reader(entries[name])
+        return reader(table[name])
     except ParameterError as error:
         wrong(str(error))
         return default
-
-
-def _words(name: str) -> Callable[[Any], Any]:
-    def read(value: Any) -> str:
-        if not isinstance(value, str):
-            raise ParameterError(f"{name}: expected a line of text, got {value!r}")
-        return value
-
-    return read
-
-
-def _flag(name: str) -> Callable[[Any], Any]:
-    def read(value: Any) -> bool:
-        if not isinstance(value, bool):
-            raise ParameterError(f"{name}: expected true or false, got {value!r}")
-        return value
-
-    return read
-
-
-def _of_player(address: str, instead: str) -> Param:
-    param = find(address)
-    if param.place is not Place.PLAYER:
-        raise ParameterError(f"{address} is moved by the player; {instead} under /playing")
-    return param
-
-
-def _number(value: Any) -> float | None:
-    """A finite number of a file; None for anything else."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    try:
-        number = float(value)
-    except OverflowError:
-        return None
-    return number if math.isfinite(number) else None
-
-
-def _span(value: Any, param: Param) -> tuple[float, float]:
-    ends = _two(value, "span: expected [from, to]")
-    for end in ends:
-        if not param.lo <= end <= param.hi:  # also refuses NaN
-            raise ParameterError(f"span: {end} is not within {param.lo:g} to {param.hi:g}")
-    return float(ends[0]), float(ends[1])
-
-
-def _reach(value: Any) -> tuple[float, float]:
-    numbers = [_number(end) for end in _two(value, "input: expected [from, to]")]
-    lo, hi = numbers
-    if lo is None or hi is None or not 0.0 < abs(hi - lo) < math.inf:
-        raise ParameterError(f"input: expected two different numbers, got {_brief(value)}")
-    return lo, hi
-
-
-def _two(value: Any, expected: str) -> list[Any]:
-    is_numbers = isinstance(value, list) and all(
-        isinstance(end, int | float) and not isinstance(end, bool) for end in value
-    )
-    if not is_numbers or len(value) != 2:
-        raise ParameterError(f"{expected}, got {_brief(value)}")
-    return list(value)
-
-
-def _curve(value: Any) -> Curve | Table:
-    if isinstance(value, list):
-        return _table(value)
-    try:
-        return Curve(value)
-    except ValueError:
-        names = ", ".join(curve.value for curve in Curve)
-        raise ParameterError(
-            f"unknown curve {_brief(value)} (known: {names}, or a table of points)"
-        ) from None
-
-
-def _table(value: list[Any]) -> Table:
-    points: list[tuple[float, float]] = []
-    for point in value:
-        pair = [_number(part) for part in point] if isinstance(point, list) else []
-        if len(pair) != 2 or pair[0] is None or pair[1] is None:
-            raise ParameterError(f"curve: expected points [from, to], got {_brief(point)}")
-        if not 0.0 <= min(pair[0], pair[1]) <= max(pair[0], pair[1]) <= 1.0:
-            raise ParameterError(f"curve: {_brief(point)} is not within 0 to 1")
-        points.append((pair[0], pair[1]))
-    ways = [way for way, _ in points]
-    if len(ways) < 2 or (ways[0], ways[-1]) != (0.0, 1.0):
-        raise ParameterError("curve: the points have to begin at 0 and end at 1")
-    if any(later <= way for way, later in zip(ways, ways[1:], strict=False)):
-        raise ParameterError("curve: each point has to lie beyond the one before it")
-    if len(points) > MOST_POINTS:
-        raise ParameterError(f"curve: {len(points)} points are more than {MOST_POINTS}")
-    return Table(tuple(points))
-
-
-def _smoothing(value: Any) -> float:
-    number = _number(value)
-    if number is None or not 0.0 <= number <= LONGEST_SMOOTHING_MS:
-        raise ParameterError(
-            f"smoothing: expected 0 to {LONGEST_SMOOTHING_MS:g} ms, got {_brief(value)}"
-        )
-    return number
-
-
-def _channels(value: Any) -> tuple[int, ...]:
-    numbers = value if isinstance(value, list) else [value]
-    is_right = bool(numbers) and all(
-        isinstance(number, int) and not isinstance(number, bool) and 1 <= number <= 16
-        for number in numbers
-    )
-    if not is_right:
-        raise ParameterError(f"channel: expected 1 to 16, or a list of such, got {_brief(value)}")
-    return tuple(sorted(set(numbers)))
-
-
-def _brief(value: Any) -> str:
-    try:
-        text = repr(value)
-    except ValueError:  # a number of more digits than Python likes to print
-        return "a very large number"
-    return text if len(text) <= 80 else f"{text[:77]}..."

@@ -157,8 +157,7 @@ class Performer:
     ) -> float:
         """Set any parameter of the table; return the value it then has.
 
-        What follows from it in bow and fingers takes `glide_ms` at least; for a note that
-        begins meanwhile it is there already.
+        What follows from it at once, in bow and fingers, takes `glide_ms` at least.
         Errors: ParameterError for an unknown address or a value that is not finite.
         """
         param = find(address)

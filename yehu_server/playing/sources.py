@@ -25,7 +25,7 @@ OUR_OSC = "/yehu"
 _CC = re.compile(r"cc (0|[1-9][0-9]{0,2})(?:/(0|[1-9][0-9]{0,2}))?")
 _NRPN = re.compile(r"nrpn (0|[1-9][0-9]{0,4})(?:/(0|[1-9][0-9]{0,2}))?")
 # What an OSC address may hold: no space, and nothing that makes it a pattern.
-_ADDRESS = re.compile(r"(?:/[!-~]+?)+")
+_ADDRESS = re.compile(r"(?:/[!-.0-~]+)+")
 _NOT_IN_ADDRESSES = frozenset("#*,?[]{}")
 LONGEST_ADDRESS = 255
 

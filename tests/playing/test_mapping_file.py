@@ -1,0 +1,359 @@
+"""Mapping files: the line of each error, bases, and files written anew."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import json
+import tomllib
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from yehu_server.errors import MappingError
+from yehu_server.params.spec import Curve
+from yehu_server.playing.binds import Bind, Table
+from yehu_server.playing.mapping import load, mapping_folder, own_mappings, shipped_mappings
+from yehu_server.playing.mapping_file import read_sheet, sheet_of, toml_of
+from yehu_server.playing.mapping_writer import as_toml, sheet_from, tidied
+from yehu_server.playing.toml_lines import lines_of
+
+BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
+FULL = """\
+# Three pedals.
+name = "mine"  # not yours
+
+[start] # begins
+"/playing/attack" = 25
+
+[[bind]]   # the first
+source = "cc 1/33"
+target = "/playing/pressure"
+span = [0.1,
+        0.9]
+curve = [
+  [0, 0], # [[bind]]
+  [0.5, 0.2],
+  [1, 1],
+]
+invert = true
+
+[[bind]]
+source = "nrpn 2/44"
+target = "/playing/volume"
+smoothing = 50
+channel = [2, 1]
+soft = true
+
+# A fader.
+[[bind]]
+source = "/fader1"
+target = "/playing/volume"
+input = [0, 127]
+curve = "s"
+"""
+
+
+@pytest.fixture
+def read(tmp_path):
+    def from_text(text: str):
+        path = tmp_path / "mine.toml"
+        path.write_text(text, encoding="utf-8")
+        return load(str(path))
+
+    return from_text
+
+
+@pytest.fixture
+def own(config_home):
+    """Write a mapping into the user's folder."""
+    folder = config_home / "yehu-server" / "mappings"
+    folder.mkdir(parents=True)
+
+    def write(name: str, text: str):
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+        return folder / f"{name}.toml"
+
+    return write
+
+
+def test_a_file_says_all_that_a_bind_has(read):
+    table = Table(((0.0, 0.0), (0.5, 0.2), (1.0, 1.0)))
+    assert read(FULL).binds == (
+        Bind("cc 1/33", "/playing/pressure", (0.1, 0.9), table, invert=True),
+        Bind("nrpn 300", "/playing/volume", smoothing_ms=50.0, channels=(1, 2), is_soft=True),
+        Bind("/fader1", "/playing/volume", curve=Curve.S, reach=(0.0, 127.0)),
+    )
+
+
+# ---------------------------------------------------------------- errors and their lines
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "error"),
+    [
+        ('"mine"', "3", "2: name: expected a line of text, got 3"),
+        ('"mine"', '"a\\nb"', "2: name: expected a line of text"),
+        ('name = "mine"', 'nome = "mine"', "2: unknown entry 'nome'"),
+        ('name = "mine"', "about = 1", "2: about: expected a line of text"),
+        ('name = "mine"', "mpe = 1", "2: mpe: expected true or false, got 1"),
+        ('name = "mine"', "base = 1", "2: base: expected a line of text"),
+        ('name = "mine"', 'base = "keybord"', "2: base: no mapping 'keybord'"),
+        ('name = "mine"', 'base = "../keyboard"', "2: base: no mapping '../keyboard'"),
+        ('name = "mine"', 'base = ""', "2: base: no mapping ''"),
+        ("attack", "attac", "5: start: unknown parameter '/playing/attac'"),
+        ("= 25", "= 2500", "5: start: /playing/attack: 2500 is not within 5 to 500 ms"),
+        ('"cc 1/33"', '"cc 1/34"', "8: bind 1: cc 1/34: the fine half of cc 1 is 33"),
+        ('"cc 1/33"', '"cc 32/64"', "8: bind 1: cc 32/64: only cc 0 to 31 have a fine half"),
+        ('"cc 1/33"', '"cc 6/38"', "8: bind 1: cc 6/38 has a meaning of its own"),
+        ('"cc 1/33"', '"nrpn 16383"', "8: bind 1: unknown source 'nrpn 16383'"),
+        ('"cc 1/33"', '"/yehu/note"', "8: bind 1: /yehu/note: addresses under /yehu"),
+        ('"cc 1/33"', '"/a b"', "8: bind 1: '/a b' is not an OSC address"),
+        ("0.9]", "9]", "10: bind 1: span: 9 is not within 0.05 to 2"),
+        ("[0.5, 0.2]", "[0.5, 1.2]", "12: bind 1: curve: [0.5, 1.2] is not within 0 to 1"),
+        ("[0.5, 0.2]", "[0, 0.2]", "12: bind 1: curve: each point has to lie beyond"),
+        ("[0.5, 0.2]", "[0.5]", "12: bind 1: curve: expected points [from, to], got [0.5]"),
+        ("[0.5, 0.2]", "[0.5, nan]", "12: bind 1: curve: expected points"),
+        ("[1, 1]", "[0.9, 1]", "12: bind 1: curve: the points have to begin at 0 and end at 1"),
+        ('curve = "s"', "curve = []", "31: bind 3: curve: the points have to begin"),
+        ('curve = "s"', 'curve = "exp"', "31: bind 3: an exp curve needs a span above zero"),
+        ("= true\n\n", "= 1\n\n", "17: bind 1: invert: expected true or false, got 1"),
+        ("smoothing = 50", "smoothing = -1", "22: bind 2: smoothing: expected 0 to 5000 ms"),
+        ("smoothing = 50", "smoothing = inf", "22: bind 2: smoothing: expected 0 to 5000 ms"),
+        ("smoothing = 50", "smoothing = true", "22: bind 2: smoothing: expected 0 to 5000 ms"),
+        ("[2, 1]", "[2, 0]", "23: bind 2: channel: expected 1 to 16, or a list of such"),
+        ("[2, 1]", "17", "23: bind 2: channel: expected 1 to 16"),
+        ("[2, 1]", "[]", "23: bind 2: channel: expected 1 to 16"),
+        ("[2, 1]", "1.0", "23: bind 2: channel: expected 1 to 16"),
+        ("soft = true", 'soft = "yes"', "24: bind 2: soft: expected true or false, got 'yes'"),
+        ("nrpn 2/44", "velocity", "24: bind 2: soft: velocity cannot wait for the target"),
+        ("nrpn 2/44", "note", "24: bind 2: soft: note cannot wait"),
+        ("nrpn 2/44", "poly-pressure", "24: bind 2: soft: poly-pressure cannot wait"),
+        ("[0, 127]", "[1, 1]", "30: bind 3: input: expected two different numbers"),
+        ("[0, 127]", "[0, inf]", "30: bind 3: input: expected two different numbers"),
+        ("[0, 127]", "127", "30: bind 3: input: expected [from, to], got 127"),
+        ("/fader1", "cc 9", "30: bind 3: input: only what an OSC address sends"),
+        ('curve = "s"', "channel = 1", "31: bind 3: channel: an OSC address has none"),
+        ('source = "/fader1"\n', "", "27: bind 3: needs a source and a target"),
+        ('"mine"', '"mine', "2: not a mapping file"),
+    ],
+)
+def test_an_error_names_its_line(read, old, new, error):
+    assert old in FULL
+    with pytest.raises(MappingError) as caught:
+        read(FULL.replace(old, new, 1))
+    assert f"mine.toml:{error}" in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines(read):
+    wrong = FULL.replace("0.9]", "9]").replace("cc 1/33", "cc 1/34").replace("= 50", "= -1")
+    with pytest.raises(MappingError) as caught:
+        read(wrong.replace('name = "mine"', "mpe = 2"))
+    lines = [line.partition("mine.toml:")[2] for line in (str(caught.value), *caught.value.more)]
+    assert [line.split(":")[0] for line in lines] == ["2", "8", "10", "22"]
+
+
+def test_an_error_in_a_list_of_inline_tables_has_the_line_of_the_list(read):
+    with pytest.raises(MappingError, match=r"mine\.toml:2: bind 2: needs a source"):
+        read('\nbind = [{source = "cc 1", target = "/playing/volume"},\n {}]\n')
+
+
+keys = st.text("ab-_1", min_size=1, max_size=3) | st.text("a.\"'=[]{}#\\ ", max_size=4).map(
+    json.dumps
+)
+values = st.sampled_from(
+    [
+        '"x # [[bind]]"',
+        "'='",
+        '"""\n[a]\nb = 1\n"""',
+        "'''\n'\n'''",
+        '"\\""',
+        "1",
+        "[ # ]\n [1,\n2]]",
+    ]
+)
+statements = st.one_of(
+    st.just(""),
+    st.just("# a = 1"),
+    st.tuples(keys, values).map(" = ".join),
+    st.tuples(keys, keys).map(lambda pair: f"{pair[0]}.{pair[1]} = {{a = '}}', b = [1]}}"),
+    keys.map(lambda key: f"[{key}]"),
+    st.sampled_from(["[[bind]]", "[[ bind ]] # x", "[bind.sub]", "[[bind.more]]", "[a.b]"]),
+)
+
+
+@given(st.lists(statements, max_size=12), st.booleans())
+def test_lines_are_those_where_the_entries_are(parts, is_dos):
+    text = ("\r\n" if is_dos else "\n").join(parts)
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        return
+    lines = lines_of(text)
+    assert set(_ways(data)) <= set(lines)
+    rows = text.replace("\r\n", "\n").split("\n")
+    for way, line in lines.items():
+        name = next(part for part in reversed(way) if isinstance(part, str))
+        assert name in rows[line - 1] or json.dumps(name) in rows[line - 1]
+    # What stands at or below a line is what is cut off with it.
+    for way, line in lines.items():
+        try:
+            above = lines_of("\n".join(rows[: line - 1]))
+        except tomllib.TOMLDecodeError:
+            continue
+        assert way not in above
+
+
+def _ways(data, way=()):
+    """The entries of tables and of arrays of tables; inline ones are told apart by nobody."""
+    for name in data:
+        yield (*way, name)
+
+
+@given(st.binary(max_size=200))
+@example(
+    b"bind = [{source = 'cc 1', target = '/playing/volume', span = [0x" + b"f" * 9000 + b", 1]}]"
+)
+@example(b"[start]\n'/playing/volume' = 0x" + b"f" * 9000)
+@example(b"mpe = 0x" + b"f" * 9000)
+@example(b"a = " + b"1" * 9000)
+@example(b"[[bind]]\nsource='note'\ntarget='/playing/volume'\nsmoothing=0x" + b"f" * 9000)
+@example(b"[[bind]]\nsource='note'\ntarget='/playing/volume'\nchannel=0x" + b"f" * 9000)
+@example(b"[[bind]]\nsource='note'\ntarget='/playing/volume'\ncurve=[[0x" + b"f" * 9000 + b",1]]")
+def test_no_bytes_do_more_than_be_refused(tmp_path_factory, data):
+    path = tmp_path_factory.getbasetemp() / "bytes.toml"
+    path.write_bytes(data)
+    with contextlib.suppress(MappingError):
+        load(str(path))
+
+
+scalars = st.one_of(
+    st.integers(), st.floats(), st.booleans(), st.text(max_size=5), st.just(1e-320),
+    st.sampled_from(["cc 1", "note", "bend", "/f", "exp", "s", "/playing/volume", "/bow/side"]),
+)  # fmt: skip
+anything = st.recursive(scalars, lambda inner: st.lists(inner, max_size=3), max_leaves=6)
+entries = st.fixed_dictionaries(
+    {},
+    optional={
+        "source": st.sampled_from(["cc 1", "cc 1/33", "nrpn 5", "note", "bend", "/f"]) | scalars,
+        "target": st.sampled_from(["/playing/volume", "/playing/bend", "/playing/speed"]) | scalars,
+        "span": st.lists(st.floats(0.05, 0.6), min_size=2, max_size=2) | anything,
+        "curve": st.sampled_from(["exp", "s", [[0, 1], [1, 0]]]) | anything,
+        "invert": st.booleans() | anything,
+        "smoothing": st.integers(0, 5000) | anything,
+        "channel": st.integers(1, 16) | st.lists(st.integers(1, 16), min_size=1) | anything,
+        "soft": st.booleans() | anything,
+        "input": st.lists(st.integers(0, 9), min_size=2, max_size=2) | anything,
+    },
+)
+files = st.fixed_dictionaries(
+    {"bind": st.lists(entries, max_size=3) | anything},
+    optional={"name": anything, "about": anything, "mpe": anything, "base": anything}
+    | {"start": anything | st.dictionaries(st.sampled_from(["/playing/volume", "x"]), anything)},
+)
+
+
+@given(files)
+def test_any_entries_are_read_or_refused_and_what_is_read_is_written_and_read_again(
+    tmp_path_factory, data
+):
+    path = tmp_path_factory.getbasetemp() / "any.toml"
+    try:
+        sheet = sheet_of(path, data)
+    except MappingError as error:
+        lines = (str(error), *error.more)
+    else:
+        lines = ()
+        assert sheet_of(path, toml_of(path, as_toml(sheet))) == sheet
+        for bind, place in itertools.product(sheet.binds, (0.0, 0.3, 1.0)):
+            assert min(bind.ends) - 1e-9 <= bind.apply(place) <= max(bind.ends) + 1e-9
+    assert all(line.isprintable() for line in lines)
+
+
+# ---------------------------------------------------------------- bases
+
+
+def test_a_file_begins_with_its_base_and_replaces_what_its_controllers_did(read):
+    keyboard = load("keyboard")
+    mapping = read('base = "keyboard"\n' + BIND.replace("cc 4", "cc 1"))
+    assert mapping.name == "mine"
+    assert [bind.target for bind in mapping.of("cc 1")] == ["/playing/pressure"]
+    kept = tuple(bind for bind in keyboard.binds if bind.source != "cc 1")
+    assert mapping.binds == (*kept, *mapping.of("cc 1"))
+    assert mapping.start == keyboard.start
+
+
+def test_fourteen_bits_replace_the_same_controller_in_seven(read):
+    mapping = read('base = "keyboard"\n' + BIND.replace("cc 4", "cc 1/33"))
+    assert mapping.of("cc 1") == ()
+    assert mapping.of("cc 1/33")
+
+
+def test_a_bind_of_one_channel_leaves_that_of_all_channels(read):
+    mapping = read('base = "keyboard"\n' + BIND.replace("cc 4", "cc 1") + "channel = 2\n")
+    assert [bind.channels for bind in mapping.of("cc 1")] == [(), (2,)]
+
+
+def test_what_begins_elsewhere_and_the_zones_go_over_the_base(read):
+    mapping = read('base = "mpe"\nmpe = false\n[start]\n"/playing/speed" = 0.1\n')
+    assert not mapping.mpe
+    assert read('base = "mpe"\n').mpe
+    assert dict(mapping.start) == dict(load("mpe").start) | {"/playing/speed": 0.1}
+
+
+def test_a_base_may_have_a_base_and_the_users_comes_before_the_shipped(own, read):
+    own("wind", 'base = "wind"\n' + BIND)
+    own("pedal", 'base = "wind"\nabout = "my pedal"\n')
+    assert own_mappings() == ["pedal", "wind"]
+    assert len(load("wind").of("cc 4")) == 1
+    mapping = read('base = "pedal"\n')
+    assert mapping.binds == (*load(str(mapping_folder() / "wind.toml")).binds, *mapping.of("cc 4"))
+    assert [file.stem for file in mapping.files] == ["mine", "pedal", "wind", "wind"]
+
+
+def test_bases_that_go_round_are_refused(own):
+    own("one", 'base = "two"\n')
+    file = own("two", '\nbase = "three"\n')
+    own("three", 'base = "one"\n')
+    for name in ("one", "two", "three"):
+        with pytest.raises(MappingError, match=r"\.toml:\d: base: the bases go round in a circle"):
+            load(name)
+    file.write_text('base = "two"\n')
+    with pytest.raises(MappingError, match=r"two\.toml:1: base: no mapping 'two'"):
+        load("one")
+
+
+def test_an_error_in_a_base_names_that_file(own, read):
+    own("below", BIND + "span = [0, 9]\n")
+    with pytest.raises(MappingError, match=r"below\.toml:4: bind 1: span"):
+        read('base = "below"\n')
+
+
+# ---------------------------------------------------------------- written anew
+
+
+@pytest.mark.parametrize("name", shipped_mappings())
+def test_a_shipped_mapping_is_in_canonical_form(name):
+    path = mapping_folder() / f"{name}.toml"
+    text, sheet = path.read_text(encoding="utf-8"), read_sheet(path)
+    assert tidied(sheet, text) == text
+    assert sheet_of(path, toml_of(path, as_toml(sheet))) == sheet
+    assert sheet_of(path, toml_of(path, as_toml(sheet_from(load(name))))).binds == sheet.binds
+
+
+def test_what_is_tidied_keeps_its_comments(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(FULL)
+    written = tidied(read_sheet(path), FULL)
+    expected = FULL.replace('"nrpn 2/44"', '"nrpn 300"').replace("[2, 1]", "[1, 2]")
+    assert written == expected
+
+
+def test_inline_tables_are_written_as_tables(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text('bind = [{source = "cc 1", target = "/playing/volume"}]\n')
+    written = tidied(read_sheet(path), path.read_text())
+    assert '[[bind]]\nsource = "cc 1"\n' in written
+    assert sheet_of(path, toml_of(path, written)) == read_sheet(path)

@@ -1,0 +1,199 @@
+"""A mapping that changes while notes sound."""
+
+from __future__ import annotations
+
+import os
+
+import mido
+import pytest
+
+from yehu_server.errors import MappingError
+from yehu_server.playing.binds import Bind
+from yehu_server.playing.mapping import Mapping, load
+from yehu_server.playing.mapping_watch import MappingWatch
+from yehu_server.playing.messages import MidiPlayer
+
+VOLUME, EXPRESSION = "/playing/volume", "/playing/expression"
+
+
+@pytest.fixture
+def make(player):
+    return lambda *binds, **options: MidiPlayer(player, Mapping("test", binds, **options))
+
+
+def cc(midi, control: int, value: int, channel: int = 1) -> None:
+    midi.receive(mido.Message("control_change", control=control, value=value, channel=channel - 1))
+
+
+def to(midi, *binds: Bind, **options) -> None:
+    midi.remap(Mapping("other", binds, **options), frame=7)
+
+
+def test_the_same_mapping_again_moves_nothing(make, listener):
+    midi = make(Bind("cc 1", VOLUME), start=((EXPRESSION, 0.5),))
+    midi.receive(mido.Message("note_on", note=75))
+    cc(midi, 1, 30)
+    heard = len(listener.moves)
+    to(midi, Bind("cc 1", VOLUME), start=((EXPRESSION, 0.5),))
+    assert len(listener.moves) == heard
+
+
+def test_a_sounding_note_goes_on_and_follows_the_new_mapping(make, player, listener):
+    midi = make(Bind("cc 1", VOLUME))
+    midi.receive(mido.Message("note_on", note=75))
+    speed = len(listener.of("/bow/speed"))
+    to(midi, Bind("cc 2", VOLUME))
+    assert player.sounding is not None
+    assert len(listener.of("/bow/speed")) == speed
+    cc(midi, 1, 0)
+    assert player.value(VOLUME) == 1.0
+    cc(midi, 2, 0)
+    assert player.value(VOLUME) == 0.0
+
+
+def test_what_was_moved_stays_where_its_source_is_still_bound(make, player):
+    midi = make(Bind("cc 1", VOLUME), Bind("cc 2", EXPRESSION))
+    midi.receive(mido.Message("note_on", note=75))
+    cc(midi, 1, 127)
+    cc(midi, 2, 0)
+    to(midi, Bind("cc 1", VOLUME, (0.0, 0.5)))
+    assert player.value(VOLUME) == 0.5  # the wheel is where it was, and means less
+    assert player.value(EXPRESSION) == 1.0  # as before anything moved it
+    to(midi, Bind("cc 1", VOLUME), Bind("cc 2", EXPRESSION))
+    assert player.value(EXPRESSION) == 1.0  # its pedal was forgotten
+
+
+def test_a_source_that_was_not_bound_moves_nothing_when_it_is(make, player):
+    midi = make(Bind("cc 1", VOLUME))
+    cc(midi, 2, 0)
+    to(midi, Bind("cc 2", VOLUME))
+    midi.receive(mido.Message("note_on", note=75))
+    assert player.value(VOLUME) == 1.0
+
+
+def test_a_new_beginning_is_taken_where_nobody_has_moved_it(make, player):
+    starts = {VOLUME: 0.5, EXPRESSION: 0.5, "/playing/attack": 50.0}
+    midi = make(Bind("cc 1", EXPRESSION), start=tuple(starts.items()))
+    midi.receive(mido.Message("note_on", note=75))
+    midi.write(VOLUME, 0.1)
+    cc(midi, 1, 127)
+    to(midi, Bind("cc 1", EXPRESSION), start=((VOLUME, 0.7), (EXPRESSION, 0.7)))
+    assert player.value(VOLUME) == 0.1  # written since
+    assert player.value(EXPRESSION) == 1.0  # moved since
+    assert player.value("/playing/attack") == 40.0  # begins at its default again
+    cc(midi, 121, 0)
+    assert player.value(EXPRESSION) == 0.7
+
+
+def test_a_pedal_that_becomes_something_else_holds_nothing(make, player):
+    midi = make()
+    cc(midi, 64, 127)
+    midi.receive(mido.Message("note_on", note=75))
+    midi.receive(mido.Message("note_off", note=75))
+    to(midi, Bind("cc 64", VOLUME))
+    assert player.sounding is None
+
+
+def test_zones_that_come_or_go_end_the_notes(make, player):
+    midi = make()
+    midi.receive(mido.Message("note_on", note=75, channel=3))
+    to(midi, mpe=True)
+    assert player.sounding is None
+    cc(midi, 64, 127, channel=1)
+    midi.receive(mido.Message("note_on", note=75, channel=3))
+    midi.receive(mido.Message("note_off", note=75, channel=3))
+    assert player.sounding is not None  # under its master's pedal
+
+
+def test_a_soft_bind_that_stays_keeps_its_hold(make, player):
+    soft = Bind("cc 1", VOLUME, is_soft=True)
+    midi = make(soft)
+    cc(midi, 1, 127)
+    cc(midi, 1, 20)
+    to(midi, soft, Bind("cc 2", EXPRESSION))
+    cc(midi, 1, 90)
+    assert player.value(VOLUME) == pytest.approx(90 / 127)
+
+
+# ---------------------------------------------------------------- its file
+
+
+BIND = '[[bind]]\nsource = "cc {}"\ntarget = "/playing/volume"\n'
+
+
+@pytest.fixture
+def path(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(BIND.format(1))
+    return path
+
+
+@pytest.fixture
+def watch(path):
+    return MappingWatch(load(str(path)), lambda: load(str(path)))
+
+
+def settled(watch: MappingWatch) -> Mapping | None:
+    """What comes of looking until the file has stood still."""
+    first = watch.look()
+    return first or watch.look()
+
+
+def test_a_changed_file_is_read_once_it_stands_still(watch, path):
+    assert settled(watch) is None
+    path.write_text(BIND.format(1) + BIND.format(23))
+    assert watch.look() is None
+    changed = watch.look()
+    assert [bind.source for bind in changed.binds] == ["cc 1", "cc 23"]
+    assert settled(watch) is None
+
+
+def test_a_change_that_says_the_same_is_no_change(watch, path):
+    path.write_text("# mine\n" + BIND.format(1))
+    assert settled(watch) is None
+
+
+def test_a_wrong_file_is_refused_once_and_read_again_when_it_is_right(watch, path):
+    path.write_text(BIND.format(1000))
+    watch.look()
+    with pytest.raises(MappingError, match=r"mine\.toml:2: bind 1: unknown source"):
+        watch.look()
+    assert settled(watch) is None
+    path.write_text(BIND.format(77))
+    assert settled(watch).binds[0].source == "cc 77"
+
+
+def test_a_file_that_is_replaced_or_gone_for_a_while_is_followed(watch, path):
+    other = path.with_name("other")
+    other.write_text(BIND.format(7))
+    stat = path.stat()
+    os.utime(other, ns=(stat.st_atime_ns, stat.st_mtime_ns))  # same size, same time
+    other.replace(path)
+    assert settled(watch).binds[0].source == "cc 7"
+    path.unlink()
+    watch.look()
+    with pytest.raises(MappingError, match="No such file"):
+        watch.look()
+    path.write_text(BIND.format(8))
+    assert settled(watch).binds[0].source == "cc 8"
+
+
+def test_the_base_of_a_file_is_watched_with_it(config_home, path):
+    folder = config_home / "yehu-server" / "mappings"
+    folder.mkdir(parents=True)
+    path.write_text('base = "below"\n')
+    (folder / "below.toml").write_text(BIND.format(1))
+    watch = MappingWatch(load(str(path)), lambda: load(str(path)))
+    (folder / "below.toml").write_text(BIND.format(22))
+    assert settled(watch).binds[0].source == "cc 22"
+
+
+def test_a_base_that_is_missing_may_come_later(config_home, watch, path):
+    path.write_text('base = "below"\n')
+    watch.look()
+    with pytest.raises(MappingError, match="no mapping 'below'"):
+        watch.look()
+    folder = config_home / "yehu-server" / "mappings"
+    folder.mkdir(parents=True)
+    (folder / "below.toml").write_text(BIND.format(22))
+    assert settled(watch).binds[0].source == "cc 22"

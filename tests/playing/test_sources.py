@@ -1,0 +1,293 @@
+"""Every source of a mapping, moved by real messages to both its ends."""
+
+from __future__ import annotations
+
+import mido
+import pytest
+
+from yehu_server.errors import ParameterError
+from yehu_server.params.spec import Curve
+from yehu_server.playing.binds import Bind
+from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.sources import canonical
+
+VOLUME = "/playing/volume"
+
+
+@pytest.fixture
+def playing(player):
+    """A keyboard that moves what these binds say; MIDI, and the volume as it is."""
+
+    def make(*binds: Bind, **options):
+        midi = MidiPlayer(player, Mapping("test", binds, **options))
+
+        def cc(*moves: tuple[int, int], channel: int = 1) -> float:
+            for control, value in moves:
+                midi.receive(
+                    mido.Message(
+                        "control_change", control=control, value=value, channel=channel - 1
+                    )
+                )
+            return player.value(VOLUME)
+
+        return midi, cc
+
+    return make
+
+
+def note(midi, number: int, velocity: int = 64, channel: int = 1) -> None:
+    midi.receive(mido.Message("note_on", note=number, velocity=velocity, channel=channel - 1))
+
+
+# ---------------------------------------------------------------- names
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("cc 0", "cc 0"),
+        ("cc 119", "cc 119"),
+        ("cc 0/32", "cc 0/32"),
+        ("cc 31/63", "cc 31/63"),
+        ("nrpn 0", "nrpn 0"),
+        ("nrpn 16382", "nrpn 16382"),
+        ("nrpn 0/0", "nrpn 0"),
+        ("nrpn 2/44", "nrpn 300"),
+        ("nrpn 127/126", "nrpn 16382"),
+        ("note", "note"),
+        ("/fader1", "/fader1"),
+        ("/1/xy.2/a-b", "/1/xy.2/a-b"),
+        ("/yehus", "/yehus"),
+    ],
+)
+def test_each_source_has_one_name(text, name):
+    assert canonical(text) == name
+    assert canonical(name) == name
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "cc 120", "cc 128", "cc 1/34", "cc 1/1", "cc 32/64", "cc 33/1", "cc 6/38", "cc 6", "cc 98",
+        "cc 1/", "cc 1/033", "cc  1", "nrpn", "nrpn 16383", "nrpn 127/127", "nrpn 128/0",
+        "nrpn 0/128", "nrpn 300/1", "nrpn 99999", "rpn 0", "note 3", "", "/", "//a", "/a/", "/a b",
+        "/a*", "/a?", "/{a,b}", "/[a]", "/a#", "/å", "/yehu", "/yehu/note", "/" + 300 * "a",
+    ],
+)  # fmt: skip
+def test_what_is_no_source_is_refused_in_one_line(text):
+    with pytest.raises(ParameterError) as caught:
+        canonical(text)
+    assert str(caught.value).isprintable()
+
+
+# ---------------------------------------------------------------- 14 bits
+
+
+def test_two_controls_make_fourteen_bits(playing):
+    _, cc = playing(Bind("cc 1/33", VOLUME))
+    assert cc((1, 127), (33, 127)) == 1.0
+    assert cc((1, 0)) == 0.0
+    assert cc((33, 1)) == pytest.approx(1 / 16383)
+    assert cc((1, 64), (33, 3)) == pytest.approx((64 * 128 + 3) / 16383)
+    assert cc((33, 90)) == pytest.approx((64 * 128 + 90) / 16383)
+
+
+def test_the_coarse_half_acts_at_once_and_the_fine_one_then_is_nothing(playing):
+    _, cc = playing(Bind("cc 1/33", VOLUME))
+    assert cc((1, 64), (33, 100), (1, 65)) == pytest.approx(65 * 128 / 16383)
+
+
+def test_a_fine_half_without_a_coarse_one_moves_nothing(playing, player):
+    _, cc = playing(Bind("cc 1/33", "/playing/expression"))
+    cc((33, 5))
+    assert player.value("/playing/expression") == 1.0
+    cc((1, 3), (121, 0), (33, 5))  # which a reset forgets
+    assert player.value("/playing/expression") == 1.0
+
+
+@pytest.mark.parametrize("value", range(128))
+def test_no_fine_half_changes_the_coarse_one(playing, value):
+    _, cc = playing(Bind("cc 1/33", VOLUME))
+    for fine in (0, 1, 126, 127):
+        assert round(cc((1, value), (33, fine)) * 16383) == value * 128 + fine
+
+
+def test_each_bind_hears_what_it_names_and_on_one_target_the_finer_counts(playing, player):
+    both = (Bind("cc 1/33", VOLUME), Bind("cc 1", VOLUME), Bind("cc 33", "/playing/expression"))
+    _, cc = playing(*both)
+    assert cc((1, 127)) == pytest.approx(127 * 128 / 16383)
+    assert player.value("/playing/expression") == 1.0
+    assert cc((33, 64)) == pytest.approx((127 * 128 + 64) / 16383)
+    assert player.value("/playing/expression") == pytest.approx(64 / 127)
+
+
+# ---------------------------------------------------------------- NRPN
+
+
+def test_an_nrpn_moves_in_fourteen_bits(playing):
+    _, cc = playing(Bind("nrpn 300", VOLUME))
+    assert cc((99, 2), (98, 44), (6, 0)) == 0.0
+    assert cc((6, 127), (38, 127)) == 1.0
+    assert cc((6, 64)) == pytest.approx(64 * 128 / 16383)
+    assert cc((38, 9)) == pytest.approx((64 * 128 + 9) / 16383)
+
+
+@pytest.mark.parametrize(
+    "moves",
+    [
+        [(99, 2), (6, 0)],  # only half of a number
+        [(98, 44), (6, 0)],
+        [(99, 2), (98, 45), (6, 0)],
+        [(99, 44), (98, 2), (6, 0)],
+        [(99, 2), (98, 44), (99, 127), (98, 127), (6, 0)],
+        [(99, 2), (98, 44), (101, 0), (100, 0), (6, 0)],  # data entry is the bend range's
+        [(99, 2), (98, 44), (38, 0)],
+        [(101, 2), (100, 44), (6, 0)],
+        [(6, 0)],
+    ],
+)
+def test_data_entry_for_anything_else_moves_no_nrpn(playing, moves):
+    _, cc = playing(Bind("nrpn 300", VOLUME))
+    assert cc(*moves) == 1.0
+
+
+def test_an_nrpn_is_stepped_from_where_it_or_its_target_is(playing):
+    midi, cc = playing(Bind("nrpn 300", VOLUME))
+    midi.write(VOLUME, 0.5)
+    assert cc((99, 2), (98, 44), (96, 0)) == pytest.approx(0.5 + 1 / 127)
+    assert cc((97, 0), (97, 0)) == pytest.approx(0.5 - 1 / 127)
+    assert cc(*[(96, 0)] * 127) == 1.0
+    assert cc(*[(97, 0)] * 127) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_each_channel_selects_for_itself(playing):
+    _, cc = playing(Bind("nrpn 300", VOLUME))
+    cc((99, 2), (98, 44), channel=2)
+    assert cc((6, 0), channel=1) == 1.0
+    assert cc((6, 0), channel=2) == 0.0
+
+
+# ---------------------------------------------------------------- notes
+
+
+@pytest.mark.parametrize("key", [0, 1, 60, 126, 127])
+def test_a_note_moves_by_its_key(playing, player, key):
+    midi, _ = playing(Bind("note", "/playing/attack", (10.0, 200.0)))
+    note(midi, key)
+    assert player.value("/playing/attack") == pytest.approx(10.0 + 190.0 * key / 127)
+
+
+def test_a_note_that_comes_back_has_its_own_key_again(playing, player):
+    midi, _ = playing(Bind("note", VOLUME))
+    note(midi, 70)
+    note(midi, 80)
+    assert player.value(VOLUME) == pytest.approx(80 / 127)
+    midi.receive(mido.Message("note_off", note=80))
+    assert player.value(VOLUME) == pytest.approx(70 / 127)
+
+
+def test_of_velocity_and_key_of_one_note_the_bind_named_last_counts(playing, player):
+    midi, _ = playing(Bind("note", VOLUME), Bind("velocity", VOLUME))
+    note(midi, 70, velocity=127)
+    assert player.value(VOLUME) == 1.0
+
+
+# ---------------------------------------------------------------- terms
+
+
+def test_a_bind_hears_only_its_channels(playing, player):
+    midi, cc = playing(
+        Bind("cc 1", VOLUME, channels=(2, 3)), Bind("velocity", "/playing/attack", channels=(2,))
+    )
+    note(midi, 70, channel=1)
+    assert cc((1, 0), channel=1) == 1.0
+    assert player.value("/playing/attack") == 40.0
+    note(midi, 71, velocity=127, channel=2)
+    assert player.value("/playing/attack") == 500.0
+    assert cc((1, 0), channel=2) == 0.0
+    note(midi, 72, channel=3)
+    assert cc((1, 127), channel=2) == 1.0  # that of a channel that does not sound
+    assert cc((1, 0), channel=3) == 0.0
+
+
+def test_one_source_may_go_to_other_targets_on_other_channels(playing, player):
+    _, cc = playing(
+        Bind("cc 1", VOLUME, channels=(1,)), Bind("cc 1", "/playing/expression", channels=(2,))
+    )
+    cc((1, 0), channel=2)
+    assert (player.value(VOLUME), player.value("/playing/expression")) == (1.0, 0.0)
+
+
+def test_an_inverted_wheel_bends_the_other_way(playing, player):
+    midi, _ = playing(Bind("bend", "/playing/bend", invert=True))
+    note(midi, 77)
+    midi.receive(mido.Message("pitchwheel", pitch=8191))
+    assert player.value("/playing/bend") == -2.0
+
+
+def test_a_curved_wheel_still_rests_in_its_middle_and_ends_at_the_range(playing, player):
+    midi, _ = playing(Bind("bend", "/playing/bend", curve=Curve.S))
+    note(midi, 77)
+    for pitch, bend in ((8191, 2.0), (0, 0.0), (-8192, -2.0)):
+        midi.receive(mido.Message("pitchwheel", pitch=pitch))
+        assert player.value("/playing/bend") == bend
+    midi.receive(mido.Message("pitchwheel", pitch=4096))
+    assert player.value("/playing/bend") > 1.1
+
+
+# ---------------------------------------------------------------- smoothing
+
+
+def test_a_smoothed_move_takes_its_time_at_least(playing, listener):
+    smooth = Bind("cc 74", "/playing/bow_position", smoothing_ms=50.0)
+    midi, cc = playing(smooth, Bind("cc 71", "/playing/bow_position"))
+    note(midi, 70)
+    cc((74, 100))
+    assert listener.of("/bow/position")[-1].ramp_ms == 50.0
+    cc((71, 90))  # a bind without
+    assert listener.of("/bow/position")[-1].ramp_ms is None
+
+
+def test_smoothing_makes_no_move_quicker_than_the_hand(playing, listener):
+    midi, cc = playing(
+        Bind("cc 74", "/playing/bow_position", smoothing_ms=1.0),
+        Bind("bend", "/playing/bend", smoothing_ms=80.0),
+    )
+    note(midi, 77)
+    cc((74, 100))
+    assert listener.of("/bow/position")[-1].ramp_ms == 20.0
+    midi.receive(mido.Message("pitchwheel", pitch=1000))
+    assert listener.of(f"/finger/{listener.finger}/position")[-1].ramp_ms == 80.0
+
+
+def test_whatever_comes_next_need_not_wait_for_the_glide(playing, listener):
+    midi, cc = playing(Bind("cc 1", "/playing/speed", smoothing_ms=900.0))
+    note(midi, 70)
+    cc((1, 20))
+    assert listener.of("/bow/speed")[-1].ramp_ms == 900.0
+    midi.write("/playing/speed", 0.15)
+    assert listener.of("/bow/speed")[-1][1:] == (0.15, None, None)
+
+
+# ---------------------------------------------------------------- OSC addresses
+
+
+def test_an_osc_address_moves_its_targets_on_all_channels(playing, player):
+    midi, cc = playing(
+        Bind("/fader", VOLUME, reach=(0.0, 127.0)),
+        Bind("/fader", "/playing/attack", (10.0, 110.0), invert=True),
+        Bind("cc 7", VOLUME),
+    )
+    midi.move("/fader", 127)
+    assert (player.value(VOLUME), player.value("/playing/attack")) == (1.0, 10.0)
+    midi.move("/fader", 0)
+    assert (player.value(VOLUME), player.value("/playing/attack")) == (0.0, 110.0)
+    for channel in (1, 5):
+        note(midi, 70, channel=channel)
+        assert player.value(VOLUME) == 0.0
+    assert cc((7, 64), channel=5) == pytest.approx(64 / 127)  # moved last
+    midi.move("/fader", 127)
+    assert player.value(VOLUME) == 1.0
+    midi.move("/else", 0)
+    assert player.value(VOLUME) == 1.0

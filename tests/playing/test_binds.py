@@ -31,6 +31,7 @@ curves = st.one_of(st.sampled_from(Curve), tables(rising=True))
 def test_a_table_goes_through_all_its_points(table):
     for way, share in table.points:
         assert table.at(way) == pytest.approx(share, abs=1e-9)
+    assert (table.at(0.0), table.at(1.0)) == (table.points[0][1], table.points[-1][1])
 
 
 @given(tables(), units)

@@ -6,6 +6,7 @@ import contextlib
 import itertools
 import json
 import tomllib
+from dataclasses import replace
 
 import pytest
 from hypothesis import example, given
@@ -357,3 +358,20 @@ def test_inline_tables_are_written_as_tables(tmp_path):
     written = tidied(read_sheet(path), path.read_text())
     assert '[[bind]]\nsource = "cc 1"\n' in written
     assert sheet_of(path, toml_of(path, written)) == read_sheet(path)
+
+
+@pytest.mark.parametrize("name", ["name", "about", "base", "start", "binds", "mpe"])
+def test_what_is_tidied_says_what_it_shall_whatever_the_text_said(name):
+    path = mapping_folder() / "keyboard.toml"
+    sheet = read_sheet(path)
+    others = {
+        "name": "other",
+        "about": "another",
+        "base": "wind",
+        "start": (("/playing/volume", 0.5),),
+        "binds": sheet.binds[1:],
+        "mpe": True,
+    }
+    changed = replace(sheet, **{name: others[name]})
+    written = tidied(changed, path.read_text(encoding="utf-8"))
+    assert sheet_of(path, toml_of(path, written)) == changed

@@ -144,6 +144,8 @@ def test_an_nrpn_moves_in_fourteen_bits(playing):
         [(99, 2), (98, 44), (101, 0), (100, 0), (6, 0)],  # data entry is the bend range's
         [(99, 2), (98, 44), (38, 0)],
         [(101, 2), (100, 44), (6, 0)],
+        [(101, 2), (98, 44), (6, 0)],  # halves of two numbers
+        [(99, 2), (100, 44), (98, 44), (6, 0)],
         [(6, 0)],
     ],
 )

@@ -19,7 +19,6 @@ DATA_ENTRY, DATA_ENTRY_FINE, SUSTAIN = 6, 38, 64
 INCREMENT, DECREMENT = 96, 97
 NRPN_FINE, NRPN, RPN_FINE, RPN = 98, 99, 100, 101
 ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
-NULL = (127, 127)
 SUSTAIN_SOURCE = sources.control(SUSTAIN)
 BEND_RANGE, MPE_CONFIGURATION = (0, 0), (0, 6)
 CHANNELS = 16  # of a port
@@ -255,7 +254,7 @@ class MidiPlayer:
 
     def _enter_nrpn(self, channel: int, control: int, value: int, frame: int | None) -> None:
         number = self._channels[channel].selected.number
-        if number is None or number == NULL:
+        if number is None:
             return
         source = sources.nrpn(number[0] << 7 | number[1])
         if control == DATA_ENTRY:

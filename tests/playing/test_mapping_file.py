@@ -179,7 +179,7 @@ statements = st.one_of(
     st.just(""),
     st.just("# a = 1"),
     st.tuples(keys, values).map(" = ".join),
-    st.tuples(keys, keys).map(lambda pair: f"{pair[0]}.{pair[1]} = {{a = '}}', b = [1]}}"),
+    st.tuples(keys, keys).map(lambda pair: f"{pair[0]}.{pair[1]} = {{inline = '}}', b = [1]}}"),
     keys.map(lambda key: f"[{key}]"),
     st.sampled_from(["[[bind]]", "[[ bind ]] # x", "[bind.sub]", "[[bind.more]]", "[a.b]"]),
 )
@@ -208,9 +208,15 @@ def test_lines_are_those_where_the_entries_are(parts, is_dos):
 
 
 def _ways(data, way=()):
-    """The entries of tables and of arrays of tables; inline ones are told apart by nobody."""
-    for name in data:
+    """The entries of tables and of arrays of tables, but for what is within one line."""
+    for name, value in data.items():
         yield (*way, name)
+        if isinstance(value, dict) and "inline" not in value:
+            yield from _ways(value, (*way, name))
+        if isinstance(value, list) and isinstance(value[0], dict):
+            for place, table in enumerate(value):
+                yield (*way, name, place)
+                yield from _ways(table, (*way, name, place))
 
 
 @given(st.binary(max_size=200))

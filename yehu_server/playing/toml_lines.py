@@ -33,7 +33,7 @@ def lines_of(text: str) -> dict[Way, int]:
     lines: dict[Way, int] = {}
     counts: dict[Way, int] = {}
     table: Way = ()
-    for line, left, has_value in _statements(text.replace("\r\n", "\n")):
+    for line, left, has_value in _statements(text):
         try:
             inner = tomllib.loads(f"{left} = 0" if has_value else left)
         except (tomllib.TOMLDecodeError, RecursionError):

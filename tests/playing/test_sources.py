@@ -268,11 +268,11 @@ def test_whatever_comes_next_need_not_wait_for_the_glide(playing, listener):
     note(midi, 70)
     cc((1, 20))
     assert listener.of("/bow/speed")[-1].ramp_ms == 900.0
-    midi.write("/playing/speed", 0.15)
-    assert listener.of("/bow/speed")[-1][1:] == (0.15, None, None)
     heard = len(listener.moves)
     note(midi, 74)
     assert all(move.ramp_ms != 900.0 for move in listener.moves[heard:])
+    midi.write("/playing/speed", 0.15)
+    assert listener.of("/bow/speed")[-1][1:] == (0.15, None, None)
 
 
 # ---------------------------------------------------------------- OSC addresses

@@ -115,6 +115,22 @@ def test_a_soft_bind_that_stays_keeps_its_hold(make, player):
     assert player.value(VOLUME) == pytest.approx(90 / 127)
 
 
+def test_a_bind_that_becomes_soft_or_another_soft_one_keeps_its_hold(make, player):
+    midi = make(Bind("cc 1", VOLUME))
+    cc(midi, 1, 127)
+    cc(midi, 1, 20)
+    midi.receive(mido.Message("note_on", note=75))
+    to(midi, Bind("cc 1", VOLUME, is_soft=True), Bind("cc 1", EXPRESSION, is_soft=True))
+    assert player.value(VOLUME) == pytest.approx(20 / 127)
+    assert player.value(EXPRESSION) == 1.0  # a new target has to be met
+    cc(midi, 1, 90)
+    assert player.value(VOLUME) == pytest.approx(90 / 127)
+    to(midi, Bind("cc 1", VOLUME, (0.0, 0.5), is_soft=True))
+    assert player.value(VOLUME) == pytest.approx(45 / 127)
+    cc(midi, 1, 20)
+    assert player.value(VOLUME) == pytest.approx(10 / 127)
+
+
 # ---------------------------------------------------------------- its file
 
 

@@ -190,8 +190,8 @@ class Controllers:
         """
         before, self.mapping = self.mapping, mapping
         for state in self._channels.values():
+            state.picked = _picked_still(state, before, mapping)
             state.moved = {s: moved for s, moved in state.moved.items() if mapping.of(s)}
-            state.picked = {b: moved for b, moved in state.picked.items() if b in mapping.binds}
             if not mapping.of(POLY_PRESSURE):
                 state.touch.clear()
         for bind in mapping.binds:
@@ -297,3 +297,14 @@ class Controllers:
     def _remember(self, source: str) -> None:
         for bind in self.mapping.of(source):
             self._set.setdefault(bind.target, (0, self._performer.value(bind.target)))
+
+
+def _picked_still(state: Moves, before: Mapping, after: Mapping) -> dict[Bind, Moved]:
+    """What soft binds have of their sources, where these moved the same target before."""
+    picked = {}
+    for bind in after.binds:
+        for was in before.of(bind.source) if bind.is_soft else ():
+            moved = state.picked.get(was) if was.is_soft else state.moved.get(was.source)
+            if was.target == bind.target and moved is not None:
+                picked[bind] = moved
+    return picked

@@ -19,6 +19,10 @@ class MappingError(YehuError):
     """A mapping file that cannot be read or does not make sense."""
 
 
+class PresetError(YehuError):
+    """A preset that is not there, cannot be read or written, or does not make sense."""
+
+
 class ScoreError(YehuError):
     """A performance file (MIDI, gesture) that cannot be read."""
 

@@ -24,15 +24,15 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "mappings",
-        help="what controllers move: the presets, and files of your own",
-        description="List the presets, show what one moves, or check files of your own.",
+        help="what controllers move: mappings that come along, and files of your own",
+        description="List the mappings, show what one moves, or check files of your own.",
         epilog=EXAMPLES,
         formatter_class=RawDescriptionRichHelpFormatter,
         allow_abbrev=False,
     )
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
     for name, run, text in (
-        ("list", _list, "the presets"),
+        ("list", _list, "the mappings that come along"),
         ("show", _show, "what controllers move in one"),
         ("check", _check, "whether files are right"),
     ):
@@ -45,7 +45,7 @@ def add_to(commands: Any) -> None:
         )
         action.set_defaults(run=run)
         if name == "show":
-            action.add_argument("mapping", metavar="NAME", help="a preset's name, or a file")
+            action.add_argument("mapping", metavar="NAME", help="a mapping's name, or a file")
         if name == "check":
             action.add_argument("files", nargs="+", type=Path, metavar="FILE")
         else:
@@ -55,12 +55,12 @@ def add_to(commands: Any) -> None:
 def _list(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.mapping import load, shipped_mappings
 
-    presets = {name: load(name).about for name in shipped_mappings()}
+    mappings = {name: load(name).about for name in shipped_mappings()}
     if arguments.json:
-        print(json.dumps(presets))
+        print(json.dumps(mappings))
     else:
-        width = max(map(len, presets))
-        print("\n".join(f"{name:{width}}  {about}" for name, about in presets.items()))
+        width = max(map(len, mappings))
+        print("\n".join(f"{name:{width}}  {about}" for name, about in mappings.items()))
     return 0
 
 
@@ -81,7 +81,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.mapping import load
 
     for file in arguments.files:
-        # A path, also where it has no ending: a preset's name would be no file.
+        # A path, also where it has no ending: a mapping's name would be no file.
         mapping = load(str(file if file.suffix else Path() / file.absolute()))
         print(f"{file}: right, {len(mapping.binds)} binds")
     return 0

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import logging
 from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable
+from collections.abc import Mapping as Values
 from dataclasses import dataclass, field
 
 import mido
 
+from yehu_server.params.preset import Preset
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
 from yehu_server.playing.zones import Zones
 
+log = logging.getLogger(__name__)
+
+BANK, BANK_FINE = 0, 32
 DATA_ENTRY, DATA_ENTRY_FINE, SUSTAIN = 6, 38, 64
 INCREMENT, DECREMENT = 96, 97
 NRPN_FINE, NRPN, RPN_FINE, RPN = 98, 99, 100, 101
@@ -42,6 +49,7 @@ class Channel:
     sustain: bool = False
     let_go: set[Key] = field(default_factory=set)  # keys up, pedal down
     rpn: tuple[int, int] = NULL
+    bank: tuple[int, int] = (0, 0)
 
 
 class MidiPlayer:
@@ -55,21 +63,35 @@ class MidiPlayer:
     channels : set of int, optional
         Channels that play, counted from 0; all by default but the percussion channel, unless
         it is a member of an MPE zone.
+    start : iterable of (address, value)
+        Where parameters begin, besides what the mapping says.
+    programs : callable, optional
+        The preset of a MIDI program, 1 to 128, or None where none has it. Without it program
+        changes are ignored.
     """
 
     def __init__(
-        self, performer: Performer, mapping: Mapping, channels: set[int] | None = None
+        self,
+        performer: Performer,
+        mapping: Mapping,
+        channels: set[int] | None = None,
+        *,
+        start: Iterable[tuple[str, float]] = (),
+        programs: Callable[[int], Preset | None] | None = None,
     ) -> None:
         self._performer = performer
         performer.expression = self._expression
         self._mapping = mapping
         self._plays = channels
+        self._start = dict((*mapping.start, *start))
+        self._programs = programs
         self._zones: defaultdict[int, Zones] = defaultdict(lambda: Zones(whole=mapping.mpe))
         self._channels: defaultdict[int, Channel] = defaultdict(Channel)
         self._heard: Key | None = None  # whose note sounds, or sounded last
         self._set: dict[str, Moved] = {}  # targets as they were before, or as `write` left them
         self._moves = 0
         self.notes_by_channel: Counter[int] = Counter()
+        self.unknown_programs: Counter[int] = Counter()
         self._set_out()
 
     def receive(self, message: mido.Message, *, frame: int | None = None, port: int = 0) -> None:
@@ -97,6 +119,8 @@ class MidiPlayer:
             self._follow("poly-pressure", channel, frame)
         elif kind == "control_change":
             self._control(channel, message.control, message.value, frame)
+        elif kind == "program_change":
+            self._change_program(channel, message.program + 1, frame)
 
     def write(self, address: str, value: float, *, frame: int | None = None) -> float:
         """Set a parameter for all channels, until a controller moves it; see `Performer.write`."""
@@ -104,6 +128,24 @@ class MidiPlayer:
         if find(address).place is Place.PLAYER:
             self._set[address] = self._stamped(accepted)
         return accepted
+
+    def load(self, values: Values[str, float], *, frame: int | None = None) -> None:
+        """Set the parameters of a preset, but for those that are held."""
+        for address, value in values.items():
+            if not self._performer.keeps(address):
+                self.write(address, value, frame=frame)
+
+    def sound(self) -> dict[str, float]:
+        """The player's parameters, without what velocity does for one note."""
+        values = {
+            param.address: self._performer.value(param.address)
+            for param in TABLE
+            if param.place is Place.PLAYER
+        }
+        for bind in self._mapping.of("velocity"):
+            if bind.target in self._set:
+                _, values[bind.target] = self._set[bind.target]
+        return values
 
     def let_go_of(self, port: int, *, frame: int | None = None) -> None:
         """End the notes of a port that is gone, and forget what was moved on it."""
@@ -114,13 +156,13 @@ class MidiPlayer:
         self._zones.pop(port, None)
 
     def begin_again(self, *, frame: int | None = None) -> None:
-        """Put every parameter to where the mapping begins, and the rest to their defaults."""
+        """Put every parameter to where the performance began."""
         for param in sorted(TABLE, key=lambda param: param.place is Place.ENGINE):
             self.write(param.address, param.default, frame=frame)
         self._set_out(frame)
 
     def _set_out(self, frame: int | None = None) -> None:
-        for address, value in self._mapping.start:
+        for address, value in self._start.items():
             self.write(address, value, frame=frame)
 
     def _listens_to(self, channel: int, port: int) -> bool:
@@ -176,6 +218,8 @@ class MidiPlayer:
 
     def _control(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
+        if control in (BANK, BANK_FINE):
+            state.bank = (value, state.bank[1]) if control == BANK else (state.bank[0], value)
         if control == SUSTAIN and not self._mapping.of("cc 64"):
             state.sustain = value >= 64
             if not state.sustain:
@@ -201,6 +245,17 @@ class MidiPlayer:
             self._data_entry(channel, control, value, frame)
         else:
             self._move(f"cc {control}", channel, value / 127.0, frame)
+
+    def _change_program(self, channel: int, program: int, frame: int | None) -> None:
+        if self._programs is None or self._channels[channel].bank != (0, 0):
+            return
+        preset = self._programs(program)
+        if preset is not None:
+            self.load(preset.values, frame=frame)
+            return
+        self.unknown_programs[program] += 1
+        if self.unknown_programs[program] == 1:
+            log.info("no preset has program %d", program)
 
     def _reset_controllers(self, channel: int, frame: int | None) -> None:
         self._control(channel, SUSTAIN, 0, frame)
@@ -300,10 +355,21 @@ class MidiPlayer:
                 continue
             when, place = moved
             value = bind.apply(place)
-            if bind.is_by_range:
+            if bind.source == "velocity":
+                value *= self._share(bind.target)
+            elif bind.is_by_range:
                 value = self._bend(channel) + (0.0 if master is None else self._bend(master))
             asked[bind.target] = (when, value)
         return {address: value for address, (_, value) in asked.items()}
+
+    def _share(self, target: str) -> float:
+        """How far a target was put from where it began, as a factor.
+
+        Velocity comes with every note: it is spread around what was put, or no preset would
+        outlast the next note.
+        """
+        usual = dict(self._mapping.start).get(target, find(target).default)
+        return self._set[target][1] / usual if usual > 0.0 else 1.0
 
     def _moved(self, source: str, channel: int, note: float) -> Moved | None:
         state = self._channels[channel]

@@ -1,6 +1,6 @@
 """Play every note in many ways and print whether it is in tune, in time and without clicks.
 
-    .venv/bin/python scripts/playability.py [grid|steady|legato|bends|clicks|evenness] [--rate HZ]
+    .venv/bin/python scripts/playability.py [MEASURE] [--rate HZ]
 
 grid      F4 to F6 with velocities 20 to 127 and the mod wheel untouched, at 0, 64 and 127,
           through the keyboard mapping: 500 notes of 0.8 s. A dot is a note within 10 cents
@@ -11,6 +11,8 @@ legato    Slurred steps of 1 to 5 semitones: when the new note is within 10 cent
 bends     Two semitones up and back within a second, and glides of a fourth: cents off the aim.
 clicks    The largest jump between two samples where notes meet, of that in the notes around.
 evenness  Loudness (dB, A-weighted) of every note at several dynamics.
+presets   Every shipped preset on F4 to F6 at velocities 30, 64 and 110: how many notes are in
+          tune, from 0.3 s on or, where plucked, from 0.05 s; how loud, and how bright (Hz).
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import mido
@@ -31,8 +34,8 @@ from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import OPEN_NOTES, Calibration, calibration_for, frequency_hz
-from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Performer
+from yehu_server.playing.presets import Presets
 from yehu_server.playing.style import Style
 
 NOTES = range(65, 90)
@@ -53,14 +56,14 @@ def calibrated(rate: float) -> tuple[Calibration, Quantities]:
 class Take:
     """One performance on one instrument, through the keyboard mapping, without chance."""
 
-    def __init__(self, rate: float) -> None:
+    def __init__(self, rate: float, preset: str = "ordinary") -> None:
         self.rate = rate
         calibration, quantities = calibrated(rate)
         self.instrument = Instrument(rate, quantities)
-        style = Style(settings=(("/playing/variation", 0.0),))
+        style = Style(start=tuple(Presets().load(preset).values.items()))
         self.performer: Performer = style.performer(self.instrument, calibration)
         self.performer.write("/playing/variation", 0.0, hold=True)
-        self.midi = MidiPlayer(self.performer, style.mapping)
+        self.midi = style.midi(self.performer)
 
     def at(self, seconds: float, kind: str, **fields: int) -> None:
         """Send a message at a time."""
@@ -310,7 +313,40 @@ def evenness(rate: float) -> None:
         )
 
 
-MEASURES = {each.__name__: each for each in (grid, steady, legato, bends, clicks, evenness)}
+# ---------------------------------------------------------------- presets
+
+
+def in_preset(rate: float, preset: str, note: int, velocity: int) -> tuple[float, float, float]:
+    """Cents off, loudness (dB, A-weighted) and the middle of the spectrum (Hz) of a held note."""
+    take = Take(rate, preset)
+    take.on(0.0, note, velocity)
+    start, seconds = (0.05, 0.2) if preset == "pizzicato" else (0.3, 0.5)
+    sound = take.play(start + seconds)
+    error = off_by(sound, rate, start, seconds, note)
+    heard = sound[round(start * rate) :].astype(np.float64)
+    power = np.abs(np.fft.rfft(heard * np.hanning(len(heard)))) ** 2
+    middle = float((np.fft.rfftfreq(len(heard), 1.0 / rate) * power).sum() / power.sum())
+    return error, a_weighted_db(heard, rate), middle
+
+
+def presets(rate: float) -> None:
+    """Print a line for each."""
+    cases = [(note, velocity) for note in NOTES for velocity in (30, 64, 110)]
+    for name in Presets(Path(os.devnull)).names():
+        found = np.array(in_parallel(in_preset, [(rate, name, *case) for case in cases]))
+        errors, levels, middles = found.T
+        right = np.abs(errors) <= np.array([bound(note) for note, _ in cases])
+        wrong = [f"{n}/{v}: {e:+.0f}" for (n, v), e in zip(cases, errors, strict=True)]
+        print(
+            f"{name}: {100.0 * right.mean():.0f} % in tune, {np.median(levels):.1f} dB "
+            f"(within {np.ptp(levels):.1f}), {np.median(middles):.0f} Hz"
+        )
+        print("   ", *(what for what, is_right in zip(wrong, right, strict=True) if not is_right))
+
+
+MEASURES = {
+    each.__name__: each for each in (grid, steady, legato, bends, clicks, evenness, presets)
+}
 
 
 def main() -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from platformdirs import user_config_path
 
 # Set before numpy loads: the dense references work on small matrices, where the threads of
 # two test processes only get in each other's way.
@@ -29,3 +30,9 @@ def config_home(tmp_path, monkeypatch) -> Path:
     """A folder of settings for one test."""
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     return tmp_path / "config"
+
+
+@pytest.fixture(scope="session")
+def own_presets(_config_home) -> Path:
+    """The folder where whoever runs the tests would keep presets: an empty one."""
+    return user_config_path("yehu-server") / "presets"

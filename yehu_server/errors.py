@@ -26,6 +26,10 @@ class MappingError(YehuError):
         self.more = more
 
 
+class PresetError(YehuError):
+    """A preset that is not there, cannot be read or written, or does not make sense."""
+
+
 class ScoreError(YehuError):
     """A performance file (MIDI, gesture) that cannot be read."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import secrets
 import stat
 from collections.abc import Iterable, Iterator
@@ -13,6 +14,8 @@ from pathlib import Path
 from yehu_server.errors import OutputError
 
 MAX_TEXT_BYTES = 64 * 2**20
+# What a name that comes over the network must look like: no path, nothing hidden.
+PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 
 
 def read_text(path: Path) -> str:
@@ -67,6 +70,17 @@ def replacing(target: Path) -> Iterator[Path]:
     finally:
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)
+
+
+def write_text(target: Path, text: str) -> None:
+    """Write a text file: after a crash or a power cut it is the new one or the old one, whole.
+
+    Errors: OutputError, as of `replacing`.
+    """
+    with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
 
 
 def shipped_folder(name: str) -> Path:

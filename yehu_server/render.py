@@ -18,7 +18,6 @@ from yehu_server.errors import OutputError
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Calibration, calibration_for
 from yehu_server.playing.fingering import RangePolicy
-from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.style import Style
 from yehu_server.score.smf import Score
 
@@ -40,7 +39,7 @@ class Options:
     subtype: str = "24"
     channels: frozenset[int] | None = None  # counted from 0; None: all but percussion
     tail_s: float | None = None  # None: until it is quiet
-    gain_db: float = 0.0
+    gain_db: float | None = None  # None: as the preset has it
     normalize: bool = False
     style: Style = field(default_factory=Style)
     quantities: Quantities = field(default_factory=Quantities)
@@ -63,6 +62,7 @@ class Summary:
     lost_states: int
     friction_bound: float
     notes_by_channel: dict[int, int]
+    unknown_programs: tuple[int, ...]  # 1 to 128
 
 
 class Performance:
@@ -77,8 +77,10 @@ class Performance:
         self.instrument = Instrument(float(options.rate), calibration.tuned(options.quantities))
         style = options.style
         self.performer = style.performer(self.instrument, calibration, options.quantities)
-        self.midi = MidiPlayer(self.performer, style.mapping, _set(options.channels))
-        self.instrument.write("/output/gain", options.gain_db, ramp_ms=0.0)
+        self.midi = style.midi(self.performer, _set(options.channels))
+        if options.gain_db is not None:
+            self.performer.write("/output/gain", options.gain_db, hold=True)
+            self.instrument.write("/output/gain", options.gain_db, ramp_ms=0.0)
         for address, value in style.settings:
             self.performer.write(address, value, hold=True)
         self.score_frames = self.instrument.frames(score.duration_s * 1e3)
@@ -161,6 +163,7 @@ def render(
         lost_states=performance.instrument.lost_states,
         friction_bound=performance.instrument.friction_bound,
         notes_by_channel=dict(sorted(performance.midi.notes_by_channel.items())),
+        unknown_programs=tuple(sorted(performance.midi.unknown_programs)),
     )
 
 

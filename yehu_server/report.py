@@ -50,6 +50,9 @@ def render_report(target: Path, summary: Summary) -> str:
     if summary.notes_out_of_range:
         notes = counted(summary.notes_out_of_range, "note")
         lines.append(f"{notes} outside F4 to F6, {FATE[summary.policy]}")
+    if summary.unknown_programs:
+        programs = ", ".join(map(str, summary.unknown_programs))
+        lines.append(f"no preset for the programs {programs}: ignored")
     if summary.unconverged_solves:
         lines.append(f"{counted(summary.unconverged_solves, 'friction solve')} did not converge")
     if summary.lost_states:

@@ -11,7 +11,6 @@ import contextlib
 import gc
 import logging
 import math
-import re
 import sys
 import threading
 import time
@@ -30,7 +29,7 @@ from yehu_server.control.sockets import OscPorts
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import MappingError, OutputError
-from yehu_server.files import check_target
+from yehu_server.files import PLAIN_NAME, check_target
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
 from yehu_server.playing.live import LivePlayer
@@ -47,7 +46,6 @@ LOOK_EVERY_S = 0.5  # at the mapping's files
 # this much later, which is what Python takes to act on it.
 HANDLING_MS = 1.0
 FADE_MS = 50.0  # after the notes' release
-PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 # Short turns for Python's threads, so that handlers are not late when one is busy.
 SWITCH_INTERVAL_S = 0.0001
 

@@ -58,6 +58,17 @@ def add_playing(group: Any) -> None:
         help="begin with one MPE zone of 15 member channels; with no --mapping, take mpe",
     )
     group.add_argument(
+        "--preset",
+        metavar="NAME",
+        help="the sound to begin with: a preset's name or a file (see yehu-server presets)",
+    )
+    group.add_argument(
+        "--programs",
+        action="store_true",
+        help="let MIDI program changes select presets (default: they are ignored)",
+    )
+    add_presets_folder(group)
+    group.add_argument(
         "--set",
         action="append",
         default=[],
@@ -108,17 +119,38 @@ def mapping_of(arguments: argparse.Namespace) -> Mapping:
     return replace(mapping, mpe=mapping.mpe or arguments.mpe)
 
 
+def add_presets_folder(group: Any) -> None:
+    """Add where presets are."""
+    group.add_argument(
+        "--presets",
+        type=Path,
+        metavar="FOLDER",
+        help="where your own presets are (default: among your settings)",
+    )
+
+
 def style_of(arguments: argparse.Namespace) -> Style:
     """What `add_playing` was told. Errors: YehuError for files and values that are wrong."""
     from yehu_server.params.table import assignment
     from yehu_server.playing.fingering import OpenStrings, RangePolicy
+    from yehu_server.playing.presets import Presets
     from yehu_server.playing.style import Style
     from yehu_server.playing.tuning import EQUAL, read_tuning
 
     if arguments.keyboard_map is not None and arguments.tuning is None:
         raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
+    presets = Presets(arguments.presets)
+    start: tuple[tuple[str, float], ...] = ()
+    if arguments.preset is not None:
+        preset = presets.find(arguments.preset)
+        start = tuple(preset.values.items())
+        for remark in preset.remarks():
+            print(f"yehu-server: {remark}", file=sys.stderr)
     return Style(
         mapping=mapping_of(arguments),
+        presets=presets,
+        start=start,
+        programs=arguments.programs,
         settings=tuple(assignment(text) for text in arguments.set),
         a4=arguments.a4,
         tuning=read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL,

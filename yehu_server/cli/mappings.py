@@ -30,23 +30,23 @@ def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "mappings",
-        help="what controllers move: the presets, and files of your own",
-        description="List the presets, show what one moves, check or convert files of your own.",
+        help="what controllers move: mappings that come along, and your own",
+        description="List the mappings, show what one moves, check or convert files of your own.",
         epilog=EXAMPLES,
         formatter_class=RawDescriptionRichHelpFormatter,
         allow_abbrev=False,
     )
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
-    _add_action(actions, "list", _list, "the presets, and what is in your folder")
+    _add_action(actions, "list", _list, "the mappings that come along, and those in your folder")
     show = _add_action(actions, "show", _show, "what controllers move in one")
-    show.add_argument("mapping", metavar="NAME", help="a preset's name, or a file")
+    show.add_argument("mapping", metavar="NAME", help="a mapping's name, or a file")
     check = _add_action(actions, "check", _check, "whether files are right")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
     convert = _add_action(actions, "convert", _convert, "one as a file of today's form")
     convert.add_argument(
         "mapping",
         metavar="FILE",
-        help="a file, also of what show --json prints, or a preset's name",
+        help="a file, also of what show --json prints, or a mapping's name",
     )
     convert.add_argument(
         "-o", "--output", type=Path, metavar="OUT", help="the file to write (default: print it)"
@@ -108,7 +108,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
     code = 0
     for file in arguments.files:
-        # A path, also where it has no ending: a preset's name would be no file.
+        # A path, also where it has no ending: a mapping's name would be no file.
         try:
             mapping = load(str(file if file.suffix else Path() / file.absolute()))
         except MappingError as error:

@@ -78,9 +78,8 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--gain-db",
         type=decibels,
-        default=0.0,
         metavar="DB",
-        help="gain before the limiter, -60 to 24 (default: 0)",
+        help="gain before the limiter, -60 to 24 (default: 0, or as --preset has it)",
     )
     parser.add_argument(
         "--normalize", action="store_true", help="scale the result to a peak of -1 dBFS"

@@ -41,6 +41,8 @@ def _of(address: str, name: str) -> Argument:
 NOTE = Argument("note", lo=0.0, hi=127.0, unit="MIDI note")
 SECONDS = Argument("seconds", lo=0.0, hi=3600.0, unit="s")
 NAME = Argument("name", "s")
+FROM, TO = Argument("from", "s"), Argument("to", "s")
+AMOUNT = Argument("amount", lo=0.0, hi=1.0)
 
 CALLS: tuple[Call, ...] = (
     Call(
@@ -74,6 +76,11 @@ CALLS: tuple[Call, ...] = (
     Call("/subscribe", "Tells of every change for some time.", (SECONDS,)),
     Call("/subscribe/unit", "The same, with values as 0 to 1, at ADDRESS/unit.", (SECONDS,)),
     Call("/unsubscribe", "Tells no more."),
+    Call("/preset/load", "Sets the parameters of a preset.", (NAME,)),
+    Call("/preset/morph", "Sets what lies between two presets.", (FROM, TO, AMOUNT)),
+    Call("/preset/save", "Keeps the sound as it is as a preset.", (NAME,)),
+    Call("/preset/delete", "Removes a preset of the player's own.", (NAME,)),
+    Call("/preset/list", "Tells all presets: name, MIDI program, what it is."),
     Call("/record/start", "Records into the recordings folder.", (NAME,)),
     Call("/record/stop", "Ends the recording."),
     Call("/ping", "Answers with the same arguments."),

@@ -45,7 +45,7 @@ class Clients:
 
     def __init__(self, values: Callable[[], dict[str, float]], prefix: str) -> None:
         self._values = values
-        self._prefix = prefix
+        self.prefix = prefix
         self._clients: dict[Peer, Client] = {}
         self._told: dict[str, float] = {}  # values as of the last flush
         self._flushed = 0.0
@@ -117,7 +117,7 @@ class Clients:
         client.patience -= 1.0
         self.errors_sent += 1
         reason = reason if isinstance(reason, str) else reason()
-        peer.send(pack(f"{self._prefix}/error", shortened(address), shortened(reason)))
+        peer.send(pack(f"{self.prefix}/error", shortened(address), shortened(reason)))
 
     # -- when --------------------------------------------------------------------------------
 
@@ -143,6 +143,6 @@ class Clients:
                 client.to_tell.update({address + client.form: None for address in changed})
             for address in client.to_tell:
                 if address not in packets:
-                    packets[address] = pack(self._prefix + address, read(values, address))
+                    packets[address] = pack(self.prefix + address, read(values, address))
                 client.peer.send(packets[address])
             client.to_tell.clear()

@@ -17,6 +17,7 @@ from yehu_server.control.clients import Clients
 from yehu_server.control.packets import Message, PacketError, answer, pack, unpack
 from yehu_server.control.patterns import PatternError, is_pattern, matches
 from yehu_server.control.peers import Peer
+from yehu_server.control.preset_calls import PresetCalls
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.errors import YehuError
 from yehu_server.params.spec import Param
@@ -121,6 +122,7 @@ class OscHandler:
             "/record/stop": self._record_stop,
             "/ping": lambda call: call.peer.send(answer(f"{PREFIX}/pong", call.payload)),
         }
+        self._calls |= PresetCalls(player, self.clients, self._complain).by_address
         for param in TABLE:
             self._calls[param.address] = self._setter(param.address)
             self._calls[param.address + UNIT] = self._unit_setter(param)

@@ -8,6 +8,8 @@ from enum import Enum
 
 from yehu_server.errors import ParameterError
 
+TURNED_ON = 0.5
+
 
 class Curve(Enum):
     """How 0..1 spreads over a range."""
@@ -49,7 +51,8 @@ class Param:
     """One row of the table.
 
     `lo`, `hi`, `default` are in `unit`; `smooth_ms` is the ramp of a write that names none.
-    `owned` marks what the player moves while notes sound (decisions/0006).
+    `owned` marks what the player moves while notes sound (decisions/0006); `is_choice` what
+    is one thing or another, with nothing between, such as a switch (on from `TURNED_ON` up).
     """
 
     address: str
@@ -63,6 +66,7 @@ class Param:
     curve: Curve = Curve.LIN
     smooth_ms: float = 5.0
     owned: bool = False
+    is_choice: bool = False
 
     def accept(self, value: float) -> float:
         """Return `value` clamped to the range. Errors: ParameterError unless finite."""

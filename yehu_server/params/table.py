@@ -170,15 +170,16 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
-        "From 0.5 up notes are plucked, harder with more pressure.",
+        "From 0.5 up notes are plucked, harder with more pressure.", is_choice=True,
     ),
     Param(
         "/playing/string", "", "1", 0.0, 2.0, 0.0,
         "Which string takes the notes: 0 whichever fits, 1 the inner (F4), 2 the outer (C5).",
+        is_choice=True,
     ),
     Param(
         "/playing/direction", "", "1", -1.0, 1.0, 0.0,
-        "Of new strokes: 0 back and forth in turn, 1 always down, -1 always up.",
+        "Of new strokes: 0 back and forth in turn, 1 always down, -1 always up.", is_choice=True,
     ),
     Param(
         "/playing/press", "", "N", 0.3, 6.0, 1.5,
@@ -234,7 +235,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/portamento", "", "1", 0.0, 1.0, 0.0,
-        "From 0.5 up the finger slides from note to note; else it steps.",
+        "From 0.5 up the finger slides from note to note; else it steps.", is_choice=True,
     ),
     Param(
         "/playing/portamento_time", "", "ms", 5.0, 2000.0, 120.0,
@@ -246,7 +247,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/engine/seed", "", "1", 0.0, 65535.0, 0.0,
-        "Of the chance in /playing/variation; a new one begins its sequence anew.",
+        "Of the chance in /playing/variation; a new one begins its sequence anew.", is_choice=True,
     ),
 )  # fmt: skip
 

@@ -8,11 +8,12 @@ it until another channel's note begins.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
 
 from yehu_server.params.spec import Place
-from yehu_server.params.table import find
+from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
@@ -59,11 +60,18 @@ class Fader:
 class Controllers:
     """Lets a performer follow what is moved, through a mapping."""
 
-    def __init__(self, performer: Performer, mapping: Mapping, channels: Channels) -> None:
+    def __init__(
+        self,
+        performer: Performer,
+        mapping: Mapping,
+        channels: Channels,
+        start: Iterable[tuple[str, float]] = (),
+    ) -> None:
         self._performer = performer
         performer.expression = self._expression
         self.mapping = mapping
         self._rules = channels
+        self._start = dict(start)
         self._channels: defaultdict[int, Moves] = defaultdict(Moves)
         self._faders: defaultdict[Bind, Fader] = defaultdict(Fader)
         self._heard: Key | None = None  # whose note sounds, or sounded last
@@ -178,9 +186,21 @@ class Controllers:
             self._performer.write(address, value, frame=frame)
 
     def begin(self, frame: int | None) -> None:
-        """Put parameters to where the mapping begins."""
-        for address, value in self.mapping.start:
+        """Put parameters to where the mapping begins, and then to where the performance does."""
+        for address, value in self._beginning(self.mapping).items():
             self.write(address, value, frame)
+
+    def sound(self) -> dict[str, float]:
+        """The player's parameters, without what velocity does for one note."""
+        values = {
+            param.address: self._performer.value(param.address)
+            for param in TABLE
+            if param.place is Place.PLAYER
+        }
+        for bind in self.mapping.of(VELOCITY):
+            if bind.target in self._set:
+                _, values[bind.target] = self._set[bind.target]
+        return values
 
     def remap(self, mapping: Mapping, frame: int | None) -> None:
         """Take another mapping; what was moved stays moved where its source is still bound.
@@ -196,7 +216,7 @@ class Controllers:
                 state.touch.clear()
         for bind in mapping.binds:
             self._set.setdefault(bind.target, (0, self._performer.value(bind.target)))
-        was, begins, elsewhere = dict(before.start), dict(mapping.start), {}
+        was, begins, elsewhere = self._beginning(before), self._beginning(mapping), {}
         for address in was | begins:
             default = find(address).default
             old, new = was.get(address, default), begins.get(address, default)
@@ -209,6 +229,9 @@ class Controllers:
             elsewhere = self._asked(self._heard.channel, self._heard.note)
         for address, value in elsewhere.items():
             self._performer.write(address, value, frame=frame)
+
+    def _beginning(self, mapping: Mapping) -> dict[str, float]:
+        return dict(mapping.start) | self._start
 
     # -- what follows ------------------------------------------------------------------------
 
@@ -251,11 +274,22 @@ class Controllers:
                 continue
             when, place = moved
             value = bind.apply(place)
-            if bind.is_by_range:
+            if bind.source == VELOCITY:
+                value *= self._share(bind.target)
+            elif bind.is_by_range:
                 value = self._bend(bind, channel)
                 value += 0.0 if master is None else self._bend(bind, master)
             asked[bind.target] = (when, value)
         return {address: value for address, (_, value) in asked.items()}
+
+    def _share(self, target: str) -> float:
+        """How far a target was put from where its mapping begins, as a factor.
+
+        Velocity comes with every note: it is spread around what was put, or no preset would
+        outlast the next note.
+        """
+        usual = dict(self.mapping.start).get(target, find(target).default)
+        return self._set[target][1] / usual if usual > 0.0 else 1.0
 
     def _moved(self, bind: Bind, channel: int, note: float) -> Moved | None:
         if not bind.hears(channel):

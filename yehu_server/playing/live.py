@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Mapping as Values
 
 import mido
 
@@ -17,7 +18,6 @@ from yehu_server.params.spec import Place
 from yehu_server.params.table import ENGINE, TABLE, find
 from yehu_server.playing.calibration import Calibration
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Key
 from yehu_server.playing.style import Style
 
@@ -88,11 +88,12 @@ class LivePlayer:
         delay_ms: float,
     ) -> None:
         self.instrument = instrument
+        self.presets = style.presets
         self.delay = instrument.frames(delay_ms)
         self._turn = threading.RLock()
         self._targets = Targets(instrument)
         self._performer = style.performer(self._targets, calibration, instrument.quantities)
-        self._midi = MidiPlayer(self._performer, style.mapping)
+        self._midi = style.midi(self._performer)
         self._decided = 0  # the latest frame of a decision
         self._written = 0  # and of anything
 
@@ -130,6 +131,16 @@ class LivePlayer:
                 frame = self._in_order(frame)
             self._written = max(self._written, frame)
             return self._midi.write(address, value, frame=frame)
+
+    def load(self, values: Values[str, float], *, frame: int) -> None:
+        """Set the parameters of a preset, but for those that are held, all at one frame."""
+        with self._turn:
+            self._midi.load(values, frame=self._in_order(frame))
+
+    def sound(self) -> dict[str, float]:
+        """All parameters as a preset is to keep them: see `MidiPlayer.sound`."""
+        with self._turn:
+            return self.values() | self._midi.sound()
 
     def hold(self, address: str, value: float) -> float:
         """Set a parameter for as long as the program runs, from the first frame on."""
@@ -214,7 +225,7 @@ class LivePlayer:
             self._performer.all_sound_off(frame=self._decided)
 
     def reset(self, *, frame: int) -> None:
-        """The same, and put every parameter back to its default."""
+        """The same, and put every parameter back to where it began."""
         with self._turn:
             frame = self._in_order(max(frame, self._written))
             self._midi.begin_again(frame=frame)

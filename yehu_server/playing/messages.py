@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable
+from collections.abc import Mapping as Values
 from dataclasses import dataclass, field
 
 import mido
 
+from yehu_server.params.preset import Preset
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing import sources
@@ -15,6 +19,9 @@ from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
 from yehu_server.playing.zones import Zones
 
+log = logging.getLogger(__name__)
+
+BANK, BANK_FINE = 0, 32
 DATA_ENTRY, DATA_ENTRY_FINE, SUSTAIN = 6, 38, 64
 INCREMENT, DECREMENT = 96, 97
 NRPN_FINE, NRPN, RPN_FINE, RPN = 98, 99, 100, 101
@@ -50,6 +57,7 @@ class Channel:
     sustain: bool = False
     let_go: set[Key] = field(default_factory=set)  # keys up, pedal down
     selected: Selected = field(default_factory=Selected)
+    bank: tuple[int, int] = (0, 0)
 
     def has_selected(self, registered: tuple[int, int]) -> bool:
         """Whether data entry is for a registered parameter."""
@@ -64,17 +72,30 @@ class MidiPlayer:
     channels : set of int, optional
         Channels that play, counted from 0; all by default but the percussion channel, unless
         it is a member of an MPE zone.
+    start : iterable of (address, value)
+        Where parameters begin, besides what the mapping says.
+    programs : callable, optional
+        The preset of a MIDI program, 1 to 128, or None where none has it. Without it program
+        changes are ignored.
     """
 
     def __init__(
-        self, performer: Performer, mapping: Mapping, channels: set[int] | None = None
+        self,
+        performer: Performer,
+        mapping: Mapping,
+        channels: set[int] | None = None,
+        *,
+        start: Iterable[tuple[str, float]] = (),
+        programs: Callable[[int], Preset | None] | None = None,
     ) -> None:
         self._performer = performer
-        self._controllers = Controllers(performer, mapping, self)
+        self._controllers = Controllers(performer, mapping, self, start)
         self._plays = channels
+        self._programs = programs
         self._zones: defaultdict[int, Zones] = defaultdict(lambda: Zones(whole=self.mapping.mpe))
         self._channels: defaultdict[int, Channel] = defaultdict(Channel)
         self.notes_by_channel: Counter[int] = Counter()
+        self.unknown_programs: Counter[int] = Counter()
         self._controllers.begin(None)
 
     @property
@@ -106,6 +127,8 @@ class MidiPlayer:
             self._controllers.touch(Key(channel, message.note), message.value / 127.0, frame)
         elif kind == "control_change":
             self._control(channel, message.control, message.value, frame)
+        elif kind == "program_change":
+            self._change_program(channel, message.program + 1, frame)
 
     def move(self, address: str, argument: float, *, frame: int | None = None) -> None:
         """Move what an OSC address of the mapping is bound to, for all channels."""
@@ -125,6 +148,16 @@ class MidiPlayer:
             for state in self._channels.values():
                 self._lift_pedal(state, frame)
 
+    def load(self, values: Values[str, float], *, frame: int | None = None) -> None:
+        """Set the parameters of a preset, but for those that are held."""
+        for address, value in values.items():
+            if not self._performer.keeps(address):
+                self.write(address, value, frame=frame)
+
+    def sound(self) -> dict[str, float]:
+        """The player's parameters, without what velocity does for one note."""
+        return self._controllers.sound()
+
     def let_go_of(self, port: int, *, frame: int | None = None) -> None:
         """End the notes of a port that is gone, and forget what was moved on it."""
         for channel in range(CHANNELS * port, CHANNELS * (port + 1)):
@@ -133,7 +166,7 @@ class MidiPlayer:
         self._zones.pop(port, None)
 
     def begin_again(self, *, frame: int | None = None) -> None:
-        """Put every parameter to where the mapping begins, and the rest to their defaults."""
+        """Put every parameter to where the performance began."""
         for param in sorted(TABLE, key=lambda param: param.place is Place.ENGINE):
             self.write(param.address, param.default, frame=frame)
         self._controllers.begin(frame)
@@ -202,6 +235,8 @@ class MidiPlayer:
 
     def _control(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
+        if control in (BANK, BANK_FINE):
+            state.bank = (value, state.bank[1]) if control == BANK else (state.bank[0], value)
         if control == SUSTAIN and not self.mapping.of(SUSTAIN_SOURCE):
             state.sustain = value >= 64
             if not state.sustain:
@@ -237,6 +272,17 @@ class MidiPlayer:
         state.sustain = False
         self._performer.notes_off(state.let_go, frame=frame)
         state.let_go.clear()
+
+    def _change_program(self, channel: int, program: int, frame: int | None) -> None:
+        if self._programs is None or self._channels[channel].bank != (0, 0):
+            return
+        preset = self._programs(program)
+        if preset is not None:
+            self.load(preset.values, frame=frame)
+            return
+        self.unknown_programs[program] += 1
+        if self.unknown_programs[program] == 1:
+            log.info("no preset has program %d", program)
 
     def _reset_controllers(self, channel: int, frame: int | None) -> None:
         self._control(channel, SUSTAIN, 0, frame)

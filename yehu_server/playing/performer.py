@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from yehu_server.errors import ParameterError
-from yehu_server.params.spec import Place
+from yehu_server.params.spec import TURNED_ON, Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.calibration import OPEN_NOTES
 from yehu_server.playing.fingering import (
@@ -39,7 +39,6 @@ class Key:
 
 
 BEND_RAMP_MS = find("/playing/bend").smooth_ms
-TURNED_ON = 0.5  # from which value on a switch is on
 # A loud note before a soft one has to die away before it may be turned up.
 RISING_MS, FALLING_MS = 90.0, 15.0
 # The power of dynamics that the level follows: with the slower bow 0.5 is some 12 dB below 1,
@@ -163,7 +162,7 @@ class Performer:
         param = find(address)
         accepted = param.accept(value)
         if param.place is Place.ENGINE:
-            if param.owned:
+            if param.owned or hold:
                 self._own.give_up(address, hold=hold)
                 if address == "/bow/force":  # raw newtons are heard only without assist
                     self._own.give_up("/bow/assist", hold=hold)

@@ -9,17 +9,25 @@ from yehu_server.playing.calibration import Calibration
 from yehu_server.playing.fingering import OpenStrings, RangePolicy
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
+from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.ownership import Sink
 from yehu_server.playing.performer import Performer
+from yehu_server.playing.presets import Presets
 from yehu_server.playing.tuning import EQUAL, Tuning
 
 
 @dataclass(frozen=True)
 class Style:
-    """See ``yehu-server render --help``; `settings` are held parameters and their values."""
+    """See ``yehu-server render --help``.
+
+    `settings` are held parameters and their values, `start` those that a preset begins with.
+    """
 
     mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
     settings: tuple[tuple[str, float], ...] = ()
+    start: tuple[tuple[str, float], ...] = ()
+    presets: Presets = field(default_factory=Presets, compare=False)
+    programs: bool = False  # whether program changes select presets
     a4: float = 440.0  # Hz
     tuning: Tuning = EQUAL
     policy: RangePolicy = RangePolicy.TRANSPOSE
@@ -41,3 +49,8 @@ class Style:
             open_strings=self.open_strings,
             tuning=lambda note: self.tuning.pitch(note, self.a4),
         )
+
+    def midi(self, performer: Performer, channels: set[int] | None = None) -> MidiPlayer:
+        """What MIDI means to this player; `channels` as of `MidiPlayer`."""
+        programs = self.presets.of_program if self.programs else None
+        return MidiPlayer(performer, self.mapping, channels, start=self.start, programs=programs)

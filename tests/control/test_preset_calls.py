@@ -1,0 +1,195 @@
+"""Presets over OSC."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from yehu_server.params.preset import POSSIBLE
+from yehu_server.playing.presets import Presets
+
+SHIPPED = Presets(Path(os.devnull))
+HEAD = "version = 1\n"
+
+
+@pytest.fixture
+def own(own_presets):
+    """The player's own folder, empty before and after."""
+    own_presets.mkdir(parents=True, exist_ok=True)
+    yield own_presets
+    for file in own_presets.iterdir():
+        file.unlink()
+
+
+def f32(value: float) -> float:
+    return pytest.approx(value, rel=1e-6, abs=1e-6)
+
+
+def by_address(heard) -> dict[str, list]:
+    return {message.address.removeprefix("/yehu"): message.arguments for message in heard}
+
+
+def test_a_loaded_preset_is_told_value_by_value(stage):
+    answer = by_address(stage.ask("/preset/load", "flautando"))
+    values = SHIPPED.load("flautando").values
+    assert answer.pop("/preset/loaded") == ["flautando"]
+    assert answer == {address: [f32(value)] for address, value in values.items()}
+    assert {address: stage.player.value(address) for address in values} == values
+
+
+def test_a_load_is_heard_at_the_frame_of_its_time_tag_and_at_no_other(stage, wire):
+    stage.tell("/note", 74.0, 90.0)
+    stage.pass_time(0.1)
+    stage.events.clear()
+    at = stage.clock.time() + 0.05
+    frame = round(stage._frame_at(stage.clock.monotonic_ns()) + 0.05 * stage.RATE)
+    stage.take(wire.bundle(at, wire.message("/yehu/preset/load", "sul-ponticello")))
+    stage.pass_time(0.1)
+    frames = {moved for moved, _, _ in stage.events}
+    assert len(frames) == 1
+    assert abs(frames.pop() - frame) <= 1
+    assert {"/bow/speed", "/bow/position"} <= {address for _, address, _ in stage.events}
+    assert stage.late() == 0
+
+
+def test_subscribers_hear_of_a_load(stage, ear_type):
+    other = ear_type(2)
+    stage.handler.clients.subscribe(other, 60.0)
+    stage.ask("/ping")
+    other.heard()
+    stage.ask("/preset/load", "vibrato")
+    assert by_address(other.heard())["/playing/vibrato"] == [
+        f32(SHIPPED.load("vibrato").values["/playing/vibrato"])
+    ]
+
+
+def test_a_held_parameter_is_told_where_it_stays(stage):
+    stage.player.hold("/playing/speed", 0.5)
+    answer = by_address(stage.ask("/preset/load", "flautando"))
+    assert answer["/playing/speed"] == [0.5]
+    assert stage.player.value("/playing/speed") == 0.5
+
+
+@pytest.mark.parametrize(
+    ("amount", "share"), [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (2, 1.0), (-1, 0.0)]
+)
+def test_a_morph_lies_between(stage, amount, share):
+    answer = by_address(stage.ask("/preset/morph", "ordinary", "scratch", amount))
+    one, other = (SHIPPED.load(name).values for name in ("ordinary", "scratch"))
+    for address, [told] in answer.items():
+        param = POSSIBLE[address]
+        low, high = param.to_unit(one[address]), param.to_unit(other[address])
+        assert param.to_unit(told) == f32(low + (high - low) * share)
+    assert set(answer) == set(one)
+
+
+def test_a_fader_may_morph_sixty_times_a_second_without_reading_files(stage, monkeypatch):
+    end = SHIPPED.load("vibrato").values["/playing/vibrato"]
+    stage.ask("/preset/morph", "ordinary", "vibrato", 0.0)
+    monkeypatch.setattr("yehu_server.playing.presets.read_text", None)
+    stage.tell("/note", 74.0, 90.0)
+    for step in range(61):
+        stage.tell("/preset/morph", "ordinary", "vibrato", step / 60)
+        stage.pass_time(1 / 60)
+    assert stage.player.value("/playing/vibrato") == end
+    assert stage.handler.counts.errors == 0
+    depths = [value for _, address, value in stage.events if address == "/vibrato/depth"]
+    assert len(depths) > 50
+    assert depths == sorted(depths)
+
+
+def test_the_sound_is_saved_and_comes_back(stage, own):
+    stage.tell("/playing/vibrato", 33.0)
+    stage.tell("/body/blend", 0.25)
+    stage.tell("/playing/bend", 1.0)
+    assert by_address(stage.ask("/preset/save", "my sound"))["/preset/saved"] == ["my sound"]
+    assert [file.name for file in own.iterdir()] == ["my sound.toml"]
+    stage.tell("/reset")
+    stage.tell("/playing/bend", 2.0)
+    answer = by_address(stage.ask("/preset/load", "my sound"))
+    assert answer["/playing/vibrato"] == [33.0]
+    assert answer["/body/blend"] == [0.25]
+    assert stage.player.value("/playing/vibrato") == 33.0
+    assert stage.player.value("/body/blend") == 0.25
+    assert stage.player.value("/playing/bend") == 2.0  # of the moment
+
+
+def test_one_of_ones_own_may_be_saved_over_and_deleted(stage, own):
+    for vibrato in (10.0, 20.0):
+        stage.tell("/playing/vibrato", vibrato)
+        stage.ask("/preset/save", "mine")
+    assert SHIPPED.find(str(own / "mine.toml")).values["/playing/vibrato"] == 20.0
+    assert by_address(stage.ask("/preset/delete", "mine")) == {"/preset/deleted": ["mine"]}
+    assert list(own.iterdir()) == []
+
+
+def test_presets_are_listed_and_a_broken_one_is_told(stage, own):
+    (own / "mine.toml").write_text(HEAD + 'about = "wild"\n')
+    (own / "bad.toml").write_text("version = 9\n")
+    heard = stage.ask("/preset/list")
+    rows = [message.arguments for message in heard if message.address == "/yehu/preset"]
+    presets = SHIPPED.all()[0]
+    expected = [[preset.name, preset.program or 0, preset.about] for preset in presets]
+    assert rows == sorted([*expected, ["mine", 0, "wild"]])
+    rest = by_address(heard)
+    assert rest["/presets"] == [len(rows)]
+    address, reason = rest["/error"]
+    assert address == "/yehu/preset/list"
+    assert reason.startswith("bad: version 9 is newer")
+
+
+def test_unknown_addresses_of_a_file_are_told_and_the_rest_is_set(stage, own):
+    (own / "mine.toml").write_text(HEAD + '[values]\n"/a/b" = 1\n"/playing/vibrato" = 5\n')
+    answer = by_address(stage.ask("/preset/load", "mine"))
+    assert answer["/preset/loaded"] == ["mine"]
+    assert answer["/playing/vibrato"] == [5.0]
+    address, reason = answer["/error"]
+    assert address == "/yehu/preset/load"
+    assert "mine: unknown parameter '/a/b'" in reason
+
+
+def test_nothing_of_a_file_with_a_wrong_value_is_set(stage, own):
+    (own / "mine.toml").write_text(
+        HEAD + '[values]\n"/playing/vibrato" = 5\n"/playing/speed" = 5\n'
+    )
+    before = stage.player.values()
+    (refused,) = stage.ask("/preset/load", "mine")
+    assert refused.address == "/yehu/error"
+    assert "/playing/speed: 5 is not within 0.03 to 0.6 m/s" in refused.arguments[1]
+    assert stage.player.values() == before
+
+
+@pytest.mark.parametrize("call", ["/preset/load", "/preset/save", "/preset/delete"])
+@pytest.mark.parametrize("name", ["../x", "a/b", "C:\\x", ".hidden", "x" * 5000, "", "é"])
+def test_a_name_that_is_a_path_is_refused(stage, own, call, name):
+    (refused,) = stage.ask(call, name)
+    assert refused.address == "/yehu/error"
+    assert "is not a plain name" in refused.arguments[1]
+    assert list(own.parent.rglob("*")) == [own]
+
+
+@pytest.mark.parametrize(
+    ("call", "arguments", "reason"),
+    [
+        ("/preset/load", [], "expected one string"),
+        ("/preset/load", [3.0], "expected one string"),
+        ("/preset/load", ["nothing"], "no preset 'nothing'"),
+        ("/preset/save", ["tremolo"], "save under another name"),
+        ("/preset/delete", ["tremolo"], "comes with the program"),
+        ("/preset/delete", ["nothing"], "no preset 'nothing'"),
+        ("/preset/morph", ["ordinary", "tremolo"], "expected two names and a number"),
+        ("/preset/morph", ["ordinary", 3.0, 0.5], "expected one string"),
+        ("/preset/morph", ["ordinary", "nothing", 0.5], "no preset 'nothing'"),
+        ("/preset/morph", ["ordinary", "tremolo", "half"], "expected a number"),
+        ("/preset/morph", ["ordinary", "tremolo", float("nan")], "not finite"),
+        ("/preset/morph", ["ordinary", "../x", 0.5], "is not a plain name"),
+    ],
+)
+def test_a_wrong_call_changes_nothing_and_says_why(stage, call, arguments, reason):
+    before = stage.player.values()
+    (refused,) = stage.ask(call, *arguments)
+    assert refused.arguments[0] == "/yehu" + call
+    assert reason in refused.arguments[1]
+    assert stage.player.values() == before

@@ -1,0 +1,137 @@
+"""Presets as text, and what lies between two."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from yehu_server.errors import PresetError
+from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED, Preset, morph, parse
+from yehu_server.params.spec import Curve, Place
+from yehu_server.params.table import TABLE
+
+HEAD = "version = 1\n"
+every_param = pytest.mark.parametrize("address", POSSIBLE)
+
+
+def of(**values: float) -> Preset:
+    """A preset of parameters under /playing."""
+    return Preset("one", {f"/playing/{name}": value for name, value in values.items()})
+
+
+# ---------------------------------------------------------------- files
+
+
+@every_param
+@pytest.mark.parametrize("end", ["lo", "hi", "default"])
+def test_every_parameter_is_read_at_its_ends_and_its_default(address, end):
+    value = getattr(POSSIBLE[address], end)
+    assert parse(f'{HEAD}[values]\n"{address}" = {value!r}\n', "mine").values == {address: value}
+
+
+def test_a_preset_may_have_all_the_players_and_nothing_that_the_player_moves():
+    assert {p.address for p in TABLE if p.place is Place.PLAYER} <= set(POSSIBLE)
+    assert not any(POSSIBLE[address].owned for address in POSSIBLE)
+    assert set(SAVED) == set(POSSIBLE) - NOT_SAVED
+    assert set(POSSIBLE) >= NOT_SAVED
+
+
+def test_what_a_file_says_of_itself_is_kept():
+    preset = parse(HEAD + 'about = "a  line\\nor two"\nprogram = 128\n', "mine")
+    assert preset == Preset("mine", {}, "a line or two", 128)
+    assert parse(HEAD, "mine").program is None
+
+
+def test_an_unknown_address_is_left_out_and_told_and_the_rest_is_read():
+    preset = parse(HEAD + '[values]\n"/playing/sped" = 9\n"/playing/speed" = 0.2\n', "mine")
+    assert preset.values == {"/playing/speed": 0.2}
+    (remark,) = preset.remarks()
+    assert "mine" in remark
+    assert "'/playing/sped'" in remark
+    assert "/playing/speed?" in remark
+
+
+def test_of_very_many_unknown_addresses_some_are_told_and_the_rest_counted():
+    lines = "".join(f'"/a/{number}" = 1\n' for number in range(1000))
+    remarks = parse(f"{HEAD}[values]\n{lines}", "mine").remarks()
+    assert len(remarks) == 11
+    assert remarks[-1] == "mine: and 990 more"
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "no line version = 1"),
+        ("version = true\n", "no line version = 1"),
+        ("version = 0\n", "no line version = 1"),
+        ("version = 2\nnew = 3\n", "version 2 is newer"),
+        ("version = ", "not a preset file"),
+        ("a = " + "[" * 5000, "not a preset file"),
+        (HEAD + "nme = 3\n", "unknown entry 'nme'"),
+        (HEAD + "about = 3\n", "about: expected a line"),
+        (HEAD + "program = 0\n", "1 to 128, got 0"),
+        (HEAD + "program = 129\n", "1 to 128, got 129"),
+        (HEAD + "program = true\n", "1 to 128, got True"),
+        (HEAD + "program = 1.0\n", "1 to 128, got 1.0"),
+        (HEAD + "values = 3\n", "values: expected a table"),
+        (HEAD + '[values]\n"/playing/speed" = 9\n', "/playing/speed: 9 is not within 0.03 to 0.6"),
+        (HEAD + '[values]\n"/playing/speed" = nan\n', "/playing/speed: nan is not finite"),
+        (HEAD + '[values]\n"/playing/speed" = true\n', "/playing/speed: expected a number"),
+        (HEAD + '[values]\n"/playing/speed" = "fast"\n', "/playing/speed: expected a number"),
+        (HEAD + '[values]\n"/playing/speed" = 1' + "0" * 400, "/playing/speed: inf is not finite"),
+        (HEAD + '[values]\n"/bow/speed" = 0.1\n', "/bow/speed is moved by the player"),
+        (HEAD + '[values]\n"/finger/1/press" = 1\n', "/finger/1/press is moved by the player"),
+    ],
+)
+def test_what_is_wrong_is_said_and_nothing_is_read(text, reason):
+    with pytest.raises(PresetError, match=re.escape(reason)):
+        parse(text, "mine")
+
+
+# ---------------------------------------------------------------- between two
+
+
+@every_param
+def test_a_morph_begins_and_ends_at_the_very_values(address):
+    param = POSSIBLE[address]
+    third = param.from_unit(1.0 / 3.0)
+    one, other = Preset("one", {address: param.hi}), Preset("other", {address: third})
+    for amount, value in ((0.0, param.hi), (-3.0, param.hi), (1.0, third), (7.0, third)):
+        assert morph(one, other, amount) == {address: value}
+
+
+@every_param
+def test_half_way_is_half_the_way_along_the_curve(address):
+    param = POSSIBLE[address]
+    one, other = Preset("one", {address: param.lo}), Preset("other", {address: param.hi})
+    half = morph(one, other, 0.5)[address]
+    if param.is_choice:
+        assert half == param.hi
+    elif param.curve is Curve.EXP:
+        assert half == pytest.approx((param.lo * param.hi) ** 0.5)
+    else:
+        assert half == pytest.approx(0.5 * (param.lo + param.hi))
+
+
+def test_a_switch_turns_over_at_a_half_and_is_never_between():
+    on, off = of(pizzicato=1.0), of(pizzicato=0.0)
+    for one, other in ((on, off), (off, on)):
+        for amount in (0.01, 0.49, 0.5, 0.99):
+            end = other if amount >= 0.5 else one
+            assert morph(one, other, amount) == end.values
+
+
+def test_what_only_one_names_goes_to_or_from_its_default():
+    default = POSSIBLE["/playing/vibrato"].default
+    assert morph(of(vibrato=40.0), of(), 0.25) == {
+        "/playing/vibrato": pytest.approx(40.0 + 0.25 * (default - 40.0))
+    }
+    assert morph(of(), of(vibrato=40.0), 0.0) == {"/playing/vibrato": default}
+
+
+def test_a_morph_never_leaves_the_range():
+    for address, param in POSSIBLE.items():
+        one, other = Preset("one", {address: param.lo}), Preset("other", {address: param.hi})
+        for step in range(101):
+            assert param.lo <= morph(one, other, step / 100)[address] <= param.hi

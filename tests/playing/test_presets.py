@@ -1,0 +1,384 @@
+"""Folders of presets, and what loading one does to the player."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+from pathlib import Path
+
+import mido
+import numpy as np
+import pytest
+
+from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import OutputError, PresetError
+from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED
+from yehu_server.params.table import SLOT, TABLE
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibration import calibration_for
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import load
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.presets import Presets, read_preset
+from yehu_server.playing.style import Style
+
+HEAD = "version = 1\n"
+RATE = 44100.0
+SHIPPED = Presets(Path(os.devnull)).names()
+DEFAULTS = {param.address: param.default for param in TABLE}
+NAMES = [
+    "", ".", "..", "../x", "..\\x", "a/b", "a\\b", "C:\\x", "/etc/passwd", "a\0b", ".hidden",
+    "-x", " x", "x" * 101, "x\n", "ä", "a:b", "*",
+]  # fmt: skip
+bad_names = pytest.mark.parametrize("name", NAMES)
+
+
+@pytest.fixture
+def presets(tmp_path) -> Presets:
+    return Presets(tmp_path / "own")
+
+
+@pytest.fixture
+def put(presets):
+    """Put a file into the player's own folder."""
+
+    def write(name: str, text: str) -> Path:
+        presets.own.mkdir(exist_ok=True)
+        path = presets.own / f"{name}.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+# ---------------------------------------------------------------- folders
+
+
+def test_every_shipped_preset_says_what_it_is_and_has_a_program_of_its_own(presets):
+    found, errors = presets.all()
+    assert errors == []
+    assert [preset.name for preset in found] == SHIPPED
+    assert all(preset.about and not preset.unknown for preset in found)
+    programs = [preset.program for preset in found]
+    assert sorted(programs) == list(range(1, len(found) + 1))
+    # All name the same parameters, so that each undoes what another did, and none is silent.
+    assert len({frozenset(preset.values) for preset in found}) == 1
+    assert not NOT_SAVED & set(found[0].values)
+
+
+def test_the_ordinary_preset_is_where_every_parameter_is_by_itself(presets):
+    values = presets.load("ordinary").values
+    assert values == {address: DEFAULTS[address] for address in values}
+
+
+@pytest.mark.parametrize("end", ["lo", "hi", "default"])
+def test_every_value_saved_is_loaded_again(presets, end):
+    values = {param.address: getattr(param, end) for param in TABLE}
+    presets.save("mine", values)
+    loaded = presets.load("mine")
+    assert loaded.values == {address: values[address] for address in SAVED}
+    assert loaded.unknown == ()
+    assert presets.names() == sorted([*SHIPPED, "mine"])
+
+
+def test_a_value_is_saved_as_it_was_meant(presets):
+    presets.save("mine", DEFAULTS | {"/playing/speed": float(np.float32(0.1))})
+    assert presets.load("mine").values["/playing/speed"] == 0.1
+
+
+def test_saving_over_a_file_keeps_what_else_it_says(presets, put):
+    path = put(
+        "mine",
+        '# my own\nversion = 1\nprogram = 40\nabout = "wild" # yes\n\n[values]\n'
+        '"/playing/bend" = 1\n"/playing/vibrato" = 10 # cents\n"/playing/new" = 3\n'
+        '"/playing/attack" = 40 # ms\n',
+    )
+    presets.save("mine", DEFAULTS | {"/playing/vibrato": 20.0})
+    text = path.read_text(encoding="utf-8")
+    for line in (
+        "# my own",
+        'about = "wild" # yes',
+        "= 20.0 # cents",
+        '"/playing/attack" = 40 # ms',
+    ):
+        assert line in text
+    preset = presets.load("mine")
+    assert (preset.program, preset.about, preset.unknown) == (40, "wild", ("/playing/new",))
+    assert preset.values["/playing/bend"] == 1.0
+
+
+@pytest.mark.parametrize(
+    "text", ["version = 2\n", "version = 1\n[values\n", "version = 1\nx = 1\n"]
+)
+def test_a_file_that_cannot_be_read_is_not_written_over(presets, put, text):
+    path = put("mine", text)
+    with pytest.raises(PresetError, match="mine: "):
+        presets.save("mine", DEFAULTS)
+    assert path.read_text(encoding="utf-8") == text
+
+
+@pytest.mark.parametrize("failing", ["fsync", "replace"])
+def test_a_file_is_whole_when_writing_fails(presets, monkeypatch, failing):
+    presets.save("mine", DEFAULTS)
+    before = (presets.own / "mine.toml").read_bytes()
+
+    def fail(*_):
+        raise OSError(28, "No space left on device")
+
+    if failing == "fsync":
+        monkeypatch.setattr(os, "fsync", fail)
+    else:
+        monkeypatch.setattr(Path, "replace", fail)
+    with pytest.raises(OutputError, match="No space left"):
+        presets.save("mine", DEFAULTS | {"/playing/vibrato": 20.0})
+    assert [file.name for file in presets.own.iterdir()] == ["mine.toml"]
+    assert (presets.own / "mine.toml").read_bytes() == before
+
+
+@bad_names
+def test_no_name_leads_out_of_the_folder(presets, tmp_path, name):
+    before = sorted(tmp_path.rglob("*"))
+    for call in (presets.load, presets.delete, lambda name: presets.save(name, DEFAULTS)):
+        with pytest.raises(PresetError, match="is not a plain name"):
+            call(name)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_preset_of_ones_own_hides_a_shipped_one_until_it_is_deleted(presets, put):
+    with pytest.raises(PresetError, match="save under another name"):
+        presets.save("tremolo", DEFAULTS)
+    with pytest.raises(PresetError, match="comes with the program"):
+        presets.delete("tremolo")
+    put("tremolo", HEAD + '[values]\n"/playing/tremolo" = 7\n')
+    assert presets.load("tremolo").values == {"/playing/tremolo": 7.0}
+    assert presets.names() == SHIPPED
+    presets.save("tremolo", DEFAULTS)
+    assert presets.load("tremolo").values["/playing/tremolo"] == 0.0
+    presets.delete("tremolo")
+    assert presets.load("tremolo").values["/playing/tremolo"] > 7.0
+    assert presets.shipped.joinpath("tremolo.toml").exists()
+
+
+def test_a_name_that_there_is_not_lists_those_there_are(presets):
+    for call in (presets.load, presets.find):
+        with pytest.raises(PresetError, match=r"no preset 'x' \(there are: flautando, ordinary"):
+            call("x")
+    with pytest.raises(PresetError, match="no preset 'x'"):
+        presets.delete("x")
+
+
+def test_a_changed_file_is_read_again_and_an_unchanged_one_is_not(presets, put, monkeypatch):
+    path = put("mine", HEAD + '[values]\n"/playing/vibrato" = 10\n')
+    first = presets.load("mine")
+    with monkeypatch.context() as patch:
+        patch.setattr("yehu_server.playing.presets.read_text", None)
+        assert presets.load("mine") is first
+    path.write_text(HEAD + '[values]\n"/playing/vibrato" = 20\n', encoding="utf-8")
+    os.utime(path, ns=(1, 1))  # the clock of a file system may be coarse
+    assert presets.load("mine").values == {"/playing/vibrato": 20.0}
+
+
+def test_a_broken_file_does_not_hide_the_others(presets, put):
+    put("bad", "version = 3\n")
+    put("good", HEAD)
+    put(".hidden", HEAD)
+    found, errors = presets.all()
+    assert [preset.name for preset in found] == sorted([*SHIPPED, "good"])
+    assert [str(error)[:5] for error in errors] == ["bad: "]
+
+
+def test_a_file_of_any_place_is_named_in_its_error(presets, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_bytes(b"\xff")
+    for wrong in (path, tmp_path, tmp_path / "none.toml", Path("a\0b.toml")):
+        with pytest.raises(PresetError, match=re.escape(str(wrong))):
+            presets.find(str(wrong))
+    path.write_text(HEAD, encoding="utf-8")
+    assert presets.find(str(path)) == read_preset(path)
+
+
+def test_a_program_is_the_players_own_before_a_shipped_one(presets, put):
+    assert presets.of_program(3).name == "flautando"
+    assert presets.of_program(100) is None
+    put("z mine", HEAD + "program = 3\n")
+    put("zz mine", HEAD + "program = 3\n")
+    assert presets.of_program(3).name == "z mine"
+
+
+# ---------------------------------------------------------------- the player
+
+
+@pytest.fixture
+def instrument() -> Instrument:
+    instrument = Instrument(RATE)
+    instrument.report_events()
+    return instrument
+
+
+def live_player(instrument: Instrument, **style) -> LivePlayer:
+    return LivePlayer(instrument, Style(**style), delay_ms=3.0)
+
+
+def played(instrument: Instrument, frames: int) -> np.ndarray:
+    out = np.zeros(frames, np.float32)
+    instrument.process(out)
+    return out
+
+
+def test_a_load_sets_what_it_names_and_leaves_the_rest(instrument):
+    live = live_player(instrument)
+    live.write("/playing/variation", 0.7, frame=0)
+    live.load({"/playing/vibrato": 20.0, "/output/gain": -6.0}, frame=0)
+    changed = {"/playing/variation": 0.7, "/playing/vibrato": 20.0, "/output/gain": -6.0}
+    assert {address: live.value(address) for address in POSSIBLE} == {
+        address: param.default for address, param in POSSIBLE.items()
+    } | changed
+
+
+def test_all_of_a_load_is_heard_at_one_frame(instrument):
+    live = live_player(instrument)
+    live.note_on(74.0, 90.0, frame=0)
+    played(instrument, 22050)
+    instrument.applied_events()
+    far = {p.address: p.from_unit(0.3) for p in POSSIBLE.values() if p.address != "/playing/bend"}
+    live.load(far, frame=23000)
+    played(instrument, 4410)
+    moves = instrument.applied_events()
+    assert {int(move["frame"]) for move in moves} == {23000}
+    assert {SLOT["/bow/speed"], SLOT["/output/gain"], SLOT["/bow/position"]} <= {
+        int(move["index"]) for move in moves
+    }
+
+
+@pytest.mark.parametrize("kept", ["/playing/vibrato", "/output/gain"])
+def test_a_held_parameter_is_not_moved(instrument, kept):
+    live = live_player(instrument)
+    param = POSSIBLE[kept]
+    live.hold(kept, param.hi)
+    live.load({kept: param.lo, "/playing/attack": 99.0}, frame=0)
+    assert live.value(kept) == param.hi
+    assert live.value("/playing/attack") == 99.0
+
+
+def test_loading_while_a_note_sounds_makes_no_click(instrument):
+    """No jump between samples is larger than those of either sound by itself."""
+    presets = Presets(Path(os.devnull))
+    live = live_player(instrument)
+    live.write("/playing/variation", 0.0, frame=0)
+    live.note_on(77.0, 64.0, frame=0)
+    sounds = []
+    for name in ("ordinary", "flautando", "sul-ponticello", "sul-tasto", "vibrato", "ordinary"):
+        live.load(presets.load(name).values, frame=instrument.frame)
+        sounds.append(np.abs(np.diff(played(instrument, 22050))))
+    for before, after in itertools.pairwise(sounds):
+        steady = max(before[11025:].max(), after[11025:].max())
+        assert after[:4410].max() < 1.5 * steady
+
+
+def test_what_velocity_moves_is_spread_around_what_was_put(player):
+    midi = MidiPlayer(player, load("keyboard"))
+    key = mido.Message("note_on", note=77, velocity=127)
+
+    def pressed() -> float:
+        midi.receive(key)
+        midi.receive(key.copy(velocity=0))
+        return player.value("/playing/pressure")
+
+    usual = pressed()
+    midi.load({"/playing/pressure": 0.2})
+    assert pressed() == pytest.approx(0.5 * usual)
+    assert midi.sound()["/playing/pressure"] == 0.2  # and so it is saved
+    midi.load({"/playing/pressure": 0.4})
+    assert pressed() == pytest.approx(usual)
+
+
+def test_the_beginning_is_where_a_reset_leads_back_to(instrument):
+    live = live_player(instrument, start=(("/playing/vibrato", 20.0),))
+    assert live.value("/playing/vibrato") == 20.0
+    live.write("/playing/vibrato", 5.0, frame=0)
+    live.reset(frame=0)
+    assert live.value("/playing/vibrato") == 20.0
+
+
+# ---------------------------------------------------------------- program changes
+
+
+def change(live: LivePlayer, program: int, channel: int = 1) -> None:
+    message = mido.Message("program_change", program=program - 1, channel=channel - 1)
+    live.receive(message, frame=0, port=0)
+
+
+def bank(live: LivePlayer, control: int, value: int, channel: int = 1) -> None:
+    message = mido.Message("control_change", control=control, value=value, channel=channel - 1)
+    live.receive(message, frame=0, port=0)
+
+
+def test_a_program_change_selects_a_preset_where_it_may(instrument, presets):
+    live = live_player(instrument, presets=presets, programs=True)
+    change(live, 6)
+    assert live.value("/playing/tremolo") > 0.0
+    change(live, 1, channel=16)
+    assert live.value("/playing/tremolo") == 0.0
+    change(live, 6, channel=10)  # percussion
+    assert live.value("/playing/tremolo") == 0.0
+
+
+def test_program_changes_do_nothing_by_themselves(instrument, presets):
+    live = live_player(instrument, presets=presets)
+    for program in range(1, 129):
+        change(live, program)
+    assert live.values() == DEFAULTS
+
+
+@pytest.mark.parametrize("control", [0, 32])
+def test_other_banks_are_not_ours(instrument, presets, control):
+    live = live_player(instrument, presets=presets, programs=True)
+    bank(live, control, 1)
+    change(live, 6)
+    assert live.values() == DEFAULTS
+    change(live, 2, channel=2)  # another channel, another bank
+    assert live.value("/playing/vibrato") > 0.0
+    bank(live, control, 0)
+    change(live, 6)
+    assert live.value("/playing/tremolo") > 0.0
+
+
+def test_an_unknown_program_is_ignored_and_told_once(instrument, presets, caplog):
+    live = live_player(instrument, presets=presets, programs=True)
+    with caplog.at_level("INFO", "yehu_server"):
+        for _ in range(3):
+            change(live, 41)
+    assert live.values() == DEFAULTS
+    assert [record.message for record in caplog.records] == ["no preset has program 41"]
+
+
+# ---------------------------------------------------------------- how they sound
+
+
+def heard(name: str, note: int, seconds: float = 0.5) -> np.ndarray:
+    calibration = calibration_for(RATE)
+    instrument = Instrument(RATE, calibration.tuned(Quantities()))
+    values = Presets(Path(os.devnull)).load(name).values | {"/playing/variation": 0.0}
+    style = Style(start=tuple(values.items()))
+    performer = style.performer(instrument, calibration)
+    midi = style.midi(performer)
+    midi.receive(mido.Message("note_on", note=note, velocity=64), frame=0)
+    return played(instrument, round(RATE * seconds)).astype(np.float64)
+
+
+@pytest.mark.parametrize("note", [74, 77, 81, 84])
+@pytest.mark.parametrize("name", [name for name in SHIPPED if name != "scratch"])
+def test_a_shipped_preset_speaks_in_tune(name, note):
+    sound = heard(name, note)
+    late = sound[round(0.05 * RATE) : round(0.25 * RATE)] if name == "pizzicato" else sound[8820:]
+    wanted = 440.0 * 2.0 ** ((note - 69) / 12.0)
+    assert abs(cents(pitch_hz(late, RATE, lo=0.4 * wanted), wanted)) < 12.0
+    assert np.abs(sound).max() > 0.01
+
+
+def test_scratching_has_no_clear_pitch():
+    sound = heard("scratch", 67)[8820:]
+    assert np.isnan(pitch_hz(sound, RATE))
+    assert np.abs(sound).max() > 0.05

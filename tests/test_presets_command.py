@@ -1,0 +1,146 @@
+"""``yehu-server presets``, and presets on the command line of ``render``."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import mido
+import pytest
+
+from yehu_server.cli import main
+from yehu_server.playing.presets import Presets
+
+SHIPPED = Presets(Path(os.devnull))
+HEAD = "version = 1\n"
+
+
+@pytest.fixture
+def told(capsys):
+    """Run a command; its exit code and what it printed."""
+
+    def run(*words: object) -> tuple[int, str, str]:
+        code = main([str(word) for word in words])
+        out, err = capsys.readouterr()
+        return code, out, err
+
+    return run
+
+
+@pytest.fixture
+def own(tmp_path) -> Path:
+    folder = tmp_path / "own"
+    folder.mkdir()
+    return folder
+
+
+def test_presets_are_listed_with_their_programs(told, own):
+    (own / "mine.toml").write_text(HEAD + 'about = "wild"\n')
+    (own / "bad.toml").write_text("version = 9\n")
+    code, out, err = told("presets", "list", "--presets", own)
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()] == sorted([*SHIPPED.names(), "mine"])
+    assert "your own: wild" in out
+    assert "bad: version 9 is newer" in err
+    rows = json.loads(told("presets", "list", "--json", "--presets", own)[1])
+    assert rows["mine"] == {"program": None, "about": "wild", "own": True}
+    assert rows["tremolo"]["own"] is False
+
+
+@pytest.mark.parametrize("name", SHIPPED.names())
+def test_a_preset_is_shown_with_all_its_values(told, name):
+    preset = SHIPPED.load(name)
+    shown = json.loads(told("presets", "show", name, "--json")[1])
+    assert shown["values"] == preset.values
+    assert (shown["program"], shown["about"]) == (preset.program, preset.about)
+    code, out, _ = told("presets", "show", name)
+    assert code == 0
+    for address in preset.values:
+        assert address in out
+
+
+def test_files_are_checked(told, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(HEAD + '[values]\n"/playing/vibrato" = 5\n"/a/b" = 3\n')
+    code, out, err = told("presets", "check", path)
+    assert (code, out) == (0, f"{path}: right, 1 values\n")
+    assert "unknown parameter '/a/b'" in err
+    path.write_text(HEAD + '[values]\n"/playing/vibrato" = 500\n')
+    code, out, err = told("presets", "check", path)
+    assert (code, out) == (2, "")
+    assert f"{path}: /playing/vibrato: 500 is not within 0 to 100 cents" in err
+
+
+# ---------------------------------------------------------------- rendering
+
+
+@pytest.fixture
+def rendered(told, tmp_path):
+    """Render a note after program changes; the bytes written, and the report."""
+    paths = iter(range(100))
+
+    def run(*words: object, programs: tuple[int, ...] = ()) -> tuple[bytes, str]:
+        score = mido.MidiFile(ticks_per_beat=480)
+        track = score.add_track("")
+        track += [mido.Message("program_change", program=program - 1) for program in programs]
+        track.append(mido.Message("note_on", note=77, velocity=90))
+        track.append(mido.Message("note_off", note=77, time=240))
+        score.save(tmp_path / "in.mid")
+        target = tmp_path / f"{next(paths)}.wav"
+        code, out, err = told("render", tmp_path / "in.mid", "-o", target, "--tail", 0, *words)
+        assert code == 0, err
+        return target.read_bytes(), out + err
+
+    return run
+
+
+def test_a_program_change_of_a_file_acts_only_if_asked_for(rendered):
+    plain, _ = rendered()
+    assert rendered(programs=(6,))[0] == plain
+    selected, _ = rendered("--programs", programs=(6,))
+    assert selected != plain
+    assert rendered("--programs", programs=(6,))[0] == selected
+    assert rendered("--preset", "tremolo")[0] == selected
+    assert rendered("--programs", programs=(6, 1))[0] == plain
+
+
+def test_unknown_programs_are_told(rendered):
+    sound, told = rendered("--programs", programs=(41, 25, 41))
+    assert "no preset for the programs 25, 41: ignored" in told
+    assert sound == rendered()[0]
+
+
+def test_a_folder_of_ones_own_is_heard(rendered, own):
+    (own / "mine.toml").write_text(
+        HEAD + 'program = 41\n[values]\n"/playing/tremolo" = 9\n"/a/b" = 1\n'
+    )
+    by_file, told = rendered("--preset", own / "mine.toml")
+    assert "unknown parameter '/a/b'" in told
+    assert by_file != rendered()[0]
+    assert rendered("--preset", "mine", "--presets", own)[0] == by_file
+    assert rendered("--programs", "--presets", own, programs=(41,))[0] == by_file
+
+
+def test_what_is_set_wins_over_a_preset(rendered):
+    words = ("--set", "/playing/tremolo=0", "--set", "/playing/attack=40")
+    assert rendered("--preset", "tremolo", *words)[0] == rendered()[0]
+    programs = rendered("--programs", *words, programs=(6,))[0]
+    assert programs == rendered()[0]
+
+
+def test_the_gain_asked_for_wins_over_a_presets(rendered, tmp_path):
+    path = tmp_path / "soft.toml"
+    path.write_text(HEAD + '[values]\n"/output/gain" = -12\n')
+    assert rendered("--preset", path)[0] != rendered()[0]
+    assert rendered("--preset", path, "--gain-db", 0)[0] == rendered()[0]
+
+
+def test_a_preset_that_there_is_not_is_named(told, tmp_path):
+    words = ("render", tmp_path / "in.mid", "-o", tmp_path / "out.wav")
+    code, _, err = told(*words, "--preset", "nothing")
+    assert code == 2
+    assert "no preset 'nothing' (there are: flautando" in err
+    code, _, err = told(*words, "--preset", tmp_path / "none.toml")
+    assert code == 2
+    assert "none.toml: No such file" in err

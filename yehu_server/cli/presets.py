@@ -1,0 +1,113 @@
+"""``yehu-server presets``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from yehu_server.cli.arguments import add_presets_folder
+
+EXAMPLES = """\
+examples:
+  yehu-server presets list
+  yehu-server presets show flautando
+  yehu-server presets check my-sound.toml
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "presets",
+        help="sounds: those that come along, and your own",
+        description="List the presets, show what is in one, or check files of your own.",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
+    for name, run, text in (
+        ("list", _list, "the presets"),
+        ("show", _show, "the values of one"),
+        ("check", _check, "whether files are right"),
+    ):
+        action = actions.add_parser(
+            name,
+            help=text,
+            description=f"Tell {text}.",
+            formatter_class=RawDescriptionRichHelpFormatter,
+            allow_abbrev=False,
+        )
+        action.set_defaults(run=run)
+        if name == "show":
+            action.add_argument("preset", metavar="NAME", help="a preset's name, or a file")
+        if name == "check":
+            action.add_argument("files", nargs="+", type=Path, metavar="FILE")
+        else:
+            add_presets_folder(action)
+            action.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    from yehu_server.playing.presets import Presets
+
+    presets = Presets(arguments.presets)
+    found, errors = presets.all()
+    if arguments.json:
+        rows = {
+            preset.name: {
+                "program": preset.program,
+                "about": preset.about,
+                "own": presets.is_own(preset.name),
+            }
+            for preset in found
+        }
+        print(json.dumps(rows))
+    else:
+        width = max((len(preset.name) for preset in found), default=0)
+        for preset in found:
+            mark = "your own: " if presets.is_own(preset.name) else ""
+            print(f"{preset.name:{width}}  {preset.program or '-':>3}  {mark}{preset.about}")
+    _warn(str(error) for error in errors)
+    return 0
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    from yehu_server.params.table import find
+    from yehu_server.playing.presets import Presets
+
+    preset = Presets(arguments.presets).find(arguments.preset)
+    if arguments.json:
+        fields = {"name": preset.name, "about": preset.about, "program": preset.program}
+        print(json.dumps(fields | {"values": preset.values, "unknown": preset.unknown}))
+        return 0
+    print(f"{preset.name}: {preset.about}" if preset.about else preset.name)
+    if preset.program is not None:
+        print(f"MIDI program {preset.program}")
+    width = max(map(len, preset.values), default=0)
+    for address, value in preset.values.items():
+        unit = find(address).unit
+        print(f"{address:{width}}  {value:g}" + ("" if unit == "1" else f" {unit}"))
+    _warn(preset.remarks())
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from yehu_server.playing.presets import read_preset
+
+    for file in arguments.files:
+        preset = read_preset(file)
+        _warn(preset.remarks())
+        print(f"{file}: right, {len(preset.values)} values")
+    return 0
+
+
+def _warn(lines: Iterable[str]) -> None:
+    for line in lines:
+        print(f"yehu-server: {line}", file=sys.stderr)

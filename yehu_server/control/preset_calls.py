@@ -1,0 +1,87 @@
+"""The calls that load, save and list presets, and morph between two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from yehu_server.control.clients import Clients
+from yehu_server.control.packets import pack
+from yehu_server.control.peers import Peer
+from yehu_server.errors import PresetError
+from yehu_server.params.preset import Preset, morph
+from yehu_server.playing.live import LivePlayer
+
+if TYPE_CHECKING:
+    from yehu_server.control.osc import Call
+
+
+class PresetCalls:
+    """Acts on what comes under ``/preset``.
+
+    Parameters
+    ----------
+    complain : callable
+        Tells a peer of something wrong that holds up nothing, with the address it sent to.
+
+    Attributes
+    ----------
+    by_address : dict
+        What each call does. Each raises YehuError where it refuses.
+    """
+
+    def __init__(
+        self, player: LivePlayer, clients: Clients, complain: Callable[[Peer, str, str], None]
+    ) -> None:
+        self._player = player
+        self._presets = player.presets
+        self._clients = clients
+        self._complain = complain
+        self._prefix = clients.prefix
+        self.by_address: dict[str, Callable[[Call], None]] = {
+            "/preset/load": self._load,
+            "/preset/morph": self._morph,
+            "/preset/save": self._save,
+            "/preset/delete": self._delete,
+            "/preset/list": self._list,
+        }
+
+    def _load(self, call: Call) -> None:
+        preset = self._presets.load(call.word())
+        self._player.load(preset.values, frame=call.frame)
+        self._clients.echo(call.peer, preset.values)
+        call.peer.send(pack(f"{self._prefix}/preset/loaded", preset.name))
+        for remark in preset.remarks():
+            self._complain(call.peer, f"{self._prefix}/preset/load", remark)
+
+    def _morph(self, call: Call) -> None:
+        if len(call.arguments) != 3:
+            raise PresetError("expected two names and a number from 0 to 1")
+        one, other = self._named(call, 0), self._named(call, 1)
+        (amount,) = replace(call, arguments=call.arguments[2:]).numbers(1)
+        values = morph(one, other, amount)
+        self._player.load(values, frame=call.frame)
+        self._clients.echo(call.peer, values)
+
+    def _named(self, call: Call, place: int) -> Preset:
+        return self._presets.load(replace(call, arguments=call.arguments[place:][:1]).word())
+
+    def _save(self, call: Call) -> None:
+        name = call.word()
+        self._presets.save(name, self._player.sound())
+        call.peer.send(pack(f"{self._prefix}/preset/saved", name))
+
+    def _delete(self, call: Call) -> None:
+        name = call.word()
+        self._presets.delete(name)
+        call.peer.send(pack(f"{self._prefix}/preset/deleted", name))
+
+    def _list(self, call: Call) -> None:
+        presets, errors = self._presets.all()
+        for preset in presets:
+            row = (preset.name, preset.program or 0, preset.about)
+            call.peer.send(pack(f"{self._prefix}/preset", *row))
+        call.peer.send(pack(f"{self._prefix}/presets", len(presets)))
+        for error in errors:
+            self._complain(call.peer, f"{self._prefix}/preset/list", str(error))

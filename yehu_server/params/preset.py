@@ -1,0 +1,137 @@
+"""Presets: values of parameters by address, as a file has them, and what lies between two.
+
+The format is described in presets/README.md.
+"""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from yehu_server.errors import ParameterError, PresetError
+from yehu_server.params.table import BY_ADDRESS, TABLE
+
+VERSION = 1
+ENTRIES = ("version", "about", "program", "values")
+PROGRAMS = range(1, 129)  # as people count them
+MOST_REMARKS = 10
+# What a preset may name: all but what the player moves as notes sound.
+POSSIBLE = {param.address: param for param in TABLE if not param.owned}
+# What hands and feet do just now, and the course of chance, are no part of a sound; still, a
+# file may name them.
+NOT_SAVED = {"/playing/bend", "/playing/dynamics", "/playing/expression", "/engine/seed"}
+SAVED = tuple(address for address in POSSIBLE if address not in NOT_SAVED)
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A sound: some parameters and their values.
+
+    `program` is the MIDI program, 1 to 128, that selects it; `unknown` are addresses that the
+    file names and the table does not have.
+    """
+
+    name: str
+    values: Mapping[str, float] = field(default_factory=dict)
+    about: str = ""
+    program: int | None = None
+    unknown: tuple[str, ...] = ()
+
+    def remarks(self) -> list[str]:
+        """What a player should know of a file that was read, a line each."""
+        lines = []
+        for address in self.unknown[:MOST_REMARKS]:
+            near = difflib.get_close_matches(address[:100], POSSIBLE, n=1, cutoff=0.6)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            lines.append(f"{self.name}: unknown parameter {address!r}, left out{hint}")
+        if len(self.unknown) > MOST_REMARKS:
+            lines.append(f"{self.name}: and {len(self.unknown) - MOST_REMARKS} more")
+        return lines
+
+
+def parse(text: str, name: str) -> Preset:
+    """Read the text of a preset's file.
+
+    Errors: PresetError for what is no preset, one of a newer version, or a wrong value; the
+    whole is refused then.
+    """
+    try:
+        data = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise PresetError(f"not a preset file ({error})") from error
+    _check_version(data)
+    for entry in data:
+        if entry not in ENTRIES:
+            raise PresetError(f"unknown entry {entry!r} (known: {', '.join(ENTRIES)})")
+    about = data.get("about", "")
+    if not isinstance(about, str):
+        raise PresetError(f"about: expected a line of text, got {about!r}")
+    program = data.get("program")
+    if program is not None and (type(program) is not int or program not in PROGRAMS):
+        raise PresetError(f"program: expected a MIDI program, 1 to 128, got {program!r}")
+    entries = data.get("values", {})
+    if not isinstance(entries, dict):
+        raise PresetError("values: expected a table of addresses and values")
+    values = {address: _value(address, entries[address]) for address in entries if _has(address)}
+    unknown = tuple(address for address in entries if not _has(address))
+    return Preset(name, values, " ".join(about.split()), program, unknown)
+
+
+def _check_version(data: Mapping[str, Any]) -> None:
+    version = data.get("version")
+    if type(version) is not int or version < 1:
+        raise PresetError(f"not a preset file: it has no line version = {VERSION}")
+    if version > VERSION:
+        reason = f"version {version} is newer than this program, which reads up to {VERSION}"
+        raise PresetError(reason)
+
+
+def _has(address: str) -> bool:
+    return address in BY_ADDRESS
+
+
+def _value(address: str, value: Any) -> float:
+    if address not in POSSIBLE:
+        raise PresetError(f"{address} is moved by the player as notes sound; no preset has it")
+    param = POSSIBLE[address]
+    try:
+        accepted = param.accept(value)
+    except ParameterError as error:
+        raise PresetError(str(error)) from error
+    if accepted != value:
+        raise PresetError(f"{address}: {value} is not within {param.range_text}")
+    return accepted
+
+
+def morph(one: Preset, other: Preset, amount: float) -> dict[str, float]:
+    """The values between two presets, each along its parameter's curve.
+
+    `amount` is 0 for `one`, 1 for `other`, and held to these ends. Switches and other
+    choices turn over at a half. What only one of them names goes to or from its default.
+    """
+    amount = min(max(amount, 0.0), 1.0)
+    return {
+        address: _between(
+            address,
+            one.values.get(address, param.default),
+            other.values.get(address, param.default),
+            amount,
+        )
+        for address, param in POSSIBLE.items()
+        if address in one.values or address in other.values
+    }
+
+
+def _between(address: str, start: float, end: float, amount: float) -> float:
+    param = POSSIBLE[address]
+    if start == end or amount == 0.0:
+        return start
+    if amount == 1.0:
+        return end
+    if param.is_choice:
+        return end if amount >= 0.5 else start
+    low, high = param.to_unit(start), param.to_unit(end)
+    return param.accept(param.from_unit(low + (high - low) * amount))

@@ -1,0 +1,151 @@
+"""The folders of presets: those that come along, and the player's own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import tomlkit
+from platformdirs import user_config_path
+from tomlkit.exceptions import TOMLKitError
+
+from yehu_server.errors import PresetError
+from yehu_server.files import PLAIN_NAME, read_text, shipped_folder, write_text
+from yehu_server.params.preset import SAVED, VERSION, Preset, parse
+
+ENDING = ".toml"
+EMPTY = f'version = {VERSION}\nabout = ""\n\n[values]\n'
+Stamp = tuple[int, int]
+
+
+def read_preset(path: Path, name: str | None = None) -> Preset:
+    """Read a file of any place. Errors: PresetError, naming it."""
+    try:
+        return parse(read_text(path), name or path.stem)
+    except UnicodeDecodeError as error:
+        raise PresetError(f"{name or path}: not a preset file ({error})") from error
+    except (OSError, ValueError) as error:  # a path may have a NUL
+        reason = error.strerror if isinstance(error, OSError) else None
+        raise PresetError(f"{name or path}: {reason or error}") from error
+    except PresetError as error:
+        raise PresetError(f"{name or path}: {error}") from error
+
+
+class Presets:
+    """Presets by plain name; one of the player's own hides a shipped one of its name.
+
+    Files are read again when they have changed.
+
+    Parameters
+    ----------
+    own : Path, optional
+        The player's folder, made when something is saved; by default among the settings that
+        the system keeps for this program.
+    """
+
+    def __init__(self, own: Path | None = None) -> None:
+        self.own = own or user_config_path("yehu-server") / "presets"
+        self.shipped = shipped_folder("presets")
+        self._known: dict[Path, tuple[Stamp, Preset]] = {}
+
+    def names(self) -> list[str]:
+        """All names, sorted."""
+        return sorted({*_names(self.own), *_names(self.shipped)})
+
+    def is_own(self, name: str) -> bool:
+        """Whether it is the player's own."""
+        return _file(self.own, name).is_file()
+
+    def load(self, name: str) -> Preset:
+        """Read one of them. Errors: PresetError."""
+        for folder in (self.own, self.shipped):
+            path = _file(folder, name)
+            if path.is_file():
+                return self._read(path, name)
+        raise PresetError(f"no preset {name!r} (there are: {', '.join(self.names())})")
+
+    def find(self, name_or_path: str) -> Preset:
+        """Read one of them, or a file of any place. Errors: PresetError."""
+        if PLAIN_NAME.fullmatch(name_or_path) and not name_or_path.endswith(ENDING):
+            return self.load(name_or_path)
+        return read_preset(Path(name_or_path))
+
+    def all(self) -> tuple[list[Preset], list[PresetError]]:
+        """All of them by name, and what is wrong with files that cannot be read."""
+        presets, errors = [], []
+        for name in self.names():
+            try:
+                presets.append(self.load(name))
+            except PresetError as error:
+                errors.append(error)
+        return presets, errors
+
+    def of_program(self, program: int) -> Preset | None:
+        """The preset of a MIDI program, 1 to 128: the player's own first, then by name."""
+        found = [preset for preset in self.all()[0] if preset.program == program]
+        return min(found, key=lambda preset: not self.is_own(preset.name), default=None)
+
+    def save(self, name: str, values: Mapping[str, float]) -> None:
+        """Keep those of the values that make up a sound, as one of the player's own.
+
+        The rest of an older file of this name (comments, `about`, `program`, what it names
+        besides) stays; it is as it was where writing fails.
+        Errors: PresetError for a shipped one's name, or an older file that cannot be read.
+        """
+        path = _file(self.own, name)
+        text = EMPTY
+        if path.exists():
+            read_preset(path, name)
+            text = read_text(path)
+        elif _file(self.shipped, name).exists():
+            raise PresetError(f"{name!r} comes with the program; save under another name")
+        try:
+            document = tomlkit.parse(text)
+        except TOMLKitError as error:
+            raise PresetError(f"{name}: {error}") from error
+        table = document.setdefault("values", tomlkit.table())
+        for address in SAVED:
+            value = float(f"{values[address]:.7g}")  # what a 32-bit float of OSC was meant to be
+            if table.get(address) != value:
+                table[address] = value
+        try:
+            self.own.mkdir(parents=True, exist_ok=True)
+            write_text(path, tomlkit.dumps(document))
+        except OSError as error:
+            raise PresetError(f"{self.own}: {error.strerror}") from error
+
+    def delete(self, name: str) -> None:
+        """Remove one of the player's own. Errors: PresetError."""
+        path = _file(self.own, name)
+        if not path.is_file():
+            shipped = _file(self.shipped, name).exists()
+            why = f"{name!r} comes with the program" if shipped else f"no preset {name!r}"
+            raise PresetError(why)
+        try:
+            path.unlink()
+        except OSError as error:
+            raise PresetError(f"{name}: {error.strerror}") from error
+
+    def _read(self, path: Path, name: str) -> Preset:
+        try:
+            status = path.stat()
+        except OSError as error:
+            raise PresetError(f"{name}: {error.strerror}") from error
+        stamp = (status.st_mtime_ns, status.st_size)
+        known = self._known.get(path)
+        if known is None or known[0] != stamp:
+            known = self._known[path] = (stamp, read_preset(path, name))
+        return known[1]
+
+
+def _file(folder: Path, name: str) -> Path:
+    """Where a preset of a folder is. Errors: PresetError for what is no plain name."""
+    if not PLAIN_NAME.fullmatch(name):
+        shown = name if len(name) <= 40 else f"{name[:40]}..."
+        reason = "is not a plain name of letters, digits, . _ - and spaces"
+        raise PresetError(f"{shown!r} {reason}")
+    return folder / f"{name}{ENDING}"
+
+
+def _names(folder: Path) -> list[str]:
+    return [file.stem for file in folder.glob(f"*{ENDING}") if PLAIN_NAME.fullmatch(file.stem)]

@@ -33,7 +33,7 @@ from yehu_server.control.web import Sources, WebOptions, WebServer
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
-from yehu_server.files import check_target
+from yehu_server.files import check_target, shipped_folder
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
 from yehu_server.playing.live import LivePlayer
@@ -112,7 +112,9 @@ class Server:
             undo.callback(self.osc.stop)
             self.web: WebServer | None = None
             if options.http is not None:
-                sources = Sources(self.player.values, self.status)
+                sources = Sources(
+                    self.player.values, self.status, folder=shipped_folder("mappings")
+                )
                 self.web = WebServer(options.http, self.osc, self.handler.clients, sources)
                 undo.callback(self.web.stop)
             for target in (options.record, options.capture):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import ipaddress
 import socket
 from collections.abc import Callable, Sequence
@@ -77,7 +78,7 @@ class Announcer:
         try:
             found = AsyncZeroconf(interfaces=hosts)
         except (OSError, RuntimeError, zeroconf.Error) as error:
-            self._said(f"not announced: {error}")
+            self._said(_failure(error))
             return
         host = socket.gethostname().partition(".")[0]
         name = f"{NAME} {host}".encode()[:LONGEST_LABEL].decode(errors="ignore")
@@ -91,14 +92,23 @@ class Announcer:
             )
             for service in self._services
         ]
+        # To its end, even if we are to end: half begun, it would leave its sockets open.
+        started = asyncio.ensure_future(found.zeroconf.async_wait_for_start())
         try:
+            await asyncio.shield(started)
             for info in infos:
                 await (await found.async_register_service(info, allow_name_change=True))
             names = {info.name.removesuffix(f".{info.type}") for info in infos}
             self._said(f"announced as {' and '.join(sorted(names))}")
             await asyncio.Event().wait()
         except (OSError, zeroconf.Error) as error:
-            self._said(f"not announced: {type(error).__name__} {error}".strip())
+            self._said(_failure(error))
         finally:
-            await found.async_unregister_all_services()
+            with contextlib.suppress(zeroconf.Error):
+                await started
+                await found.async_unregister_all_services()
             await found.async_close()
+
+
+def _failure(error: Exception) -> str:
+    return f"not announced: {str(error) or type(error).__name__}"

@@ -64,8 +64,8 @@ class Sources:
 
     values: Callable[[], Mapping[str, float]]  # parameters, by address
     status: Callable[[], Mapping[str, float | str]]  # by name
+    folder: Path  # of the page of parameters
     more_calls: Callable[[], Iterable[Call]] = tuple  # beside calls.CALLS
-    folder: Path | None = None  # of the page of parameters
 
 
 class WebServer:
@@ -132,7 +132,9 @@ class WebServer:
         try:
             return await self._respond(request)
         except web.HTTPException as error:
-            self.traffic.refused += error.status in {403, 405, 413, 503}
+            if error.status in {403, 405, 413, 503}:
+                self.traffic.refused += 1
+                error.force_close()
             error.headers.update(HEADERS)
             raise
         except ConnectionError:  # hung up
@@ -195,9 +197,9 @@ class WebServer:
         return query.host_info(NAME, (osc_host, self._osc.port), (reached, self.port))
 
     def _parameters(self) -> web.Response:
-        folder = self._sources.folder
+        file = self._sources.folder / PARAMETERS
         try:
-            return _html((folder / PARAMETERS).read_text("utf-8") if folder else "")
+            return _html(file.read_text("utf-8"))
         except OSError:
             raise web.HTTPNotFound(text="this page is not installed\n") from None
 
@@ -221,5 +223,5 @@ def _html(text: str) -> web.Response:
 
 
 def _json(what: Any) -> web.Response:
-    text = json.dumps(what, allow_nan=False)
-    return web.Response(text=text, content_type="application/json", headers=HEADERS)
+    body = json.dumps(what, allow_nan=False).encode()
+    return web.Response(body=body, content_type="application/json", headers=HEADERS)

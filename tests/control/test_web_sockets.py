@@ -9,7 +9,7 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from web_client import BINARY, TEXT, Heard, Refused, WebSocket, ask, packed
+from web_client import BINARY, CLOSE, TEXT, Heard, Refused, WebSocket, ask, packed
 
 from yehu_server.control.peers import MOST_UNSENT_BYTES, WebTraffic
 from yehu_server.control.web import MOST_WEB_SOCKETS, WebOptions
@@ -297,10 +297,20 @@ def test_one_who_vanishes_is_forgotten_with_all_it_asked_for(web_house, port, pa
     web.tell("/yehu/subscribe", 3600.0)
     web.sync()
     assert web_house.server.status()["osc_subscribers"] == 1
-    for _ in range(100):
-        web.tell("/yehu/subscribe", 3600.0)  # the last of them are acted on after it is gone
     web.vanish()
     patience(lambda: not web_house.handler.clients._clients, "nobody is left")
+
+
+def test_what_one_said_last_is_done_before_it_is_forgotten(web_house, connect, patience):
+    clients = web_house.handler.clients
+    web = connect()
+    web.sync()
+    web_house.ports.call_soon(lambda: time.sleep(0.3))  # all of it comes at once
+    web.tell("/yehu/subscribe", 3600.0)
+    web.tell(FORCE, 4.0)
+    web.send(CLOSE, b"\x03\xe8")
+    patience(lambda: web_house.player.value("/bow/force") == 4.0, "it is done")
+    patience(lambda: not clients._clients, "nobody is left")
 
 
 def test_twenty_who_come_and_go_at_random_leave_nothing_behind(web_house, port, patience):

@@ -106,7 +106,6 @@ class Announcer:
         finally:
             with contextlib.suppress(zeroconf.Error):
                 await started
-                await found.async_unregister_all_services()
             await found.async_close()
 
 

@@ -14,7 +14,7 @@ from web_client import ask, walk
 from yehu_server.control.addresses import Allowed
 from yehu_server.control.calls import CALLS
 from yehu_server.control.status import STATUS, Kind
-from yehu_server.control.web import MOST_CONNECTIONS, PARAMETERS, WebOptions
+from yehu_server.control.web import IDLE_S, MOST_CONNECTIONS, PARAMETERS, WebOptions
 from yehu_server.errors import DeviceError
 from yehu_server.files import shipped_folder
 from yehu_server.params.table import TABLE
@@ -301,7 +301,7 @@ def test_those_who_connect_and_say_nothing_are_bounded(port, patience):
                     gone.append(connection)
             return len(gone) >= 50
 
-        patience(excess_is_gone, "the excess is closed")
+        patience(excess_is_gone, "the excess is closed", IDLE_S / 2)
         assert len(gone) <= 60
     finally:
         for connection in silent:

@@ -9,7 +9,7 @@ import pytest
 from yehu_server import cli
 from yehu_server.cli.config import expand
 from yehu_server.cli.serve import _options
-from yehu_server.report import connect_lines, note_name
+from yehu_server.report import connect_lines, note_name, query_line
 
 
 def options(*words: str):
@@ -113,3 +113,25 @@ def test_a_phone_is_told_the_exact_line():
 
 def test_pitches_have_names():
     assert [note_name(p) for p in (65.0, 69.12, 71.98)] == ["F4", "A4+12", "C5-2"]
+
+
+def test_oscquery_is_for_this_machine_until_said_otherwise():
+    http = options().http
+    assert http.address == ("127.0.0.1", 9001)
+    assert options("--http", "192.0.2.5:80").http.address == ("192.0.2.5", 80)
+    assert options("--http", ":0").http.address == ("127.0.0.1", 0)
+    assert "192.0.2.7" not in options("--http-allow", "198.51.100.0/24").http.allowed
+    assert options("--http", "none").http is None
+    assert options("--no-http").http is None
+
+
+def test_announcing_may_be_asked_for_or_forbidden():
+    assert options().announce is None
+    assert options("--announce").announce is True
+    assert options("--no-announce").announce is False
+
+
+def test_a_browser_is_told_the_exact_line():
+    assert query_line("127.0.0.1", 9001, "192.168.1.5") == "OSCQuery at http://127.0.0.1:9001/"
+    assert query_line("0.0.0.0", 9001, "192.168.1.5") == "OSCQuery at http://192.168.1.5:9001/"  # noqa: S104
+    assert query_line("::1", 9001, "192.168.1.5") == "OSCQuery at http://[::1]:9001/"

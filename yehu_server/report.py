@@ -207,6 +207,13 @@ def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]
     return lines
 
 
+def query_line(host: str, port: int, lan: str) -> str:
+    """Where OSCQuery is, in words."""
+    address = ipaddress.ip_address(host)
+    where = lan if address.is_unspecified else f"[{host}]" if address.version == 6 else host
+    return f"OSCQuery at http://{where}:{port}/"
+
+
 def _friction_notice(bound: float) -> list[str]:
     # The measured instrument at 44.1 kHz is at 1.02, without trouble.
     if bound < NOTABLE_BOUND:

@@ -1,8 +1,8 @@
-"""The live composition: instrument, player, audio output, OSC and MIDI.
+"""The live composition: instrument, player, audio output, OSC, MIDI and OSCQuery.
 
-OSC thread ──┐
-             ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
-MIDI process ┘                              └─> meters, applied events, tape
+web thread ─> OSC thread ──┐
+                           ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
+              MIDI process ┘                              └─> meters, applied events, tape
 """
 
 from __future__ import annotations
@@ -23,13 +23,16 @@ from platformdirs import user_music_path
 from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.audio.recorder import Recorder
 from yehu_server.control.addresses import Address, Allowed
+from yehu_server.control.announce import Announcer, announced
 from yehu_server.control.osc import OscHandler
+from yehu_server.control.peers import WebTraffic
 from yehu_server.control.ports import MidiOptions, MidiPorts
 from yehu_server.control.sockets import OscPorts
+from yehu_server.control.web import Sources, WebOptions, WebServer
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import MappingError, OutputError
-from yehu_server.files import PLAIN_NAME, check_target
+from yehu_server.files import PLAIN_NAME, check_target, shipped_folder
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
 from yehu_server.playing.live import LivePlayer
@@ -58,6 +61,8 @@ class ServeOptions:
     midi: MidiOptions | None = field(default_factory=MidiOptions)  # None: no MIDI
     osc: Address = ("127.0.0.1", 9000)
     allowed: Allowed = field(default_factory=Allowed)
+    http: WebOptions | None = None  # None: no OSCQuery
+    announce: bool | None = None  # None: where it listens beyond this machine
     style: Style = field(default_factory=Style)
     reread: Callable[[], Mapping] | None = None  # the mapping's files; None: they are not watched
     jitter_ms: float | None = None  # None: one block and HANDLING_MS
@@ -107,6 +112,13 @@ class Server:
             self.handler = OscHandler(self.player, self)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
             undo.callback(self.osc.stop)
+            self.web: WebServer | None = None
+            if options.http is not None:
+                sources = Sources(
+                    self.player.values, self.status, folder=shipped_folder("mappings")
+                )
+                self.web = WebServer(options.http, self.osc, self.handler.clients, sources)
+                undo.callback(self.web.stop)
             for target in (options.record, options.capture):
                 if target is not None:
                     check_target(target)
@@ -122,6 +134,8 @@ class Server:
             MappingWatch(options.style.mapping, options.reread) if options.reread else None
         )
         self._next_look = 0.0
+        services = announced(self.osc, self.web, options.announce)
+        self._announcer = Announcer(services, said) if services else None
         self._ending = threading.Event()
         self._keeper = threading.Thread(target=self._keep, name="keeper", daemon=True)
         self._rests = 0
@@ -138,6 +152,8 @@ class Server:
         gc.freeze()  # what is loaded by now stays: later collections need not look at it
         with contextlib.ExitStack() as undo:
             undo.callback(self.osc.stop)
+            if self.web is not None:
+                undo.callback(self.web.stop)
             undo.callback(self.output.end)
             self.output.begin(self.instrument)
             if self.options.capture is not None:
@@ -151,6 +167,10 @@ class Server:
                 self._recorder = Recorder(self.instrument, self.options.record, 0, self._said)
             undo.pop_all()
         self.osc.start()
+        if self.web is not None:
+            self.web.start()
+        if self._announcer is not None:
+            self._announcer.start()
         if self.midi is not None:
             self.midi.start()
         self._keeper.start()
@@ -159,6 +179,10 @@ class Server:
         """End all notes, let them fade, close everything."""
         if self.midi is not None:
             self.midi.stop()
+        if self._announcer is not None:
+            self._announcer.stop()
+        if self.web is not None:
+            self.web.stop()
         self.osc.stop()
         frame = self.player.frame_of()
         self.player.end_notes(frame=frame)
@@ -274,11 +298,12 @@ class Server:
         return recorder.target.name if recorder is not None and recorder.is_running else ""
 
     def status(self) -> dict[str, float | str]:
-        """How things stand, by plain names; the meanings are in docs/osc.md."""
+        """How things stand, by the names of `control.status.STATUS`; any thread may call."""
         meters = self.instrument.meters()
         output, traffic, counts = self.output.state, self.osc.traffic, self.handler.counts
         pitch = self.player.pitch
         midi = self.midi
+        web = WebTraffic() if self.web is None else self.web.traffic
         return {
             "device": output.device or "silent clock",
             "problem": output.problem,
@@ -318,8 +343,14 @@ class Server:
             "scheduled": self.handler.waiting,
             "late_bundles": counts.late_bundles,
             "midi_ports": "; ".join(midi.connected) if midi else "",
+            "midi_connected": len(midi.connected) if midi else 0,
             "midi_messages": midi.received if midi else 0,
             "midi_malformed": midi.malformed if midi else 0,
+            "http_requests": web.requests,
+            "http_refused": web.refused,
+            "http_failures": web.failures,
+            "http_unsent": web.unsent,
+            "web_sockets": web.web_sockets,
             "recording": self.recording,
         }
 

@@ -21,6 +21,7 @@ import pytest
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control import clients, osc, schedule
+from yehu_server.control.web import WebOptions
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.errors import OutputError
@@ -552,6 +553,14 @@ def hall(make_hall) -> Hall:
 def house(tmp_path_factory) -> Iterator[Hall]:
     """One server for a whole file of tests that leave it as it was."""
     with hall_opened(tmp_path_factory.mktemp("house")) as hall:
+        yield hall
+
+
+@pytest.fixture(scope="module")
+def web_house(tmp_path_factory) -> Iterator[Hall]:
+    """The same, with OSCQuery."""
+    http = WebOptions((HOST, 0))
+    with hall_opened(tmp_path_factory.mktemp("house"), http=http) as hall:
         yield hall
 
 

@@ -242,3 +242,75 @@ def test_errors_are_told_rarely_to_who_makes_many(clients, play, ear, ear_type):
     play(5000)
     clients.complain(ear, "/x", "no")
     assert len(ear.packets) == 1
+
+
+# ---------------------------------------------------------------- listeners
+
+
+def test_a_listener_is_told_its_address_now_and_when_it_changes(clients, values, play, ear):
+    clients.listen(ear, "/b")
+    play(20)
+    assert told(ear) == [("/yehu/b", [0.0])]
+    values.now |= {"/a": 1.0, "/b": 2.0}
+    play(20)
+    assert told(ear) == [("/yehu/b", [2.0])]
+    play(1000)
+    values.now["/b"] = 3.0
+    clients.ignore(ear, "/b")
+    play(20)
+    assert told(ear) == []
+
+
+def test_who_listens_and_sets_is_told_once(clients, values, play, ear):
+    clients.listen(ear, "/a")
+    play(20)
+    told(ear)
+    values.now["/a"] = 1.0
+    clients.echo(ear, ["/a"])
+    play(50)
+    assert told(ear) == [("/yehu/a", [1.0])]
+
+
+def test_the_status_is_looked_at_only_for_listeners_and_seldom(still_time, values, ear):
+    looks = []
+
+    def status() -> dict[str, float | str]:
+        looks.append(still_time.now)
+        return {"load": float(len(looks)), "device": "null"}
+
+    clients = Clients(values, "/yehu", status)
+    clients.subscribe(ear, 60.0)
+
+    def play(ms: int) -> None:
+        for _ in range(ms):
+            still_time.now += 0.001
+            clients.flush()
+
+    play(1000)
+    assert looks == []
+    told(ear)
+    clients.listen(ear, "/status/load")
+    clients.listen(ear, "/status/device")
+    play(20)
+    assert sorted(told(ear)) == [("/yehu/status/device", ["null"]), ("/yehu/status/load", [1.0])]
+    play(1000)
+    assert 3 <= len(looks) - 1 <= 5
+    assert {address for address, _ in told(ear)} == {"/yehu/status/load"}
+
+
+def test_an_address_ignored_before_it_was_told_is_not_told(clients, play, ear):
+    clients.listen(ear, "/status/none")
+    clients.ignore(ear, "/status/none")
+    play(50)
+    assert told(ear) == []
+
+
+def test_who_has_nothing_to_hear_is_forgotten(clients, play, ear, ear_type):
+    clients.subscribe(ear_type(2), 1.0)
+    clients.listen(ear_type(3), "/a")
+    clients.echo(ear, ["/a"])
+    clients.complain(ear_type(4), "/x", "why")
+    play(20)
+    assert len(clients._clients) == 4
+    play(4000)
+    assert [peer.port for peer in clients._clients] == [3]

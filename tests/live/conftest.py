@@ -427,7 +427,7 @@ def serve(jackd) -> Iterator[Callable[..., Serve]]:
 
         def start(*words: object, environment: dict[str, str] | None = None) -> Serve:
             osc = () if "--osc" in words else ("--osc", "127.0.0.1:0")
-            made = Serve(environment or jackd.environment, *osc, *words)
+            made = Serve(environment or jackd.environment, *osc, "--http", "127.0.0.1:0", *words)
             ending.callback(made.close)
             return made
 

@@ -173,7 +173,7 @@ def command(jackd, *words: object) -> subprocess.CompletedProcess:
 def refused(jackd, folder: Path, *words: object) -> str:
     """The one line with which a call is refused; nothing may be left behind."""
     files_before = sorted(folder.iterdir())
-    run = command(jackd, "serve", *words)
+    run = command(jackd, "serve", "--no-http", *words)
     assert run.returncode == 2, run.stderr
     assert run.stdout == ""
     lines = [line for line in run.stderr.splitlines() if "compiling" not in line]
@@ -194,7 +194,7 @@ def refused_rate(jackd, tmp_path_factory) -> tuple[int, list[str], list[Path]]:
     """Exit code, lines and files of a call with a rate that the named device does not have."""
     jackd.start(512, rate=RATE)
     folder = tmp_path_factory.mktemp("refused")
-    words = ("--audio-device", "JACK", "--rate", 44100, "--osc", "127.0.0.1:0")
+    words = ("--audio-device", "JACK", "--rate", 44100, "--osc", "127.0.0.1:0", "--no-http")
     run = command(jackd, "serve", *words, *files(folder))
     return run.returncode, run.stderr.splitlines(), list(folder.iterdir())
 

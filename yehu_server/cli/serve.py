@@ -7,7 +7,6 @@ import contextlib
 import json
 import logging
 import signal
-import socket
 import sys
 import threading
 import time
@@ -34,11 +33,13 @@ examples:
   yehu-server serve
   yehu-server serve --midi-in keystep --audio-device "hifi, ALSA" --latency 0.01
   yehu-server serve --osc 192.168.1.5:9000 --osc-allow 192.168.1.0/24
+  yehu-server serve --http 192.168.1.5:9001 --http-allow 192.168.1.0/24
   yehu-server serve --record take.wav --capture take.jsonl
 
-The OSC messages are described in docs/osc.md. Ctrl-C ends it.
+The OSC messages are described in docs/osc.md, OSCQuery in docs/oscquery.md. Ctrl-C ends it.
 """
 
+HTTP = ("127.0.0.1", 9001)
 LEVELS = ("debug", "info", "warning", "error")
 REFRESHES_PER_SECOND = 10
 
@@ -57,6 +58,7 @@ def add_to(commands: Any) -> None:
     _add_audio(parser.add_argument_group("audio"))
     _add_midi(parser.add_argument_group("MIDI"))
     _add_osc(parser.add_argument_group("OSC"))
+    _add_web(parser.add_argument_group("OSCQuery"))
     _add_playing(parser.add_argument_group("playing"))
     _add_running(parser.add_argument_group("running"))
 
@@ -123,6 +125,32 @@ def _add_osc(group: Any) -> None:
     )
 
 
+def _add_web(group: Any) -> None:
+    group.add_argument(
+        "--http",
+        default="{}:{}".format(*HTTP),
+        metavar="HOST:PORT",
+        help="where to listen for OSCQuery, HTTP and WebSocket (default: 127.0.0.1:9001; this "
+        "machine only), or none",
+    )
+    group.add_argument(
+        "--no-http", dest="http", action="store_const", const="none", help="no OSCQuery"
+    )
+    group.add_argument(
+        "--http-allow",
+        action="append",
+        default=[],
+        metavar="CIDR",
+        help="answer only this network; may be repeated",
+    )
+    group.add_argument(
+        "--announce",
+        action=argparse.BooleanOptionalAction,
+        help="let others find the server by zeroconf (default: where it listens beyond this "
+        "machine)",
+    )
+
+
 def _add_playing(group: Any) -> None:
     add_playing(group)
     group.add_argument(
@@ -182,7 +210,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _serve(arguments: argparse.Namespace, ended: threading.Event) -> None:
-    from yehu_server.report import connect_lines
+    from yehu_server.control.addresses import lan_address
+    from yehu_server.report import connect_lines, query_line
     from yehu_server.server import Server
 
     say = logging.getLogger("yehu_server").info
@@ -195,6 +224,8 @@ def _serve(arguments: argparse.Namespace, ended: threading.Event) -> None:
         where = (server.osc.host, server.osc.port, lan_address())
         for line in connect_lines(*where, is_open=not arguments.osc_allow):
             say(line)
+        if server.web is not None:
+            say(query_line(server.web.host, server.web.port, lan_address()))
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
         say(f"the system grants OSC a buffer of {buffer_kb} kB; Ctrl-C ends")
         with _status_line(server):
@@ -215,6 +246,7 @@ def _options(arguments: argparse.Namespace) -> Any:
     from yehu_server.audio.output import OutputOptions
     from yehu_server.control.addresses import Allowed, parse_address
     from yehu_server.control.ports import MidiOptions
+    from yehu_server.control.web import WebOptions
     from yehu_server.physics.grid import check_rate
     from yehu_server.server import ServeOptions
 
@@ -233,6 +265,10 @@ def _options(arguments: argparse.Namespace) -> Any:
         else None,
         osc=parse_address(arguments.osc, "127.0.0.1", 9000),
         allowed=Allowed(arguments.osc_allow),
+        http=WebOptions(parse_address(arguments.http, *HTTP), Allowed(arguments.http_allow))
+        if arguments.http != "none"
+        else None,
+        announce=arguments.announce,
         style=style_of(arguments),
         reread=partial(mapping_of, arguments) if arguments.watch else None,
         jitter_ms=arguments.jitter_buffer,
@@ -242,14 +278,6 @@ def _options(arguments: argparse.Namespace) -> Any:
     if arguments.recordings is not None:
         options.recordings = arguments.recordings
     return options
-
-
-def lan_address() -> str:
-    """The address of this machine on its network; nothing is sent to find it."""
-    with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.connect(("192.0.2.1", 9))  # a network that is for documentation only
-        return str(probe.getsockname()[0])
-    return "0.0.0.0"  # noqa: S104 - all there is to say without a network
 
 
 # ---------------------------------------------------------------- on the terminal

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ipaddress
 import socket
 from collections.abc import Iterable
@@ -13,6 +14,7 @@ Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = tuple[str, int]
 
 MOST_KNOWN = 1 << 16
+ANYWHERE = "0.0.0.0"  # noqa: S104 - names it only
 
 
 class Allowed:
@@ -37,8 +39,7 @@ class Allowed:
         if host not in self._known:
             if len(self._known) > MOST_KNOWN:
                 self._known.clear()
-            address = ipaddress.ip_address(host.partition("%")[0])
-            address = getattr(address, "ipv4_mapped", None) or address
+            address = ipaddress.ip_address(plain(host))
             self._known[host] = any(address in network for network in self._networks)
         return self._known[host]
 
@@ -53,6 +54,20 @@ def is_here(host: str) -> bool:
     except OSError:
         return False
     return True
+
+
+def plain(host: str) -> str:
+    """An address without its zone, and of IPv4 where it is that of IPv4 as IPv6 has it."""
+    address = ipaddress.ip_address(host.partition("%")[0])
+    return str(getattr(address, "ipv4_mapped", None) or address)
+
+
+def lan_address() -> str:
+    """The address of this machine on its network; nothing is sent to find it."""
+    with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.connect(("192.0.2.1", 9))  # a network that is for documentation only
+        return str(probe.getsockname()[0])
+    return ANYWHERE  # all there is to say without a network
 
 
 def parse_address(text: str, default_host: str, default_port: int) -> Address:

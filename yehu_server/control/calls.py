@@ -14,13 +14,17 @@ PREFIX = "/yehu"  # before every address
 
 @dataclass(frozen=True)
 class Argument:
-    """One argument of a call: a number (``f``) within its range, or a word (``s``)."""
+    """One argument of a call: a number (``f``) within its range, or a word (``s``).
+
+    A word may be one of `choices` only.
+    """
 
     name: str
     kind: str = "f"
     lo: float | None = None
     hi: float | None = None
     unit: str = "1"
+    choices: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -7,17 +7,21 @@ does not read.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from yehu_server.control.packets import pack, shortened
 from yehu_server.control.peers import Peer
-from yehu_server.params.table import read
+from yehu_server.control.status import PLACE, as_argument
+from yehu_server.params.table import UNIT, read
 
 FLUSH_S = 1.0 / 60.0
+STATUS_S = 0.25  # between looks at the status
+SWEEP_S = 1.0
 MOST_SUBSCRIBERS = 64
 MOST_KNOWN = 1024
 ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
+FORGIVEN_S = ERRORS_AT_ONCE / ERRORS_A_SECOND
 
 
 @dataclass
@@ -27,6 +31,7 @@ class Client:
     peer: Peer
     until: float = 0.0  # when its subscription ends (monotonic s)
     form: str = ""  # of the addresses it is told: plain, or UNIT
+    listens: set[str] = field(default_factory=set)  # addresses it is told of without an end
     to_tell: dict[str, None] = field(default_factory=dict)  # addresses, in order
     patience: float = ERRORS_AT_ONCE  # errors it may still be sent
     complained: float = field(default_factory=time.monotonic)
@@ -41,14 +46,25 @@ class Clients:
         Gives all parameters' values, by address.
     prefix : str
         Put before addresses.
+    status : callable, optional
+        Gives the status values, by name; they are at PLACE and their name.
     """
 
-    def __init__(self, values: Callable[[], dict[str, float]], prefix: str) -> None:
+    def __init__(
+        self,
+        values: Callable[[], dict[str, float]],
+        prefix: str,
+        status: Callable[[], Mapping[str, float | str]] = dict,
+    ) -> None:
         self._values = values
         self.prefix = prefix
+        self._status = status
         self._clients: dict[Peer, Client] = {}
         self._told: dict[str, float] = {}  # values as of the last flush
+        self._told_status: dict[str, float | str] = {}
+        self._looked = 0.0  # at the status
         self._flushed = 0.0
+        self._swept = 0.0
         self._is_waiting = False
         self.errors_sent = 0
         self.errors_withheld = 0
@@ -57,7 +73,7 @@ class Clients:
     def subscribers(self) -> int:
         """How many hear of changes."""
         now = time.monotonic()
-        return sum(client.until > now for client in self._clients.values())
+        return sum(client.until > now for client in list(self._clients.values()))  # any thread
 
     def _client(self, peer: Peer) -> Client:
         client = self._clients.get(peer)
@@ -67,12 +83,15 @@ class Clients:
             client = self._clients[peer] = Client(peer)
         return client
 
-    def _forget_idle(self) -> None:
+    def _forget_idle(self, *, forgiven_s: float = 0.0) -> None:
+        """Forget whom there is nothing to tell, and nothing to forgive for so long."""
         now = time.monotonic()
         self._clients = {
             peer: client
             for peer, client in self._clients.items()
-            if client.until > now or client.to_tell
+            if max(client.until, client.complained + forgiven_s) > now
+            or client.to_tell
+            or client.listens
         }
 
     # -- what they are told ------------------------------------------------------------------
@@ -100,6 +119,19 @@ class Clients:
         """Tell a peer no more."""
         self._client(peer).until = 0.0
 
+    def listen(self, peer: Peer, address: str) -> None:
+        """Tell a peer of an address (without the prefix): now, and when it changes."""
+        client = self._client(peer)
+        client.listens.add(address)
+        client.to_tell[address] = None
+        self._is_waiting = True
+
+    def ignore(self, peer: Peer, address: str) -> None:
+        """Tell a peer of an address no more."""
+        client = self._client(peer)
+        client.listens.discard(address)
+        client.to_tell.pop(address, None)
+
     def forget(self, peer: Peer) -> None:
         """A peer is gone."""
         self._clients.pop(peer, None)
@@ -121,28 +153,61 @@ class Clients:
 
     # -- when --------------------------------------------------------------------------------
 
+    @property
+    def _is_watched(self) -> bool:
+        now = time.monotonic()
+        return any(client.until > now or client.listens for client in self._clients.values())
+
     def wait_s(self) -> float | None:
         """Seconds until there is something to tell."""
-        if not self._is_waiting and not self.subscribers:
+        if not self._is_waiting and not self._is_watched:
             return None
         return max(0.0, self._flushed + FLUSH_S - time.monotonic())
 
     def flush(self) -> None:
         """Tell everyone what is due, at most 60 times a second."""
         now = time.monotonic()
-        if now - self._flushed < FLUSH_S or not (self._is_waiting or self.subscribers):
+        if now - self._swept > SWEEP_S:
+            self._swept = now
+            self._forget_idle(forgiven_s=FORGIVEN_S)
+        if now - self._flushed < FLUSH_S or not (self._is_waiting or self._is_watched):
             return
         self._flushed = now
         self._is_waiting = False
         values = self._values()
         changed = {address: None for address, v in values.items() if self._told.get(address) != v}
         self._told = values
+        heard = {address + form for address in changed for form in ("", UNIT)}
+        heard |= self._changed_status(now)
         packets: dict[str, bytes] = {}
         for client in list(self._clients.values()):  # sending may end one
             if client.until > now:
                 client.to_tell.update({address + client.form: None for address in changed})
+            client.to_tell.update(dict.fromkeys(client.listens & heard))
             for address in client.to_tell:
                 if address not in packets:
-                    packets[address] = pack(self.prefix + address, read(values, address))
+                    packets[address] = pack(self.prefix + address, self._value(address))
                 client.peer.send(packets[address])
             client.to_tell.clear()
+
+    def _value(self, address: str) -> float | str:
+        if address.startswith(PLACE):
+            return self._told_status[address]
+        return read(self._told, address)
+
+    def _changed_status(self, now: float) -> set[str]:
+        """The addresses of what changed of the status, where someone asks and it is time."""
+        asked = {
+            address
+            for client in self._clients.values()
+            for address in client.listens
+            if address.startswith(PLACE)
+        }
+        is_new = not asked <= self._told_status.keys()
+        if not asked or (now - self._looked < STATUS_S and not is_new):
+            return set()
+        self._looked = now
+        told = self._told_status
+        status = {PLACE + name: as_argument(value) for name, value in self._status().items()}
+        self._told_status = status
+        return {address for address, value in status.items() if told.get(address) != value}

@@ -19,6 +19,7 @@ from yehu_server.control.patterns import PatternError, is_pattern, matches
 from yehu_server.control.peers import Peer
 from yehu_server.control.preset_calls import PresetCalls
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
+from yehu_server.control.status import PLACE, as_argument
 from yehu_server.errors import YehuError
 from yehu_server.params.spec import Param
 from yehu_server.params.table import BY_ADDRESS, TABLE, UNIT, find, read
@@ -27,7 +28,6 @@ from yehu_server.playing.live import Arrivals, LivePlayer
 log = logging.getLogger(__name__)
 
 LONGEST_PATTERN = 256
-INT_MAX = (1 << 31) - 1
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 
 
@@ -75,6 +75,8 @@ class Call:
     def numbers(self, least: int, most: int | None = None) -> list[float]:
         """The arguments as finite numbers. Errors: RefusedError."""
         most = least if most is None else most
+        if least == 0 and list(self.arguments) == [None]:  # how OSCQuery's clients send nothing
+            return []
         count = len(self.arguments)
         if not least <= count <= most:
             wanted = f"{least}" if least == most else f"{least} to {most}"
@@ -96,7 +98,7 @@ class OscHandler:
         self._player = player
         self._desk = desk
         self.counts = Counts()
-        self.clients = Clients(player.values, PREFIX)
+        self.clients = Clients(player.values, PREFIX, desk.status)
         # Before any message of now that would be heard later is decided on.
         ahead_s = AHEAD_S + player.delay / player.instrument.rate
         self._schedule: Schedule[tuple[Message, Peer]] = Schedule(ahead_s)
@@ -282,8 +284,7 @@ class OscHandler:
 
     def _status(self, call: Call) -> None:
         for name, value in self._desk.status().items():
-            is_long = isinstance(value, int) and abs(value) > INT_MAX  # not read by Pd and Max
-            call.peer.send(pack(f"{PREFIX}/status/{name}", float(value) if is_long else value))
+            call.peer.send(pack(PREFIX + PLACE + name, as_argument(value)))
 
     def _subscribe(self, call: Call, form: str = "") -> None:
         numbers = call.numbers(0, 2)

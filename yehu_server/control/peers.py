@@ -41,6 +41,17 @@ class Traffic:
     buffer_bytes: int = 0  # of the UDP socket, as granted
 
 
+@dataclass
+class WebTraffic:
+    """What came and went by HTTP and WebSocket, since the start."""
+
+    requests: int = 0
+    refused: int = 0
+    failures: int = 0  # defects of ours
+    unsent: int = 0
+    web_sockets: int = 0  # that are open
+
+
 @dataclass(frozen=True)
 class UdpPeer:
     """A sender of datagrams."""

@@ -111,6 +111,10 @@ class OscPorts:
         arrived_ns = time.monotonic_ns()
         self.call_soon(lambda: self._enqueue(packet, peer, arrived_ns))
 
+    def leave(self, peer: Peer) -> None:
+        """A peer who came another way is gone, once what it said is done; any thread may call."""
+        self.call_soon(lambda: self._queue.append((None, peer, 0)))
+
     def call_soon(self, action: Callable[[], None]) -> None:
         """Let the thread that serves do something; any thread may call."""
         self._asked.append(action)
@@ -144,17 +148,19 @@ class OscPorts:
             self._selector.register(self._tcp, selectors.EVENT_READ)
 
     @property
-    def _is_full(self) -> bool:
+    def is_full(self) -> bool:
         """Whether senders have to wait, or the kernel to hold what they send."""
-        return len(self._queue) >= MOST_QUEUED or self._queued_bytes >= MOST_QUEUED_BYTES
+        queued = len(self._queue) + len(self._asked)
+        return queued >= MOST_QUEUED or self._queued_bytes >= MOST_QUEUED_BYTES
 
     def _handle_next(self) -> None:
         packet, peer, arrived_ns = self._queue.popleft()
         if packet is not None:
             self._queued_bytes -= len(packet)
             self._handler.handle(packet, peer, arrived_ns)
-        elif isinstance(peer, TcpPeer):
-            peer.finish()
+        else:
+            if isinstance(peer, TcpPeer):
+                peer.finish()
             self._handler.gone(peer)
 
     def _serve(self, key: selectors.SelectorKey, events: int) -> None:
@@ -180,7 +186,7 @@ class OscPorts:
         """Empty the socket, as far as one turn goes."""
         offset_ns = time.time_ns() - time.monotonic_ns()
         for _ in range(READ_AT_ONCE):
-            if self._is_full:
+            if self.is_full:
                 return
             try:
                 packet, extras, _, address = self._udp.recvmsg(DATAGRAM_BYTES, 128)
@@ -239,7 +245,7 @@ class OscPorts:
 
     def _read_stream(self, peer: TcpPeer) -> None:
         # Not read while we are behind: the sender waits, and nothing is lost.
-        if self._is_full:
+        if self.is_full:
             return
         try:
             data = peer.socket.recv(DATAGRAM_BYTES)

@@ -1,0 +1,121 @@
+"""The server is found by zeroconf, on loopback only in these tests."""
+
+from __future__ import annotations
+
+import socket
+from types import SimpleNamespace
+
+import pytest
+from zeroconf import NonUniqueNameException, ServiceBrowser, Zeroconf
+
+from yehu_server.control import announce
+from yehu_server.control.announce import OSC, OSCQUERY, Announcer, Service, announced
+from yehu_server.control.web import WebOptions
+
+HOST = "127.0.0.1"
+
+
+def port(host: str, number: int) -> SimpleNamespace:
+    return SimpleNamespace(host=host, port=number)
+
+
+def test_what_this_machine_only_can_reach_is_not_announced():
+    assert announced(port(HOST, 9000), port("::1", 9001), None) == []
+    assert announced(port(HOST, 9000), None, None) == []
+
+
+def test_what_others_can_reach_is(monkeypatch):
+    monkeypatch.setattr(announce, "lan_address", lambda: "192.0.2.5")
+    osc, query = Service(OSC, "192.0.2.7", 9000), Service(OSCQUERY, "192.0.2.5", 9001)
+    assert announced(port("192.0.2.7", 9000), port("0.0.0.0", 9001), None) == [osc, query]  # noqa: S104
+    assert announced(port("192.0.2.7", 9000), port(HOST, 9001), None) == [osc]
+    assert announced(port(HOST, 9000), port("::", 9001), None) == [query]
+
+
+def test_who_says_so_is_announced_or_not():
+    here = (port(HOST, 9000), port(HOST, 9001))
+    assert announced(*here, True) == [Service(OSC, HOST, 9000), Service(OSCQUERY, HOST, 9001)]
+    far = (port("192.0.2.7", 9000), port("192.0.2.7", 9001))
+    assert announced(*far, False) == []
+
+
+def test_without_a_network_it_is_said_in_a_line(patience):
+    said = []
+    announcer = Announcer([Service(OSC, "0.0.0.0", 9000)], said.append)  # noqa: S104
+    announcer.start()
+    patience(lambda: said, "a line")
+    announcer.stop()
+    assert said == ["not announced: this machine has no network"]
+
+
+@pytest.mark.parametrize(
+    "error", [OSError(19, "No such device"), RuntimeError("no adapters"), NonUniqueNameException()]
+)
+def test_what_goes_wrong_is_said_in_a_line(patience, monkeypatch, error):
+    def fail(**_):
+        raise error
+
+    monkeypatch.setattr("zeroconf.asyncio.AsyncZeroconf", fail)
+    said = []
+    announcer = Announcer([Service(OSC, HOST, 9000)], said.append)
+    announcer.start()
+    patience(lambda: said, "a line")
+    announcer.stop()
+    (line,) = said
+    assert line.startswith("not announced: ")
+    assert str(error) in line
+
+
+def test_one_that_ends_before_it_began_leaves_nothing():
+    said = []
+    announcer = Announcer([Service(OSC, HOST, 9000)], said.append)
+    announcer.start()
+    announcer.stop()
+    Announcer([Service(OSC, HOST, 9000)], said.append).stop()  # never started
+
+
+class Browser:
+    """Someone who looks for servers on loopback."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, tuple[str, int]] = {}
+        self._zeroconf = Zeroconf(interfaces=[HOST])
+        self._browser = ServiceBrowser(self._zeroconf, [OSC, OSCQUERY], self)
+
+    def add_service(self, zeroconf: Zeroconf, kind: str, name: str) -> None:
+        info = zeroconf.get_service_info(kind, name)
+        if info is not None:
+            self.found[name] = (info.parsed_addresses()[0], info.port)
+
+    update_service = add_service
+
+    def remove_service(self, zeroconf: Zeroconf, kind: str, name: str) -> None:
+        del zeroconf, kind
+        self.found.pop(name, None)
+
+    def close(self) -> None:
+        self._browser.cancel()
+        self._zeroconf.close()
+
+
+@pytest.fixture
+def browser():
+    try:
+        browser = Browser()
+    except OSError as error:
+        pytest.skip(f"no multicast on loopback: {error}")
+    yield browser
+    browser.close()
+
+
+def test_a_server_is_found_while_it_plays(make_hall, browser, patience):
+    hall = make_hall(http=WebOptions((HOST, 0)), announce=True)
+    server = hall.server
+    places = {(HOST, server.osc.port), (HOST, server.web.port)}
+    patience(lambda: places <= set(browser.found.values()), "both are found")
+    names = [name for name, place in browser.found.items() if place in places]
+    host = socket.gethostname().partition(".")[0]
+    assert all(name.startswith(f"yehu-server {host}") for name in names)
+    patience(lambda: any("announced as yehu-server" in line for line in hall.said), "a line")
+    server._announcer.stop()
+    patience(lambda: not places & set(browser.found.values()), "both are gone")

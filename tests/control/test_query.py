@@ -1,0 +1,129 @@
+"""The OSCQuery tree as data, and the table of status values."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from web_client import walk
+
+from yehu_server.control.calls import CALLS, Argument, Call
+from yehu_server.control.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, find, tree
+from yehu_server.control.status import INT_MAX, STATUS, Kind, as_argument
+from yehu_server.params.table import TABLE
+
+DOCS = Path(__file__).parents[2] / "docs"
+NOTHING = {Kind.TEXT: "", Kind.GAUGE: 0.0, Kind.COUNTER: 0}
+VALUES = {param.address: param.default for param in TABLE}
+STANDING = {row.name: NOTHING[row.kind] for row in STATUS}
+# The names of the proposal's units.md that we use.
+PROPOSED = {
+    "distance.m", "speed.m/s", "time.second", "time.ms", "time.hz", "time.cents",
+    "time.midinote", "gain.db",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def root():
+    return tree(VALUES, STANDING)
+
+
+def test_each_node_is_where_it_says_it_is(root):
+    for path, node in walk(root):
+        assert find(root, path) is node
+    assert find(root, "/") is root
+
+
+def test_no_node_has_an_attribute_we_do_not_tell_of(root):
+    for _, node in walk(root):
+        assert set(node) <= set(ATTRIBUTES)
+
+
+def test_what_has_a_value_can_be_listened_to_and_nothing_else(root):
+    with_value = {path for path, node in walk(root) if "VALUE" in node}
+    assert with_value == {"/yehu" + address for address in LISTENABLE}
+
+
+def test_what_belongs_to_the_arguments_is_as_many_as_they_are(root):
+    for path, node in walk(root):
+        for name in ("VALUE", "RANGE", "UNIT", "CLIPMODE"):
+            if name in node:
+                assert len(node[name]) == len(node["TYPE"]), path
+
+
+def test_a_value_shows_only_where_it_may_be_read(root):
+    for path, node in walk(root):
+        assert ("VALUE" in node) == bool(node["ACCESS"] & 1), path
+        assert ("TYPE" in node) == bool(node["ACCESS"]), path
+
+
+def test_a_path_may_end_in_a_slash_but_not_have_holes(root):
+    assert find(root, "/yehu/bow/") is find(root, "/yehu/bow")
+    assert find(root, "/yehu//bow") is None
+    assert find(root, "/yehu/bow/speed/none") is None
+
+
+def test_units_have_the_proposals_names():
+    assert set(UNIT_NAMES.values()) == PROPOSED
+    known = {param.unit for param in TABLE} | {row.unit for row in STATUS}
+    assert set(UNIT_NAMES) - known <= {"s"}  # of an argument
+
+
+def test_every_call_can_be_called(root):
+    for call in CALLS:
+        node = find(root, "/yehu" + call.address)
+        assert node["ACCESS"] == 2
+        assert node["TYPE"] == "".join(one.kind for one in call.arguments) or node["TYPE"] == "N"
+        assert node["DESCRIPTION"] == call.doc
+
+
+def test_an_argument_has_its_own_range(root):
+    lowest, highest = find(root, "/yehu/note")["RANGE"]
+    assert lowest == highest == {"MIN": 0.0, "MAX": 127.0}
+    assert find(root, "/yehu/note")["UNIT"] == ["time.midinote", "1"]
+    assert "RANGE" not in find(root, "/yehu/record/start")
+
+
+def test_calls_may_come_from_elsewhere():
+    words = Argument("name", "s", choices=("wind", "mpe"))
+    more = [Call("/preset/load", "Loads one.", (words,)), Call("/my/own", "Anything.")]
+    root = tree(VALUES, STANDING, more)
+    node = find(root, "/yehu/preset/load")
+    assert (node["ACCESS"], node["TYPE"]) == (2, "s")
+    assert node["RANGE"] == [{"VALS": ["wind", "mpe"]}]
+    assert find(root, "/yehu/my/own")["TYPE"] == "N"
+    assert find(root, "/yehu/preset")["ACCESS"] == 0
+    assert find(tree(VALUES, STANDING), "/yehu/preset") is None
+
+
+def test_a_number_that_json_cannot_say_is_null():
+    root = tree(VALUES, STANDING | {"load": math.nan})
+    assert find(root, "/yehu/status/load")["VALUE"] == [None]
+    json.dumps(root, allow_nan=False)
+
+
+def test_long_counts_go_as_floats():
+    assert as_argument(INT_MAX) == INT_MAX
+    long = as_argument(INT_MAX + 1)
+    assert isinstance(long, float)
+    root = tree(VALUES, STANDING | {"frame": INT_MAX + 1, "underruns": 3})
+    assert find(root, "/yehu/status/frame")["TYPE"] == "f"
+    assert find(root, "/yehu/status/underruns")["TYPE"] == "i"
+
+
+def test_the_documentation_has_the_status_table():
+    rows = "".join(f"| `{row.name}` | {row.doc} |\n" for row in STATUS)
+    text = (DOCS / "osc.md").read_text("utf-8")
+    assert f"| name | what |\n|---|---|\n{rows}\n" in text
+
+
+@pytest.mark.parametrize("module", ["yehu_server.cli", "yehu_server.render"])
+def test_only_a_server_loads_what_the_web_needs(module):
+    code = f"import sys, {module}; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert module in run.stdout.split()
+    assert not {"aiohttp", "zeroconf", "prometheus_client"} & set(run.stdout.split())

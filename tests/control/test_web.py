@@ -1,0 +1,366 @@
+"""OSCQuery and metrics by HTTP, asked by a client that knows nothing of the package."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import shutil
+import socket
+import subprocess
+
+import pytest
+from web_client import ask, walk
+
+from yehu_server.control.addresses import Allowed
+from yehu_server.control.calls import CALLS
+from yehu_server.control.status import STATUS, Kind
+from yehu_server.control.web import IDLE_S, MOST_CONNECTIONS, PARAMETERS, WebOptions
+from yehu_server.errors import DeviceError
+from yehu_server.files import shipped_folder
+from yehu_server.params.table import TABLE
+
+HOST = "127.0.0.1"
+
+
+@pytest.fixture(scope="module")
+def port(web_house) -> int:
+    return web_house.server.web.port
+
+
+@pytest.fixture(scope="module")
+def nodes(port):
+    return dict(walk(ask(port, "/").json))
+
+
+# ---------------------------------------------------------------- the tree
+
+
+@pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
+def test_every_parameter_answers_as_the_table_has_it(nodes, port, param):
+    path = "/yehu" + param.address
+    node = ask(port, path).json
+    assert node["FULL_PATH"] == path
+    assert (node["TYPE"], node["ACCESS"]) == ("f", 3)
+    assert node["RANGE"] == [{"MIN": param.lo, "MAX": param.hi}]
+    assert node["CLIPMODE"] == ["both"]
+    assert node["DESCRIPTION"].startswith(param.doc)
+    assert ("UNIT" in node) == (param.unit != "1")
+    unit = node["CONTENTS"]["unit"]
+    assert unit["FULL_PATH"] == path + "/unit"
+    assert unit["RANGE"] == [{"MIN": 0.0, "MAX": 1.0}]
+    assert (unit["TYPE"], unit["ACCESS"]) == ("f", 3)
+    assert nodes[path]["RANGE"] == node["RANGE"]
+
+
+def test_the_whole_tree_is_there(nodes):
+    assert {"/yehu" + call.address for call in CALLS} <= set(nodes)
+    assert {"/yehu/status/" + row.name for row in STATUS} <= set(nodes)
+    assert {"/yehu" + param.address for param in TABLE} <= set(nodes)
+
+
+@pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
+def test_a_value_set_over_osc_is_read(web_house, port, param):
+    client = web_house.client()
+    path = "/yehu" + param.address
+    wished = param.lo + 0.375 * (param.hi - param.lo)
+    client.tell(param.address, wished)
+    (told,) = client.wait_for(param.address)
+    assert ask(port, f"{path}?VALUE").json["VALUE"] == pytest.approx([wished], rel=1e-6)
+    assert told == pytest.approx(wished, rel=1e-6)
+    client.tell(f"{param.address}/unit", 0.625)
+    client.wait_for(f"{param.address}/unit")
+    answer = ask(port, f"{path}/unit?VALUE").json
+    assert answer["VALUE"] == pytest.approx([0.625], abs=1e-6)
+    client.tell(param.address, param.default)
+    client.sync()
+
+
+def test_the_status_has_the_names_of_its_table(web_house):
+    status = web_house.server.status()
+    assert list(status) == [row.name for row in STATUS]
+    for row in STATUS:
+        assert isinstance(status[row.name], str) == (row.kind is Kind.TEXT), row.name
+
+
+def test_the_status_is_read(port):
+    assert ask(port, "/yehu/status/device?VALUE").json == {"VALUE": ["silent clock"]}
+    first, second = (ask(port, "/yehu/status/http_requests?VALUE").json for _ in range(2))
+    assert second["VALUE"] == [first["VALUE"][0] + 1]
+
+
+# ---------------------------------------------------------------- queries
+
+
+def test_one_attribute_is_all_that_is_answered(port):
+    assert ask(port, "/yehu/bow/force?TYPE").json == {"TYPE": "f"}
+    assert ask(port, "/yehu/bow?FULL_PATH").json == {"FULL_PATH": "/yehu/bow"}
+    assert list(ask(port, "/yehu/bow?CONTENTS").json) == ["CONTENTS"]
+    both = ask(port, "/yehu/bow/force?TYPE&ACCESS").json
+    assert both == {"TYPE": "f", "ACCESS": 3}
+
+
+@pytest.mark.parametrize(
+    ("path", "status"),
+    [
+        ("/", 200),
+        ("/yehu/", 200),
+        ("/yehu/bow/force?VALUE", 200),
+        ("/yehu/note?TYPE", 200),
+        ("/yehu/note?VALUE", 204),  # may only be set
+        ("/yehu/bow?VALUE", 204),  # a container
+        ("/yehu/panic?RANGE", 204),
+        ("/yehu/status/load?CONTENTS", 204),
+        ("/yehu/bow/force?COLOUR", 400),
+        ("/yehu/bow/force?value", 400),
+        ("/yehu/bow/force?TAGS", 400),  # of the proposal, but not told of in EXTENSIONS
+        ("/yehu/nothing", 404),
+        ("/yehu/nothing?VALUE", 404),
+        ("/bow/force", 404),
+        ("/yehu/%00", 404),
+        ("/yehu/..%2f..%2fetc/passwd", 404),
+        ("/README.md", 404),
+    ],
+)
+def test_the_proposals_status_codes(port, path, status):
+    assert ask(port, path).status == status
+
+
+def test_what_the_host_is(web_house, port):
+    info = ask(port, "/anywhere?HOST_INFO").json
+    assert info["NAME"] == "yehu-server"
+    assert (info["OSC_IP"], info["OSC_PORT"]) == (HOST, web_house.ports.port)
+    assert info["OSC_TRANSPORT"] == "UDP"
+    assert (info["WS_IP"], info["WS_PORT"]) == (HOST, port)
+    known = (
+        "ACCESS",
+        "VALUE",
+        "RANGE",
+        "DESCRIPTION",
+        "UNIT",
+        "CLIPMODE",
+        "LISTEN",
+        "PATH_CHANGED",
+    )
+    assert info["EXTENSIONS"] == dict.fromkeys(known, True)
+
+
+def test_the_host_is_told_as_it_was_reached(make_hall):
+    hall = make_hall(osc=("0.0.0.0", 0), http=WebOptions(("0.0.0.0", 0)), announce=False)  # noqa: S104
+    info = ask(hall.server.web.port, "/?HOST_INFO").json
+    assert (info["OSC_IP"], info["WS_IP"]) == (HOST, HOST)
+
+
+def test_answers_are_json_and_not_kept(port):
+    headers = ask(port, "/").headers
+    assert headers["Content-Type"] == "application/json"
+    assert headers["Cache-Control"] == "no-store"
+
+
+def test_head_answers_without_a_body(port):
+    answer = ask(port, "/yehu/bow/force", "HEAD")
+    assert (answer.status, answer.body) == (200, b"")
+
+
+# ---------------------------------------------------------------- pages
+
+
+def test_a_browser_gets_a_page_with_links(port):
+    answer = ask(port, "/", Accept="text/html,application/xhtml+xml")
+    assert answer.headers["Content-Type"].startswith("text/html")
+    for link in ("/metrics", "?HOST_INFO", f"/{PARAMETERS}"):
+        assert f'"{link}"' in answer.body.decode() or f'"/{link}"' in answer.body.decode()
+    assert ask(port, "/?HOST_INFO", Accept="text/html").json["NAME"] == "yehu-server"
+
+
+def test_the_page_of_parameters_is_served_where_there_is_one(
+    web_house, port, monkeypatch, tmp_path
+):
+    is_there = (shipped_folder("mappings") / PARAMETERS).exists()
+    assert ask(port, f"/{PARAMETERS}").status == (200 if is_there else 404)
+    (tmp_path / PARAMETERS).write_text("<p>蘇</p>", "utf-8")
+    (tmp_path / "secret.html").write_text("no", "utf-8")
+    web = web_house.server.web
+    monkeypatch.setattr(web, "_sources", dataclasses.replace(web._sources, folder=tmp_path))
+    answer = ask(port, f"/{PARAMETERS}")
+    assert answer.headers["Content-Type"] == "text/html; charset=utf-8"
+    assert answer.body.decode() == "<p>蘇</p>"
+    assert ask(port, "/secret.html").status == 404
+
+
+# ---------------------------------------------------------------- metrics
+
+
+def test_every_number_of_the_status_is_a_metric(port):
+    answer = ask(port, "/metrics")
+    assert answer.headers["Content-Type"].startswith("text/plain; version=0.0.4")
+    lines = answer.body.decode().splitlines()
+    types = dict(line.split()[2:] for line in lines if line.startswith("# TYPE"))
+    values = dict(line.split() for line in lines if not line.startswith("#"))
+    names = {
+        f"yehu_{row.name}" + ("_total" if row.kind is Kind.COUNTER else ""): row.kind.value
+        for row in STATUS
+        if row.kind is not Kind.TEXT
+    }
+    assert types == names
+    assert set(values) == set(names)
+    assert float(values["yehu_rate"]) == 48000.0
+    assert float(values["yehu_frame_total"]) > 0.0
+
+
+def test_metrics_come_in_the_open_format_too(port):
+    answer = ask(port, "/metrics", Accept="application/openmetrics-text; version=1.0.0")
+    assert answer.headers["Content-Type"].startswith("application/openmetrics-text")
+    assert answer.body.endswith(b"# EOF\n")
+
+
+# ---------------------------------------------------------------- who is not answered
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE"])
+def test_only_reading_is_allowed(port, method):
+    assert ask(port, "/yehu/bow/force", method).status == 405
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Origin": "http://evil.example"},
+        {"Origin": "null"},
+        {"Host": "evil.example"},
+        {"Host": "evil.example", "Origin": "http://evil.example"},
+    ],
+)
+def test_a_page_from_elsewhere_is_refused_and_counted(web_house, port, headers):
+    before = web_house.server.status()["http_refused"]
+    answer = ask(port, "/yehu/bow/force", **headers)
+    assert answer.status == 403
+    assert b"VALUE" not in answer.body
+    assert web_house.server.status()["http_refused"] == before + 1
+
+
+def test_a_page_of_this_machine_may_read(port):
+    assert ask(port, "/yehu", Origin=f"http://{HOST}:{port}").status == 200
+
+
+def test_who_is_not_on_the_list_is_refused(make_hall):
+    hall = make_hall(http=WebOptions((HOST, 0), Allowed(["192.0.2.0/24"])))
+    assert ask(hall.server.web.port, "/").status == 403
+    assert ask(hall.server.web.port, "/metrics").status == 403
+
+
+def raw(port: int, data: bytes) -> bytes:
+    """What comes back for bytes, until the server hangs up."""
+    with socket.create_connection((HOST, port), timeout=20.0) as connection:
+        connection.sendall(data)
+        answer = b""
+        try:
+            while more := connection.recv(1 << 16):
+                answer += more
+        except ConnectionResetError:
+            pass
+        return answer
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"GET /" + b"a" * 100_000 + b" HTTP/1.1\r\nHost: localhost\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"a" * 100_000 + b"\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: localhost\r\n" + b"X: a\r\n" * 1000 + b"\r\n",
+        b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc" + bytes(range(256)),
+        b"/yehu/note\0\0,ff\0" + bytes(8),
+        b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: -1\r\n\r\n",
+    ],
+    ids=["long line", "long header", "many headers", "TLS", "OSC", "less than nothing"],
+)
+def test_nonsense_is_refused_and_the_server_goes_on(web_house, port, data):
+    assert raw(port, data).startswith((b"HTTP/1.1 4", b"HTTP/1.0 4"))
+    assert ask(port, "/yehu/bow/force?TYPE").status == 200
+    assert web_house.server.status()["http_failures"] == 0
+
+
+def test_a_request_with_too_much_to_it_is_refused(port):
+    head = b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 65537\r\n\r\n"
+    assert b" 413 " in raw(port, head + bytes(65537)).split(b"\r\n")[0]
+
+
+def test_those_who_connect_and_say_nothing_are_bounded(port, patience):
+    silent = [socket.create_connection((HOST, port)) for _ in range(MOST_CONNECTIONS + 50)]
+    try:
+        gone = []
+
+        def excess_is_gone() -> bool:
+            for connection in silent:
+                connection.setblocking(False)
+                try:
+                    if connection not in gone and not connection.recv(1):
+                        gone.append(connection)
+                except BlockingIOError:
+                    pass
+                except ConnectionError:
+                    gone.append(connection)
+            return len(gone) >= 50
+
+        patience(excess_is_gone, "the excess is closed", IDLE_S / 2)
+        assert len(gone) <= 60
+    finally:
+        for connection in silent:
+            connection.close()
+    patience(lambda: ask(port, "/yehu/bow/force?TYPE").status == 200, "there is room again")
+
+
+# ---------------------------------------------------------------- begin and end
+
+
+def test_an_address_that_is_taken_is_one_clear_line(web_house, port, make_hall):
+    with pytest.raises(DeviceError, match=f"OSCQuery: cannot listen at {HOST}:{port}"):
+        make_hall(http=WebOptions((HOST, port)))
+    del web_house
+
+
+def test_the_server_can_do_without(make_hall):
+    hall = make_hall(http=None)
+    assert hall.server.web is None
+    assert hall.server.status()["http_requests"] == 0
+
+
+def test_a_defect_is_counted_and_ends_one_request_only(web_house, port, monkeypatch):
+    before = web_house.server.status()["http_failures"]
+    with monkeypatch.context() as patch:
+        patch.setattr("yehu_server.control.web.query.tree", lambda *_: 1 / 0)
+        patch.setattr("yehu_server.control.web.log.exception", lambda *_: None)
+        assert ask(port, "/yehu").status == 500
+    assert ask(port, "/yehu").status == 200
+    web_house.server.web.traffic.failures = before
+
+
+# ---------------------------------------------------------------- a foreign client
+
+NODE = """
+const { DiscoveredService } = require('oscquery');
+const service = new DiscoveredService('127.0.0.1', Number(process.argv[1]));
+service.update().then(() => {
+  const force = service.resolvePath('/yehu/bow/force');
+  console.log(JSON.stringify({
+    name: service.hostInfo.name,
+    port: service.hostInfo.oscPort,
+    value: force.getValue(0),
+    methods: service.flat().length,
+  }));
+});
+"""
+
+
+def test_the_oscquery_package_for_node_reads_the_tree(web_house, port, nodes):
+    node = shutil.which("node")
+    found = node and subprocess.run([node, "-e", "require('oscquery')"], capture_output=True)  # noqa: PLW1510
+    if not found or found.returncode:
+        pytest.skip("needs node, and its package oscquery in NODE_PATH")
+    run = subprocess.run(
+        [node, "-e", NODE, str(port)], capture_output=True, text=True, check=True, timeout=60
+    )
+    read = json.loads(run.stdout)
+    assert read["name"] == "yehu-server"
+    assert read["port"] == web_house.ports.port
+    assert read["value"] == pytest.approx(nodes["/yehu/bow/force"]["VALUE"][0])
+    assert read["methods"] == sum("TYPE" in node for node in nodes.values())

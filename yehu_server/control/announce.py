@@ -1,0 +1,113 @@
+"""Tells the network by zeroconf (Bonjour) that the server is there."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import ipaddress
+import socket
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from yehu_server.control.addresses import lan_address, plain
+from yehu_server.control.loops import LoopThread
+from yehu_server.control.sockets import OscPorts
+from yehu_server.control.web import NAME, WebServer
+
+OSC, OSCQUERY = "_osc._udp.local.", "_oscjson._tcp.local."
+LONGEST_LABEL = 63  # bytes; of DNS
+
+
+@dataclass(frozen=True)
+class Service:
+    """One port to be found."""
+
+    kind: str
+    host: str
+    port: int
+
+
+def announced(osc: OscPorts, web: WebServer | None, wanted: bool | None) -> list[Service]:
+    """What to announce: what listens beyond this machine, or all or nothing where `wanted` is set.
+
+    Where a port listens at all addresses, the one on the network is told.
+    """
+    services = [Service(OSC, _reached(osc.host), osc.port)]
+    if web is not None:
+        services.append(Service(OSCQUERY, _reached(web.host), web.port))
+    if wanted is None:
+        return [one for one in services if not ipaddress.ip_address(one.host).is_loopback]
+    return services if wanted else []
+
+
+def _reached(host: str) -> str:
+    host = plain(host)
+    return lan_address() if ipaddress.ip_address(host).is_unspecified else host
+
+
+class Announcer:
+    """Announces services from `start` to `stop`, in a thread of its own.
+
+    Parameters
+    ----------
+    said : callable
+        Told in a line under which name they are found, or why they are not.
+    """
+
+    def __init__(self, services: Sequence[Service], said: Callable[[str], None]) -> None:
+        self._services = services
+        self._said = said
+        self._thread = LoopThread(self._announce, "zeroconf")
+
+    def start(self) -> None:
+        """Begin to announce."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Take the announcement back."""
+        self._thread.stop()
+
+    async def _announce(self) -> None:
+        import zeroconf  # here, so that playing need not wait for it
+        from zeroconf.asyncio import AsyncZeroconf
+
+        hosts = sorted({service.host for service in self._services})
+        if any(ipaddress.ip_address(host).is_unspecified for host in hosts):
+            self._said("not announced: this machine has no network")
+            return
+        try:
+            found = AsyncZeroconf(interfaces=hosts)
+        except (OSError, RuntimeError, zeroconf.Error) as error:
+            self._said(_failure(error))
+            return
+        host = socket.gethostname().partition(".")[0]
+        name = f"{NAME} {host}".encode()[:LONGEST_LABEL].decode(errors="ignore")
+        infos = [
+            zeroconf.ServiceInfo(
+                service.kind,
+                f"{name}.{service.kind}",
+                port=service.port,
+                server=f"{host}.local.",
+                parsed_addresses=[service.host],
+            )
+            for service in self._services
+        ]
+        # To its end, even if we are to end: half begun, it would leave its sockets open.
+        started = asyncio.ensure_future(found.zeroconf.async_wait_for_start())
+        try:
+            await asyncio.shield(started)
+            for info in infos:
+                await (await found.async_register_service(info, allow_name_change=True))
+            names = {info.name.removesuffix(f".{info.type}") for info in infos}
+            self._said(f"announced as {' and '.join(sorted(names))}")
+            await asyncio.Event().wait()
+        except (OSError, zeroconf.Error) as error:
+            self._said(_failure(error))
+        finally:
+            with contextlib.suppress(zeroconf.Error):
+                await started
+            await found.async_close()
+
+
+def _failure(error: Exception) -> str:
+    return f"not announced: {str(error) or type(error).__name__}"

@@ -1,0 +1,47 @@
+"""The status values as metrics, in the text formats of Prometheus."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from prometheus_client import CollectorRegistry
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
+from prometheus_client.exposition import choose_encoder
+from prometheus_client.registry import Collector
+
+from yehu_server.control.status import STATUS, Kind
+
+NAMESPACE = "yehu"
+FAMILIES = {Kind.GAUGE: GaugeMetricFamily, Kind.COUNTER: CounterMetricFamily}
+
+
+class Metrics(Collector):
+    """Every number of the status, read when it is asked for.
+
+    Parameters
+    ----------
+    status : callable
+        Gives the status values, by name.
+    """
+
+    def __init__(self, status: Callable[[], Mapping[str, float | str]]) -> None:
+        self._status = status
+        self._registry = CollectorRegistry()
+        self._registry.register(self)
+
+    def describe(self) -> list[Metric]:
+        """See `Collector`: what comes is known by the table."""
+        return []
+
+    def collect(self) -> Iterator[Metric]:
+        """See `Collector`."""
+        status = self._status()
+        for row in STATUS:
+            family = FAMILIES.get(row.kind)
+            if family is not None:
+                yield family(f"{NAMESPACE}_{row.name}", row.doc, value=float(status[row.name]))
+
+    def text(self, accept: str) -> tuple[bytes, str]:
+        """The metrics in the format a client accepts, and its content type."""
+        encode, content_type = choose_encoder(accept)
+        return encode(self._registry), content_type

@@ -1,0 +1,227 @@
+"""OSCQuery by HTTP and WebSocket, and metrics, from a thread of its own.
+
+No request changes anything but by OSC in a WebSocket. No path of a request reaches the disk.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import ipaddress
+import json
+import logging
+import socket
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from aiohttp import web
+
+from yehu_server.control import query
+from yehu_server.control.addresses import Address, Allowed, plain
+from yehu_server.control.calls import Call
+from yehu_server.control.clients import Clients
+from yehu_server.control.guard import own_names, refusal
+from yehu_server.control.loops import LoopThread
+from yehu_server.control.metrics import Metrics
+from yehu_server.control.peers import WebTraffic
+from yehu_server.control.sockets import OscPorts
+from yehu_server.control.web_sockets import WebSockets
+from yehu_server.errors import DeviceError
+
+log = logging.getLogger(__name__)
+
+NAME = "yehu-server"
+MOST_WEB_SOCKETS = 64
+MOST_CONNECTIONS = 256  # with those that have asked nothing yet
+SWEEP_S = 0.25
+BODY_BYTES = 1 << 16
+IDLE_S = 15.0  # for which a connection is kept
+ENDING_S = 0.2  # for answers on their way
+HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-store"}
+PARAMETERS = "parameters.html"
+PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>yehu-server</title></head>
+<body><h1>yehu-server</h1><ul>
+<li><a href="/{parameters}">Parameters</a></li>
+<li><a href="/?HOST_INFO">OSCQuery</a>: <a href="/yehu">the tree</a></li>
+<li><a href="/metrics">Metrics</a></li>
+</ul></body></html>
+"""
+
+
+@dataclass(frozen=True)
+class WebOptions:
+    """Where to listen, and to whom."""
+
+    address: Address
+    allowed: Allowed = field(default_factory=Allowed)
+
+
+@dataclass(frozen=True)
+class Sources:
+    """What is told of; any thread may call."""
+
+    values: Callable[[], Mapping[str, float]]  # parameters, by address
+    status: Callable[[], Mapping[str, float | str]]  # by name
+    folder: Path  # of the page of parameters
+    more_calls: Callable[[], Iterable[Call]] = tuple  # beside calls.CALLS
+
+
+class WebServer:
+    """One TCP port for HTTP and WebSockets, and the thread that serves it.
+
+    Errors: DeviceError where the address is taken or not this machine's.
+    """
+
+    def __init__(
+        self, options: WebOptions, osc: OscPorts, clients: Clients, sources: Sources
+    ) -> None:
+        self.traffic = WebTraffic()
+        self._allowed = options.allowed
+        self._osc = osc
+        self._sources = sources
+        self._sockets = WebSockets(osc, clients, self.traffic)
+        self._metrics = Metrics(sources.status)
+        self._names = own_names()
+        self._listening = _listen(*options.address)
+        self.host, self.port = self._listening.getsockname()[:2]
+        self._thread = LoopThread(self._serve, "web")
+
+    def start(self) -> None:
+        """Begin to serve."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Hang up and stop serving."""
+        self._thread.stop()
+        self._listening.close()
+
+    def tree_changed(self, path: str) -> None:
+        """Tell all WebSockets that what is at a path or below has changed; any thread may call."""
+        self._thread.call(self._sockets.tell, "PATH_CHANGED", path)
+
+    async def _serve(self) -> None:
+        app = web.Application(logger=log)
+        app.router.add_route("*", "/{path:.*}", self._answer)
+        quiet = logging.getLogger(f"{__name__}.http")  # clients' nonsense is no news
+        quiet.disabled = True
+        runner = web.AppRunner(
+            app,
+            access_log=None,
+            logger=quiet,
+            keepalive_timeout=IDLE_S,
+            lingering_time=0.0,
+            shutdown_timeout=ENDING_S,
+        )
+        await runner.setup()
+        server = runner.server
+        assert server is not None  # noqa: S101 - setup makes it
+        try:
+            await web.SockSite(runner, self._listening).start()
+            while True:
+                await asyncio.sleep(SWEEP_S)
+                for excess in server.connections[MOST_CONNECTIONS:]:
+                    excess.force_close()
+        finally:
+            await self._sockets.close()
+            await runner.cleanup()
+
+    async def _answer(self, request: web.Request) -> web.StreamResponse:
+        self.traffic.requests += 1
+        try:
+            return await self._respond(request)
+        except web.HTTPException as error:
+            if error.status in {403, 405, 413, 503}:
+                self.traffic.refused += 1
+                error.force_close()
+            error.headers.update(HEADERS)
+            raise
+        except ConnectionError:  # hung up
+            raise
+        except Exception:  # a defect of ours must not end more than this request
+            self.traffic.failures += 1
+            log.exception("OSCQuery: a request could not be answered")
+            raise web.HTTPInternalServerError from None
+
+    async def _respond(self, request: web.Request) -> web.StreamResponse:
+        self._check(request)
+        if request.headers.get("Upgrade", "").lower() == "websocket":
+            if self.traffic.web_sockets >= MOST_WEB_SOCKETS:
+                raise web.HTTPServiceUnavailable(text="there are too many WebSockets\n")
+            return await self._sockets.serve(request)
+        if request.path == "/metrics":
+            body, content_type = self._metrics.text(request.headers.get("Accept", ""))
+            return web.Response(body=body, headers=HEADERS | {"Content-Type": content_type})
+        if request.path == f"/{PARAMETERS}":
+            return self._parameters()
+        if request.path == "/" and not request.query_string and _reads_html(request):
+            return _html(PAGE.format(parameters=PARAMETERS))
+        return self._query(request)
+
+    def _check(self, request: web.Request) -> None:
+        if request.remote is None or request.remote not in self._allowed:
+            raise web.HTTPForbidden(text="not for this address\n")
+        headers = request.headers
+        reason = refusal(headers.getall("Host", []), headers.getall("Origin", []), self._names)
+        if reason:
+            raise web.HTTPForbidden(text=f"{reason}\n")
+        if request.method not in {"GET", "HEAD"}:
+            raise web.HTTPMethodNotAllowed(request.method, ("GET", "HEAD"))
+        if (request.content_length or 0) > BODY_BYTES:
+            raise web.HTTPRequestEntityTooLarge(BODY_BYTES, request.content_length or 0)
+
+    def _query(self, request: web.Request) -> web.Response:
+        """Describe a node, all of it or the attributes that are asked for."""
+        asked = list(request.query)
+        if asked == ["HOST_INFO"]:
+            return _json(self._host_info(request))
+        for name in asked:
+            if name not in query.ATTRIBUTES:
+                raise web.HTTPBadRequest(text=f"unknown attribute {name!r}\n")
+        sources = self._sources
+        root = query.tree(sources.values(), sources.status(), sources.more_calls())
+        node = query.find(root, request.path)
+        if node is None:
+            raise web.HTTPNotFound(text=f"nothing at {request.path}\n")
+        if not asked:
+            return _json(node)
+        found = {name: node[name] for name in asked if name in node}
+        return _json(found) if found else web.Response(status=204, headers=HEADERS)
+
+    def _host_info(self, request: web.Request) -> dict[str, Any]:
+        # As the client reached us: it may know this machine by one of several addresses.
+        reached = plain(request.get_extra_info("sockname", (self.host, self.port))[0])
+        is_anywhere = ipaddress.ip_address(plain(self._osc.host)).is_unspecified
+        osc_host = reached if is_anywhere else self._osc.host
+        return query.host_info(NAME, (osc_host, self._osc.port), (reached, self.port))
+
+    def _parameters(self) -> web.Response:
+        file = self._sources.folder / PARAMETERS
+        try:
+            return _html(file.read_text("utf-8"))
+        except OSError:
+            raise web.HTTPNotFound(text="this page is not installed\n") from None
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+        dualstack = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
+        return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise DeviceError(f"OSCQuery: cannot listen at {host}:{port}: {reason}") from error
+
+
+def _reads_html(request: web.Request) -> bool:
+    return "text/html" in request.headers.get("Accept", "")
+
+
+def _html(text: str) -> web.Response:
+    return web.Response(text=text, content_type="text/html", headers=HEADERS)
+
+
+def _json(what: Any) -> web.Response:
+    body = json.dumps(what, allow_nan=False).encode()
+    return web.Response(body=body, content_type="application/json", headers=HEADERS)

@@ -6,18 +6,21 @@ import ipaddress
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from yehu_server.audio.devices import AudioDevice
-from yehu_server.params.spec import Curve
+from yehu_server.control.calls import PREFIX
 from yehu_server.params.table import find
-from yehu_server.playing.binds import Bind
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.render import Summary
 from yehu_server.replay import Replayed
 from yehu_server.simulate import Simulation
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 NOTABLE_BOUND = 1.2
 NOTE_NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
@@ -124,18 +127,15 @@ def mapping_report(mapping: ControllerMapping) -> None:
     table = Table()
     for column in ("you move", "what moves", "from", "to", "curve"):
         table.add_column(column, overflow="fold")
-    if any(map(_terms, mapping.binds)):
+    if any(bind.terms for bind in mapping.binds):
         table.add_column("terms", overflow="fold")
     for bind in mapping.binds:
         param = find(bind.target)
         unit = "" if param.unit == "1" else f" {param.unit}"
-        ends = [f"{end:g}{unit}" for end in bind.ends]
+        ends = [f"{end:g}{unit}" for end in bind.way]
         if bind.is_by_range:
-            ends = ["- bend range", "+ bend range"]
-        if bind.invert:
-            ends.reverse()
-        curve = bind.curve.value if isinstance(bind.curve, Curve) else "table"
-        cells = (bind.source, bind.target, *ends, curve, _terms(bind))
+            ends = ["- bend range", "+ bend range"][:: -1 if bind.invert else 1]
+        cells = (bind.source, bind.target, *ends, bind.curve_name, "; ".join(bind.terms))
         table.add_row(*cells[: len(table.columns)])
     console.print(table)
     for address, value in mapping.start:
@@ -146,18 +146,21 @@ def mapping_report(mapping: ControllerMapping) -> None:
         console.print("begins with one MPE zone of 15 member channels on every port")
 
 
-def _terms(bind: Bind) -> str:
-    """What else there is to say of a bind."""
-    terms = []
-    if bind.reach != (0.0, 1.0):
-        terms.append(f"sends {bind.reach[0]:g} to {bind.reach[1]:g}")
-    if bind.channels:
-        terms.append(f"channel {', '.join(map(str, bind.channels))}")
-    if bind.smoothing_ms:
-        terms.append(f"within {bind.smoothing_ms:g} ms")
-    if bind.is_soft:
-        terms.append("soft")
-    return "; ".join(terms)
+def bindings_table(rows: Sequence[Sequence[Any]]) -> Table:
+    """A table of what moves what in a running server, and where it is now."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for column in ("you move", "what moves", "from, to", "is at", "value", "terms"):
+        table.add_column(column, overflow="fold", no_wrap=column == "what moves")
+    for source, target, first, last, _curve, terms, place, value in rows:
+        param = find(target.removeprefix(PREFIX))
+        unit = "" if param.unit == "1" else f" {param.unit}"
+        at = "-" if place < 0.0 else f"{100.0 * place:.0f} %"
+        span = f"{first:.4g}, {last:.4g}{unit}"
+        table.add_row(source, param.address, span, at, f"{value:.4g}{unit}", terms)
+    return table
 
 
 def _because(problem: str) -> str:

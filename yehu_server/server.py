@@ -24,6 +24,7 @@ from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.audio.recorder import Recorder
 from yehu_server.control.addresses import Address, Allowed
 from yehu_server.control.announce import Announcer, announced
+from yehu_server.control.calls import Call, own_calls, preset_calls
 from yehu_server.control.osc import OscHandler
 from yehu_server.control.peers import WebTraffic
 from yehu_server.control.ports import MidiOptions, MidiPorts
@@ -114,9 +115,8 @@ class Server:
             undo.callback(self.osc.stop)
             self.web: WebServer | None = None
             if options.http is not None:
-                sources = Sources(
-                    self.player.values, self.status, folder=shipped_folder("mappings")
-                )
+                folder = shipped_folder("mappings")
+                sources = Sources(self.player.values, self.status, folder, self._more_calls)
                 self.web = WebServer(options.http, self.osc, self.handler.clients, sources)
                 undo.callback(self.web.stop)
             for target in (options.record, options.capture):
@@ -223,6 +223,7 @@ class Server:
             return
         if mapping is not None:
             self.player.remap(mapping, frame=self.player.frame_of())
+            self.tree_changed("/")
             self._said(f"the mapping {mapping.name} has changed, and is taken up")
 
     def _write_capture(self, capture: CaptureWriter) -> None:
@@ -254,6 +255,25 @@ class Server:
         self._troubles = troubles
 
     # -- what OSC may ask for ------------------------------------------------------------------
+
+    def soon(self, action: Callable[[], None]) -> None:
+        """See `osc.Desk`."""
+        self.osc.call_soon(action)
+
+    def say(self, line: str) -> None:
+        """See `osc.Desk`."""
+        self._said(line)
+
+    def tree_changed(self, path: str) -> None:
+        """See `osc.Desk`."""
+        if self.web is not None:
+            self.web.tree_changed(path)
+
+    def _more_calls(self) -> list[Call]:
+        """What can be called only here: presets by their names, addresses of the user's own."""
+        names = tuple(self.player.presets.names())
+        mapping = self.player.mapping
+        return [*preset_calls(names), *own_calls(mapping)]
 
     def start_recording(self, name: str) -> str:
         """Record under a plain name, into the recordings folder; return the file's name.

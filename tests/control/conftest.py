@@ -233,9 +233,20 @@ class Desk:
 
     def __init__(self) -> None:
         self.names: list[str] = []
+        self.changed: list[str] = []
+        self.said: list[str] = []
 
     def status(self) -> dict[str, float | str]:
         return {"load": 0.5, "recording": "".join(self.names[-1:])}
+
+    def soon(self, action: Callable[[], None]) -> None:
+        action()
+
+    def tree_changed(self, path: str) -> None:
+        self.changed.append(path)
+
+    def say(self, line: str) -> None:
+        self.said.append(line)
 
     def start_recording(self, name: str) -> str:
         self.names.append(name)

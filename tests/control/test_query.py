@@ -90,12 +90,12 @@ def test_an_argument_has_its_own_range(root):
 
 def test_calls_may_come_from_elsewhere():
     words = Argument("name", "s", choices=("wind", "mpe"))
-    more = [Call("/elsewhere/load", "Loads one.", (words,)), Call("/my/own", "Anything.")]
+    more = [Call("/yehu/elsewhere/load", "Loads one.", (words,)), Call("/my/own", "Anything.")]
     root = tree(VALUES, STANDING, more)
     node = find(root, "/yehu/elsewhere/load")
     assert (node["ACCESS"], node["TYPE"]) == (2, "s")
     assert node["RANGE"] == [{"VALS": ["wind", "mpe"]}]
-    assert find(root, "/yehu/my/own")["TYPE"] == "N"
+    assert find(root, "/my/own")["TYPE"] == "N"
     assert find(root, "/yehu/elsewhere")["ACCESS"] == 0
     assert find(tree(VALUES, STANDING), "/yehu/elsewhere") is None
 

@@ -10,7 +10,17 @@ from typing import NoReturn
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server import __version__
-from yehu_server.cli import devices, mappings, presets, render, replay, serve, simulate, surfaces
+from yehu_server.cli import (
+    devices,
+    learn,
+    mappings,
+    presets,
+    render,
+    replay,
+    serve,
+    simulate,
+    surfaces,
+)
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import expand
 from yehu_server.errors import YehuError
@@ -52,6 +62,6 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"yehu-server {__version__}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (serve, devices, mappings, presets, render, replay, simulate, surfaces):
+    for command in (serve, devices, learn, mappings, presets, render, replay, simulate, surfaces):
         command.add_to(commands)
     return parser

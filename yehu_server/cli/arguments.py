@@ -44,6 +44,23 @@ def add_reporting(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
 
 
+def add_server(parser: Any) -> None:
+    """Add which running server is meant."""
+    parser.add_argument(
+        "--server",
+        default="127.0.0.1:9000",
+        metavar="HOST:PORT",
+        help="the OSC address of the server (default: 127.0.0.1:9000)",
+    )
+
+
+def server_of(arguments: argparse.Namespace) -> tuple[str, int]:
+    """What `add_server` was told. Errors: ParameterError."""
+    from yehu_server.control.addresses import parse_address
+
+    return parse_address(arguments.server, "127.0.0.1", 9000)
+
+
 def add_playing(group: Any) -> None:
     """Add what tells how the instrument is played, live and from files alike."""
     group.add_argument(

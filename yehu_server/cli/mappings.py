@@ -5,15 +5,18 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
-from yehu_server.errors import MappingError
+from yehu_server.cli.arguments import add_server, server_of
+from yehu_server.errors import MappingError, ParameterError
 
 if TYPE_CHECKING:
+    from yehu_server.control.client import OscClient
     from yehu_server.playing.binds import Bind
     from yehu_server.playing.mapping import Mapping
 
@@ -21,9 +24,14 @@ EXAMPLES = """\
 examples:
   yehu-server mappings list
   yehu-server mappings show wind
+  yehu-server mappings show --live
   yehu-server mappings check my-pedals.toml
   yehu-server mappings convert wind -o my-wind.toml
 """
+
+LOOKS_PER_SECOND = 5
+# What a server tells of each binding; the place is below 0 where nothing was moved.
+BINDING = ("source", "target", "from", "to", "curve", "terms", "place", "value")
 
 
 def add_to(commands: Any) -> None:
@@ -39,7 +47,15 @@ def add_to(commands: Any) -> None:
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
     _add_action(actions, "list", _list, "the mappings that come along, and those in your folder")
     show = _add_action(actions, "show", _show, "what controllers move in one")
-    show.add_argument("mapping", metavar="NAME", help="a mapping's name, or a file")
+    show.add_argument(
+        "mapping", nargs="?", metavar="NAME", help="a mapping's name, or a file (default: keyboard)"
+    )
+    show.add_argument(
+        "--live",
+        action="store_true",
+        help="what moves what in a running server, and where it is now; Ctrl-C ends",
+    )
+    add_server(show)
     check = _add_action(actions, "check", _check, "whether files are right")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
     convert = _add_action(actions, "convert", _convert, "one as a file of today's form")
@@ -91,9 +107,11 @@ def _about(name: str) -> str:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    from yehu_server.playing.mapping import load
+    from yehu_server.playing.mapping import DEFAULT, load
 
-    mapping = load(arguments.mapping)
+    if arguments.live:
+        return _show_live(arguments)
+    mapping = load(arguments.mapping or DEFAULT)
     if arguments.json:
         print(json.dumps(_fields(mapping)))
     else:
@@ -101,6 +119,43 @@ def _show(arguments: argparse.Namespace) -> int:
 
         mapping_report(mapping)
     return 0
+
+
+def _show_live(arguments: argparse.Namespace) -> int:
+    """Show the bindings of a running server: once, or on a terminal as they move."""
+    from rich.console import Console
+    from rich.live import Live
+
+    from yehu_server.control.client import OscClient
+    from yehu_server.report import bindings_table
+
+    if arguments.mapping is not None:
+        raise ParameterError("--live shows the mapping of the server; name none")
+    with OscClient(server_of(arguments)) as client:
+        rows = _bindings(client)
+        if arguments.json:
+            print(json.dumps([dict(zip(BINDING, row, strict=True)) for row in rows]))
+            return 0
+        console = Console(markup=False, highlight=False)
+        if not sys.stdout.isatty():
+            console.print(bindings_table(rows))
+            return 0
+        with Live(bindings_table(rows), console=console, auto_refresh=False) as live:
+            while True:
+                time.sleep(1.0 / LOOKS_PER_SECOND)
+                live.update(bindings_table(_bindings(client)), refresh=True)
+
+
+def _bindings(client: OscClient) -> list[list[Any]]:
+    client.send("/bindings")
+    rows: list[list[Any]] = []
+    for message in client.answers():
+        if message.address == "/binding":
+            rows.append(list(message.arguments))
+        elif message.address == "/bindings":
+            return rows
+    client.answer("/bindings")  # none came: says so
+    return rows
 
 
 def _check(arguments: argparse.Namespace) -> int:
@@ -167,5 +222,6 @@ def _bind_fields(bind: Bind) -> dict[str, Any]:
         "smoothing": bind.smoothing_ms,
         "channel": bind.channels or None,
         "soft": bind.is_soft,
+        "alone": bind.is_alone,
         "input": bind.reach if is_address(bind.source) else None,
     }

@@ -5,9 +5,11 @@ What each does is in ``osc.OscHandler``; people read of them in docs/osc.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from yehu_server.params.table import find
+from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.sources import is_address
 
 PREFIX = "/yehu"  # before every address
 
@@ -85,7 +87,41 @@ CALLS: tuple[Call, ...] = (
     Call("/preset/save", "Keeps the sound as it is as a preset.", (NAME,)),
     Call("/preset/delete", "Removes a preset of the player's own.", (NAME,)),
     Call("/preset/list", "Tells all presets: name, MIDI program, what it is."),
+    Call(
+        "/learn",
+        "Binds what is moved next to a parameter; without one, stops listening.",
+        (Argument("address", "s"),),
+    ),
+    Call("/unlearn", "Forgets what was learned for a parameter.", (Argument("address", "s"),)),
+    Call("/bindings", "Tells what moves what: source, target, span, curve, place, value."),
     Call("/record/start", "Records into the recordings folder.", (NAME,)),
     Call("/record/stop", "Ends the recording."),
     Call("/ping", "Answers with the same arguments."),
 )
+
+
+def preset_calls(names: tuple[str, ...]) -> list[Call]:
+    """The calls that take presets, with the names there are; at whole addresses."""
+    choice = replace(NAME, choices=names)
+    takes = {
+        "/preset/load": (choice,),
+        "/preset/morph": (replace(FROM, choices=names), replace(TO, choices=names), AMOUNT),
+    }
+    return [
+        replace(call, address=PREFIX + call.address, arguments=takes[call.address])
+        for call in CALLS
+        if call.address in takes
+    ]
+
+
+def own_calls(mapping: Mapping) -> list[Call]:
+    """The OSC addresses of the user's own that a mapping binds."""
+    return [
+        Call(
+            bind.source,
+            f"Moves {PREFIX}{bind.target}, by the mapping {mapping.name}.",
+            (Argument("place", lo=min(bind.reach), hi=max(bind.reach)),),
+        )
+        for bind in mapping.binds
+        if is_address(bind.source)
+    ]

@@ -9,11 +9,12 @@ import logging
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from yehu_server.control.calls import PREFIX
 from yehu_server.control.clients import Clients
+from yehu_server.control.learn_calls import LearnCalls
 from yehu_server.control.packets import Message, PacketError, answer, pack, unpack
 from yehu_server.control.patterns import PatternError, is_pattern, matches
 from yehu_server.control.peers import Peer
@@ -24,6 +25,7 @@ from yehu_server.errors import YehuError
 from yehu_server.params.spec import Param
 from yehu_server.params.table import BY_ADDRESS, TABLE, UNIT, find, read
 from yehu_server.playing.live import Arrivals, LivePlayer
+from yehu_server.playing.sources import is_own
 
 log = logging.getLogger(__name__)
 
@@ -50,6 +52,15 @@ class Desk(Protocol):
 
     def stop_recording(self) -> str:
         """End the recording; return the file's name. Errors: YehuError."""
+
+    def soon(self, action: Callable[[], None]) -> None:
+        """Let the thread that handles packets do something; any thread may call."""
+
+    def tree_changed(self, path: str) -> None:
+        """What can be set or called at an address or below is not what it was."""
+
+    def say(self, line: str) -> None:
+        """Tell whoever runs the server."""
 
 
 @dataclass
@@ -90,6 +101,11 @@ class Call:
             raise RefusedError("expected one string")
         return self.arguments[0]
 
+    def word_and_flag(self) -> tuple[str, bool]:
+        """A string, and after it a number that may be left out: whether it is not 0."""
+        (flag,) = replace(self, arguments=self.arguments[1:] or [0]).numbers(1)
+        return replace(self, arguments=self.arguments[:1]).word(), flag != 0.0
+
 
 class OscHandler:
     """Acts on packets; one thread (``sockets.OscPorts``) calls it."""
@@ -124,7 +140,8 @@ class OscHandler:
             "/record/stop": self._record_stop,
             "/ping": lambda call: call.peer.send(answer(f"{PREFIX}/pong", call.payload)),
         }
-        self._calls |= PresetCalls(player, self.clients, self._complain).by_address
+        self._calls |= PresetCalls(player, self.clients, self._complain, desk).by_address
+        self._calls |= LearnCalls(player, desk, self._complain).by_address
         for param in TABLE:
             self._calls[param.address] = self._setter(param.address)
             self._calls[param.address + UNIT] = self._unit_setter(param)
@@ -195,6 +212,9 @@ class OscHandler:
         if known in self._calls and known != address:
             return [self._calls[known]]
         own = {address: self._mover(address) for address in self._player.addresses}
+        if self._player.listens and is_own(address):
+            own.setdefault(address, lambda _call: None)
+            own[address] = self._hearing(address, own[address])
         if address in own:
             return [own[address]]
         if is_pattern(address):
@@ -209,6 +229,15 @@ class OscHandler:
     def _mover(self, address: str) -> Callable[[Call], None]:
         """Move what the mapping has at an address of the user's own."""
         return lambda call: self._player.move(address, call.numbers(1)[0], frame=call.frame)
+
+    def _hearing(self, address: str, action: Callable[[Call], None]) -> Callable[[Call], None]:
+        """Also let what comes be learned."""
+
+        def hear(call: Call) -> None:
+            self._player.hear(address, call.numbers(1)[0])
+            action(call)
+
+        return hear
 
     # -- parameters --------------------------------------------------------------------------
 

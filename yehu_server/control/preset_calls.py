@@ -14,7 +14,7 @@ from yehu_server.params.preset import Preset, morph
 from yehu_server.playing.live import LivePlayer
 
 if TYPE_CHECKING:
-    from yehu_server.control.osc import Call
+    from yehu_server.control.osc import Call, Desk
 
 
 class PresetCalls:
@@ -32,12 +32,17 @@ class PresetCalls:
     """
 
     def __init__(
-        self, player: LivePlayer, clients: Clients, complain: Callable[[Peer, str, str], None]
+        self,
+        player: LivePlayer,
+        clients: Clients,
+        complain: Callable[[Peer, str, str], None],
+        desk: Desk,
     ) -> None:
         self._player = player
         self._presets = player.presets
         self._clients = clients
         self._complain = complain
+        self._desk = desk
         self._prefix = clients.prefix
         self.by_address: dict[str, Callable[[Call], None]] = {
             "/preset/load": self._load,
@@ -70,11 +75,13 @@ class PresetCalls:
     def _save(self, call: Call) -> None:
         name = call.word()
         self._presets.save(name, self._player.sound())
+        self._desk.tree_changed(f"{self._prefix}/preset")
         call.peer.send(pack(f"{self._prefix}/preset/saved", name))
 
     def _delete(self, call: Call) -> None:
         name = call.word()
         self._presets.delete(name)
+        self._desk.tree_changed(f"{self._prefix}/preset")
         call.peer.send(pack(f"{self._prefix}/preset/deleted", name))
 
     def _list(self, call: Call) -> None:

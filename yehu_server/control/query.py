@@ -54,17 +54,24 @@ def tree(
     values, status : mapping
         Parameters by address, status values by name.
     more_calls : iterable of Call
-        What can be called beside `CALLS`.
+        What can be called beside `CALLS`, or else than these say; at whole addresses.
     """
     root: Node = {"FULL_PATH": "/", "ACCESS": NO_VALUE, "DESCRIPTION": ROOT_DOC}
     for param in TABLE:
-        _put(root, param.address, _of_param(param, values[param.address]))
-        _put(root, param.address + AS_UNIT, _of_unit(param, values[param.address]))
+        address = PREFIX + param.address
+        _put(root, address, _of_param(param, values[param.address]))
+        _put(root, address + AS_UNIT, _of_unit(param, values[param.address]))
     for row in STATUS:
         value = as_argument(status[row.name])
         described = {"ACCESS": READ, "TYPE": _type(value), "VALUE": [_json(value)]}
-        _put(root, PLACE + row.name, described | {"DESCRIPTION": row.doc} | _units([row.unit]))
-    for call in (*CALLS, *more_calls):
+        _put(
+            root,
+            PREFIX + PLACE + row.name,
+            described | {"DESCRIPTION": row.doc} | _units([row.unit]),
+        )
+    for call in CALLS:
+        _put(root, PREFIX + call.address, _of_call(call))
+    for call in more_calls:
         _put(root, call.address, _of_call(call))
     return root
 
@@ -93,7 +100,7 @@ def host_info(name: str, osc: tuple[str, int], web: tuple[str, int]) -> dict[str
 def _put(root: Node, address: str, described: Node) -> None:
     """Describe a node, and make the containers above it where there are none."""
     node, path = root, ""
-    for name in (PREFIX + address).strip("/").split("/"):
+    for name in address.strip("/").split("/"):
         path += f"/{name}"
         contents = node.setdefault("CONTENTS", {})
         node = contents.setdefault(name, {"FULL_PATH": path, "ACCESS": NO_VALUE})

@@ -72,6 +72,8 @@ class Bind:
         Whether the target moves only once the source has come to where it is.
     reach : tuple of float
         The values that an OSC address sends at the two ends of its way.
+    is_alone : bool
+        Whether nothing of a base moves the target.
     """
 
     source: str
@@ -83,6 +85,7 @@ class Bind:
     channels: tuple[int, ...] = ()
     is_soft: bool = False
     reach: tuple[float, float] = (0.0, 1.0)
+    is_alone: bool = False
 
     @property
     def is_by_range(self) -> bool:
@@ -94,6 +97,32 @@ class Bind:
         """The target's values at the two ends of the source's way, before `invert`."""
         param = find(self.target)
         return self.span or (param.lo, param.hi)
+
+    @property
+    def way(self) -> tuple[float, float]:
+        """The target's values where the source is at 0 and at 1."""
+        return self.ends[::-1] if self.invert else self.ends
+
+    @property
+    def curve_name(self) -> str:
+        """The curve in a word."""
+        return self.curve.value if isinstance(self.curve, Curve) else "table"
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """What else goes for it, for reading."""
+        terms = []
+        if self.reach != (0.0, 1.0):
+            terms.append(f"sends {self.reach[0]:g} to {self.reach[1]:g}")
+        if self.channels:
+            terms.append(f"channel {', '.join(map(str, self.channels))}")
+        if self.smoothing_ms:
+            terms.append(f"within {self.smoothing_ms:g} ms")
+        if self.is_soft:
+            terms.append("soft")
+        if self.is_alone:
+            terms.append("alone")
+        return tuple(terms)
 
     def hears(self, channel: int) -> bool:
         """Whether it is for a channel, counted from 0 over all ports; below 0 is no channel."""

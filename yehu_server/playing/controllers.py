@@ -12,7 +12,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
@@ -137,7 +136,7 @@ class Controllers:
     ) -> float:
         """Set a parameter for all channels, until a controller moves it; see `Performer.write`."""
         accepted = self._performer.write(address, value, frame=frame, glide_ms=glide_ms)
-        if find(address).place is Place.PLAYER:
+        if not find(address).owned:
             self._set[address] = self._stamped(accepted)
         return accepted
 
@@ -190,12 +189,33 @@ class Controllers:
         for address, value in self._beginning(self.mapping).items():
             self.write(address, value, frame)
 
+    def places(self) -> list[tuple[Bind, float | None]]:
+        """Each bind, and where its source was last moved to (0 to 1), if it was."""
+        return [(bind, self._place(bind)) for bind in self.mapping.binds]
+
+    def _place(self, bind: Bind) -> float | None:
+        if bind in self._faders:
+            return self._faders[bind].place
+        moved: list[Moved] = []
+        for channel, state in self._channels.items():
+            if not bind.hears(channel):
+                continue
+            if bind.source == POLY_PRESSURE:
+                moved += state.touch.values()
+            elif bind.source == VELOCITY:
+                moved += state.velocity.values()
+            elif bind.source == NOTE:
+                moved += [(when, note / STEPS) for note, (when, _) in state.velocity.items()]
+            elif bind.source in state.moved:
+                moved.append(state.moved[bind.source])
+        return max(moved)[1] if moved else None
+
     def sound(self) -> dict[str, float]:
-        """The player's parameters, without what velocity does for one note."""
+        """All that the player does not move, without what velocity does for one note."""
         values = {
             param.address: self._performer.value(param.address)
             for param in TABLE
-            if param.place is Place.PLAYER
+            if not param.owned
         }
         for bind in self.mapping.of(VELOCITY):
             if bind.target in self._set:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 from collections.abc import Mapping as Values
 
 import mido
@@ -16,7 +17,9 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Place
 from yehu_server.params.table import ENGINE, TABLE, find
+from yehu_server.playing.binds import Bind
 from yehu_server.playing.calibration import Calibration
+from yehu_server.playing.learner import Found, Learner
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key
 from yehu_server.playing.style import Style
@@ -94,6 +97,8 @@ class LivePlayer:
         self._targets = Targets(instrument)
         self._performer = style.performer(self._targets, calibration, instrument.quantities)
         self._midi = style.midi(self._performer)
+        self._learner = Learner()
+        self._found: Callable[[Found], None] | None = None
         self._decided = 0  # the latest frame of a decision
         self._written = 0  # and of anything
 
@@ -115,9 +120,7 @@ class LivePlayer:
         """Where a parameter is, or is on its way to. Errors: ParameterError."""
         param = find(address)
         with self._turn:
-            if param.place is Place.ENGINE:
-                return self._targets.values[address]
-            return self._performer.value(address)
+            return self._targets.values[address] if param.owned else self._performer.value(address)
 
     def values(self) -> dict[str, float]:
         """All parameters, by address."""
@@ -138,9 +141,9 @@ class LivePlayer:
             self._midi.load(values, frame=self._in_order(frame))
 
     def sound(self) -> dict[str, float]:
-        """All parameters as a preset is to keep them: see `MidiPlayer.sound`."""
+        """The parameters as a preset is to keep them: see `Controllers.sound`."""
         with self._turn:
-            return self.values() | self._midi.sound()
+            return self._midi.sound()
 
     def hold(self, address: str, value: float) -> float:
         """Set a parameter for as long as the program runs, from the first frame on."""
@@ -164,10 +167,43 @@ class LivePlayer:
         with self._turn:
             self._midi.move(address, argument, frame=self._in_order(frame))
 
+    @property
+    def mapping(self) -> Mapping:
+        """What controllers move."""
+        return self._midi.mapping
+
     def remap(self, mapping: Mapping, *, frame: int) -> None:
         """See `MidiPlayer.remap`."""
         with self._turn:
             self._midi.remap(mapping, frame=self._in_order(frame))
+
+    def bindings(self) -> list[tuple[Bind, float | None, float]]:
+        """Each bind, where its source was last moved to (0 to 1), and the target's value."""
+        with self._turn:
+            return [(bind, place, self.value(bind.target)) for bind, place in self._midi.places()]
+
+    def listen(self, found: Callable[[Found], None] | None) -> None:
+        """Find out what somebody moves next; `found` is told of it, once, from any thread.
+
+        It must not wait. With None nothing is listened to.
+        """
+        with self._turn:
+            self._learner, self._found = Learner(), found
+
+    @property
+    def listens(self) -> bool:
+        """Whether it is to find out what somebody moves."""
+        return self._found is not None
+
+    def hear(self, address: str, argument: float) -> None:
+        """Take in what came to an OSC address of the user's own."""
+        with self._turn:
+            self._tell(self._learner.hear_address(address, argument))
+
+    def _tell(self, source: Found | None) -> None:
+        if source is not None and self._found is not None:
+            found, self._found = self._found, None
+            found(source)
 
     # -- notes -------------------------------------------------------------------------------
 
@@ -180,6 +216,8 @@ class LivePlayer:
     def receive(self, message: mido.Message, *, frame: int, port: int) -> None:
         """Act on a MIDI message of one of the ports, counted from 0."""
         with self._turn:
+            if self._found is not None:
+                self._tell(self._learner.hear(message, port))
             self._midi.receive(message, frame=self._in_order(frame), port=port)
 
     def let_go_of(self, port: int, *, frame: int) -> None:

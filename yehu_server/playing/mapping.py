@@ -123,11 +123,16 @@ def with_bases(path: Path, sheet: Sheet) -> Mapping:
 
 
 def _over(below: Mapping, sheet: Sheet) -> Mapping:
-    """A mapping with what a file adds; its binds replace those of the same controller."""
+    """A mapping with what a file adds; its binds replace those of the same controller.
+
+    A bind that is alone also replaces what else moves its target.
+    """
     own = {replaced(bind) for bind in sheet.binds}
+    taken = {bind.target for bind in sheet.binds if bind.is_alone}
+    kept = [b for b in below.binds if replaced(b) not in own and b.target not in taken]
     return Mapping(
         below.name,
-        (*(bind for bind in below.binds if replaced(bind) not in own), *sheet.binds),
+        (*kept, *sheet.binds),
         tuple((dict(below.start) | dict(sheet.start)).items()),
         below.mpe if sheet.mpe is None else sheet.mpe,
         below.about,

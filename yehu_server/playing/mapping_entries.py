@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from yehu_server.errors import ParameterError
-from yehu_server.params.spec import Curve, Param, Place
+from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import find
 from yehu_server.playing.binds import Table
 
@@ -38,17 +38,17 @@ def flag(name: str) -> Callable[[Any], Any]:
     return read
 
 
-def of_player(address: str, instead: str) -> Param:
-    """The parameter at an address, one that the player holds."""
+def free(address: str, instead: str) -> Param:
+    """The parameter at an address, one that the player does not move."""
     param = find(address)
-    if param.place is not Place.PLAYER:
+    if param.owned:
         raise ParameterError(f"{address} is moved by the player; {instead} under /playing")
     return param
 
 
 def start(address: str, value: Any) -> float:
-    """Where a parameter of the player begins."""
-    param = of_player(address, "set one")
+    """Where a parameter begins."""
+    param = free(address, "set one")
     if param.accept(value) != value:
         raise ParameterError(f"{address}: {value} is not within {param.range_text}")
     return float(value)

@@ -23,7 +23,7 @@ from yehu_server.playing.toml_lines import Way, line_at, lines_of
 
 ENTRIES = ("name", "about", "base", "mpe", "start", "bind")
 BIND_ENTRIES = (
-    "source", "target", "input", "span", "curve", "invert", "smoothing", "channel", "soft",
+    "source", "target", "input", "span", "curve", "invert", "smoothing", "channel", "soft", "alone",
 )  # fmt: skip
 _LINE = re.compile(r"\(at line ([0-9]+)")
 
@@ -188,7 +188,7 @@ def _bind(entry: Any, wrong: Callable[[str, str], None]) -> Bind | None:
         wrong(missing[0], "needs a source and a target")
     else:
         source = read("source", sources.canonical, None)
-        param = read("target", lambda text: entries.of_player(text, "map to one"), None)
+        param = read("target", lambda text: entries.free(text, "map to one"), None)
     curve: Curve | Table | None = read("curve", entries.curve, None)
     bind = Bind(
         source or "",
@@ -200,6 +200,7 @@ def _bind(entry: Any, wrong: Callable[[str, str], None]) -> Bind | None:
         channels=read("channel", entries.channels, ()),
         is_soft=read("soft", entries.flag("soft"), False),
         reach=read("input", entries.reach, (0.0, 1.0)),
+        is_alone=read("alone", entries.flag("alone"), False),
     )
     if source is None or param is None:
         return None

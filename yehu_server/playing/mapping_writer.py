@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +42,7 @@ def entries_of(bind: Bind) -> dict[str, Any]:
         "smoothing": _number(bind.smoothing_ms) or None,
         "channel": _channels(bind),
         "soft": bind.is_soft or None,
+        "alone": bind.is_alone or None,
     }
     return {name: value for name, value in entries.items() if value is not None}
 
@@ -92,6 +95,37 @@ def tidied(sheet: Sheet, text: str) -> str:
     except (TOMLKitError, MappingError, ValueError, RecursionError):
         pass
     return as_toml(sheet)
+
+
+def rebound(sheet: Sheet, text: str, dropped: Sequence[Bind], added: Sequence[Bind]) -> str:
+    """The text of a file without some of its binds, and with others at its end.
+
+    Comments and order stay; where they cannot, the file is written anew.
+    """
+    kept = tuple(bind for bind in sheet.binds if bind not in dropped)
+    wanted = replace(sheet, binds=(*kept, *added))
+    try:
+        document = tomlkit.parse(text)
+        if "bind" not in document:
+            document.add(tomlkit.nl())
+            document["bind"] = tomlkit.aot()
+        binds = document["bind"]
+        for place in reversed(range(len(sheet.binds))):
+            if sheet.binds[place] in dropped:
+                del binds[place]
+        for bind in added:
+            table = tomlkit.table()
+            table.update(entries_of(bind))
+            binds.append(table)
+        if not binds:
+            del document["bind"]
+        changed = tomlkit.dumps(document)
+        path = Path(sheet.name)
+        if sheet_of(path, toml_of(path, changed)) == wanted:
+            return changed
+    except (TOMLKitError, MappingError, ValueError, TypeError, RecursionError):
+        pass
+    return as_toml(wanted)
 
 
 def _set_name(document: tomlkit.TOMLDocument, name: str) -> None:

@@ -14,6 +14,7 @@ from yehu_server.params.preset import Preset
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing import sources
+from yehu_server.playing.binds import Bind
 from yehu_server.playing.controllers import Controllers
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
@@ -154,8 +155,12 @@ class MidiPlayer:
             if not self._performer.keeps(address):
                 self.write(address, value, frame=frame)
 
+    def places(self) -> list[tuple[Bind, float | None]]:
+        """See `Controllers.places`."""
+        return self._controllers.places()
+
     def sound(self) -> dict[str, float]:
-        """The player's parameters, without what velocity does for one note."""
+        """See `Controllers.sound`."""
         return self._controllers.sound()
 
     def let_go_of(self, port: int, *, frame: int | None = None) -> None:

@@ -87,7 +87,7 @@ class Performer:
         tuning: Callable[[float], float | None] = as_it_is,
     ) -> None:
         self._own = Ownership(sink)
-        self._value = {p.address: p.default for p in TABLE if p.place is Place.PLAYER}
+        self._value = {p.address: p.default for p in TABLE if not p.owned}
         self._left = LeftHand(self._own, self._value.__getitem__)
         self._right = RightHand(self._own, self._value.__getitem__)
         self._open_strings = open_strings
@@ -139,11 +139,11 @@ class Performer:
         return self._sounding
 
     def value(self, address: str) -> float:
-        """The present value of a parameter of the player. Errors: ParameterError."""
+        """Where a parameter is that the player does not move. Errors: ParameterError."""
         try:
             return self._value[find(address).address]
         except KeyError:
-            raise ParameterError(f"{address} is not held by the player") from None
+            raise ParameterError(f"{address} is moved by the player") from None
 
     def write(
         self,
@@ -161,12 +161,11 @@ class Performer:
         """
         param = find(address)
         accepted = param.accept(value)
-        if param.place is Place.ENGINE:
-            if param.owned or hold:
-                self._own.give_up(address, hold=hold)
-                if address == "/bow/force":  # raw newtons are heard only without assist
-                    self._own.give_up("/bow/assist", hold=hold)
-                    self._own.sink.write("/bow/assist", 0.0, frame=frame)
+        if param.owned:
+            self._own.give_up(address, hold=hold)
+            if address == "/bow/force":  # raw newtons are heard only without assist
+                self._own.give_up("/bow/assist", hold=hold)
+                self._own.sink.write("/bow/assist", 0.0, frame=frame)
             return self._own.sink.write(address, accepted, frame=frame)
         if hold:
             self._own.give_up(address, hold=True)
@@ -175,6 +174,9 @@ class Performer:
         if self._value[address] == accepted:
             return accepted
         self._value[address] = accepted
+        if param.place is Place.ENGINE:
+            ramp_ms = max(param.smooth_ms, glide_ms)
+            self._own.sink.write(address, accepted, frame=frame, ramp_ms=ramp_ms)
         with self._own.gliding(glide_ms):
             for follow in self._followers.get(address, ()):
                 follow(frame)
@@ -289,15 +291,19 @@ class Performer:
         if self._by_hand:
             for address in ("/bow/speed", "/bow/side"):
                 self._own.sink.write(address, 0.0, frame=frame)
-        self.release()
+        self._own.take_back()
+        self._by_hand = False
 
     # -- what a note takes -------------------------------------------------------------------
 
     def _start(self, key: Key, frame: int | None, *, legato: bool, at_once: bool = False) -> None:
         self._sounding = key
         for address, wish in self.expression(key).items():
-            if not self._own.keeps(address):
-                self._value[address] = find(address).accept(wish)
+            param = find(address)
+            if param.place is Place.ENGINE:
+                self.write(address, wish, frame=frame)
+            elif not self._own.keeps(address):
+                self._value[address] = param.accept(wish)
         hurry, weight, self._stray = (self._chance.gauss(0.0, 1.0) for _ in range(3))
         varied = self._value["/playing/variation"] * VARIED_SHARE
         self._right.hurry, self._right.weight = 1.0 + varied * hurry, 1.0 + varied * weight

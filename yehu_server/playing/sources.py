@@ -50,6 +50,14 @@ def is_address(source: str) -> bool:
     return source.startswith("/")
 
 
+def is_own(address: str) -> bool:
+    """Whether it may be an OSC address of the user's own."""
+    try:
+        return is_address(address) and canonical(address) == address
+    except ParameterError:
+        return False
+
+
 def controller(source: str) -> str:
     """What is moved by hand: the same for a control change in 7 bits and in 14."""
     return source.partition("/")[0] if source.startswith("cc ") else source

@@ -1,0 +1,112 @@
+"""``yehu-server learn``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from yehu_server.cli.arguments import add_server, server_of
+from yehu_server.errors import ParameterError, YehuError
+
+if TYPE_CHECKING:
+    from yehu_server.control.client import OscClient
+
+EXAMPLES = """\
+examples:
+  yehu-server learn /playing/vibrato
+  yehu-server learn --soft /playing/pressure /playing/bow_position
+  yehu-server learn
+  yehu-server learn --forget /playing/vibrato
+
+Begin `yehu-server serve` before. What is learned is kept in a mapping file of yours, at once.
+"""
+LONGEST_S = 60.0
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "learn",
+        help="let a knob, pedal or OSC address move a parameter of a running server",
+        description="Let what you move next move a parameter of a running server (MIDI learn).",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument(
+        "parameters", nargs="*", metavar="ADDRESS", help="of parameters; asked for if none is named"
+    )
+    parser.add_argument(
+        "--soft", action="store_true", help="soft take-over: wait until the knob is where it is"
+    )
+    parser.add_argument("--forget", action="store_true", help="forget what was learned for these")
+    add_server(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    from yehu_server.control.client import OscClient
+
+    with OscClient(server_of(arguments)) as client:
+        if arguments.parameters:
+            for address in arguments.parameters:
+                _one(client, address, arguments)
+        else:
+            _ask(client, arguments)
+    return 0
+
+
+def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None:
+    if arguments.forget:
+        client.send("/unlearn", address)
+        _, count = client.answer("/unlearned").arguments
+        print(f"{address}: {count} forgotten")
+        return
+    client.send("/learn", address, int(arguments.soft))
+    (target,) = client.answer("/learning").arguments
+    print(f"move what shall move {target} ... (Ctrl-C ends)", flush=True)
+    try:
+        for message in client.answers(LONGEST_S):
+            if message.address == "/learned":
+                _, source, file = message.arguments
+                print(f"{source} moves {target}, kept in {file}")
+                return
+    except KeyboardInterrupt:
+        client.send("/learn")
+        raise
+    client.send("/learn")
+    raise ParameterError(f"nothing was moved for {LONGEST_S:g} s")
+
+
+def _ask(client: OscClient, arguments: argparse.Namespace) -> None:
+    """Ask for one parameter after another, until an empty line."""
+    if not sys.stdin.isatty():
+        raise ParameterError("name the parameters to learn, such as /playing/vibrato")
+    _complete()
+    while address := input("parameter (Tab completes, an empty line ends): ").strip():
+        try:
+            _one(client, address, arguments)
+        except YehuError as error:
+            print(f"yehu-server: {error}", file=sys.stderr)
+
+
+def _complete() -> None:
+    try:
+        import readline
+    except ImportError:  # not on every system
+        return
+    from yehu_server.params.table import TABLE
+
+    addresses = [param.address for param in TABLE if not param.owned]
+
+    def complete(text: str, state: int) -> str | None:
+        fitting = [address for address in addresses if address.startswith(text)]
+        return fitting[state] if state < len(fitting) else None
+
+    readline.set_completer(complete)
+    readline.set_completer_delims(" ")
+    readline.parse_and_bind("tab: complete")

@@ -1,0 +1,89 @@
+"""MIDI learn: finding out which source somebody moves, so that it can be bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import mido
+
+from yehu_server.playing import sources
+from yehu_server.playing.sources import COARSE, FINE_ABOVE, RESERVED, STEPS
+
+DATA_ENTRY, NRPN_FINE, NRPN, RPN_FINE, RPN = 6, 98, 99, 100, 101
+# A source is meant once it was moved so far: pedals and breath sensors tremble by themselves.
+MEANT = 1.0 / 16.0
+AT_REST = {sources.BEND: 0.5, sources.PRESSURE: 0.0, sources.POLY_PRESSURE: 0.0}
+
+
+@dataclass(frozen=True)
+class Found:
+    """A source that was moved, and the range of what it sends if it is an OSC address."""
+
+    source: str
+    reach: tuple[float, float] = (0.0, 1.0)
+
+
+@dataclass
+class _Channel:
+    """What was heard on one channel."""
+
+    before: int | None = None  # the last control change
+    nrpn: list[int | None] = field(default_factory=lambda: [None, None])
+
+
+class Learner:
+    """Listens until it is clear what is moved; `hear` and `hear_address` then say so."""
+
+    def __init__(self) -> None:
+        self._began_at: dict[tuple[int, str], float] = {}
+        self._channels: dict[int, _Channel] = {}
+        self._pairs: set[tuple[int, int]] = set()  # channel, coarse half
+
+    def hear(self, message: mido.Message, port: int = 0) -> Found | None:
+        """Take in a MIDI message; return the source that is meant, once it is clear."""
+        if not hasattr(message, "channel"):
+            return None
+        channel = 16 * port + message.channel
+        if message.type == "pitchwheel":
+            return self._moved(channel, sources.BEND, (message.pitch + 8192) / 16383.0)
+        if message.type == "aftertouch":
+            return self._moved(channel, sources.PRESSURE, message.value / STEPS)
+        if message.type == "polytouch":
+            return self._moved(channel, sources.POLY_PRESSURE, message.value / STEPS)
+        if message.type == "control_change":
+            return self._control(channel, message.control, message.value)
+        return None
+
+    def hear_address(self, address: str, argument: float) -> Found | None:
+        """Take in a number at an OSC address of the user's own; the same."""
+        reach = (0.0, 1.0) if 0.0 <= argument <= 1.0 else (0.0, float(STEPS))
+        found = self._moved(-1, address, argument / reach[1])
+        return Found(found.source, reach) if found else None
+
+    def _control(self, channel: int, control: int, value: int) -> Found | None:
+        state = self._channels.setdefault(channel, _Channel())
+        before, state.before = state.before, control
+        if control in (NRPN, NRPN_FINE):
+            state.nrpn[control == NRPN_FINE] = value
+        elif control in (RPN, RPN_FINE):
+            state.nrpn = [None, None]
+        elif control == DATA_ENTRY and None not in state.nrpn:
+            coarse, fine = (half or 0 for half in state.nrpn)
+            number = coarse << 7 | fine
+            if number < sources.NO_NRPN:
+                return self._moved(channel, sources.nrpn(number), value / STEPS)
+        if control in RESERVED:
+            return None
+        if control - FINE_ABOVE in COARSE:
+            if before == control - FINE_ABOVE:
+                self._pairs.add((channel, before))
+            if (channel, control - FINE_ABOVE) in self._pairs:
+                return None  # the fine half of another
+        found = self._moved(channel, sources.control(control), value / STEPS)
+        if found is not None and (channel, control) in self._pairs:
+            return Found(sources.pair(control))
+        return found
+
+    def _moved(self, channel: int, source: str, place: float) -> Found | None:
+        began = self._began_at.setdefault((channel, source), AT_REST.get(source, place))
+        return Found(source) if abs(place - began) >= MEANT else None

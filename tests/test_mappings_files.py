@@ -96,6 +96,7 @@ def test_all_terms_of_a_bind_are_shown(told, tmp_path):
         "smoothing": 50.0,
         "channel": [2, 3],
         "soft": True,
+        "alone": False,
         "input": None,
     }
     assert second["input"] == [0.0, 127.0]

@@ -26,10 +26,12 @@ input { width: 100%; padding: .6rem; font: inherit; color: inherit; background: 
 table { width: 100%; border-collapse: collapse; }
 th, td { padding: .35rem .5rem; text-align: left; vertical-align: top;
   border-bottom: 1px solid var(--line); }
-code { font-size: .92em; overflow-wrap: anywhere; }
+code { font-size: .92em; }
+td:nth-child(-n+3) { white-space: nowrap; }
 [hidden] { display: none; }
 @media (max-width: 48rem) {
   thead { display: none; }
+  td:nth-child(-n+3) { white-space: normal; overflow-wrap: anywhere; }
   table, tbody, tr, td { display: block; }
   tr { padding: .6rem 0; border-bottom: 1px solid var(--line); }
   td { padding: .1rem 0; border: 0; }

@@ -20,6 +20,7 @@ from yehu_server.cli import (
     serve,
     simulate,
     surfaces,
+    sweep,
 )
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import expand
@@ -62,6 +63,17 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"yehu-server {__version__}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (serve, devices, learn, mappings, presets, render, replay, simulate, surfaces):
+    for command in (
+        serve,
+        devices,
+        learn,
+        mappings,
+        presets,
+        render,
+        replay,
+        simulate,
+        surfaces,
+        sweep,
+    ):
         command.add_to(commands)
     return parser

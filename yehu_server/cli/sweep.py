@@ -1,0 +1,90 @@
+"""``yehu-server sweep``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from rich_argparse import RawDescriptionRichHelpFormatter
+
+from yehu_server.cli.arguments import add_reporting, compiling, positive, progress_bar
+
+EXAMPLES = """\
+examples:
+  yehu-server sweep gesture.json -o runs --vary bow_force=0.1:2:20 --vary bow_velocity=0.1,0.2
+  yehu-server sweep gesture.json -o runs --vary instrument.bow.epsilon_0=2e4,3e4,4e4 --index-only
+
+Names are those of a gesture file (docs/simulate.md); all combinations are run.
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "sweep",
+        help="a gesture again and again with other figures, on all cores",
+        description="Run a gesture file with every combination of some figures, on all cores.",
+        epilog=EXAMPLES,
+        formatter_class=RawDescriptionRichHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("gesture", type=Path, metavar="GESTURE.json", help="what bow and finger do")
+    parser.add_argument(
+        "-o", "--output", required=True, type=Path, metavar="FOLDER", help="where results go"
+    )
+    parser.add_argument(
+        "--vary",
+        action="append",
+        required=True,
+        metavar="NAME=VALUES",
+        help="V1,V2,... or FROM:TO:STEPS of a control or instrument entry; may be repeated",
+    )
+    parser.add_argument("--energy", action="store_true", help="keep the energy ledgers too")
+    parser.add_argument(
+        "--strings",
+        type=positive,
+        default=0,
+        metavar="EVERY",
+        help="keep the strings' shapes every so many samples",
+    )
+    parser.add_argument(
+        "--index-only", action="store_true", help="keep pitch and level of each, and no arrays"
+    )
+    parser.add_argument(
+        "--workers", type=positive, metavar="N", help="how many at a time (default: all cores)"
+    )
+    add_reporting(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    import time
+
+    from yehu_server.score.gesture import read_gesture
+    from yehu_server.sweep import INDEX, axis_of, sweep, variations
+
+    gesture = read_gesture(arguments.gesture)
+    axes = [axis_of(text) for text in arguments.vary]
+    runs = variations(gesture.source, axes, arguments.gesture.parent)
+    start = time.perf_counter()
+    with compiling(arguments), progress_bar(arguments, "sweeping", "runs") as progress:
+        rows = sweep(
+            runs,
+            arguments.output,
+            energy=arguments.energy,
+            strings_every=arguments.strings,
+            keep=not arguments.index_only,
+            workers=arguments.workers,
+            progress=progress,
+        )
+    elapsed = time.perf_counter() - start
+    seconds = len(rows) * gesture.duration
+    if arguments.json:
+        print(json.dumps({"runs": len(rows), "elapsed_s": elapsed, "simulated_s": seconds}))
+    elif not arguments.quiet:
+        pace = f"{seconds:.1f} s in {elapsed:.1f} s"
+        print(f"{arguments.output / INDEX}: {len(rows)} runs, {pace}")
+    return 0

@@ -1,0 +1,96 @@
+"""How many instruments at once: on one core, on all, and what rates and fingers cost.
+
+    .venv/bin/python bench/ensemble.py [--save bench/results/NAME.json]
+
+Each instrument plays a bowed, stopped note in blocks of 128, the default mapping's ordinary bowing.
+Figures are medians over runs, with the spread. On several cores each thread plays its share of the
+instruments, a block of all before the next, as a mixer would ask for them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import statistics
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from yehu_server.engine.instrument import Instrument
+
+BLOCK, SECONDS, RUNS = 128, 0.5, 5
+COUNTS = (1, 2, 4, 8, 16, 32, 64)
+RATES = (22050.0, 44100.0, 48000.0, 96000.0, 192000.0)
+
+
+def instrument(number: int, rate: float = 44100.0, fingers: int = 1) -> Instrument:
+    """One that bows a stopped note, each another."""
+    made = Instrument(rate)
+    for finger in range(1, fingers + 1):
+        made.write(f"/finger/{finger}/position", 0.11 - 0.02 * finger + 1e-3 * (number % 8))
+        made.write(f"/finger/{finger}/press", 1.5)
+    made.write("/bow/side", 1.0)
+    made.write("/bow/speed", 0.2)
+    play([made], 0.3)
+    return made
+
+
+def play(instruments: list[Instrument], seconds: float) -> None:
+    """Play all for a while, block by block."""
+    out = np.zeros(BLOCK, np.float32)
+    for _ in range(round(seconds * instruments[0].rate / BLOCK)):
+        for each in instruments:
+            each.process(out)
+
+
+def pace(instruments: list[Instrument], threads: int) -> list[float]:
+    """Instruments in real time: seconds of sound of all of them, in a second. One value a run."""
+    shares = [instruments[first::threads] for first in range(threads)]
+    paces = []
+    for _ in range(RUNS):
+        workers = [
+            threading.Thread(target=play, args=(share, SECONDS)) for share in shares if share
+        ]
+        start = time.perf_counter()
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        paces.append(len(instruments) * SECONDS / (time.perf_counter() - start))
+    return paces
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
+    arguments = parser.parse_args()
+    cores = os.cpu_count() or 1
+    figures: dict[str, list[float]] = {}
+    for count in COUNTS:
+        players = [instrument(number) for number in range(count)]
+        figures[f"{count} instruments, one core"] = pace(players, 1)
+        if count > 1:
+            figures[f"{count} instruments, {cores} cores"] = pace(players, cores)
+    for fingers in (1, 2, 3, 4):
+        figures[f"{fingers} fingers pressed"] = pace([instrument(0, fingers=fingers)], 1)
+    for rate in RATES:
+        figures[f"{rate / 1e3:g} kHz"] = pace([instrument(0, rate)], 1)
+
+    table = Table("what", "instruments in real time", "from", "to")
+    for name, values in figures.items():
+        spread = (statistics.median(values), min(values), max(values))
+        table.add_row(name, *(f"{value:.1f}" for value in spread))
+    Console().print(table)
+    if arguments.save:
+        record = {name: {"median": statistics.median(v), "all": v} for name, v in figures.items()}
+        arguments.save.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

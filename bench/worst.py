@@ -1,0 +1,87 @@
+"""The worst single block: a minute of hard playing in blocks of 64, each block's own CPU time.
+
+    .venv/bin/python bench/worst.py [--seconds 60] [--save bench/results/NAME.json]
+
+Hard playing is all that costs: four fingers that trill, slide and press up to 6 N, tremolo, wide
+vibrato, scratching and flautando, string crossings, plucks, strings that are being tuned. The CPU
+time is this thread's, so that what else the machine does is left out as far as it can be.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import time
+from pathlib import Path
+
+import numpy as np
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.params.table import ENGINE
+
+RATE, BLOCK = 44100.0, 64
+EVERY = 12  # blocks between two changes
+HARD = {
+    "/bow/speed": (-0.6, 0.6),
+    "/bow/side": (-1.0, 1.0),
+    "/bow/pressure": (0.05, 6.0),
+    "/bow/position": (0.05, 0.3),
+    "/bow/tremolo": (0.0, 16.0),
+    "/bow/noise": (0.0, 0.3),
+    "/vibrato/depth": (0.0, 100.0),
+    "/pluck/force": (-3.0, 3.0),
+    "/string/inner/tuning": (-100.0, 40.0),
+    "/string/outer/loss": (0.3, 4.0),
+    **{f"/finger/{number}/position": (0.01, 0.25) for number in (1, 2, 3, 4)},
+    **{f"/finger/{number}/press": (-2.0, 6.0) for number in (1, 2, 3, 4)},  # below 0: up
+}
+
+
+def play(instrument: Instrument, blocks: int) -> np.ndarray:
+    """Play so many blocks; return the CPU time of each (s)."""
+    chance = random.Random(7)  # noqa: S311 - for music, not secrets
+    out = np.zeros(BLOCK, np.float32)
+    times = np.zeros(blocks)
+    known = {param.address: param for param in ENGINE}
+    for block in range(blocks):
+        if block % EVERY == 0:
+            for address in chance.sample(sorted(HARD), 4):
+                lo, hi = HARD[address]
+                value = known[address].accept(chance.uniform(lo, hi))
+                if address == "/bow/side":
+                    value = 1.0 if value > 0.0 else -1.0
+                instrument.write(address, value)
+        start = time.thread_time_ns()
+        instrument.process(out)
+        times[block] = 1e-9 * (time.thread_time_ns() - start)
+    return times
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
+    arguments = parser.parse_args()
+    instrument = Instrument(RATE)
+    play(instrument, 100)
+    times = play(instrument, round(arguments.seconds * RATE / BLOCK))
+    deadline = BLOCK / RATE
+    figures = {
+        "mean": float(times.mean() / deadline),
+        "99.9 %": float(np.quantile(times, 0.999) / deadline),
+        "99.99 %": float(np.quantile(times, 0.9999) / deadline),
+        "worst": float(times.max() / deadline),
+    }
+    for name, share in figures.items():
+        print(f"{name:8} {100.0 * share:6.1f} % of the deadline of {1e3 * deadline:.2f} ms")
+    print(
+        f"{instrument.lost_states} lost states, {instrument.unconverged_solves} unconverged solves"
+    )
+    if arguments.save:
+        arguments.save.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

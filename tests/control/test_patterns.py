@@ -11,7 +11,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from yehu_server.control.osc import LONGEST_PATTERN
-from yehu_server.control.patterns import PatternError, is_pattern, matches
+from yehu_server.control.patterns import PatternError, _pieces, is_pattern, matches
 from yehu_server.params.table import TABLE
 
 LETTERS = "ab-/"
@@ -135,3 +135,11 @@ def test_a_twisted_pattern_takes_no_longer_than_a_plain_one_should(pattern):
     for param in TABLE:
         matches(pattern[:LONGEST_PATTERN], "/yehu" + param.address)
     assert time.thread_time() - started < 0.5
+
+
+def test_a_pattern_is_read_once_for_all_addresses_and_stars_in_a_row_are_as_one():
+    pattern = "/yehu/bow/" + "*" * 200 + "e"
+    assert len(_pieces(pattern)) == 3
+    assert _pieces(pattern) is _pieces(pattern)
+    assert matches(pattern, "/yehu/bow/side")
+    assert not matches(pattern, "/yehu/bow/side/unit")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 SPECIAL = frozenset("*?[{")
 
@@ -60,19 +61,23 @@ def _after(piece: Piece, places: set[int], address: str) -> set[int]:
     if isinstance(piece, One):
         return {at + 1 for at in places if at < len(address) and piece.fits(address[at])}
     reached: set[int] = set()
-    for at in places:
-        end = address.find("/", at)
-        reached.update(range(at, (end if end >= 0 else len(address)) + 1))
+    for at in sorted(places):
+        if at not in reached:  # else an earlier place has led to all that this one would
+            end = address.find("/", at)
+            reached.update(range(at, (end if end >= 0 else len(address)) + 1))
     return reached
 
 
-def _pieces(pattern: str) -> list[Piece]:
+@lru_cache(maxsize=256)
+def _pieces(pattern: str) -> tuple[Piece, ...]:
+    """What a pattern is made of. Errors: PatternError."""
     pieces: list[Piece] = []
     at = 0
     while at < len(pattern):
         char = pattern[at]
         if char == "*":
-            pieces.append(AnyNumber())
+            if not pieces or not isinstance(pieces[-1], AnyNumber):  # two in a row are as one
+                pieces.append(AnyNumber())
         elif char == "?":
             pieces.append(One(lambda c: c != "/"))
         elif char == "[":
@@ -84,9 +89,18 @@ def _pieces(pattern: str) -> list[Piece]:
             pieces.append(Either(tuple(pattern[at + 1 : end].split(","))))
             at = end
         else:
-            pieces.append(Either((char,)))
+            end = _end_of_plain(pattern, at)
+            pieces.append(Either((pattern[at:end],)))
+            at = end - 1
         at += 1
-    return pieces
+    return tuple(pieces)
+
+
+def _end_of_plain(pattern: str, at: int) -> int:
+    """Where the characters that stand for themselves end."""
+    while at < len(pattern) and pattern[at] not in SPECIAL:
+        at += 1
+    return at
 
 
 def _closing(pattern: str, at: int, bracket: str) -> int:

@@ -43,5 +43,8 @@ class Metrics(Collector):
 
     def text(self, accept: str) -> tuple[bytes, str]:
         """The metrics in the format a client accepts, and its content type."""
-        encode, content_type = choose_encoder(accept)
+        try:
+            encode, content_type = choose_encoder(accept)
+        except (TypeError, ValueError):  # prometheus-client compares versions that are none
+            encode, content_type = choose_encoder("")
         return encode(self._registry), content_type

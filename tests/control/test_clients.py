@@ -46,6 +46,25 @@ def told(ear) -> list[tuple[str, list[float]]]:
     return [(message.address, message.arguments) for message in ear.heard()]
 
 
+def test_another_server_that_tells_us_its_values_is_not_answered_for_as_long(
+    clients, values, play, ear
+):
+    clients.hush(ear, 0.5)
+    for _ in range(4):
+        clients.echo(ear, ["/a"])
+        clients.complain(ear, "/x", "unknown")
+        play(100)
+    assert told(ear) == []
+    clients.subscribe(ear, 10.0)  # what it asks for it gets all the same
+    values.now["/a"] = 1.0
+    play(20)
+    assert ("/yehu/a", [1.0]) in told(ear)
+    play(200)
+    clients.echo(ear, ["/b"])
+    play(20)
+    assert told(ear) == [("/yehu/b", [0.0])]
+
+
 # ---------------------------------------------------------------- echoes
 
 

@@ -805,6 +805,23 @@ def test_a_subscriber_is_told_all_and_what_others_change(hall):
     assert client.all() == []
 
 
+def test_two_servers_may_follow_each_other_and_fall_silent(hall, make_hall):
+    other = make_hall()
+    for one, two in ((hall, other), (other, hall)):
+        client = one.client()
+        client.tell("/subscribe", 30, two.ports.port)
+        client.sync()
+    client.tell("/playing/volume", 0.3)
+    client.wait_for("/playing/volume")
+    for server in (hall, other):
+        assert server.client().value("/playing/volume") == f32(0.3)
+    time.sleep(0.3)
+    heard = hall.ports.traffic.packets + other.ports.traffic.packets
+    time.sleep(0.3)
+    assert hall.ports.traffic.packets + other.ports.traffic.packets == heard
+    assert hall.handler.counts.errors == other.handler.counts.errors == 0
+
+
 def test_a_subscriber_is_told_sixty_times_a_second_at_most(hall):
     client, other = hall.client(), hall.client()
     client.tell("/subscribe")

@@ -32,6 +32,7 @@ class Client:
     until: float = 0.0  # when its subscription ends (monotonic s)
     form: str = ""  # of the addresses it is told: plain, or UNIT
     listens: set[str] = field(default_factory=set)  # addresses it is told of without an end
+    hushed_until: float = 0.0  # when it may be answered again (monotonic s)
     to_tell: dict[str, None] = field(default_factory=dict)  # addresses, in order
     patience: float = ERRORS_AT_ONCE  # errors it may still be sent
     complained: float = field(default_factory=time.monotonic)
@@ -89,7 +90,7 @@ class Clients:
         self._clients = {
             peer: client
             for peer, client in self._clients.items()
-            if max(client.until, client.complained + forgiven_s) > now
+            if max(client.until, client.hushed_until, client.complained + forgiven_s) > now
             or client.to_tell
             or client.listens
         }
@@ -98,8 +99,17 @@ class Clients:
 
     def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
         """Let a peer know soon what it has set."""
-        self._client(peer).to_tell.update(dict.fromkeys(addresses))
-        self._is_waiting = True
+        client = self._client(peer)
+        if client.hushed_until <= time.monotonic():
+            client.to_tell.update(dict.fromkeys(addresses))
+            self._is_waiting = True
+
+    def hush(self, peer: Peer, seconds: float) -> None:
+        """Answer a peer no more for some time: one that tells us its values, as we tell ours.
+
+        Two that answer each other would never end.
+        """
+        self._client(peer).hushed_until = time.monotonic() + seconds
 
     def subscribe(self, peer: Peer, seconds: float, form: str = "") -> bool:
         """Tell a peer of every change for some time; return whether there was room.
@@ -140,6 +150,8 @@ class Clients:
         """Tell a peer of an error, unless it has had many of late; only then ask the reason."""
         client = self._client(peer)
         now = time.monotonic()
+        if client.hushed_until > now:
+            return
         gained = ERRORS_A_SECOND * (now - client.complained)
         client.patience = min(client.patience + gained, ERRORS_AT_ONCE)
         client.complained = now

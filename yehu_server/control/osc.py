@@ -142,6 +142,11 @@ class OscHandler:
         }
         self._calls |= PresetCalls(player, self.clients, self._complain, desk).by_address
         self._calls |= LearnCalls(player, desk, self._complain).by_address
+        # What only another server says: it has been told to tell us its values.
+        self._answers: dict[str, Callable[[Call], None]] = {
+            f"{PREFIX}/subscribed": self._hush,
+            f"{PREFIX}/error": lambda _call: None,
+        }
         for param in TABLE:
             self._calls[param.address] = self._setter(param.address)
             self._calls[param.address + UNIT] = self._unit_setter(param)
@@ -209,6 +214,8 @@ class OscHandler:
 
     def _actions(self, address: str) -> list[Callable[[Call], None]]:
         known = address.removeprefix(PREFIX)
+        if address in self._answers:
+            return [self._answers[address]]
         if known in self._calls and known != address:
             return [self._calls[known]]
         own = {address: self._mover(address) for address in self._player.addresses}
@@ -317,12 +324,14 @@ class OscHandler:
 
     def _subscribe(self, call: Call, form: str = "") -> None:
         numbers = call.numbers(0, 2)
-        seconds = numbers[0] if numbers else SUBSCRIBED_S
-        seconds = min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
+        seconds = _within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
         peer = call.peer.at(_port(numbers[1])) if len(numbers) == 2 else call.peer
         if not self.clients.subscribe(peer, seconds, form):
             raise RefusedError("there are too many subscribers")
         peer.send(pack(f"{PREFIX}/subscribed", seconds))
+
+    def _hush(self, call: Call) -> None:
+        self.clients.hush(call.peer, _within_an_hour(call.numbers(1)[0]))
 
     def _unsubscribe(self, call: Call) -> None:
         numbers = call.numbers(0, 1)
@@ -366,6 +375,10 @@ def _near(address: str) -> str:
     except YehuError as error:
         return str(error)
     return "unknown address"
+
+
+def _within_an_hour(seconds: float) -> float:
+    return min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
 
 
 def _port(number: float) -> int:

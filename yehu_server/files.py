@@ -14,15 +14,16 @@ from pathlib import Path
 from yehu_server.errors import OutputError
 
 MAX_TEXT_BYTES = 64 * 2**20
+MAX_SETTINGS_BYTES = 2**20  # of files that are read while the instrument plays
 # What a name that comes over the network must look like: no path, nothing hidden.
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 
 
-def read_text(path: Path) -> str:
+def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
     """Read a text file of reasonable size. Errors: OSError, UnicodeDecodeError."""
     with path.open("rb") as file:
-        data = file.read(MAX_TEXT_BYTES + 1)  # bounded, as some devices never end
-    if len(data) > MAX_TEXT_BYTES:
+        data = file.read(most_bytes + 1)  # bounded, as some devices never end
+    if len(data) > most_bytes:
         raise OSError(errno.EFBIG, os.strerror(errno.EFBIG))
     return data.decode("utf-8")
 

@@ -14,6 +14,7 @@ import pytest
 from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError, PresetError
+from yehu_server.files import MAX_SETTINGS_BYTES
 from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.physics.quantities import Quantities
@@ -187,6 +188,12 @@ def test_a_broken_file_does_not_hide_the_others(presets, put):
     found, errors = presets.all()
     assert [preset.name for preset in found] == sorted([*SHIPPED, "good"])
     assert [str(error)[:5] for error in errors] == ["bad: "]
+
+
+def test_a_file_that_would_take_long_to_read_is_refused(presets, put):
+    put("long", "version = 1\n" + "#" * MAX_SETTINGS_BYTES)
+    with pytest.raises(PresetError, match="long: File too large"):
+        presets.load("long")
 
 
 def test_a_file_of_any_place_is_named_in_its_error(presets, tmp_path):

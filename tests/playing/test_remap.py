@@ -194,6 +194,24 @@ def test_a_file_that_is_replaced_or_gone_for_a_while_is_followed(watch, path):
     assert settled(watch).binds[0].source == "cc 8"
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_pipe_in_the_place_of_a_file_is_refused_and_not_waited_for(config_home, watch, path):
+    path.unlink()
+    os.mkfifo(path)
+    watch.look()
+    with pytest.raises(MappingError, match="is not a regular file"):
+        watch.look()
+    assert watch.look() is None
+    folder = config_home / "yehu-server" / "mappings"
+    folder.mkdir(parents=True)
+    os.mkfifo(folder / "below.toml")
+    path.unlink()
+    path.write_text('base = "below"\n')
+    watch.look()
+    with pytest.raises(MappingError, match="no mapping 'below'"):
+        watch.look()
+
+
 def test_the_base_of_a_file_is_watched_with_it(config_home, path):
     folder = config_home / "yehu-server" / "mappings"
     folder.mkdir(parents=True)

@@ -150,7 +150,7 @@ def _named(name: str, of: Path | None = None) -> Path | None:
     for folder in (own_folder(), mapping_folder()):
         file = folder / f"{name}.toml"
         try:
-            if file.exists() and not (of is not None and _is_same(file, of)):
+            if file.is_file() and not (of is not None and _is_same(file, of)):
                 return file
         except (OSError, ValueError):  # a name that no file could have
             return None

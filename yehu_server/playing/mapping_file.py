@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from yehu_server.errors import MappingError, ParameterError
-from yehu_server.files import read_text
+from yehu_server.files import MAX_SETTINGS_BYTES, read_text
 from yehu_server.params.spec import Curve
 from yehu_server.playing import mapping_entries as entries
 from yehu_server.playing import sources
@@ -74,7 +74,7 @@ def read_sheet(path: Path) -> Sheet:
 def text_of(path: Path) -> str:
     """The text of a file. Errors: MappingError."""
     try:
-        return read_text(path)
+        return read_text(path, MAX_SETTINGS_BYTES)
     except OSError as error:
         raise MappingError(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:

@@ -43,6 +43,7 @@ class MappingWatch:
             return None
         self._known = self._seen
         try:
+            _check(self._mapping.files)
             changed = self._read()
         except MappingError as error:
             if str(error) == self._refused:
@@ -52,6 +53,13 @@ class MappingWatch:
         was, self._mapping, self._refused = self._mapping, changed, None
         self._known = self._seen = _marks(changed.files)
         return None if changed == was else changed
+
+
+def _check(files: tuple[Path, ...]) -> None:
+    """Errors: MappingError for a pipe or a device: who reads it might wait for ever."""
+    for file in files:
+        if file.exists() and not file.is_file():
+            raise MappingError(f"{file}: is not a regular file")
 
 
 def _marks(files: tuple[Path, ...]) -> Marks:

@@ -10,7 +10,7 @@ from platformdirs import user_config_path
 from tomlkit.exceptions import TOMLKitError
 
 from yehu_server.errors import PresetError
-from yehu_server.files import PLAIN_NAME, read_text, shipped_folder, write_text
+from yehu_server.files import MAX_SETTINGS_BYTES, PLAIN_NAME, read_text, shipped_folder, write_text
 from yehu_server.params.preset import SAVED, VERSION, Preset, parse
 
 ENDING = ".toml"
@@ -21,7 +21,7 @@ Stamp = tuple[int, int]
 def read_preset(path: Path, name: str | None = None) -> Preset:
     """Read a file of any place. Errors: PresetError, naming it."""
     try:
-        return parse(read_text(path), name or path.stem)
+        return parse(read_text(path, MAX_SETTINGS_BYTES), name or path.stem)
     except UnicodeDecodeError as error:
         raise PresetError(f"{name or path}: not a preset file ({error})") from error
     except (OSError, ValueError) as error:  # a path may have a NUL
@@ -96,7 +96,7 @@ class Presets:
         text = EMPTY
         if path.exists():
             read_preset(path, name)
-            text = read_text(path)
+            text = read_text(path, MAX_SETTINGS_BYTES)
         elif _file(self.shipped, name).exists():
             raise PresetError(f"{name!r} comes with the program; save under another name")
         try:

@@ -70,6 +70,11 @@ def test_files_are_checked(told, tmp_path):
     code, out, err = told("presets", "check", path)
     assert (code, out) == (2, "")
     assert f"{path}: /playing/vibrato: 500 is not within 0 to 100 cents" in err
+    right = tmp_path / "right.toml"
+    right.write_text(HEAD)
+    code, out, err = told("presets", "check", path, right, tmp_path / "missing.toml")
+    assert (code, out) == (2, f"{right}: right, 0 values\n")
+    assert [str(path) in err, "missing.toml: No such file" in err] == [True, True]
 
 
 # ---------------------------------------------------------------- rendering

@@ -99,13 +99,20 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
+    from yehu_server.errors import PresetError
     from yehu_server.playing.presets import read_preset
 
+    code = 0
     for file in arguments.files:
-        preset = read_preset(file)
-        _warn(preset.remarks())
-        print(f"{file}: right, {len(preset.values)} values")
-    return 0
+        try:
+            preset = read_preset(file)
+        except PresetError as error:
+            code = 2
+            _warn([str(error)])
+        else:
+            _warn(preset.remarks())
+            print(f"{file}: right, {len(preset.values)} values")
+    return code
 
 
 def _warn(lines: Iterable[str]) -> None:

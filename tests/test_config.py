@@ -108,6 +108,9 @@ def test_a_phone_is_told_the_exact_line():
     far = connect_lines("::", 9000, "192.168.1.5", is_open=True)
     assert "host 192.168.1.5, send port 9000" in far[1]
     assert "anyone" in far[2]
+    assert connect_lines("::1", 9000, "192.168.1.5", is_open=True)[0].startswith(
+        "OSC at [::1]:9000 "
+    )
     assert len(connect_lines("192.168.1.5", 9000, "192.168.1.5", is_open=False)) == 2
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.audio.devices import AudioDevice
+from yehu_server.control.addresses import shown
 from yehu_server.control.calls import PREFIX
 from yehu_server.params.table import find
 from yehu_server.playing.fingering import RangePolicy
@@ -196,7 +197,7 @@ def note_name(pitch: float) -> str:
 
 def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]:
     """How others reach the server, in words; `is_open` where anyone is heard."""
-    lines = [f"OSC at {host}:{port} (UDP and TCP), such as /yehu/note 67 90"]
+    lines = [f"OSC at {shown(host, port)} (UDP and TCP), such as /yehu/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
         network = ipaddress.ip_network(f"{lan}/24", strict=False)
@@ -213,8 +214,7 @@ def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]
 def query_line(host: str, port: int, lan: str) -> str:
     """Where OSCQuery is, in words."""
     address = ipaddress.ip_address(host)
-    where = lan if address.is_unspecified else f"[{host}]" if address.version == 6 else host
-    return f"OSCQuery at http://{where}:{port}/"
+    return f"OSCQuery at http://{shown(lan if address.is_unspecified else host, port)}/"
 
 
 def _friction_notice(bound: float) -> list[str]:

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yehu_server.control import sockets
-from yehu_server.control.addresses import Allowed, parse_address
+from yehu_server.control.addresses import Allowed, parse_address, shown
 from yehu_server.control.packets import pack
 from yehu_server.control.schedule import AHEAD_S
 from yehu_server.control.sockets import OscPorts
@@ -468,10 +468,17 @@ def test_what_is_no_network_is_refused(text):
         ("10.0.0.1:0", ("10.0.0.1", 0)),
         ("[::1]:9000", ("::1", 9000)),
         ("[::1]", ("::1", 9001)),
+        ("::1", ("::1", 9001)),
+        ("2001:db8::9:1", ("2001:db8::9:1", 9001)),
     ],
 )
 def test_where_to_listen_is_read(text, address):
     assert parse_address(text, "0.0.0.0", 9001) == address  # noqa: S104 - only a default
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "fe80::1%eth0"])
+def test_an_address_that_is_shown_is_read_as_the_same(host):
+    assert parse_address(shown(host, 9005), "0.0.0.0", 9001) == (host, 9005)  # noqa: S104
 
 
 @pytest.mark.parametrize("text", ["a:b", "a:-1", "a:65536", "a:1.5", "a:1e3", "[::1]:x"])

@@ -213,6 +213,16 @@ def test_metrics_come_in_the_open_format_too(port):
     assert answer.body.endswith(b"# EOF\n")
 
 
+@pytest.mark.parametrize(
+    "accept",
+    ["application/openmetrics-text;version=a", "text/plain;version=;escaping=", ";,=;", "\xff"],
+)
+def test_metrics_come_whatever_a_client_accepts(port, accept):
+    answer = ask(port, "/metrics", Accept=accept)
+    assert answer.status == 200
+    assert b"yehu_rate 48000.0" in answer.body
+
+
 # ---------------------------------------------------------------- who is not answered
 
 
@@ -313,7 +323,7 @@ def test_those_who_connect_and_say_nothing_are_bounded(port, patience):
 
 
 def test_an_address_that_is_taken_is_one_clear_line(web_house, port, make_hall):
-    with pytest.raises(DeviceError, match=f"OSCQuery: cannot listen at {HOST}:{port}"):
+    with pytest.raises(DeviceError, match=f"at {HOST}:{port}: Address already in use$"):
         make_hall(http=WebOptions((HOST, port)))
     del web_house
 

@@ -12,7 +12,7 @@ import pytest
 from web_client import BINARY, CLOSE, TEXT, Heard, Refused, WebSocket, ask, packed
 
 from yehu_server.control.peers import MOST_UNSENT_BYTES, WebTraffic
-from yehu_server.control.web import MOST_WEB_SOCKETS, WebOptions
+from yehu_server.control.web import MOST_CONNECTIONS, MOST_WEB_SOCKETS, SWEEP_S, WebOptions
 from yehu_server.control.web_sockets import FRAME_BYTES, WebPeer
 from yehu_server.params.table import TABLE
 
@@ -57,6 +57,21 @@ def _as_it_was(web_house, patience):
 
 
 # ---------------------------------------------------------------- OSC
+
+
+def test_the_many_who_connect_and_say_nothing_shut_nobody_out(connect, port):
+    silent = [socket.create_connection((HOST, port)) for _ in range(MOST_CONNECTIONS)]
+    web = connect()
+    try:
+        web.tell(FORCE, 1.0)
+        assert web.next() == Heard(FORCE, [1.0])
+        silent += [socket.create_connection((HOST, port)) for _ in range(50)]
+        time.sleep(2.0 * SWEEP_S)
+        web.tell(FORCE, 1.5)
+        assert web.next() == Heard(FORCE, [1.5])
+    finally:
+        for connection in silent:
+            connection.close()
 
 
 def test_a_binary_frame_is_osc_and_who_sets_something_is_told(web, port):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ipaddress
+import os
 import socket
 from collections.abc import Iterable
 from functools import lru_cache
@@ -70,10 +71,26 @@ def lan_address() -> str:
     return ANYWHERE  # all there is to say without a network
 
 
+def shown(host: str, port: int) -> str:
+    """A host and a port, as `parse_address` reads them."""
+    return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+
+
+def why(error: OSError) -> str:
+    """Why an address cannot be had, in the system's words alone."""
+    if isinstance(error, socket.gaierror) or error.errno is None:
+        return error.strerror or str(error)
+    return os.strerror(error.errno)
+
+
 def parse_address(text: str, default_host: str, default_port: int) -> Address:
-    """Read ``HOST:PORT``, ``HOST`` or ``:PORT``. Errors: ParameterError."""
+    """Read ``HOST:PORT``, ``HOST`` or ``:PORT``; IPv6 with a port as ``[HOST]:PORT``.
+
+    Errors: ParameterError.
+    """
     host, colon, port = text.rpartition(":")
-    if not colon or text.endswith("]"):
+    is_bare_ipv6 = ":" in host and not host.endswith("]")
+    if not colon or text.endswith("]") or is_bare_ipv6:
         host, port = text, ""
     try:
         number = int(port) if port else default_port

@@ -20,7 +20,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Protocol
 
-from yehu_server.control.addresses import Address, Allowed, is_here
+from yehu_server.control.addresses import Address, Allowed, is_here, shown, why
 from yehu_server.control.framing import FramingError
 from yehu_server.control.peers import Peer, TcpPeer, Traffic, UdpPeer
 from yehu_server.errors import DeviceError
@@ -289,8 +289,7 @@ def _open(host: str, port: int) -> tuple[socket.socket, socket.socket]:
                 return _bind(family, host, port)
         return _bind(family, host, port)
     except OSError as error:
-        where = f"{host}:{port}"
-        raise DeviceError(f"OSC: cannot listen at {where}: {error.strerror or error}") from error
+        raise DeviceError(f"OSC: cannot listen at {shown(host, port)}: {why(error)}") from error
 
 
 def _bind(family: int, host: str, port: int) -> tuple[socket.socket, socket.socket]:

@@ -10,7 +10,7 @@ import ipaddress
 import json
 import logging
 import socket
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from typing import Any
 from aiohttp import web
 
 from yehu_server.control import query
-from yehu_server.control.addresses import Address, Allowed, plain
+from yehu_server.control.addresses import Address, Allowed, plain, shown, why
 from yehu_server.control.calls import Call
 from yehu_server.control.clients import Clients
 from yehu_server.control.guard import own_names, refusal
@@ -86,6 +86,7 @@ class WebServer:
         self._names = own_names()
         self._listening = _listen(*options.address)
         self.host, self.port = self._listening.getsockname()[:2]
+        self._talking: set[web.RequestHandler] = set()  # connections that are WebSockets
         self._thread = LoopThread(self._serve, "web")
 
     def start(self) -> None:
@@ -121,11 +122,16 @@ class WebServer:
             await web.SockSite(runner, self._listening).start()
             while True:
                 await asyncio.sleep(SWEEP_S)
-                for excess in server.connections[MOST_CONNECTIONS:]:
-                    excess.force_close()
+                self._close_excess(server.connections)
         finally:
             await self._sockets.close()
             await runner.cleanup()
+
+    def _close_excess(self, connections: Sequence[web.RequestHandler]) -> None:
+        """Close who has been connected longest, and is no WebSocket, where they are too many."""
+        others = [one for one in connections if one not in self._talking]
+        for excess in others[: max(0, len(connections) - MOST_CONNECTIONS)]:
+            excess.force_close()
 
     async def _answer(self, request: web.Request) -> web.StreamResponse:
         self.traffic.requests += 1
@@ -149,7 +155,11 @@ class WebServer:
         if request.headers.get("Upgrade", "").lower() == "websocket":
             if self.traffic.web_sockets >= MOST_WEB_SOCKETS:
                 raise web.HTTPServiceUnavailable(text="there are too many WebSockets\n")
-            return await self._sockets.serve(request)
+            self._talking.add(request.protocol)
+            try:
+                return await self._sockets.serve(request)
+            finally:
+                self._talking.discard(request.protocol)
         if request.path == "/metrics":
             body, content_type = self._metrics.text(request.headers.get("Accept", ""))
             return web.Response(body=body, headers=HEADERS | {"Content-Type": content_type})
@@ -210,8 +220,8 @@ def _listen(host: str, port: int) -> socket.socket:
         dualstack = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
         return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise DeviceError(f"OSCQuery: cannot listen at {host}:{port}: {reason}") from error
+        where = shown(host, port)
+        raise DeviceError(f"OSCQuery: cannot listen at {where}: {why(error)}") from error
 
 
 def _reads_html(request: web.Request) -> bool:

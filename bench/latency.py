@@ -23,6 +23,7 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -121,11 +122,11 @@ class Witness:
         if kind == "OSC":
             handle = server.handler.handle
 
-            def hear(packet: bytes, peer: Any, arrived_ns: int) -> None:
+            def hear(packet: bytes, peer: Any, arrived_ns: int) -> Iterator[None]:
                 (message,) = unpack(packet)
                 if message.address == "/yehu/playing/volume" and message.arguments[0] == 1.0:
                     self._arrived.append(self._instrument.frame_at(arrived_ns))
-                handle(packet, peer, arrived_ns)
+                return handle(packet, peer, arrived_ns)
 
             vars(server.handler)["handle"] = hear
         elif server.midi is not None:

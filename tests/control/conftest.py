@@ -286,7 +286,8 @@ class Stage:
 
     def take(self, packet: bytes, ear: Ear | None = None) -> None:
         """Let a packet come in now."""
-        self.handler.handle(packet, ear or self.ear, self.clock.monotonic_ns())
+        for _ in self.handler.handle(packet, ear or self.ear, self.clock.monotonic_ns()):
+            pass
 
     def tell(self, address: str, *arguments: Any, tags: str | None = None) -> None:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))

@@ -822,6 +822,14 @@ def test_two_servers_may_follow_each_other_and_fall_silent(hall, make_hall):
     assert hall.handler.counts.errors == other.handler.counts.errors == 0
 
 
+def test_who_asks_for_much_at_once_keeps_nobody_else_waiting(hall, wire):
+    greedy, other = hall.client(), hall.client()
+    greedy.take(wire.bundle(None, *[wire.message("/yehu/params")] * 2000))
+    hall.wait_frames(1000)
+    other.sync()
+    assert hall.handler.counts.messages < 2000
+
+
 def test_a_subscriber_is_told_sixty_times_a_second_at_most(hall):
     client, other = hall.client(), hall.client()
     client.tell("/subscribe")

@@ -165,11 +165,11 @@ def test_an_event_is_heard_within_two_blocks_and_half_a_millisecond_of_its_arriv
     with server_of(64) as server:
         instrument, handle = server.instrument, server.handler.handle
 
-        def witness(packet: bytes, peer: object, arrived_ns: int) -> None:
+        def witness(packet: bytes, peer: object, arrived_ns: int) -> Iterator[None]:
             (message,) = unpack(packet)
             if message.address == "/yehu/bow/position":
                 arrived[message.arguments[0]] = instrument.frame_at(arrived_ns)
-            handle(packet, peer, arrived_ns)
+            return handle(packet, peer, arrived_ns)
 
         server.handler.handle = witness
         time.sleep(0.3)

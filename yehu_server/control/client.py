@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import Self
 
-from yehu_server.control.addresses import Address
+from yehu_server.control.addresses import Address, shown, why
 from yehu_server.control.calls import PREFIX
 from yehu_server.control.packets import Message, PacketError, pack, unpack
 from yehu_server.errors import DeviceError, YehuError
@@ -29,13 +29,13 @@ class OscClient:
     """
 
     def __init__(self, server: Address) -> None:
-        self._name = f"{server[0]}:{server[1]}"
+        self._name = shown(*server)
         try:
             family, kind, _, _, address = socket.getaddrinfo(*server, type=socket.SOCK_DGRAM)[0]
             self._socket = socket.socket(family, kind)
             self._socket.connect(address)  # hears nobody else
         except OSError as error:
-            raise DeviceError(f"{self._name}: {error.strerror or error}") from error
+            raise DeviceError(f"{self._name}: {why(error)}") from error
 
     def __enter__(self) -> Self:
         return self

@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -158,26 +158,27 @@ class OscHandler:
 
     # -- packets -----------------------------------------------------------------------------
 
-    def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
-        """See `sockets.Handler`."""
+    def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
+        """See `sockets.Handler`: a message is a step."""
         try:
             messages = unpack(packet)
         except PacketError as error:
             self.counts.malformed += 1
             self.clients.complain(peer, "", f"malformed packet: {error}")
             return
-        now = time.time()
+        now, frame = time.time(), self._arrivals.frame_of(arrived_ns)
         is_late = any(message.due_s is not None and message.due_s <= now for message in messages)
         self.counts.late_bundles += is_late
         for message in messages:
             self.counts.messages += 1
             due_s = message.due_s
             if due_s is None or due_s <= now:
-                self._act(message, peer, self._arrivals.frame_of(arrived_ns))
+                self._act(message, peer, frame)
             elif self._schedule.add(due_s, (message, peer)):
                 self.counts.scheduled += 1
             else:
                 self._complain(peer, message.address, "too many messages wait for their time")
+            yield
 
     def tick(self) -> None:
         """See `sockets.Handler`."""

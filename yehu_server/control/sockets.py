@@ -17,10 +17,11 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Protocol
 
 from yehu_server.control.addresses import Address, Allowed, is_here, shown, why
+from yehu_server.control.backlog import Backlog
 from yehu_server.control.framing import FramingError
 from yehu_server.control.peers import Peer, TcpPeer, Traffic, UdpPeer
 from yehu_server.errors import DeviceError
@@ -33,7 +34,6 @@ MOST_QUEUED, MOST_QUEUED_BYTES = 1 << 15, 1 << 27
 READ_AT_ONCE = 256  # datagrams, before we look for what is due
 READ_FOR_NS = 20_000_000  # before we handle some of it
 ACCEPT_AGAIN_S = 1.0
-HANDLE_FOR_NS = 2_000_000
 MOST_CONNECTIONS = 64
 LONGEST_WAIT_S = 0.5
 TRIES_FOR_A_PORT = 20
@@ -44,8 +44,8 @@ SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 33, 35, 40
 class Handler(Protocol):
     """What is done with packets; called from the socket's thread."""
 
-    def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
-        """Act on one packet."""
+    def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
+        """Act on one packet, in steps between which others may be handled."""
 
     def tick(self) -> None:
         """Do what is due."""
@@ -67,8 +67,7 @@ class OscPorts:
         self.traffic = Traffic()
         self._allowed = allowed
         self._handler = handler
-        self._queue: deque[tuple[bytes | None, Peer, int]] = deque()  # None: has hung up
-        self._queued_bytes = 0
+        self._backlog = Backlog(self._handle, self._end)
         self._has_more = False  # in the socket, as far as we know
         self._handled_ns = 0
         self._accept_from = math.inf  # monotonic s
@@ -113,7 +112,7 @@ class OscPorts:
 
     def leave(self, peer: Peer) -> None:
         """A peer who came another way is gone, once what it said is done; any thread may call."""
-        self.call_soon(lambda: self._queue.append((None, peer, 0)))
+        self.call_soon(lambda: self._backlog.add(None, peer, 0))
 
     def call_soon(self, action: Callable[[], None]) -> None:
         """Let the thread that serves do something; any thread may call."""
@@ -134,13 +133,12 @@ class OscPorts:
         asked = self._handler.wait_s()
         wait = LONGEST_WAIT_S if asked is None else min(asked, LONGEST_WAIT_S)
         self._has_more = False
-        for key, events in self._selector.select(0.0 if self._queue else wait):
+        for key, events in self._selector.select(0.0 if self._backlog else wait):
             self._serve(key, events)
         now_ns = time.monotonic_ns()
-        # First the socket's small buffer, then the queue's large one.
+        # First the socket's small buffer, then the backlog's large one.
         if not self._has_more or now_ns - self._handled_ns > READ_FOR_NS:
-            while self._queue and time.monotonic_ns() < now_ns + HANDLE_FOR_NS:
-                self._handle_next()
+            self._backlog.work()
             self._handled_ns = time.monotonic_ns()
         self._handler.tick()
         if time.monotonic() > self._accept_from:
@@ -150,18 +148,17 @@ class OscPorts:
     @property
     def is_full(self) -> bool:
         """Whether senders have to wait, or the kernel to hold what they send."""
-        queued = len(self._queue) + len(self._asked)
-        return queued >= MOST_QUEUED or self._queued_bytes >= MOST_QUEUED_BYTES
+        queued = len(self._backlog) + len(self._asked)
+        return queued >= MOST_QUEUED or self._backlog.bytes >= MOST_QUEUED_BYTES
 
-    def _handle_next(self) -> None:
-        packet, peer, arrived_ns = self._queue.popleft()
-        if packet is not None:
-            self._queued_bytes -= len(packet)
-            self._handler.handle(packet, peer, arrived_ns)
-        else:
-            if isinstance(peer, TcpPeer):
-                peer.finish()
-            self._handler.gone(peer)
+    def _handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
+        return self._handler.handle(packet, peer, arrived_ns)
+
+    def _end(self, peer: Peer) -> None:
+        """A peer has hung up, and all it said is done."""
+        if isinstance(peer, TcpPeer):
+            peer.finish()
+        self._handler.gone(peer)
 
     def _serve(self, key: selectors.SelectorKey, events: int) -> None:
         if key.fileobj is self._udp:
@@ -220,8 +217,7 @@ class OscPorts:
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
         self.traffic.packets += 1
-        self._queued_bytes += len(packet)
-        self._queue.append((packet, peer, arrived_ns))
+        self._backlog.add(packet, peer, arrived_ns)
 
     # -- TCP -----------------------------------------------------------------------------------
 
@@ -267,7 +263,7 @@ class OscPorts:
         """Read no more from a peer; what it has said is still acted on and answered."""
         peer.reads = False
         self.watch(peer)
-        self._queue.append((None, peer, 0))
+        self._backlog.add(None, peer, 0)
 
     def watch(self, peer: TcpPeer) -> None:
         """Wait for what the peer has still to say or to take; close when there is neither."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from yehu_server.control.calls import PREFIX
 from yehu_server.control.packets import pack
 from yehu_server.control.peers import Peer
+from yehu_server.control.request import Desk, Request
 from yehu_server.errors import YehuError
 from yehu_server.params.table import UNIT
 from yehu_server.playing import learned
@@ -17,7 +18,6 @@ from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping_entries import free
 
 if TYPE_CHECKING:
-    from yehu_server.control.osc import Call, Desk
     from yehu_server.playing.mapping import Mapping
 
 PATIENCE_S = 60.0  # for somebody to move something
@@ -45,13 +45,13 @@ class LearnCalls:
         self._desk = desk
         self._complain = complain
         self._wants = 0  # how often somebody asked, so that what was found late counts no more
-        self.by_address: dict[str, Callable[[Call], None]] = {
+        self.by_address: dict[str, Callable[[Request], None]] = {
             "/learn": self._learn,
             "/unlearn": self._unlearn,
             "/bindings": self._bindings,
         }
 
-    def _learn(self, call: Call) -> None:
+    def _learn(self, call: Request) -> None:
         """``/learn [ADDRESS [SOFT]]``."""
         self._wants += 1
         self._player.listen(None)
@@ -82,7 +82,7 @@ class LearnCalls:
         self._desk.say(f"{source.source} moves {target} from now on ({path})")
         peer.send(pack(f"{PREFIX}/learned", PREFIX + target, source.source, str(path)))
 
-    def _unlearn(self, call: Call) -> None:
+    def _unlearn(self, call: Request) -> None:
         target = free(_plain(call.word()), "forget one").address
         mapping, count = learned.unlearn(self._player.mapping, target)
         if count:
@@ -93,7 +93,7 @@ class LearnCalls:
         self._player.remap(mapping, frame=self._player.frame_of())
         self._desk.tree_changed("/")
 
-    def _bindings(self, call: Call) -> None:
+    def _bindings(self, call: Request) -> None:
         call.numbers(0)
         rows = self._player.bindings()
         for bind, place, value in rows:

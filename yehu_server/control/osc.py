@@ -6,11 +6,9 @@ The protocol is described in docs/osc.md.
 from __future__ import annotations
 
 import logging
-import math
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 
 from yehu_server.control.calls import PREFIX
 from yehu_server.control.clients import Clients
@@ -19,6 +17,7 @@ from yehu_server.control.packets import Message, PacketError, answer, pack, unpa
 from yehu_server.control.patterns import PatternError, is_pattern, matches
 from yehu_server.control.peers import Peer
 from yehu_server.control.preset_calls import PresetCalls
+from yehu_server.control.request import Desk, RefusedError, Request
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.control.status import PLACE, as_argument
 from yehu_server.errors import YehuError
@@ -29,38 +28,14 @@ from yehu_server.playing.sources import is_own
 
 log = logging.getLogger(__name__)
 
+Act = Callable[[Request], None]
+
 LONGEST_PATTERN = 256
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 
 
-class RefusedError(YehuError):
-    """A message that cannot be done as it is."""
-
-
 class UnknownError(Exception):
     """An address that we do not have; looking for a near one takes too long for a flood."""
-
-
-class Desk(Protocol):
-    """What the server does beside playing."""
-
-    def status(self) -> Mapping[str, float | str]:
-        """How things stand."""
-
-    def start_recording(self, name: str) -> str:
-        """Record under a plain name; return the file's. Errors: YehuError."""
-
-    def stop_recording(self) -> str:
-        """End the recording; return the file's name. Errors: YehuError."""
-
-    def soon(self, action: Callable[[], None]) -> None:
-        """Let the thread that handles packets do something; any thread may call."""
-
-    def tree_changed(self, path: str) -> None:
-        """What can be set or called at an address or below is not what it was."""
-
-    def say(self, line: str) -> None:
-        """Tell whoever runs the server."""
 
 
 @dataclass
@@ -72,39 +47,6 @@ class Counts:
     errors: int = 0  # wrong type, unknown address, out of range
     late_bundles: int = 0
     scheduled: int = 0
-
-
-@dataclass(frozen=True)
-class Call:
-    """One message to be acted on: its arguments, who sent it, and when it is to be heard."""
-
-    arguments: Sequence[Any]
-    payload: bytes
-    peer: Peer
-    frame: int
-
-    def numbers(self, least: int, most: int | None = None) -> list[float]:
-        """The arguments as finite numbers. Errors: RefusedError."""
-        most = least if most is None else most
-        if least == 0 and list(self.arguments) == [None]:  # how OSCQuery's clients send nothing
-            return []
-        count = len(self.arguments)
-        if not least <= count <= most:
-            wanted = f"{least}" if least == most else f"{least} to {most}"
-            plural = "" if wanted == "1" else "s"
-            raise RefusedError(f"expected {wanted} argument{plural}, got {count}")
-        return [_number(argument) for argument in self.arguments]
-
-    def word(self) -> str:
-        """The one argument, a string. Errors: RefusedError."""
-        if len(self.arguments) != 1 or not isinstance(self.arguments[0], str):
-            raise RefusedError("expected one string")
-        return self.arguments[0]
-
-    def word_and_flag(self) -> tuple[str, bool]:
-        """A string, and after it a number that may be left out: whether it is not 0."""
-        (flag,) = replace(self, arguments=self.arguments[1:] or [0]).numbers(1)
-        return replace(self, arguments=self.arguments[:1]).word(), flag != 0.0
 
 
 class OscHandler:
@@ -120,7 +62,7 @@ class OscHandler:
         self._schedule: Schedule[tuple[Message, Peer]] = Schedule(ahead_s)
         self._tags = TagClock(player)
         self._arrivals = Arrivals(player)
-        self._calls: dict[str, Callable[[Call], None]] = {
+        self._calls: dict[str, Act] = {
             "/note": self._note,
             "/note/off": self._note_off,
             "/pitch": self._pitch,
@@ -143,7 +85,7 @@ class OscHandler:
         self._calls |= PresetCalls(player, self.clients, self._complain, desk).by_address
         self._calls |= LearnCalls(player, desk, self._complain).by_address
         # What only another server says: it has been told to tell us its values.
-        self._answers: dict[str, Callable[[Call], None]] = {
+        self._answers: dict[str, Act] = {
             f"{PREFIX}/subscribed": self._hush,
             f"{PREFIX}/error": lambda _call: None,
         }
@@ -198,7 +140,7 @@ class OscHandler:
         self.clients.forget(peer)
 
     def _act(self, message: Message, peer: Peer, frame: int) -> None:
-        call = Call(message.arguments, message.payload, peer, frame)
+        call = Request(message.arguments, message.payload, peer, frame)
         try:
             actions = self._actions(message.address)
         except UnknownError:
@@ -213,7 +155,7 @@ class OscHandler:
             except YehuError as error:
                 self._complain(peer, message.address, str(error))
 
-    def _actions(self, address: str) -> list[Callable[[Call], None]]:
+    def _actions(self, address: str) -> list[Act]:
         known = address.removeprefix(PREFIX)
         if address in self._answers:
             return [self._answers[address]]
@@ -234,14 +176,14 @@ class OscHandler:
         self.counts.errors += 1
         self.clients.complain(peer, address, reason)
 
-    def _mover(self, address: str) -> Callable[[Call], None]:
+    def _mover(self, address: str) -> Act:
         """Move what the mapping has at an address of the user's own."""
         return lambda call: self._player.move(address, call.numbers(1)[0], frame=call.frame)
 
-    def _hearing(self, address: str, action: Callable[[Call], None]) -> Callable[[Call], None]:
+    def _hearing(self, address: str, action: Act) -> Act:
         """Also let what comes be learned."""
 
-        def hear(call: Call) -> None:
+        def hear(call: Request) -> None:
             self._player.hear(address, call.numbers(1)[0])
             action(call)
 
@@ -249,23 +191,23 @@ class OscHandler:
 
     # -- parameters --------------------------------------------------------------------------
 
-    def _setter(self, address: str) -> Callable[[Call], None]:
+    def _setter(self, address: str) -> Act:
         return lambda call: self._set(call, address)
 
-    def _set(self, call: Call, address: str) -> None:
+    def _set(self, call: Request, address: str) -> None:
         (value,) = call.numbers(1)
         self._player.write(address, value, frame=call.frame)
         self.clients.echo(call.peer, [address])
 
-    def _unit_setter(self, param: Param) -> Callable[[Call], None]:
-        def set_unit(call: Call) -> None:
+    def _unit_setter(self, param: Param) -> Act:
+        def set_unit(call: Request) -> None:
             (unit,) = call.numbers(1)
             self._player.write(param.address, param.from_unit(unit), frame=call.frame)
             self.clients.echo(call.peer, [param.address + UNIT])
 
         return set_unit
 
-    def _get(self, call: Call) -> None:
+    def _get(self, call: Request) -> None:
         wanted = call.word().removeprefix(PREFIX)
         if is_pattern(wanted):
             known = (*BY_ADDRESS, *(address + UNIT for address in BY_ADDRESS))
@@ -276,7 +218,7 @@ class OscHandler:
         for address in addresses:
             call.peer.send(pack(PREFIX + address, read(values, address)))
 
-    def _params(self, call: Call) -> None:
+    def _params(self, call: Request) -> None:
         values = self._player.values()
         for param in TABLE:
             value = values[param.address]
@@ -286,44 +228,44 @@ class OscHandler:
 
     # -- playing -----------------------------------------------------------------------------
 
-    def _note(self, call: Call) -> None:
+    def _note(self, call: Request) -> None:
         note, velocity = call.numbers(2)
         if velocity == 0.0:
             self._player.note_off(note, frame=call.frame)
         else:
             self._player.note_on(note, velocity, frame=call.frame)
 
-    def _note_off(self, call: Call) -> None:
+    def _note_off(self, call: Request) -> None:
         self._player.note_off(call.numbers(1, 2)[0], frame=call.frame)
 
-    def _pitch(self, call: Call) -> None:
+    def _pitch(self, call: Request) -> None:
         self._player.slide(call.numbers(1)[0], frame=call.frame)
 
-    def _bow(self, call: Call) -> None:
+    def _bow(self, call: Request) -> None:
         speed, force = call.numbers(2)
         self._player.draw(speed, force, frame=call.frame)
         self.clients.echo(call.peer, ["/bow/speed", "/bow/force"])
 
-    def _release(self, call: Call) -> None:
+    def _release(self, call: Request) -> None:
         del call
         self._player.release()
 
-    def _panic(self, call: Call) -> None:
+    def _panic(self, call: Request) -> None:
         self._schedule.clear()
         self._player.panic(frame=call.frame)
 
-    def _reset(self, call: Call) -> None:
+    def _reset(self, call: Request) -> None:
         self._schedule.clear()
         self._player.reset(frame=call.frame)
         self.clients.echo(call.peer, BY_ADDRESS)
 
     # -- the desk ----------------------------------------------------------------------------
 
-    def _status(self, call: Call) -> None:
+    def _status(self, call: Request) -> None:
         for name, value in self._desk.status().items():
             call.peer.send(pack(PREFIX + PLACE + name, as_argument(value)))
 
-    def _subscribe(self, call: Call, form: str = "") -> None:
+    def _subscribe(self, call: Request, form: str = "") -> None:
         numbers = call.numbers(0, 2)
         seconds = _within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
         peer = call.peer.at(_port(numbers[1])) if len(numbers) == 2 else call.peer
@@ -331,20 +273,20 @@ class OscHandler:
             raise RefusedError("there are too many subscribers")
         peer.send(pack(f"{PREFIX}/subscribed", seconds))
 
-    def _hush(self, call: Call) -> None:
+    def _hush(self, call: Request) -> None:
         self.clients.hush(call.peer, _within_an_hour(call.numbers(1)[0]))
 
-    def _unsubscribe(self, call: Call) -> None:
+    def _unsubscribe(self, call: Request) -> None:
         numbers = call.numbers(0, 1)
         peer = call.peer.at(_port(numbers[0])) if numbers else call.peer
         self.clients.unsubscribe(peer)
         peer.send(pack(f"{PREFIX}/unsubscribed"))
 
-    def _record_start(self, call: Call) -> None:
+    def _record_start(self, call: Request) -> None:
         name = self._desk.start_recording(call.word())
         call.peer.send(pack(f"{PREFIX}/record/started", name))
 
-    def _record_stop(self, call: Call) -> None:
+    def _record_stop(self, call: Request) -> None:
         name = self._desk.stop_recording()
         call.peer.send(pack(f"{PREFIX}/record/stopped", name))
 
@@ -352,19 +294,6 @@ class OscHandler:
 def _form(address: str) -> str:
     """What comes after the parameter's own address."""
     return UNIT if address.endswith(UNIT) else ""
-
-
-def _number(argument: Any) -> float:
-    """A number as clients send it: float, int, or T and F. Errors: RefusedError."""
-    if not isinstance(argument, int | float):
-        raise RefusedError(f"expected a number, got {_kind(argument)}")
-    try:
-        number = float(argument)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise RefusedError(f"{number} is not finite")
-    return number
 
 
 def _near(address: str) -> str:
@@ -399,8 +328,3 @@ def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[st
     if not found:
         raise RefusedError("the pattern fits no address")
     return found
-
-
-def _kind(argument: Any) -> str:
-    kinds = {str: "a string", bytes: "a blob", type(None): "nil", list: "an array"}
-    return kinds.get(type(argument), f"a {type(argument).__name__}")

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from yehu_server.control.clients import Clients
 from yehu_server.control.packets import pack
 from yehu_server.control.peers import Peer
+from yehu_server.control.request import Desk, Request
 from yehu_server.errors import PresetError
 from yehu_server.params.preset import Preset, morph
 from yehu_server.playing.live import LivePlayer
-
-if TYPE_CHECKING:
-    from yehu_server.control.osc import Call, Desk
 
 
 class PresetCalls:
@@ -44,7 +41,7 @@ class PresetCalls:
         self._complain = complain
         self._desk = desk
         self._prefix = clients.prefix
-        self.by_address: dict[str, Callable[[Call], None]] = {
+        self.by_address: dict[str, Callable[[Request], None]] = {
             "/preset/load": self._load,
             "/preset/morph": self._morph,
             "/preset/save": self._save,
@@ -52,7 +49,7 @@ class PresetCalls:
             "/preset/list": self._list,
         }
 
-    def _load(self, call: Call) -> None:
+    def _load(self, call: Request) -> None:
         preset = self._presets.load(call.word())
         self._player.load(preset.values, frame=call.frame)
         self._clients.echo(call.peer, preset.values)
@@ -60,7 +57,7 @@ class PresetCalls:
         for remark in preset.remarks():
             self._complain(call.peer, f"{self._prefix}/preset/load", remark)
 
-    def _morph(self, call: Call) -> None:
+    def _morph(self, call: Request) -> None:
         if len(call.arguments) != 3:
             raise PresetError("expected two names and a number from 0 to 1")
         one, other = self._named(call, 0), self._named(call, 1)
@@ -69,22 +66,22 @@ class PresetCalls:
         self._player.load(values, frame=call.frame)
         self._clients.echo(call.peer, values)
 
-    def _named(self, call: Call, place: int) -> Preset:
+    def _named(self, call: Request, place: int) -> Preset:
         return self._presets.load(replace(call, arguments=call.arguments[place:][:1]).word())
 
-    def _save(self, call: Call) -> None:
+    def _save(self, call: Request) -> None:
         name = call.word()
         self._presets.save(name, self._player.sound())
         self._desk.tree_changed(f"{self._prefix}/preset")
         call.peer.send(pack(f"{self._prefix}/preset/saved", name))
 
-    def _delete(self, call: Call) -> None:
+    def _delete(self, call: Request) -> None:
         name = call.word()
         self._presets.delete(name)
         self._desk.tree_changed(f"{self._prefix}/preset")
         call.peer.send(pack(f"{self._prefix}/preset/deleted", name))
 
-    def _list(self, call: Call) -> None:
+    def _list(self, call: Request) -> None:
         presets, errors = self._presets.all()
         for preset in presets:
             row = (preset.name, preset.program or 0, preset.about)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
+
+from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server.errors import ParameterError
 
@@ -36,6 +38,26 @@ class Parser(argparse.ArgumentParser):
         """Say what is wrong and leave with code 2."""
         line = message.replace("\n", "\\n")
         self.exit(2, f"{self.prog}: {Parser._source}{line} (see {self.prog} --help)\n")
+
+
+def add_command(
+    commands: Any,
+    name: str,
+    run: Callable[[argparse.Namespace], int] | None = None,
+    **words: str,
+) -> Any:
+    """Add a command, or an action of one, with the words that argparse takes; return its parser."""
+    parser = commands.add_parser(
+        name, formatter_class=RawDescriptionRichHelpFormatter, allow_abbrev=False, **words
+    )
+    if run is not None:
+        parser.set_defaults(run=run)
+    return parser
+
+
+def add_action(actions: Any, name: str, run: Callable[[argparse.Namespace], int], text: str) -> Any:
+    """Add an action that tells something; return its parser."""
+    return add_command(actions, name, run, help=text, description=f"Tell {text}.")
 
 
 def add_reporting(parser: argparse.ArgumentParser) -> None:

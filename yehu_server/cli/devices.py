@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
+from yehu_server.cli.arguments import add_command
 
 EXAMPLES = """\
 examples:
@@ -19,15 +19,14 @@ Any words that only one device has will do as its name.
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "devices",
+        run=run,
         help="the audio outputs and MIDI inputs there are",
         description="List the audio outputs and MIDI inputs that serve can use.",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
-    parser.set_defaults(run=run)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 

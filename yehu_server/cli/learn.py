@@ -6,9 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
-from yehu_server.cli.arguments import add_server, server_of
+from yehu_server.cli.arguments import add_command, add_server, server_of
 from yehu_server.errors import ParameterError, YehuError
 
 if TYPE_CHECKING:
@@ -28,15 +26,14 @@ LONGEST_S = 60.0
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "learn",
+        run=run,
         help="let a knob, pedal or OSC address move a parameter of a running server",
         description="Let what you move next move a parameter of a running server (MIDI learn).",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
-    parser.set_defaults(run=run)
     parser.add_argument(
         "parameters", nargs="*", metavar="ADDRESS", help="of parameters; asked for if none is named"
     )

@@ -10,9 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
-from yehu_server.cli.arguments import add_server, server_of
+from yehu_server.cli.arguments import add_action, add_command, add_server, server_of
 from yehu_server.errors import MappingError, ParameterError
 
 if TYPE_CHECKING:
@@ -36,17 +34,16 @@ BINDING = ("source", "target", "from", "to", "curve", "terms", "place", "value")
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "mappings",
         help="what controllers move: mappings that come along, and your own",
         description="List the mappings, show what one moves, check or convert files of your own.",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
-    _add_action(actions, "list", _list, "the mappings that come along, and those in your folder")
-    show = _add_action(actions, "show", _show, "what controllers move in one")
+    add_action(actions, "list", _list, "the mappings that come along, and those in your folder")
+    show = add_action(actions, "show", _show, "what controllers move in one")
     show.add_argument(
         "mapping", nargs="?", metavar="NAME", help="a mapping's name, or a file (default: keyboard)"
     )
@@ -56,9 +53,9 @@ def add_to(commands: Any) -> None:
         help="what moves what in a running server, and where it is now; Ctrl-C ends",
     )
     add_server(show)
-    check = _add_action(actions, "check", _check, "whether files are right")
+    check = add_action(actions, "check", _check, "whether files are right")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
-    convert = _add_action(actions, "convert", _convert, "one as a file of today's form")
+    convert = add_action(actions, "convert", _convert, "one as a file of today's form")
     convert.add_argument(
         "mapping",
         metavar="FILE",
@@ -69,18 +66,6 @@ def add_to(commands: Any) -> None:
     )
     for action in (actions.choices["list"], show):
         action.add_argument("--json", action="store_true", help="print one JSON object")
-
-
-def _add_action(actions: Any, name: str, run: Any, text: str) -> Any:
-    action = actions.add_parser(
-        name,
-        help=text,
-        description=f"Tell {text}.",
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
-    )
-    action.set_defaults(run=run)
-    return action
 
 
 def _list(arguments: argparse.Namespace) -> int:

@@ -9,9 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
-from yehu_server.cli.arguments import add_presets_folder
+from yehu_server.cli.arguments import add_action, add_command, add_presets_folder
 
 EXAMPLES = """\
 examples:
@@ -23,35 +21,22 @@ examples:
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "presets",
         help="sounds: those that come along, and your own",
         description="List the presets, show what is in one, or check files of your own.",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
-    for name, run, text in (
-        ("list", _list, "the presets"),
-        ("show", _show, "the values of one"),
-        ("check", _check, "whether files are right"),
-    ):
-        action = actions.add_parser(
-            name,
-            help=text,
-            description=f"Tell {text}.",
-            formatter_class=RawDescriptionRichHelpFormatter,
-            allow_abbrev=False,
-        )
-        action.set_defaults(run=run)
-        if name == "show":
-            action.add_argument("preset", metavar="NAME", help="a preset's name, or a file")
-        if name == "check":
-            action.add_argument("files", nargs="+", type=Path, metavar="FILE")
-        else:
-            add_presets_folder(action)
-            action.add_argument("--json", action="store_true", help="print one JSON object")
+    listed = add_action(actions, "list", _list, "the presets")
+    show = add_action(actions, "show", _show, "the values of one")
+    show.add_argument("preset", metavar="NAME", help="a preset's name, or a file")
+    for action in (listed, show):
+        add_presets_folder(action)
+        action.add_argument("--json", action="store_true", help="print one JSON object")
+    check = add_action(actions, "check", _check, "whether files are right")
+    check.add_argument("files", nargs="+", type=Path, metavar="FILE")
 
 
 def _list(arguments: argparse.Namespace) -> int:

@@ -9,9 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
 from yehu_server.cli.arguments import (
+    add_command,
     add_playing,
     add_reporting,
     channel,
@@ -34,15 +33,14 @@ examples:
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "render",
+        run=run,
         help="MIDI files into a sound file",
         description="Play MIDI files on the instrument, one after another, into a sound file.",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
-    parser.set_defaults(run=run)
     parser.add_argument("midi", nargs="+", type=Path, metavar="IN.mid", help="what to play")
     parser.add_argument(
         "-o", "--output", required=True, type=Path, metavar="OUT", help="the sound file to write"

@@ -8,9 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
-from yehu_server.cli.arguments import add_reporting, compiling, progress_bar
+from yehu_server.cli.arguments import add_command, add_reporting, compiling, progress_bar
 
 EXAMPLES = """\
 examples:
@@ -23,15 +21,14 @@ The capture file is described in docs/capture.md.
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "replay",
+        run=run,
         help="a captured session into a sound file",
         description="Render what serve --capture wrote: the same samples, on the same build.",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
-    parser.set_defaults(run=run)
     parser.add_argument("capture", type=Path, metavar="CAPTURE", help="what serve --capture wrote")
     parser.add_argument(
         "-o", "--output", required=True, type=Path, metavar="OUT", help="the sound file to write"

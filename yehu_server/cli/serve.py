@@ -15,9 +15,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
 from yehu_server.cli.arguments import (
+    add_command,
     add_playing,
     compiling,
     mapping_of,
@@ -46,15 +45,14 @@ REFRESHES_PER_SECOND = 10
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "serve",
+        run=run,
         help="play live, by MIDI and OSC",
         description="Play the instrument live, by MIDI and OSC.",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
-    parser.set_defaults(run=run)
     _add_audio(parser.add_argument_group("audio"))
     _add_midi(parser.add_argument_group("MIDI"))
     _add_osc(parser.add_argument_group("OSC"))

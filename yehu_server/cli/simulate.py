@@ -7,9 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
-
-from yehu_server.cli.arguments import add_reporting, compiling, positive, progress_bar
+from yehu_server.cli.arguments import add_command, add_reporting, compiling, positive, progress_bar
 
 EXAMPLES = """\
 examples:
@@ -22,15 +20,14 @@ The gesture file is described in docs/simulate.md.
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "simulate",
+        run=run,
         help="a gesture in physical units into arrays",
         description="Run the physical model through a gesture file and keep every signal.",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
-    parser.set_defaults(run=run)
     parser.add_argument("gesture", type=Path, metavar="GESTURE.json", help="what bow and finger do")
     parser.add_argument(
         "-o", "--output", required=True, type=Path, metavar="OUT.npz", help="the arrays to write"

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from rich_argparse import RawDescriptionRichHelpFormatter
+from yehu_server.cli.arguments import add_command
 
 EXAMPLES = """\
 examples:
@@ -20,15 +20,14 @@ How to open each is told in docs/surfaces.md.
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = commands.add_parser(
+    parser = add_command(
+        commands,
         "surfaces",
+        run=run,
         help="write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
         description="Write control surfaces, and a page about the parameters, over older ones.",
         epilog=EXAMPLES,
-        formatter_class=RawDescriptionRichHelpFormatter,
-        allow_abbrev=False,
     )
-    parser.set_defaults(run=run)
     parser.add_argument(
         "-o",
         "--output",

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from yehu_server import cli
+from yehu_server.analysis.pitch import note_name
 from yehu_server.cli.config import expand
 from yehu_server.cli.serve import _options
-from yehu_server.report import connect_lines, note_name, query_line
+from yehu_server.report import connect_lines, query_line
 
 
 def options(*words: str):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from yehu_server.analysis.pitch import note_name
 from yehu_server.audio.devices import AudioDevice
 from yehu_server.control.addresses import shown
 from yehu_server.control.calls import PREFIX
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 NOTABLE_BOUND = 1.2
-NOTE_NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
 FATE = {
     RangePolicy.TRANSPOSE: "moved by octaves",
     RangePolicy.CLAMP: "played as the nearest there is",
@@ -185,14 +185,6 @@ def status_line(status: Mapping[str, float | str]) -> str:
     if status["recording"]:
         parts.append(f"recording {status['recording']}")
     return " | ".join(parts)
-
-
-def note_name(pitch: float) -> str:
-    """A fractional MIDI note, such as ``A4+12`` (cents)."""
-    nearest = round(pitch)
-    cents = round(100.0 * (pitch - nearest))
-    name = NOTE_NAMES[nearest % 12] + str(nearest // 12 - 1)
-    return f"{name}{cents:+d}" if cents else name
 
 
 def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]:

@@ -18,6 +18,17 @@ CLEAR = 0.8  # likeness (1: the same again) under which there is no pitch
 NEARLY_BEST = 0.93  # the first peak this near to the best is the period, not a multiple of it
 
 
+NOTE_NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
+
+
+def note_name(pitch: float) -> str:
+    """A fractional MIDI note, such as ``A4+12`` (cents)."""
+    nearest = round(pitch)
+    cents = round(100.0 * (pitch - nearest))
+    name = NOTE_NAMES[nearest % 12] + str(nearest // 12 - 1)
+    return f"{name}{cents:+d}" if cents else name
+
+
 def cents(frequency_hz: float, reference_hz: float) -> float:
     """How far a frequency lies above another."""
     return 1200.0 * math.log2(frequency_hz / reference_hz)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from yehu_server.analysis.pitch import note_name
 from yehu_server.control.calls import PREFIX
 from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.fingering import HIGHEST_NOTE, LOWEST_NOTE
 
 FIRST_GROUP = "playing"  # what most players want under their hands
-NOTE_NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
 BLACK = (1, 3, 6, 8, 10)
 
 VELOCITY = 90
@@ -59,7 +59,7 @@ class Key:
     @property
     def name(self) -> str:
         """The note's name, such as F#4."""
-        return f"{NOTE_NAMES[self.note % 12]}{self.note // 12 - 1}"
+        return note_name(self.note)
 
     @property
     def is_black(self) -> bool:

@@ -1,25 +1,18 @@
-"""Two pictures that show how the instrument plays: a score as it sounds, and where notes speak.
+"""A score as it sounds: waveform and level, pitches heard and aimed at, spectrogram.
 
-    .venv/bin/python scripts/pictures.py score IN.mid [-o OUT.png] [--mapping NAME] [--rate HZ]
-                                                      [--from S] [--to S]
-    .venv/bin/python scripts/pictures.py schelleng [-o OUT.png] [--note F C] [--rate HZ]
+    .venv/bin/python scripts/score_picture.py IN.mid [-o OUT.png] [--mapping NAME] [--rate HZ]
+                                              [--from S] [--to S]
 
-`score` plays a MIDI file and draws, over one time axis, its waveform and level, the pitches heard
-over the score and over what the player aims at, and a spectrogram; it prints how many notes are
-in tune, which are worst, and how large the jumps of the waveform are where notes meet.
-
-`schelleng` bows one stopped note of each string at many forces, places and speeds of the bow, in
-raw newtons, and draws what comes of it beside Schelleng's limits.
+It also prints how many notes are in tune, which are worst, and how large the jumps of the
+waveform are where notes meet.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
-import os
 import sys
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -28,22 +21,11 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from figures import BLUE, RED, save
-from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-from matplotlib.patheffects import withStroke
 
 from yehu_server.analysis.level import a_weighted_db
-from yehu_server.analysis.pitch import cents, pitch_hz
-from yehu_server.engine.gesture import FAST, FAST_SHARE
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.output import BRIDGE_PRESSURE
-from yehu_server.errors import ParameterError, ScoreError, YehuError
-from yehu_server.params.table import find
-from yehu_server.physics.quantities import Body, Quantities, StringQuantities
-from yehu_server.playing.bowing import FIRM, LIGHT, Manner, manner
-from yehu_server.playing.calibration import OPEN_NOTES, PITCHES, calibration_for, frequency_hz
-from yehu_server.playing.intonation import Intonation
+from yehu_server.analysis.pitch import cents, note_name, pitch_hz
+from yehu_server.errors import ScoreError, YehuError
+from yehu_server.playing.calibration import frequency_hz
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.messages import PERCUSSION
 from yehu_server.playing.style import Style
@@ -51,12 +33,6 @@ from yehu_server.render import Options, Performance
 from yehu_server.score.smf import Score, read_score
 
 Array = Any
-NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
-
-
-def name(note: int) -> str:
-    """A MIDI note as musicians call it."""
-    return f"{NAMES[note % 12]}{note // 12 - 1}"
 
 
 # ---------------------------------------------------------------- a score, played
@@ -265,8 +241,10 @@ def draw_pitches(
     mute = np.isnan(pitches)
     bottom = np.full(mute.sum(), low + 0.015 * (high - low))
     axes.plot(times[mute], bottom, "|", color="k", ms=8, label="no clear pitch")
-    ticks = [note for note in range(math.ceil(low), math.floor(high) + 1) if name(note)[1] != "#"]
-    axes.set(ylim=(low, high), yticks=ticks, yticklabels=[name(note) for note in ticks])
+    ticks = [
+        note for note in range(math.ceil(low), math.floor(high) + 1) if note_name(note)[1] != "#"
+    ]
+    axes.set(ylim=(low, high), yticks=ticks, yticklabels=[note_name(note) for note in ticks])
     axes.grid(axis="y", color="0.9", lw=0.6)
     axes.set_axisbelow(True)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False, fontsize=9)
@@ -316,7 +294,7 @@ def table(checked: Sequence[Verdict], spans: int, borders: Sequence[tuple[float,
     worst = sorted(checked, key=lambda one: -size_of(one.error))
     for one in worst[:WORST]:
         off = f"{one.error:+9.1f}" if math.isfinite(one.error) else "no pitch"
-        note = f"{name(round(one.aim)):>4}{100.0 * (one.aim - round(one.aim)):+4.0f}"
+        note = f"{note_name(round(one.aim)):>4}{100.0 * (one.aim - round(one.aim)):+4.0f}"
         lines.append(f"      {one.time_s:9.3f} {one.seconds:7.3f} {note}     {off}")
     if borders:
         time_s, ratio = max(borders, key=lambda border: border[1])
@@ -385,294 +363,22 @@ def score_picture(arguments: argparse.Namespace) -> None:
     save(figure, arguments.output or Path(f"{arguments.midi.stem}.png"))
 
 
-# ---------------------------------------------------------------- Schelleng's diagram
-
-STRINGS = ("F", "C")
-BETAS = np.geomspace(0.04, 0.4, 16)
-FORCES = np.geomspace(0.03, 5.0, 14)  # N
-BOW_SPEEDS = (0.1, 0.2, 0.3)  # m/s
-MANY_SPEEDS = np.geomspace(0.03, 0.6, 16)
-USUAL_BETA = find("/bow/position").default
-RAMP_MS, CELL_S, LAST_S = 40.0, 0.45, 0.15
-ON_NOTE_CENTS, REGISTER_CENTS = 30.0, 600.0
-# Shares of the bridge force of Helmholtz motion. Notes on pitch have 0.9 to 1.1 of it with one
-# slip a period (near nodes, far from the bridge, up to 2) and 0.3 to 0.6 with several.
-FULL, BARELY = 0.7, 0.15
-
-KINDS = (
-    ("Helmholtz motion: on the note, in full", "#3f9b57"),
-    ("on the note but weak: several slips a period", "#b5dba0"),
-    ("higher register: flageolet, multiple slip", "#4a86c5"),
-    (f"pulled off the note, {ON_NOTE_CENTS:g} to {REGISTER_CENTS:g} cents", "#f2d35b"),
-    ("lower register: raucous, anomalous low", "#d9762b"),
-    ("no clear pitch: scratch", "#8b3a3a"),
-    ("barely sounding", "#ececec"),
-)
-HELMHOLTZ, WEAK, HIGHER, PULLED, LOWER, SCRATCH, FAINT = range(len(KINDS))
-
-
-@dataclass(frozen=True)
-class Stop:
-    """A stopped note of one string, on the instrument in tune."""
-
-    string: int
-    note: int
-    quantities: Quantities
-    intonation: Intonation
-    rate: float
-
-    @property
-    def silk(self) -> StringQuantities:
-        """The string."""
-        return self.quantities.strings[self.string]
-
-    @property
-    def impedance(self) -> float:
-        """Wave impedance Z of the string (kg/s)."""
-        return math.sqrt(self.silk.T * self.silk.rho_A)
-
-    @property
-    def grip(self) -> float:
-        """How much more the hair holds sticking than sliding."""
-        return self.quantities.bow.mu_S - self.quantities.bow.mu_C
-
-    @property
-    def frequency(self) -> float:
-        """What it should sound (Hz)."""
-        return frequency_hz(self.note, 440.0)
-
-    def highest_force(self, speed: Array, beta: Array) -> Array:
-        """Schelleng's upper limit (N)."""
-        return 2.0 * self.impedance * speed / (beta * self.grip)
-
-    def lowest_force(self, speed: Array, beta: Array) -> Array:
-        """Schelleng's lower limit (N)."""
-        resistance = bridge_resistance(self.quantities.body, self.frequency)
-        return self.impedance**2 * speed / (2.0 * resistance * beta**2 * self.grip)
-
-
-def bridge_resistance(body: Body, frequency: float) -> float:
-    """The resistance R (kg/s) of Schelleng's lower limit, Re(1/Y) at the note's fundamental.
-
-    Y is the bridge's admittance, the sum of the body's modes: j w / (M (w_m^2 - w^2) + j w R_m)
-    each. Schelleng's bridge is a bare resistance, where Re(1/Y) and 1/Re(Y) are the same; between
-    its modes this one is mostly mass or spring, and Re(1/Y) is then by far the smaller, so that
-    the limit comes out high: about where the model, whose finger and strings lose too, has it.
-    """
-    w = 2.0 * math.pi * frequency
-    admittance = sum(
-        1j * w / (mass * (w_m**2 - w**2) + 1j * w * damping)
-        for mass, damping, w_m in zip(body.mass, body.damping, body.omega, strict=True)
-    )
-    return float((1.0 / admittance).real)
-
-
-def bow(stop: Stop, speed: float, beta: float, force: float) -> int:
-    """Bow a note in raw newtons and tell the kind of motion at its end.
-
-    Listens to the bare force on the bridge, which the body does not colour: Helmholtz motion makes
-    it a sawtooth with jumps of 2 Z v_b / beta, whatever the bow force.
-    """
-    instrument = Instrument(stop.rate, stop.quantities)
-    place = stop.intonation.position(stop.string, stop.note, speed)
-    press = max(find("/playing/press").default, manner(stop.note).press)
-    for address, value in (
-        ("/body/blend", 1.0),
-        ("/bow/assist", 0.0),
-        ("/bow/force", force),
-        ("/bow/position", beta),
-        ("/finger/1/position", place),
-        ("/finger/1/press", press),
-    ):
-        instrument.write(address, value, ramp_ms=0.0)
-    instrument.write("/bow/side", 1.0 if stop.string == 0 else -1.0)
-    instrument.write("/bow/speed", speed, ramp_ms=RAMP_MS)
-    out = np.zeros(round(CELL_S * stop.rate), np.float32)
-    instrument.process(out)
-    last = out[-round(LAST_S * stop.rate) :]
-    helmholtz = BRIDGE_PRESSURE * 2.0 * stop.impedance * speed / beta / math.sqrt(12.0)
-    found = pitch_hz(last, stop.rate, lo=0.22 * stop.frequency, hi=6.5 * stop.frequency)
-    error = cents(found, stop.frequency) if math.isfinite(found) else math.nan
-    return kind(error, float(last.std()) / helmholtz)
-
-
-def kind(error: float, strength: float) -> int:
-    """The kind of motion by its error in pitch (cents) and its part of the full force."""
-    if strength < BARELY:
-        return FAINT
-    if math.isnan(error):
-        return SCRATCH
-    if abs(error) <= ON_NOTE_CENTS:
-        return HELMHOLTZ if strength >= FULL else WEAK
-    if abs(error) < REGISTER_CENTS:
-        return PULLED
-    return HIGHER if error > 0.0 else LOWER
-
-
-def edges(values: Array) -> Array:
-    """The edges of cells about values that lie evenly on a logarithmic axis."""
-    half = math.sqrt(values[1] / values[0])
-    return np.append(values / half, values[-1] * half)
-
-
-def along(values: Array) -> Array:
-    """Points of a line over all cells about values."""
-    first, *_, last = edges(values)
-    return np.geomspace(float(first), float(last), 60)
-
-
-def player_force(stop: Stop, speed: Array, beta: float, wish: float) -> Array:
-    """The force (N) that the player's assist chooses for a value of ``/playing/pressure``."""
-    fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
-    return (manner(stop.note).pressure(wish, stop.note) + fast) * stop.highest_force(speed, beta)
-
-
-def draw_map(axes: Any, x: Array, kinds: Sequence[int]) -> None:
-    """Cells of force over `x`, in rows of FORCES."""
-    colours = ListedColormap([colour for _, colour in KINDS])
-    norm = BoundaryNorm(np.arange(len(KINDS) + 1) - 0.5, len(KINDS))
-    cells = np.reshape(kinds, (len(FORCES), len(x)))
-    axes.pcolormesh(edges(x), edges(FORCES), cells, cmap=colours, norm=norm, edgecolors="w", lw=0.4)
-    x_edges, y_edges = edges(x), edges(FORCES)
-    axes.set(xscale="log", yscale="log", xlim=x_edges[[0, -1]], ylim=y_edges[[0, -1]])
-    axes.set_yticks([0.05, 0.1, 0.2, 0.5, 1, 2, 5], labels=["0.05", "0.1", "0.2", "0.5", 1, 2, 5])
-    axes.minorticks_off()
-
-
-def draw_limits(axes: Any, x: Array, highest: Array, lowest: Array) -> None:
-    """Schelleng's two lines, with a halo."""
-    halo = [withStroke(linewidth=3.5, foreground="w")]
-    axes.plot(x, highest, "k-", lw=1.6, path_effects=halo)
-    axes.plot(x, lowest, "k--", lw=1.6, path_effects=halo)
-
-
-def draw_over_beta(axes: Any, stop: Stop, speed: float, kinds: Sequence[int]) -> None:
-    """Force over the bow's place, at one speed."""
-    draw_map(axes, BETAS, kinds)
-    x = along(BETAS)
-    draw_limits(axes, x, stop.highest_force(speed, x), stop.lowest_force(speed, x))
-    bowing = manner(stop.note)
-    if speed <= bowing.top_speed:
-        beta = USUAL_BETA * bowing.farther
-        ends = [float(player_force(stop, speed, beta, wish)) for wish in (LIGHT, FIRM)]
-        axes.plot([beta, beta], ends, color="k", lw=2.5, marker="_", ms=9, mew=2.5)
-    axes.set_xticks([0.05, 0.1, 0.2, 0.4], labels=["0.05", "0.1", "0.2", "0.4"])
-    axes.set(title=f"{title(stop)}, {speed:g} m/s", xlabel="bow position β")
-
-
-def draw_over_speed(axes: Any, stop: Stop, kinds: Sequence[int]) -> None:
-    """Force over speed, where the bow is usually."""
-    draw_map(axes, MANY_SPEEDS, kinds)
-    x = along(MANY_SPEEDS)
-    draw_limits(axes, x, stop.highest_force(x, USUAL_BETA), stop.lowest_force(x, USUAL_BETA))
-    bowing: Manner = manner(stop.note)
-    if bowing.farther == 1.0:
-        borne = x[x <= bowing.top_speed]
-        for wish in (LIGHT, FIRM):
-            axes.plot(borne, player_force(stop, borne, USUAL_BETA, wish), "k:", lw=2.0)
-    axes.set_xticks([0.03, 0.1, 0.2, 0.3, 0.6], labels=["0.03", "0.1", "0.2", "0.3", "0.6"])
-    axes.set(title=f"{title(stop)}, β = {USUAL_BETA:g}", xlabel="bow speed, m/s")
-
-
-def title(stop: Stop) -> str:
-    """The note and its string."""
-    return f"{name(stop.note)} on {STRINGS[stop.string]}"
-
-
-def schelleng_picture(arguments: argparse.Namespace) -> None:
-    """Bow every cell, print and draw."""
-    for string, note, lowest, highest in zip(
-        STRINGS, arguments.note, OPEN_NOTES, [max(each) for each in PITCHES], strict=True
-    ):
-        if not lowest < note <= highest:
-            raise ParameterError(f"{string} string: stopped notes are {lowest + 1} to {highest}")
-    rate = float(arguments.rate)
-    calibration = calibration_for(rate)
-    quantities, intonation = calibration.tuned(Quantities()), Intonation(calibration)
-    stops = [Stop(i, note, quantities, intonation, rate) for i, note in enumerate(arguments.note)]
-    jobs = []
-    for stop in stops:
-        for speed in BOW_SPEEDS:
-            jobs += [(stop, speed, beta, force) for force in FORCES for beta in BETAS]
-        jobs += [(stop, speed, USUAL_BETA, force) for force in FORCES for speed in MANY_SPEEDS]
-    with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
-        kinds = list(workers.map(lambda job: bow(*job), jobs))
-
-    across, size = len(BOW_SPEEDS) + 1, len(FORCES) * len(BETAS)
-    figure, panels = plt.subplots(
-        len(stops), across, figsize=(16, 4.2 * len(stops) + 1.2), sharey=True, layout="constrained"
-    )
-    for row, stop in enumerate(stops):
-        for column, axes in enumerate(panels[row]):
-            at = (row * across + column) * size
-            own = kinds[at : at + size]
-            if column < len(BOW_SPEEDS):
-                draw_over_beta(axes, stop, BOW_SPEEDS[column], own)
-            else:
-                draw_over_speed(axes, stop, own)
-            print(summary(axes.get_title(), own))
-        panels[row][0].set_ylabel("bow force, N")
-    figure.legend(handles=legend(), loc="outside lower center", ncols=4, frameon=False)
-    save(figure, arguments.output or Path("schelleng.png"))
-
-
-def summary(what: str, kinds: Sequence[int]) -> str:
-    """One line: how much of a panel is of each kind, in per cent."""
-    counts = np.bincount(kinds, minlength=len(KINDS)) * 100.0 / len(kinds)
-    words = ("full", "weak", "higher", "pulled", "lower", "scratch", "faint")
-    parts = (f"{word} {count:2.0f}" for word, count in zip(words, counts, strict=True))
-    return f"{what:24} per cent: {', '.join(parts)}"
-
-
-def legend() -> list[Any]:
-    """What colours and lines mean."""
-    patches = [Patch(facecolor=colour, edgecolor="0.6", label=text) for text, colour in KINDS]
-    lines = [
-        Line2D([], [], color="k", ls="-", label="Schelleng's upper limit"),
-        Line2D([], [], color="k", ls="--", label="Schelleng's lower limit, R = Re(1/Y)"),
-        Line2D([], [], marker="|", ms=13, mew=2.5, color="k", ls="", label="the player's forces"),
-        Line2D([], [], color="k", ls=":", lw=2.0, label="the player's lightest and firmest"),
-    ]
-    return [*patches, *lines]
-
-
 # ---------------------------------------------------------------- the command line
-
-
-def parser() -> argparse.ArgumentParser:
-    """Both commands."""
-    whole = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    commands = whole.add_subparsers(required=True)
-    common = argparse.ArgumentParser(add_help=False)
-    common.add_argument("-o", "--output", type=Path, metavar="OUT.png")
-    common.add_argument("--rate", type=int, default=44100, metavar="HZ")
-    score = commands.add_parser("score", parents=[common], help="a MIDI file as it sounds")
-    score.add_argument("midi", type=Path, metavar="IN.mid")
-    score.add_argument("--mapping", default=DEFAULT, metavar="NAME")
-    score.add_argument("--from", dest="begin", type=float, default=0.0, metavar="S")
-    score.add_argument("--to", dest="end", type=float, default=math.inf, metavar="S")
-    score.set_defaults(run=score_picture)
-    diagram = commands.add_parser("schelleng", parents=[common], help="where notes speak")
-    diagram.add_argument(
-        "--note",
-        nargs=2,
-        type=int,
-        default=(70, 77),
-        metavar=STRINGS,
-        help="a MIDI note stopped on each string (default: 70 77)",
-    )
-    diagram.set_defaults(run=schelleng_picture)
-    return whole
 
 
 def main() -> None:
     """Draw what is asked for."""
-    whole = parser()
-    arguments = whole.parse_args()
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("midi", type=Path, metavar="IN.mid")
+    parser.add_argument("-o", "--output", type=Path, metavar="OUT.png")
+    parser.add_argument("--rate", type=int, default=44100, metavar="HZ")
+    parser.add_argument("--mapping", default=DEFAULT, metavar="NAME")
+    parser.add_argument("--from", dest="begin", type=float, default=0.0, metavar="S")
+    parser.add_argument("--to", dest="end", type=float, default=math.inf, metavar="S")
     try:
-        arguments.run(arguments)
+        score_picture(parser.parse_args())
     except YehuError as error:
-        whole.exit(2, f"{whole.prog}: {error}\n")
+        parser.exit(2, f"{parser.prog}: {error}\n")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,59 @@
+"""The tree that OSCQuery tells changes as presets are kept and sources are learned."""
+
+from __future__ import annotations
+
+import pytest
+from web_client import WebSocket, ask
+
+from yehu_server.control.web import WebOptions
+
+
+@pytest.fixture
+def hall(config_home, make_hall):
+    del config_home
+    return make_hall(http=WebOptions(("127.0.0.1", 0)))
+
+
+@pytest.fixture
+def web(hall):
+    web = WebSocket(hall.server.web.port)
+    yield web
+    web.close()
+
+
+def changed(web: WebSocket) -> str:
+    """The path that the next change is at."""
+    while (heard := web.next()) is not None:
+        if isinstance(heard, dict) and heard["COMMAND"] == "PATH_CHANGED":
+            return heard["DATA"]
+    raise AssertionError("no PATH_CHANGED came")
+
+
+def test_a_learned_address_is_in_the_tree_and_the_change_is_told(hall, web):
+    port = hall.server.web.port
+    assert ask(port, "/my/fader").status == 404
+    web.tell("/yehu/learn", "/playing/vibrato")
+    for place in (0.0, 0.5):
+        web.tell("/my/fader", place)
+    assert changed(web) == "/"
+    node = ask(port, "/my/fader").json
+    assert (node["ACCESS"], node["TYPE"]) == (2, "f")
+    assert node["RANGE"] == [{"MIN": 0.0, "MAX": 1.0}]
+    web.tell("/yehu/unlearn", "/playing/vibrato")
+    assert changed(web) == "/"
+    assert ask(port, "/my/fader").status == 404
+
+
+def test_a_preset_that_is_kept_or_removed_changes_the_choice(hall, web):
+    port = hall.server.web.port
+
+    def choice() -> list[str]:
+        return ask(port, "/yehu/preset/load?RANGE").json["RANGE"][0]["VALS"]
+
+    before = choice()
+    web.tell("/yehu/preset/save", "mine")
+    assert changed(web) == "/yehu/preset"
+    assert set(choice()) == {*before, "mine"}
+    web.tell("/yehu/preset/delete", "mine")
+    assert changed(web) == "/yehu/preset"
+    assert choice() == before

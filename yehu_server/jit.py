@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
+from numba.core.compiler import Compiler
 from platformdirs import user_cache_dir
 
 P = ParamSpec("P")
@@ -71,17 +72,44 @@ numba.config.CACHE_DIR = str(cache_folder())
 IS_CACHED = _open_cache()  # else everything is compiled anew at each start
 
 
+class Restricted(Compiler):  # type: ignore[misc]
+    """numba's compiler, told that no two arguments of a function overlap, as C's `restrict` does.
+
+    Else each loop over several rows of one record first compares their addresses, a tenth of the
+    kernel's time.
+    """
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.state.flags.noalias = True
+
+
+def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
+    # Without forced inlining, arrays cross calls as ten words each: a fifth of the time.
+    jit = numba.njit(
+        cache=IS_CACHED,
+        nogil=True,
+        error_model="numpy",
+        fastmath=FASTMATH,
+        forceinline=True,
+        **options,
+    )
+    return cast("Callable[P, R]", jit(function))
+
+
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function for the audio thread: no Python objects, no GIL, no exceptions.
 
-    Division by zero follows IEEE 754 (``error_model="numpy"``), since a compiled
-    callback has nobody to raise to.
+    What it writes must be reached by one of its arguments only: see `Restricted`. Division by
+    zero follows IEEE 754 (``error_model="numpy"``), since a compiled callback has nobody to
+    raise to.
     """
-    # Without forced inlining, arrays cross calls as ten words each: a fifth of the time.
-    jit = numba.njit(
-        cache=IS_CACHED, nogil=True, error_model="numpy", fastmath=FASTMATH, forceinline=True
-    )
-    return cast("Callable[P, R]", jit(function))
+    return _compiled(function, pipeline_class=Restricted)
+
+
+def compiled_to_share(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile as `compiled` does, for a function whose arguments overlap."""
+    return _compiled(function)
 
 
 class Native:

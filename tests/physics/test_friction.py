@@ -1,6 +1,7 @@
 """The friction solver on its own: any problem a step may pose."""
 
 import math
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from yehu_server.physics.quantities import Quantities
 YEHU = Quantities()
 BOW = YEHU.bow
 RATE = 44100.0
+NO_TANGENT = (0.0, 0.0, 0.0)
 
 
 def elastoplastic_law(v_r, z_bar, F_N, string, bow):
@@ -38,7 +40,7 @@ def damping(v_r, F_N, bow):
 
 
 def problems(count, seed, fastest=10.0):
-    """free (m/s), compliance (m/s/N), z (m), F_N (N), f_start (N), string.
+    """free (m/s), compliance (m/s/N), z (m), F_N (N), tangent, string.
 
     A gesture's bow moves at 10 m/s at most; z may be left far above z_ss by a dropped force.
     """
@@ -49,7 +51,9 @@ def problems(count, seed, fastest=10.0):
         compliance = 10.0 ** rng.uniform(-1.0, math.log10(4.5))
         z_static = BOW.mu_S * F_N / BOW.epsilon_0
         z = z_static * rng.uniform(-1.0, 1.0) * rng.choice([1.0, 1.0, 1.0, 30.0])
-        yield free, compliance, z, F_N, rng.uniform(-5.0, 5.0), int(rng.integers(2))
+        # Of a law that was met elsewhere, at another speed and bow force.
+        tangent = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), -(10.0 ** rng.uniform(0.0, 6.0))
+        yield free, compliance, z, F_N, tangent, int(rng.integers(2))
 
 
 CASES = {
@@ -75,18 +79,18 @@ def solved(request):
 def test_every_random_problem_has_a_finite_answer(solved):
     _, _, pairs = solved
     assert all(math.isfinite(value) for _, answer in pairs for value in answer[:3])
-    assert max(answer[3] for _, answer in pairs) <= MAX_ITERATIONS
+    assert max(answer[4] for _, answer in pairs) <= MAX_ITERATIONS
 
 
 def test_the_solver_says_converged_in_all_but_one_of_a_thousand(solved):
     _, _, pairs = solved
-    assert np.mean([answer[4] for _, answer in pairs]) > 0.999
+    assert np.mean([answer[5] for _, answer in pairs]) > 0.999
 
 
 def test_what_is_called_converged_satisfies_both_equations(solved):
     """(49) in m/s, and (52)'s second row in m/s; the law from this file."""
     bow, k, pairs = solved
-    for (free, compliance, z, F_N, _, string), (f_b, z_bar, v_r, _, converged) in pairs:
+    for (free, compliance, z, F_N, _, string), (f_b, z_bar, v_r, *_, converged) in pairs:
         r = 2.0 * (z_bar - z) / k
         scale = max(1.0, abs(v_r), abs(r), abs(free))
         force = bow.epsilon_0 * z_bar + damping(v_r, F_N, bow) * r
@@ -97,13 +101,35 @@ def test_what_is_called_converged_satisfies_both_equations(solved):
             assert abs(law - r) <= 1e-9 * scale
 
 
+def test_what_a_last_step_leaves_is_as_small_as_the_docstring_says():
+    """2e-13 m/s, though the law is not worked out again after it: over steady bowing."""
+    model = kernel.prepare(YEHU, RATE)[0]
+    rng = np.random.default_rng(17)
+    for string, F_N in ((0, 0.05), (0, 0.7), (1, 3.0)):
+        z, tangent, sides = 0.0, NO_TANGENT, Counter()
+        for n in range(4000):
+            # A string that slips and sticks, with some of its corners' roughness.
+            free = 1.2 * F_N * math.cos(0.02 * n) ** 3 + 0.02 * rng.normal()
+            _, z_bar, v_r, tangent, _, converged = solve_friction(
+                free, 1.2, z, F_N, tangent, model, string
+            )
+            r = 2.0 * RATE * (z_bar - z)
+            law = elastoplastic_law(v_r, z_bar, F_N, string, BOW)
+            sides["holds" if law == v_r else "gives"] += 1
+            assert converged
+            # Rounding of r itself: z is as large as mu_S F_N / epsilon_0.
+            assert abs(law - r) <= 2.5e-13 + 4e-16 * 2.0 * RATE * abs(z_bar)
+            z = 2.0 * z_bar - z
+        assert min(sides["holds"], sides["gives"]) > 400
+
+
 def test_at_absurd_speeds_the_answer_stays_finite_and_within_coulombs_law():
     """Up to 1 km/s. Rounding of free - v_r then hides the bristles: `converged` may be false."""
     model = kernel.prepare(YEHU, RATE)[0]
-    for free, compliance, z, F_N, f_start, string in problems(5000, seed=16, fastest=1000.0):
+    for free, compliance, z, F_N, tangent, string in problems(5000, seed=16, fastest=1000.0):
         within = min(abs(z), BOW.mu_S * F_N / BOW.epsilon_0)
-        answer = solve_friction(free, compliance, within, F_N, f_start, model, string)
-        f_b, _, v_r, iterations, _ = answer
+        answer = solve_friction(free, compliance, within, F_N, tangent, model, string)
+        f_b, _, v_r, _, iterations, _ = answer
         assert math.isfinite(f_b)
         assert math.isfinite(v_r)
         assert iterations < MAX_ITERATIONS
@@ -115,7 +141,7 @@ def test_at_absurd_speeds_the_answer_stays_finite_and_within_coulombs_law():
 def test_friction_takes_energy_and_never_gives_any(solved):
     """q_z = f_b v_r - epsilon_0 z_bar r >= 0 wherever the equations hold, eq. (56e)."""
     bow, k, pairs = solved
-    for (_, _, z, _, _, _), (f_b, z_bar, v_r, _, converged) in pairs:
+    for (_, _, z, _, _, _), (f_b, z_bar, v_r, *_, converged) in pairs:
         work, stored = f_b * v_r, bow.epsilon_0 * z_bar * 2.0 * (z_bar - z) / k
         if converged:
             assert work - stored >= -1e-9 * max(abs(work), abs(stored), 1e-3)
@@ -125,20 +151,22 @@ def test_where_the_start_is_does_not_change_the_answer():
     """With one solution: 1.34 compliance epsilon_0 k/2 < 1."""
     model = kernel.prepare(YEHU, RATE)[0]
     limit = 1.0 / (1.34 * BOW.epsilon_0 / (2.0 * RATE))
-    for free, compliance, z, F_N, f_start, string in problems(2000, seed=14):
+    for free, compliance, z, F_N, tangent, string in problems(2000, seed=14):
         if compliance < limit:
-            one = solve_friction(free, compliance, z, F_N, f_start, model, string)
-            two = solve_friction(free, compliance, z, F_N, -f_start, model, string)
+            one = solve_friction(free, compliance, z, F_N, tangent, model, string)
+            two = solve_friction(free, compliance, z, F_N, NO_TANGENT, model, string)
             assert abs(one[0] - two[0]) <= 1e-11 * max(1.0, abs(one[0]))
 
 
 def steady(velocity, F_N, string=0):
     """Force of a bow that slides at a constant speed, long enough to be steady (N)."""
     model = kernel.prepare(YEHU, RATE)[0]
-    z, f_b = 0.0, 0.0
+    z, tangent = 0.0, NO_TANGENT
     for _ in range(3000):
         # A string that is all but held: whatever the force, the velocity nearly stays.
-        f_b, z_bar, v_r, _, _ = solve_friction(velocity, 1e-5, z, F_N, f_b, model, string)
+        f_b, z_bar, v_r, tangent, *_ = solve_friction(
+            velocity, 1e-5, z, F_N, tangent, model, string
+        )
         z = 2.0 * z_bar - z
     return f_b, v_r
 
@@ -158,11 +186,11 @@ def test_below_breakaway_the_bristles_are_a_spring():
     """Not a creep: pulled a little and held, the force stays epsilon_0 z for ever."""
     model = kernel.prepare(YEHU, RATE)[0]
     F_N, k = 1.0, 1.0 / RATE
-    z, travelled, f_b = 0.0, 0.0, 0.0
+    z, travelled, f_b, tangent = 0.0, 0.0, 0.0, NO_TANGENT
     breakaway = BOW.xi[0] * BOW.mu_C * F_N / BOW.epsilon_0
     for n in range(2000):
         velocity = 0.9 * breakaway / (100 * k) if n < 100 else 0.0
-        f_b, z_bar, v_r, _, _ = solve_friction(velocity, 1e-5, z, F_N, f_b, model, 0)
+        f_b, z_bar, v_r, tangent, *_ = solve_friction(velocity, 1e-5, z, F_N, tangent, model, 0)
         z = 2.0 * z_bar - z
         travelled += v_r * k
     assert 0.7 * breakaway < travelled < breakaway

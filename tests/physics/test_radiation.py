@@ -90,7 +90,7 @@ def test_the_direct_taps_delay_by_one_sample_each():
     for name in ("b_0", "b_1", "a_1", "a_2"):
         model[name] = 0.0
     taps = layout.MAX_TAPS
-    model["taps"] = np.arange(1.0, taps + 1.0)
+    model["taps"], model["last_tap"] = np.arange(1.0, taps + 1.0), taps - 1
     assert impulse_response(model, taps + 2).tolist() == [*range(1, taps + 1), 0, 0]
 
 

@@ -289,5 +289,6 @@ def test_below_that_bound_friction_has_one_solution_and_the_solver_finds_it():
         free = rng.uniform(-1.0, 1.0) * 10.0 ** rng.uniform(-3.0, 0.5)
         law = ref.Friction(params=params, F_N=F_N, xi=float(params.xi[string]), z=z)
         expected = law.solve(free, compliance)  # raises where there are several
-        found = solve_friction(free, compliance, z, F_N, rng.uniform(-5.0, 5.0), model, string)
+        tangent = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1e5, 0.0)
+        found = solve_friction(free, compliance, z, F_N, tangent, model, string)
         assert abs(found[0] - expected) <= 1e-11 * params.mu_S * F_N

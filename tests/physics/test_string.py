@@ -44,7 +44,9 @@ def advanced(model, shape, steps):
     for n in range(steps):
         now, following, before = n % 3, (n + 1) % 3, (n + 2) % 3
         kept[n] = u[now, layout.GHOST + 1 : layout.GHOST + N]
-        advance_string(u[following], u[now], u[before], N, model["B"][0], model["C"][0])
+        bend = np.zeros(layout.POINTS)
+        rows = u[following], u[now], u[before], bend, model["inside"][0]
+        advance_string(*rows, N, model["B"][0], model["C"][0])
         support(u[following], N)
     return kept
 

@@ -53,7 +53,7 @@ from yehu_server.engine.processor import (
     thread_cpu_ns,
 )
 from yehu_server.engine.telemetry import METERS, account, close_window, hear, tell_time
-from yehu_server.jit import compiled, native
+from yehu_server.jit import compiled, compiled_to_share, native
 from yehu_server.physics import kernel
 from yehu_server.physics.layout import MODEL, STATE, STRINGS
 
@@ -98,7 +98,7 @@ POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
 REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
 
 
-@compiled
+@compiled_to_share
 def drain(rig: Any, mail: Any, frame: int) -> bool:
     """Move what was posted into the heap, as far as the callback's budget goes.
 
@@ -119,7 +119,7 @@ def drain(rig: Any, mail: Any, frame: int) -> bool:
     return bool(drained < posted and mail.waiting >= HEAP)
 
 
-@compiled
+@compiled_to_share
 def apply(rig: Any, mail: Any, g: Any, fade: int) -> None:
     """Apply what is due at this frame, and report it."""
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
@@ -135,7 +135,7 @@ def apply(rig: Any, mail: Any, g: Any, fade: int) -> None:
         mail.waiting -= 1
 
 
-@compiled
+@compiled_to_share
 def report(rig: Any, mail: Any, frame: int, index: int, target: float, ramp: int) -> None:
     """Tell who captures what was applied, and when."""
     reported = mail.reported[0]
@@ -158,7 +158,7 @@ def retune(model: Array, state: Array, g: Any) -> None:
             kernel.retune(model, state, i, T, g.sigma_0[i] * loss, g.sigma_1[i] * loss)
 
 
-@compiled
+@compiled_to_share
 def play(rig: Any, out: Array) -> None:
     """Play one block into `out` [shape=(frames, channels), float32], in full scale.
 
@@ -251,7 +251,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     return 0
 
 
-@compiled
+@compiled_to_share
 def publish(rig: Any) -> None:
     """Copy the meters out, so that readers see all of a block or nothing of it."""
     version = load_acquire(rig, VERSION_AT)

@@ -15,9 +15,10 @@ from yehu_server.jit import compiled
 from yehu_server.physics.layout import BOW, STRINGS
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.stencil import read
-from yehu_server.physics.tension import reading
 
 Array = Any
+
+FRICTION_REACH = 4.0  # times mu_S F_N
 
 
 def prepare_bow(model: np.void, quantities: Quantities) -> None:
@@ -42,6 +43,12 @@ def friction_bound(model: np.void) -> float:
     k = model["k"]
     compliance = (model["spread"].max() + model["C_h"]) / (2.0 * k)
     return float(1.34 * compliance * model["epsilon_0"] * k / 2.0)
+
+
+@compiled
+def most_friction(model: Any, F_N: float) -> float:
+    """More than bristles and their damping can hold (N)."""
+    return float(FRICTION_REACH * model.mu_S * abs(F_N))
 
 
 @compiled
@@ -70,11 +77,9 @@ def advance_hair(model: Any, zeta_next: Array, zeta: Array, zeta_prev: Array) ->
 
 @compiled
 def hair_velocity(
-    model: Any, s: Any, u_next: Array, u_prev: Array, zeta_next: Array, zeta_prev: Array
+    model: Any, s: Any, reading: float, u_prev: Array, zeta_next: Array, zeta_prev: Array
 ) -> float:
-    """I_b delta_t. u + delta_t. zeta at the bow, as `u_next` and `zeta_next` stand (m/s)."""
+    """I_b delta_t. u + delta_t. zeta at the bow, where `reading` (m) is I_b u^{n+1} (m/s)."""
     i = s.string[BOW]
-    first, weights = s.first[BOW], s.weights[BOW]
-    travel = reading(s, u_next, i, first, weights, s.bend_at[BOW])
-    travel -= read(u_prev[i], first, weights)
-    return float((travel + zeta_next[i] - zeta_prev[i]) / (2.0 * model.k))
+    travel = reading - read(u_prev[i], s.first[BOW], s.weights[BOW])
+    return float(0.5 * model.rate * (travel + zeta_next[i] - zeta_prev[i]))

@@ -12,10 +12,9 @@ import numpy as np
 
 from yehu_server.errors import ParameterError
 from yehu_server.jit import compiled
-from yehu_server.physics.layout import MAX_MODES, STRINGS
+from yehu_server.physics.layout import MAX_MODES, STRINGS, whole_vectors
 from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.stencil import place_cubic, read, spread
-from yehu_server.physics.tension import reading
+from yehu_server.physics.stencil import place_cubic, read
 
 Array = Any
 
@@ -72,7 +71,7 @@ def weigh_bridge(model: Any) -> None:
 def advance_bridge(model: Any, q_next: Array, q: Array, q_prev: Array, f_hammer: float) -> float:
     """Advance the modes, free of string forces; return their sum Q* (m). Eq. (42)."""
     total = 0.0
-    for m in range(MAX_MODES):
+    for m in range(whole_vectors(model.modes)):
         q_next[m] = model.A_q[m] * q[m] + model.B_q[m] * q_prev[m] + model.C_q[m] * f_hammer
         total += q_next[m]
     return total
@@ -100,27 +99,23 @@ def close_bridge(model: Any, s: Any, u_next: Array, Q: float) -> None:
     Source: [Yehu] eqs. (43)-(45).
     """
     tie(model, s)
-    first, weights, bend = model.bridge_first, model.bridge_weights, s.bend_at_bridge
-    c_1 = Q - reading(s, u_next, 0, first[0], weights[0], bend[0])
-    c_2 = Q - reading(s, u_next, 1, first[1], weights[1], bend[1])
+    c_1 = Q - read(u_next[0], model.bridge_first[0], model.bridge_weights[0])
+    c_2 = Q - read(u_next[1], model.bridge_first[1], model.bridge_weights[1])
+    c_1 -= s.slack[0] * s.bend_at_bridge[0]
+    c_2 -= s.slack[1] * s.bend_at_bridge[1]
     S = s.S_c_inverse
-    s.f_c[0], s.f_c[1] = 0.0, 0.0
-    pull_strings(model, s, u_next, S[0, 0] * c_1 + S[0, 1] * c_2, S[1, 0] * c_1 + S[1, 1] * c_2)
+    s.f_c[0], s.f_c[1] = S[0, 0] * c_1 + S[0, 1] * c_2, S[1, 0] * c_1 + S[1, 1] * c_2
 
 
 @compiled
-def pull_strings(model: Any, s: Any, u_next: Array, f_1: float, f_2: float) -> None:
-    """Let the bridge pull both strings by so much more (N): + J_c f_c of eq. (30)."""
-    for i in range(STRINGS):
-        f = f_1 if i == 0 else f_2
-        s.f_c[i] += f
-        spread(u_next[i], model.bridge_first[i], model.bridge_weights[i], model.spread[i] * f)
-        s.slack[i] -= s.give[i] * s.bend_at_bridge[i] * f
+def finish_bridge(model: Any, q_next: Array, q_prev: Array, f_c: Array) -> float:
+    """Let the strings' forces move the modes, the last term of eq. (59).
 
-
-@compiled
-def finish_bridge(model: Any, q_next: Array, f_c: Array) -> None:
-    """Let the strings' forces move the modes: the last term of eq. (59)."""
+    Returns how far the bridge came in two samples (m).
+    """
     total = f_c[0] + f_c[1]
-    for m in range(MAX_MODES):
+    travel = 0.0
+    for m in range(whole_vectors(model.modes)):
         q_next[m] -= model.C_q[m] * total
+        travel += q_next[m] - q_prev[m]
+    return travel

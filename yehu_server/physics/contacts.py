@@ -12,9 +12,9 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.jit import compiled
-from yehu_server.physics.bridge import pull_strings
 from yehu_server.physics.layout import BOW, CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS, X_B
 from yehu_server.physics.stencil import overlap, place_cubic, place_linear, read, spread
+from yehu_server.physics.tension import take_up_slack
 
 Array = Any
 
@@ -59,13 +59,29 @@ def meet_bridge(model: Any, s: Any, p: int) -> None:
 
 
 @compiled
-def feel(s: Any, p: int) -> None:
-    """How contact `p` and the bridge feel each other in this step: nodes shared, and tension."""
+def feel(s: Any, u_next: Array, p: int) -> None:
+    """Find how contact `p` and the bridge feel each other in this step, and where it is free.
+
+    ``s.free`` is the reading of u^{n+1} there, the bridge closed, but for the contacts' forces.
+    """
     i = s.string[p]
-    s.bend_at[p] = read(s.bend[i], s.first[p], s.weights[p])
+    first, weights = s.first[p], s.weights[p]
+    s.bend_at[p] = read(s.bend[i], first, weights)
     s.at_bridge[p] = s.shared_with_bridge[p] - s.give[i] * s.bend_at_bridge[i] * s.bend_at[p]
     for j in range(STRINGS):
         s.pull[p, j] = s.S_c_inverse[j, i] * s.at_bridge[p]
+    s.free[p] = read(u_next[i], first, weights) + s.slack[i] * s.bend_at[p]
+    s.free[p] += s.at_bridge[p] * s.f_c[i]
+
+
+@compiled
+def feel_all(model: Any, s: Any, u_next: Array, near: int) -> None:
+    """Let the bow and the fingers' contacts that are near `feel` this step, and each other."""
+    feel(s, u_next, BOW)
+    for c in range(near):
+        p = s.near[c]
+        feel(s, u_next, p)
+        s.at_bow[p] = answer(model, s, p, BOW)
 
 
 @compiled
@@ -86,43 +102,29 @@ def answer(model: Any, s: Any, p: int, q: int) -> float:
 
 
 @compiled
-def push(model: Any, s: Any, u_next: Array, p: int, force: float) -> None:
-    """Let contact `p` push its string by -J `force` (N), bridge and tension following.
+def push(s: Any, p: int, force: float) -> None:
+    """Let contact `p` push its string by -J `force` (N): what bridge and tension do then.
 
-    Source: [Yehu] eq. (30); the bridge's share keeps eq. (44) true at n+1.
+    The bridge's share keeps eq. (44) true at n+1; the string itself follows in `move`.
     """
-    i = s.string[p]
-    spread(u_next[i], s.first[p], s.weights[p], -model.spread[i] * force)
-    s.slack[i] += s.give[i] * s.bend_at[p] * force
-    if s.at_bridge[p] != 0.0:
-        pull_strings(model, s, u_next, s.pull[p, 0] * force, s.pull[p, 1] * force)
+    s.slack[s.string[p]] += s.give[s.string[p]] * s.bend_at[p] * force
+    s.f_c[0] += s.pull[p, 0] * force
+    s.f_c[1] += s.pull[p, 1] * force
 
 
 @compiled
-def eliminate(matrix: Array, sides: Array, n: int) -> None:
-    """Solve the leading n by n system for two right-hand sides, in place.
-
-    Gaussian elimination with row pivoting: n is at most eight, and LAPACK allocates.
-    """
-    for column in range(n):
-        pivot = column
-        for row in range(column + 1, n):
-            if abs(matrix[row, column]) > abs(matrix[pivot, column]):
-                pivot = row
-        if pivot != column:
-            for c in range(n):
-                matrix[column, c], matrix[pivot, c] = matrix[pivot, c], matrix[column, c]
-            for side in range(2):
-                sides[side, column], sides[side, pivot] = sides[side, pivot], sides[side, column]
-        for row in range(column + 1, n):
-            factor = matrix[row, column] / matrix[column, column]
-            for c in range(column, n):
-                matrix[row, c] -= factor * matrix[column, c]
-            for side in range(2):
-                sides[side, row] -= factor * sides[side, column]
-    for side in range(2):
-        for row in range(n - 1, -1, -1):
-            total = sides[side, row]
-            for c in range(row + 1, n):
-                total -= matrix[row, c] * sides[side, c]
-            sides[side, row] = total / matrix[row, row]
+def move(model: Any, s: Any, u_next: Array, touching: int, bowed: bool) -> None:
+    """Let the strings go where all forces, known by now, move them: eqs. (30) and (59)."""
+    for i in range(STRINGS):
+        s.slack[i] -= s.give[i] * s.bend_at_bridge[i] * s.f_c[i]
+    take_up_slack(model, s, u_next)
+    for i in range(STRINGS):
+        force = model.spread[i] * s.f_c[i]
+        spread(u_next[i], model.bridge_first[i], model.bridge_weights[i], force)
+    for c in range(touching):
+        p = s.touching[c]
+        i = s.string[p]
+        spread(u_next[i], s.first[p], s.weights[p], -model.spread[i] * s.f_f[p])
+    if bowed:
+        i = s.string[BOW]
+        spread(u_next[i], s.first[BOW], s.weights[BOW], -model.spread[i] * s.f_b)

@@ -11,7 +11,7 @@ from typing import Any
 
 from yehu_server.jit import compiled
 from yehu_server.physics.bow import hair_velocity
-from yehu_server.physics.layout import F_HAMMER, F_N, GHOST, LEVELS, MAX_MODES, STRINGS, V_B
+from yehu_server.physics.layout import BOW, F_HAMMER, F_N, GHOST, LEVELS, MAX_MODES, STRINGS, V_B
 from yehu_server.physics.pluck import pluck_power
 from yehu_server.physics.stencil import read
 
@@ -87,8 +87,9 @@ def book(model: Any, s: Any, control: Array, row: Array) -> None:
     """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete."""
     k = model.k
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
-    v_r = hair_velocity(model, s, s.u[next_], s.u[prev], s.zeta[next_], s.zeta[prev])
-    v_r -= control[V_B]  # read back from the grid, not taken from the solver
+    # Read back from the grid, not taken from the solver.
+    at_bow = read(s.u[next_, s.string[BOW]], s.first[BOW], s.weights[BOW])
+    v_r = hair_velocity(model, s, at_bow, s.u[prev], s.zeta[next_], s.zeta[prev]) - control[V_B]
 
     strings, hair, bridge, finger = 0.0, 0.0, 0.0, 0.0
     for i in range(STRINGS):

@@ -11,9 +11,16 @@ import math
 from typing import Any
 
 from yehu_server.jit import compiled
+from yehu_server.physics.elementary import exponential, sine_and_cosine
 
 TOLERANCE = 2e-13  # m/s, on the residual of the bristle velocity
 MAX_ITERATIONS = 100
+
+
+@compiled
+def bristles_hold(v_r: float, z_bar: float, z_ba: float) -> bool:
+    """Whether chi = 0: bristles move as the hair does. Eqs. (18), (19)."""
+    return v_r * z_bar <= 0.0 or abs(z_bar) <= z_ba
 
 
 @compiled
@@ -33,12 +40,11 @@ def bristle_velocity(
 
     Real time: safe. Source: [Yehu] eqs. (16)-(20).
     """
+    if bristles_hold(v_r, z_bar, z_ba):
+        return v_r, 1.0, 0.0
     deflection = abs(z_bar)
-    if v_r * z_bar <= 0.0 or deflection <= z_ba:
-        return v_r, 1.0, 0.0  # chi = 0: the bristles hold
-    sign = 1.0 if v_r > 0.0 else -1.0
     steepness = 1.0 / (bow.v_s * bow.v_s)
-    stribeck = reach * (bow.mu_S - bow.mu_C) * math.exp(-v_r * v_r * steepness)
+    stribeck = reach * (bow.mu_S - bow.mu_C) * exponential(-v_r * v_r * steepness)
     z_ss = reach * bow.mu_C + stribeck  # |z_ss|, eq. (17)
     dz_ss = -2.0 * v_r * steepness * stribeck
     per_z_ss = 1.0 / z_ss
@@ -47,20 +53,26 @@ def bristle_velocity(
         chi, dchi, dchi_ss = 1.0, 0.0, 0.0
     else:
         per_width = math.pi / (z_ss - z_ba)
-        angle = (deflection - 0.5 * (z_ss + z_ba)) * per_width
-        chi = 0.5 * (1.0 + math.sin(angle))  # eq. (20)
-        dchi = 0.5 * math.cos(angle) * per_width
+        sine, cosine = sine_and_cosine((deflection - 0.5 * (z_ss + z_ba)) * per_width)
+        chi = 0.5 * (1.0 + sine)  # eq. (20)
+        dchi = 0.5 * cosine * per_width
         dchi_ss = -dchi * (deflection - z_ba) * per_width / math.pi
     r = v_r * (1.0 - chi * w)
     by_v = 1.0 - chi * w - v_r * dz_ss * (dchi_ss * w - chi * w * per_z_ss)
-    by_z = -v_r * sign * (dchi * w + chi * per_z_ss)
+    by_z = -abs(v_r) * (dchi * w + chi * per_z_ss)  # sign(z_bar) = sign(v_r) here
     return r, by_v, by_z
 
 
 @compiled
 def solve_friction(
-    free: float, compliance: float, z: float, F_N: float, f_start: float, bow: Any, string: int
-) -> tuple[float, float, float, int, bool]:
+    free: float,
+    compliance: float,
+    z: float,
+    F_N: float,
+    tangent: tuple[float, float, float],
+    bow: Any,
+    string: int,
+) -> tuple[float, float, float, tuple[float, float, float], int, bool]:
     """Find the friction force of one step.
 
     Eliminating z_bar from v_r = free - compliance * f_b, eqs. (46) and (49), leaves one
@@ -78,47 +90,57 @@ def solve_friction(
         Bristle deflection half a step ago.
     F_N : float, N
         Normal force, positive.
-    f_start : float, N
-        Where to start: the last friction force, which changes less than the velocity.
+    tangent : (m/s, 1, 1/s)
+        Where to start: the law r = t_0 + t_v v_r + t_z z_bar, as the last solution touched it.
     bow, string
         The model's record, and which string is bowed (0 or 1).
 
     Returns
     -------
     f_b, z_bar, v_r : float, N, m, m/s
+    tangent : (m/s, 1, 1/s)
+        For the next step.
     iterations : int
+        How often the law was worked out.
     converged : bool
-        Whether the residual fell below 2e-13 m/s (relative above 1 m/s), or below 2e-10
-        where the bracket is down to neighbouring numbers.
+        Whether the residual is below 2e-13 m/s (relative above 1 m/s), or below 2e-10 where
+        the bracket is down to neighbouring numbers.
 
     Real time: safe; at most 100 evaluations of the law.
     """
     k, epsilon_0, epsilon_1 = bow.k, bow.epsilon_0, bow.epsilon_1
-    gamma = bow.mu_C * F_N / epsilon_1
+    rate, per_compliance = 2.0 / k, 1.0 / compliance
+    per_gamma = epsilon_1 / (bow.mu_C * F_N)
     reach = F_N / epsilon_0
     z_ba = bow.xi[string] * bow.mu_C * reach
     limit = max(1.2 * bow.mu_S * reach, abs(z))
-    low = free - compliance * (epsilon_0 * limit + epsilon_1 * 2.0 * (limit - z) / k)
-    high = free + compliance * (epsilon_0 * limit + epsilon_1 * 2.0 * (limit + z) / k)
+    low = free - compliance * (epsilon_0 * limit + epsilon_1 * rate * (limit - z))
+    high = free + compliance * (epsilon_0 * limit + epsilon_1 * rate * (limit + z))
 
-    # Sticking without plastic flow is nearly linear: try that first.
-    v_r = (free - compliance * epsilon_0 * z) / (
-        1.0 + compliance * (0.5 * k * epsilon_0 + epsilon_1)
-    )
-    z_bar = z + 0.5 * k * v_r
-    if v_r * z_bar > 0.0 and abs(z_bar) > z_ba:
-        v_r = free - compliance * f_start
+    # Bristles that hold are nearly linear: try that first, else the last solution's tangent.
+    stiffness = epsilon_0 + rate * epsilon_1
+    pulled = free + compliance * rate * epsilon_1 * z
+    v_r = (pulled - compliance * stiffness * z) / (1.0 + compliance * stiffness / rate)
+    if not bristles_hold(v_r, z + v_r / rate, z_ba):
+        t_0, t_v, t_z = tangent
+        per_z = compliance * stiffness / (rate - t_z)
+        v_r = (pulled - per_z * (t_0 + rate * z)) / (1.0 + per_z * t_v)
     v_r = min(max(v_r, low), high)
 
-    rate, per_compliance, per_gamma = 2.0 / k, 1.0 / compliance, 1.0 / gamma
+    # What a Newton step leaves is half the curvature times its square; no curvature of the law
+    # is sharper than that of chi, over the breakaway, and that of z_ss, over v_s.
+    per_v = math.pi * per_compliance / (stiffness * (bow.mu_C * reach - z_ba)) + 2.0 / bow.v_s
+    curvature = (1.0 + limit / (bow.mu_C * reach)) * per_v
+
     iterations = 0
     converged = False
-    damping = epsilon_1
+    z_bar, r, by_v, by_z = z, 0.0, 1.0, 0.0
     while True:
         iterations += 1
-        damping = epsilon_1 / math.sqrt(1.0 + (v_r * per_gamma) ** 2)  # eq. (25)
-        per_stiffness = 1.0 / (epsilon_0 + rate * damping)
-        z_bar = ((free - v_r) * per_compliance + rate * damping * z) * per_stiffness
+        slower = 1.0 + (v_r * per_gamma) ** 2
+        root = math.sqrt(slower)  # epsilon_1(v_r) = epsilon_1 / root, eq. (25)
+        per_stiffness = 1.0 / (epsilon_0 * root + rate * epsilon_1)  # over root
+        z_bar = ((free - v_r) * per_compliance * root + rate * epsilon_1 * z) * per_stiffness
         r, by_v, by_z = bristle_velocity(v_r, z_bar, z_ba, reach, bow)
         residual = r - rate * (z_bar - z)
         if abs(residual) <= TOLERANCE * max(1.0, abs(r)):
@@ -130,18 +152,28 @@ def solve_friction(
             high = v_r
         else:
             low = v_r
-        d_damping = -damping * v_r / (v_r * v_r + gamma * gamma)
-        dz_bar = (d_damping * rate * (z - z_bar) - per_compliance) * per_stiffness
-        slope = by_v + (by_z - rate) * dz_bar
-        step = v_r - residual / slope
+        d_damping = epsilon_1 * v_r * per_gamma**2 / slower  # times -root
+        dz_bar = (d_damping * rate * (z_bar - z) - per_compliance * root) * per_stiffness
+        way = -residual / (by_v + (by_z - rate) * dz_bar)
+        step = v_r + way
+        is_inside = low < step < high
+        bend = curvature * (1.0 + abs(v_r) * per_v)
+        if is_inside and 0.5 * bend * way * way <= TOLERANCE:
+            held = bristles_hold(v_r, z_bar, z_ba)
+            v_r, z_bar = step, z_bar + dz_bar * way
+            if bristles_hold(v_r, z_bar, z_ba) == held:  # else a corner of the law is between
+                converged = True
+                break
+            continue
         # Where the law is steep Newton's method can creep: then halve, so that a step
         # always ends well before MAX_ITERATIONS.
         creeping = iterations > 12 and iterations % 2 == 0
-        if creeping or not low < step < high:
+        if creeping or not is_inside:
             step = 0.5 * (low + high)
             if not low < step < high:  # the bracket is down to neighbouring floats
                 converged = abs(residual) <= 1e3 * TOLERANCE * max(1.0, abs(r))
                 break
         v_r = step
-    f_b = epsilon_0 * z_bar + damping * rate * (z_bar - z)  # eq. (46)
-    return f_b, z_bar, v_r, iterations, converged
+    f_b = (free - v_r) * per_compliance  # eq. (49)
+    tangent = rate * (z_bar - z) - by_v * v_r - by_z * z_bar, by_v, by_z
+    return f_b, z_bar, v_r, tangent, iterations, converged

@@ -1,7 +1,7 @@
 """The model's time loop: one step of the scheme after another.
 
 [Yehu] section 3.7, in the order that lets contacts share nodes: strings and modes move
-freely, the bridge closes over them, the bow draws, the fingers press.
+freely, the bridge closes over them, the fingers press, the bow draws, all that moved is moved.
 """
 
 from __future__ import annotations
@@ -12,7 +12,13 @@ import numpy as np
 
 from yehu_server.errors import ParameterError
 from yehu_server.jit import compiled
-from yehu_server.physics.bow import advance_hair, choose_string, hair_velocity, prepare_bow
+from yehu_server.physics.bow import (
+    advance_hair,
+    choose_string,
+    hair_velocity,
+    most_friction,
+    prepare_bow,
+)
 from yehu_server.physics.bridge import (
     advance_bridge,
     close_bridge,
@@ -20,19 +26,14 @@ from yehu_server.physics.bridge import (
     prepare_bridge,
     weigh_bridge,
 )
-from yehu_server.physics.contacts import answer, feel, place_contacts, push
+from yehu_server.physics.contacts import answer, feel_all, move, place_contacts, push
 from yehu_server.physics.energy import book
 from yehu_server.physics.finger import (
-    advance_finger,
-    friction_decides,
+    close_contacts,
     meet_fingers,
     prepare_fingers,
+    press_fingers,
     push_fingers,
-    solve_apart,
-    solve_jointly,
-    store_contacts,
-    take_forces,
-    touch_apart,
 )
 from yehu_server.physics.friction import solve_friction
 from yehu_server.physics.layout import (
@@ -48,7 +49,6 @@ from yehu_server.physics.layout import (
     ITERATIONS,
     LEVELS,
     MAX_FINGERS,
-    MAX_MODES,
     MODEL,
     PRESSURE,
     PROBES_PER_FINGER,
@@ -67,12 +67,7 @@ from yehu_server.physics.string import (
     support,
     weigh_string,
 )
-from yehu_server.physics.tension import (
-    prepare_tension,
-    take_up_slack,
-    tension_varies,
-    tighten,
-)
+from yehu_server.physics.tension import prepare_tension, tighten, weigh_tension
 
 Array = Any
 
@@ -89,7 +84,7 @@ def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
         raise ParameterError(f"fingers: 1 to {MAX_FINGERS}, not {fingers}")
     model = np.zeros(1, MODEL)
     record = model[0]
-    record["k"] = 1.0 / rate
+    record["k"], record["rate"] = 1.0 / rate, rate
     record["fingers"] = fingers
     prepare_strings(record, quantities)
     prepare_tension(record, quantities)
@@ -120,6 +115,7 @@ def retune(model: Array, state: Array, i: int, T: float, sigma_0: float, sigma_1
     """
     m, s = model[0], state[0]
     weigh_string(m, i, T, sigma_0, min(sigma_1, most_loss(m, i, T)))
+    weigh_tension(m, i)
     weigh_bridge(m)
     s.placed = 0  # contacts keep how much a string gives way
 
@@ -132,7 +128,7 @@ def come_to_rest(model: Any, s: Any) -> None:
     s.U[:], s.Psi[:] = model.rest_height, 0.0
     s.v_r, s.f_b, s.stored = 0.0, 0.0, 0.0
     s.s_1[:], s.s_2[:], s.history[:] = 0.0, 0.0, 0.0
-    s.slack[:], s.give[:], s.bend[:], s.T_more[:] = 0.0, 0.0, 0.0, 0.0
+    s.slack[:], s.give[:], s.bend[:], s.tangent[:] = 0.0, 0.0, 0.0, 0.0
     s.placed = 0
     s.x[:] = 0.0
 
@@ -174,81 +170,61 @@ def step(m: Any, s: Any, control: Array) -> None:
     now = s.level
     next_, prev = (now + 1) % LEVELS, (now + 2) % LEVELS
     u_next, u, u_prev = s.u[next_], s.u[now], s.u[prev]
-    k, v_b = m.k, control[V_B]
+    half_rate = 0.5 * m.rate  # of delta_t.
     s.dropped_z, s.dropped_Psi = 0.0, 0.0
 
     string, bowed = choose_string(m, s, control[F_N])
     place_contacts(m, s, control, string)
+    near = meet_fingers(m, s, control, next_, now, prev)
 
     # Strings and modes free of contacts, eq. (58), then tied together, eqs. (43)-(45).
-    advance_strings(m, u_next, u, u_prev)
+    advance_strings(m, s, u_next, u, u_prev)
     pull_aside(m, s, control, u_next)
-    tighten(m, s, u_next, u, u_prev)
+    tighten(m, s)
     Q = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
     close_bridge(m, s, u_next, Q)
 
-    # The bow, eqs. (46)-(53).
-    feel(s, BOW)
+    # The bow, eqs. (46)-(53), and the fingers, eqs. (33)-(40), from where they would be.
+    feel_all(m, s, u_next, near)
     advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
-    free = hair_velocity(m, s, u_next, u_prev, s.zeta[next_], s.zeta[prev]) - v_b
-    compliance = (answer(m, s, BOW, BOW) + m.C_h) / (2.0 * k)
+    free = hair_velocity(m, s, s.free[BOW], u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
+    compliance = half_rate * (answer(m, s, BOW, BOW) + m.C_h)
     f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
-    # Where contacts feel each other anyhow friction is solved once, with them: until then it
-    # is what it was.
-    waits = bowed and tension_varies(s)
-    if waits:
-        f_b = s.f_b
-    elif bowed:
-        f_b, z_bar, v_r, iterations, converged = solve_friction(
-            free, compliance, s.z[string], abs(control[F_N]), s.f_b, m, string
-        )
+    tangent = s.tangent[0], s.tangent[1], s.tangent[2]
+    touching = 0
+    if near > 0:
+        # theta depends on the friction force, and that on the contacts. Mostly theta is 1 for
+        # any friction; else it is found with that of a string which no finger touches.
+        f_b, doubt = (s.f_b, abs(s.f_b) + most_friction(m, control[F_N])) if bowed else (0.0, 0.0)
+        touching, friction_decides = press_fingers(m, s, next_, near, f_b, doubt)
+        if bowed and friction_decides:
+            f_b, _, _, tangent, iterations, _ = solve_friction(
+                free, compliance, s.z[string], abs(control[F_N]), tangent, m, string
+            )
+            touching, _ = press_fingers(m, s, next_, near, f_b, 0.0)
+        taken, taken_per_newton = close_contacts(m, s, touching)
+        free -= half_rate * taken
+        compliance -= half_rate * taken_per_newton
+        v_r = free
     if bowed:
-        push(m, s, u_next, BOW, f_b)
-
-    # The fingers, eqs. (33)-(40).
-    for j in range(m.fingers):
-        s.U[next_, j] = advance_finger(m, s, j, control, now, prev)
-    touching = meet_fingers(m, s, u_next, u, u_prev, next_, now, prev)
-    if waits and (touching == 0 or friction_decides(m, s, abs(control[F_N]) + abs(f_b))):
-        f_b, z_bar, v_r, iterations, converged = solve_friction(
-            free, compliance, s.z[string], abs(control[F_N]), s.f_b, m, string
+        f_b, z_bar, v_r, tangent, again, converged = solve_friction(
+            free, compliance, s.z[string], abs(control[F_N]), tangent, m, string
         )
-        push(m, s, u_next, BOW, f_b - s.f_b)
-        waits = False
-        if touching > 0:
-            touching = meet_fingers(m, s, u_next, u, u_prev, next_, now, prev)
-    if touching > 0:
-        if touch_apart(m, s, bowed):
-            solve_apart(m, s)
-        else:
-            taken, taken_per_newton = solve_jointly(m, s)
-            more = 0.0
-            if waits or (bowed and (taken != 0.0 or taken_per_newton != 0.0)):
-                first = f_b
-                free -= (taken - taken_per_newton * first) / (2.0 * k)
-                compliance += taken_per_newton / (2.0 * k)
-                f_b, z_bar, v_r, again, converged = solve_friction(
-                    free, compliance, s.z[string], abs(control[F_N]), first, m, string
-                )
-                iterations += again
-                more = f_b - first
-                push(m, s, u_next, BOW, more)
-            take_forces(m, s, more)
-        push_fingers(m, s, u_next, next_)
-    take_up_slack(m, s, u_next)
-    store_contacts(m, s, u_next, next_)
+        iterations += again
+    push_fingers(m, s, next_, touching, f_b)
 
-    # What the forces leave behind: eqs. (59), (60), and z at n + 1/2.
-    finish_bridge(m, s.q[next_], s.f_c)
+    # What the forces leave behind: eqs. (30), (59), (60), and z at n + 1/2.
     s.zeta[next_, string] -= m.C_h * f_b
     s.z_bar, s.r = 0.0, 0.0
     if bowed:
-        s.z_bar, s.r = z_bar, 2.0 * (z_bar - s.z[string]) / k
+        push(s, BOW, f_b)
+        s.z_bar, s.r = z_bar, m.rate * 2.0 * (z_bar - s.z[string])
         s.z[string] = 2.0 * z_bar - s.z[string]
         s.unconverged += 0 if converged else 1
-    else:
-        v_r = hair_velocity(m, s, u_next, u_prev, s.zeta[next_], s.zeta[prev]) - v_b
     s.f_b, s.v_r, s.iterations = f_b, v_r, iterations
+    s.tangent[0], s.tangent[1], s.tangent[2] = tangent
+    move(m, s, u_next, touching, bowed)
+    s.bridge_travel = finish_bridge(m, s.q[next_], s.q[prev], s.f_c)
     for i in range(STRINGS):
         support(u_next[i], m.N[i])
     s.level = next_
@@ -256,32 +232,29 @@ def step(m: Any, s: Any, control: Array) -> None:
 
 @compiled
 def measure(m: Any, s: Any, probe: Array) -> None:
-    """Radiate, write the probes of one sample, and catch a lost state."""
-    next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
+    """Write the probes of one sample, and catch a lost state."""
+    next_, now = s.level, (s.level + 2) % LEVELS
     bridge_force = s.f_c[0] + s.f_c[1]
-    bridge_travel = 0.0
-    for mode in range(MAX_MODES):
-        bridge_travel += s.q[next_, mode] - s.q[prev, mode]
     probe[BRIDGE_FORCE] = bridge_force
     probe[BRIDGE_FORCE_1], probe[BRIDGE_FORCE_2] = s.f_c[0], s.f_c[1]
-    probe[BRIDGE_VELOCITY] = bridge_travel / (2.0 * m.k)
+    probe[BRIDGE_VELOCITY] = 0.5 * m.rate * s.bridge_travel
     probe[PRESSURE] = radiate(m, s, bridge_force)
     probe[FRICTION_FORCE] = s.f_b
     probe[RELATIVE_VELOCITY] = s.v_r
     probe[ITERATIONS] = s.iterations
-    for j in range(m.fingers):
-        at = FINGER_PROBES + PROBES_PER_FINGER * j
-        probe[at] = s.U[now, j]
-        for i in range(STRINGS):
-            probe[at + 1 + i] = s.f_f[STRINGS * j + i]
-
-    size = abs(bridge_travel)  # of whatever one bad number would reach first
-    for column in range(probe.shape[0]):
+    size = abs(s.bridge_travel)  # of whatever one bad number would reach first
+    for column in range(FINGER_PROBES):
         size += abs(probe[column])
     for i in range(STRINGS):
         size += abs(s.z[i]) + abs(s.zeta[next_, i])
-    for p in range(STRINGS * m.fingers):
-        size += abs(s.Psi[p])
+    for j in range(m.fingers):
+        at = FINGER_PROBES + PROBES_PER_FINGER * j
+        probe[at] = s.U[now, j]
+        size += abs(s.U[now, j])
+        for i in range(STRINGS):
+            p = STRINGS * j + i
+            probe[at + 1 + i] = s.f_f[p]
+            size += abs(s.f_f[p]) + abs(s.Psi[p])
     if not size < LOST_SIZE:  # also true of NaN
         come_to_rest(m, s)
         s.lost += 1

@@ -3,17 +3,21 @@
 One record each, with room for the largest grid, so that every sample rate runs the
 same compiled code and a single address reaches everything. ``model`` is written once
 per sample rate; ``state`` is what a step changes, and all zeros but the finger
-heights is an instrument at rest.
+heights is an instrument at rest. What serves as an index is unsigned: one that might be
+negative costs a comparison at every use, and keeps loops from becoming vectors.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from yehu_server.jit import compiled
+
 STRINGS = 2
 MAX_NODES = 512  # grid intervals of one string; 0.38 m of silk at 192 kHz takes about 130
 GHOST = 1  # points before l = 0, so that the stencil of D4 needs no special case
-POINTS = MAX_NODES + 1 + 2 * GHOST
+VECTOR = 16  # numbers worked on at once: four vectors of AVX2, two of AVX-512
+POINTS = MAX_NODES + VECTOR
 LEVELS = 3  # u[n+1], u[n], u[n-1], taking turns
 MAX_MODES = 16
 MAX_SECTIONS = 32
@@ -26,24 +30,27 @@ BOW = MAX_CONTACTS - 1
 MODEL = np.dtype(
     [
         ("k", np.float64),
+        ("rate", np.float64),  # 1 / k
         ("fingers", np.int64),
         # strings, eqs. (32) and (57)
-        ("N", np.int64, STRINGS),
+        ("N", np.uint16, STRINGS),
         ("h", np.float64, STRINGS),
         ("B", np.float64, (STRINGS, 3)),
         ("C", np.float64, (STRINGS, 2)),
         ("spread", np.float64, STRINGS),
+        ("inside", np.float64, (STRINGS, POINTS)),  # 1 between the ends, 0 there and beyond
         ("rho_A", np.float64, STRINGS),
         ("T", np.float64, STRINGS),
         ("EI", np.float64, STRINGS),
         ("sigma_0", np.float64, STRINGS),
         ("sigma_1", np.float64, STRINGS),
         ("stretch", np.float64, STRINGS),  # EA / (4 L h), tension.py
+        ("taut", np.float64, STRINGS),  # the same, in what a string moves by it
         # bridge, eqs. (41)-(45)
         ("bridge_x", np.float64),
-        ("bridge_first", np.int64, STRINGS),
+        ("bridge_first", np.uint16, STRINGS),
         ("bridge_weights", np.float64, (STRINGS, STENCIL)),
-        ("modes", np.int64),
+        ("modes", np.uint8),
         ("M_m", np.float64, MAX_MODES),
         ("K_m", np.float64, MAX_MODES),
         ("R_m", np.float64, MAX_MODES),
@@ -68,7 +75,9 @@ MODEL = np.dtype(
         ("C_h", np.float64),
         # finger, eqs. (33)-(36)
         ("M_f", np.float64),
+        ("C_f", np.float64),
         ("K_f", np.float64),
+        ("ghat_1", np.float64),
         ("alpha", np.float64),
         ("beta", np.float64),
         ("rest_height", np.float64),
@@ -80,13 +89,14 @@ MODEL = np.dtype(
         ("a_1", np.float64, MAX_SECTIONS),
         ("a_2", np.float64, MAX_SECTIONS),
         ("taps", np.float64, MAX_TAPS),
+        ("last_tap", np.int64),
     ],
     align=True,
 )
 
 STATE = np.dtype(
     [
-        ("level", np.int64),  # which of the LEVELS is "now"
+        ("level", np.uint8),  # which of the LEVELS is "now"
         ("u", np.float64, (LEVELS, STRINGS, POINTS)),
         ("q", np.float64, (LEVELS, MAX_MODES)),
         ("zeta", np.float64, (LEVELS, STRINGS)),
@@ -97,40 +107,47 @@ STATE = np.dtype(
         # where the contacts are, and how each answers to the others (contacts.py)
         ("placed", np.int64),
         ("x", np.float64, MAX_CONTACTS),
-        ("string", np.int64, MAX_CONTACTS),
-        ("first", np.int64, MAX_CONTACTS),
+        ("string", np.uint8, MAX_CONTACTS),
+        ("first", np.uint16, MAX_CONTACTS),
         ("weights", np.float64, (MAX_CONTACTS, STENCIL)),
         ("yields", np.float64, MAX_CONTACTS),
         ("shared_with_bridge", np.float64, MAX_CONTACTS),
         ("at_bridge", np.float64, MAX_CONTACTS),
         ("pull", np.float64, (MAX_CONTACTS, STRINGS)),
+        ("free", np.float64, MAX_CONTACTS),
+        ("at_bow", np.float64, MAX_CONTACTS),
         # the bridge, and tension modulation (tension.py), in the current step
         ("S_c_inverse", np.float64, (STRINGS, STRINGS)),
         ("bend", np.float64, (STRINGS, POINTS)),  # Delta u^n
         ("bend_at", np.float64, MAX_CONTACTS),
         ("bend_at_bridge", np.float64, STRINGS),
+        ("square", np.float64, STRINGS),  # <Delta u, Delta u>, and <Delta u, u* + u^{n-1}>
+        ("along", np.float64, STRINGS),
         ("slack", np.float64, STRINGS),
         ("give", np.float64, STRINGS),
-        ("T_more", np.float64, STRINGS),
         # where a string is pulled aside (pluck.py)
         ("x_pluck", np.float64),
-        ("pluck_string", np.int64),
-        ("pluck_first", np.int64),
+        ("pluck_string", np.uint8),
+        ("pluck_first", np.uint16),
         ("pluck_weights", np.float64, STENCIL),
         # forces of the current step, and scratch of the contact solve
         ("f_c", np.float64, STRINGS),
         ("f_b", np.float64),
         ("z_bar", np.float64),
         ("r", np.float64),
+        ("tangent", np.float64, 3),
+        ("bridge_travel", np.float64),
         ("iterations", np.int64),
         ("f_f", np.float64, MAX_CONTACTS),
         ("f_ext", np.float64, MAX_FINGERS),
+        ("near", np.uint8, MAX_CONTACTS),  # which contacts may touch, and which do
+        ("touching", np.uint8, MAX_CONTACTS),
         ("g", np.float64, MAX_CONTACTS),
         ("A_f", np.float64, MAX_CONTACTS),
+        ("ghat", np.float64, MAX_CONTACTS),
         ("eta_prev", np.float64, MAX_CONTACTS),
         ("d", np.float64, MAX_CONTACTS),
-        ("matrix", np.float64, (MAX_CONTACTS, MAX_CONTACTS)),
-        ("sides", np.float64, (2, MAX_CONTACTS)),
+        ("G", np.float64, (MAX_CONTACTS, MAX_CONTACTS)),
         # energy given up since the last sample (J), and stored at the last one
         ("dropped_z", np.float64),
         ("dropped_Psi", np.float64),
@@ -174,6 +191,15 @@ PROBES_PER_FINGER = 3
 def probe_columns(fingers: int) -> int:
     """Columns of the probe array of an instrument with so many fingers."""
     return FINGER_PROBES + PROBES_PER_FINGER * fingers
+
+
+@compiled
+def whole_vectors(count: int) -> int:
+    """Room for so many numbers in whole vectors: loops over these leave no single ones over.
+
+    Those that finish a loop over vectors one by one cost as much as all of it.
+    """
+    return (count + VECTOR - 1) & -VECTOR
 
 
 # Columns of the energy ledger: J, then W, then two residuals (m/s and m).

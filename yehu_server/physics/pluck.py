@@ -26,7 +26,9 @@ def pull_aside(model: Any, s: Any, control: Array, u_next: Array) -> None:
         s.x_pluck, s.pluck_string = x, i
         position = max(1.0, min(x / model.h[i], model.N[i] - 1.0))
         s.pluck_first = place_cubic(position, model.N[i], s.pluck_weights)
-    spread(u_next[i], s.pluck_first, s.pluck_weights, model.spread[i] * abs(force))
+    moved = model.spread[i] * abs(force)
+    spread(u_next[i], s.pluck_first, s.pluck_weights, moved)
+    s.along[i] += moved * read(s.bend[i], s.pluck_first, s.pluck_weights)
 
 
 @compiled

@@ -41,6 +41,7 @@ def prepare_radiation(model: np.void, body: Body) -> None:
     model["b_0"][:n], model["b_1"][:n] = sections[:, 0], sections[:, 1]
     model["a_1"][:n], model["a_2"][:n] = sections[:, 2], sections[:, 3]
     model["taps"][: len(taps)] = taps
+    model["last_tap"] = len(taps) - 1
 
 
 def response(sections: Floats, taps: Floats, rate: float, frequency_hz: Floats) -> Any:
@@ -124,9 +125,9 @@ def radiate(model: Any, s: Any, bridge_force: float) -> float:
         s.s_1[j] = model.b_1[j] * bridge_force - model.a_1[j] * y + s.s_2[j]
         s.s_2[j] = -model.a_2[j] * y
         pressure += y
-    for j in range(MAX_TAPS - 1, 0, -1):
+    for j in range(model.last_tap, 0, -1):
         s.history[j] = s.history[j - 1]
     s.history[0] = bridge_force
-    for j in range(MAX_TAPS):
+    for j in range(model.last_tap + 1):
         pressure += model.taps[j] * s.history[j]
     return pressure

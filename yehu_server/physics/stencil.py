@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import GHOST, STENCIL
 
@@ -69,7 +71,7 @@ def spread(u: Array, first: int, weights: Array, amount: float) -> None:
 @compiled
 def overlap(first_p: int, weights_p: Array, first_q: int, weights_q: Array) -> float:
     """h I_p J_q: how much of a force at q is felt at p; zero where no node is shared."""
-    shift = first_p - first_q
+    shift = np.int64(first_p) - np.int64(first_q)
     total = 0.0
     if -STENCIL < shift < STENCIL:
         for j in range(STENCIL):

@@ -8,7 +8,7 @@ import numpy as np
 
 from yehu_server.jit import compiled
 from yehu_server.physics.grid import intervals
-from yehu_server.physics.layout import GHOST, STRINGS
+from yehu_server.physics.layout import GHOST, STRINGS, whole_vectors
 from yehu_server.physics.quantities import Quantities
 
 Array = Any
@@ -19,6 +19,7 @@ def prepare_strings(model: np.void, quantities: Quantities) -> None:
     for i, string in enumerate(quantities.strings):
         N = intervals(string, model["k"], quantities.tension_headroom)
         model["N"][i], model["h"][i] = N, string.L / N
+        model["inside"][i, GHOST + 1 : GHOST + N] = 1.0
         model["rho_A"][i], model["EI"][i] = string.rho_A, string.EI
         weigh_string(model, i, string.T, string.sigma_0, string.sigma_1)
 
@@ -56,39 +57,58 @@ def most_loss(model: Any, i: int, T: float) -> float:
 
 
 @compiled
-def advance_string(u_next: Array, u: Array, u_prev: Array, N: int, B: Array, C: Array) -> None:
+def advance_string(
+    u_next: Array,
+    u: Array,
+    u_prev: Array,
+    bend: Array,
+    inside: Array,
+    N: int,
+    B: Array,
+    C: Array,
+) -> tuple[float, float]:
     """Advance one stiff string by one sample, free of contact forces: u* of eq. (58).
 
     Parameters
     ----------
-    u_next, u, u_prev : ndarray [shape=(N+3 or more,), m]
+    u_next, u, u_prev : ndarray [shape=(POINTS,), m]
         Displacement one sample ahead, now and one sample ago, with one ghost node at
-        each end.
+        each end, and zeros beyond.
+    bend : ndarray [shape=(POINTS,), m]
+        Written: Delta u, the second difference now.
+    inside : ndarray [shape=(POINTS,)]
+        One between the ends of the string, zero there and beyond.
     B : ndarray [shape=(3,)]
         Weights of u at distance 0, 1 and 2.
     C : ndarray [shape=(2,)]
         Weights of u_prev at distance 0 and 1.
+
+    Returns
+    -------
+    square, along : float, m^2
+        <Delta u, Delta u> and <Delta u, u* + u_prev> over the nodes, for tension.py.
 
     Real time: safe; no allocation, linear in N.
     Source: [Yehu] eq. (32) with simple supports, eq. (3).
     """
     B_0, B_1, B_2 = B[0], B[1], B[2]
     C_0, C_1 = C[0], C[1]
-    # Slices, since an index that might be negative keeps the loop from vectorising.
-    inner = N - 1
-    out = u_next[GHOST + 1 : GHOST + 1 + inner]
-    left_2, left, here = u[:inner], u[1 : 1 + inner], u[2 : 2 + inner]
-    right, right_2 = u[3 : 3 + inner], u[4 : 4 + inner]
-    left_prev, here_prev = u_prev[1 : 1 + inner], u_prev[2 : 2 + inner]
-    right_prev = u_prev[3 : 3 + inner]
-    for l in range(inner):
-        out[l] = (
-            B_0 * here[l]
-            + B_1 * (left[l] + right[l])
-            + B_2 * (left_2[l] + right_2[l])
-            + C_0 * here_prev[l]
-            + C_1 * (left_prev[l] + right_prev[l])
+    square, along = 0.0, 0.0
+    for l in range(whole_vectors(N - 1)):
+        at = GHOST + 1 + l
+        beside = u[at - 1] + u[at + 1]
+        star = (
+            B_0 * u[at]
+            + B_1 * beside
+            + B_2 * (u[at - 2] + u[at + 2])
+            + C_0 * u_prev[at]
+            + C_1 * (u_prev[at - 1] + u_prev[at + 1])
         )
+        delta = (beside - 2.0 * u[at]) * inside[at]
+        u_next[at], bend[at] = star * inside[at], delta
+        square += delta * delta
+        along += delta * (star + u_prev[at])
+    return square, along
 
 
 @compiled
@@ -99,7 +119,16 @@ def support(u: Array, N: int) -> None:
 
 
 @compiled
-def advance_strings(model: Any, u_next: Array, u: Array, u_prev: Array) -> None:
+def advance_strings(model: Any, s: Any, u_next: Array, u: Array, u_prev: Array) -> None:
     """Both strings, free of contact forces: arrays of shape (2, points)."""
     for i in range(STRINGS):
-        advance_string(u_next[i], u[i], u_prev[i], model.N[i], model.B[i], model.C[i])
+        s.square[i], s.along[i] = advance_string(
+            u_next[i],
+            u[i],
+            u_prev[i],
+            s.bend[i],
+            model.inside[i],
+            model.N[i],
+            model.B[i],
+            model.C[i],
+        )

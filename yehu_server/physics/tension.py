@@ -7,7 +7,7 @@ difference Delta u^n times one scalar:
     T' = EA/(4 L) (<delta_x+ u^{n+1}, delta_x+ u^n> + <delta_x+ u^n, delta_x+ u^{n-1}>),
 
 implicit, with one solution. A force on the string changes T', and T' moves the whole string,
-so every reading of u^{n+1} before the step's end adds ``slack`` times the reading of Delta u^n.
+which every reading of u^{n+1} before the step's end takes in (contacts.py).
 Source: [Bilbao] section 8.1; docs/physics.md.
 """
 
@@ -18,9 +18,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
-from yehu_server.physics.layout import GHOST, STRINGS
+from yehu_server.physics.layout import GHOST, STRINGS, whole_vectors
 from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.stencil import read
 
 Array = Any
 
@@ -30,34 +29,26 @@ def prepare_tension(model: np.void, quantities: Quantities) -> None:
     for i, string in enumerate(quantities.strings):
         EA = quantities.tension_modulation * string.EA
         model["stretch"][i] = EA / (4.0 * string.L * model["h"][i])
+        weigh_tension(model, i)
 
 
 @compiled
-def tighten(model: Any, s: Any, u_next: Array, u: Array, u_prev: Array) -> None:
-    """Let both strings stretch over a step free of other forces; keep how they will give.
+def weigh_tension(model: Any, i: int) -> None:
+    """Write what a string moves by its change of tension. Real time: safe."""
+    model.taut[i] = model.stretch[i] * model.spread[i] / model.h[i]
 
-    Writes ``s.bend``, Delta u^n; ``s.slack``, what of it u^{n+1} still lacks; and ``s.give``,
-    how much more slack a newton leaves for each metre of Delta u^n under it.
+
+@compiled
+def tighten(model: Any, s: Any) -> None:
+    """Let both strings stretch over a step free of other forces; note how they will give.
+
+    Writes ``s.slack``, what of Delta u^n u^{n+1} still lacks; and ``s.give``, how much more slack
+    a newton leaves for each metre of Delta u^n under it.
     """
     for i in range(STRINGS):
-        stretch = model.stretch[i]
-        if stretch == 0.0:
-            continue
-        inner = model.N[i] - 1
-        bend = s.bend[i, GHOST + 1 : GHOST + 1 + inner]
-        left, here, right = u[i, 1 : 1 + inner], u[i, 2 : 2 + inner], u[i, 3 : 3 + inner]
-        after = u_next[i, GHOST + 1 : GHOST + 1 + inner]
-        before = u_prev[i, GHOST + 1 : GHOST + 1 + inner]
-        square, along = 0.0, 0.0
-        for l in range(inner):
-            delta = left[l] - 2.0 * here[l] + right[l]
-            bend[l] = delta
-            square += delta * delta
-            along += delta * (after[l] + before[l])
-        per_newton = model.spread[i] / model.h[i]  # of T', times Delta u: metres
-        weight = 1.0 / (1.0 + stretch * per_newton * square)
-        s.slack[i] = -per_newton * stretch * along * weight
-        s.give[i] = per_newton * stretch * model.spread[i] * weight
+        weight = model.taut[i] / (1.0 + model.taut[i] * s.square[i])
+        s.slack[i] = -s.along[i] * weight
+        s.give[i] = model.spread[i] * weight
 
 
 @compiled
@@ -67,22 +58,11 @@ def tension_varies(s: Any) -> bool:
 
 
 @compiled
-def reading(s: Any, u_next: Array, i: int, first: int, weights: Array, bend: float) -> float:
-    """I u^{n+1} of string `i` within a step; `bend` is I Delta u^n there."""
-    return float(read(u_next[i], first, weights) + s.slack[i] * bend)
-
-
-@compiled
 def take_up_slack(model: Any, s: Any, u_next: Array) -> None:
-    """Move the strings by what their change of tension is by now, and note it (N)."""
+    """Move the strings by what their change of tension, slack h / spread (N), is by now."""
     for i in range(STRINGS):
-        if model.stretch[i] == 0.0:
-            continue
-        inner = model.N[i] - 1
-        bend = s.bend[i, GHOST + 1 : GHOST + 1 + inner]
-        after = u_next[i, GHOST + 1 : GHOST + 1 + inner]
         slack = s.slack[i]
-        for l in range(inner):
-            after[l] += slack * bend[l]
-        s.T_more[i] = slack * model.h[i] / model.spread[i]
-        s.slack[i] = 0.0
+        if slack == 0.0:
+            continue
+        for l in range(whole_vectors(model.N[i] - 1)):
+            u_next[i, GHOST + 1 + l] += slack * s.bend[i, GHOST + 1 + l]

@@ -1,0 +1,191 @@
+"""Where the time of a sample goes: by what is played, by what is left out, by instructions.
+
+    .venv/bin/python bench/parts.py
+
+A step is one long chain in which each part waits for the last, so what a part takes by itself
+says little. First the whole kernel, with more and more to do: nanoseconds (the fastest of many
+short runs), and instructions, counted by single steps (Linux on x86-64). Then with one part
+replaced by next to nothing, each in a process of its own: what the loop gets faster by. There the
+model goes on sounding, more or less; a part that others wait for counts with their waiting.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import time
+from typing import Any
+
+import numpy as np
+
+from yehu_server import jit
+from yehu_server.physics import finger, kernel, layout
+from yehu_server.physics.quantities import Quantities
+
+RATE = 44100.0
+FRAMES, RUNS, STEPPED = 4410, 300, 100
+SINGLE_STEP = 9  # PTRACE_SINGLESTEP
+
+# What is played: fingers, how many are down, bow force (N).
+CASES = {
+    "strings, bridge, radiation": (1, 0, 0.0),
+    "and a bow": (1, 0, 0.5),
+    "and a finger": (1, 1, 0.5),
+    "and three fingers up": (4, 1, 0.5),
+    "four fingers down": (4, 4, 0.5),
+}
+
+
+def controls(frames: int, fingers: int, down: int, force: float) -> Any:
+    """One row a sample: a bow that may be lifted, fingers down or parked near the loop."""
+    rows = np.zeros((frames, layout.control_columns(fingers)))
+    rows[:, [layout.F_N, layout.V_B, layout.X_B]] = force, 0.2, 0.26
+    # So that strings which nobody bows move as well, and no number gets too small.
+    rows[:, layout.F_HAMMER] = 1e-3 * np.random.default_rng(1).normal(size=frames)
+    for j in range(fingers):
+        at = layout.FINGER_CONTROLS + layout.CONTROLS_PER_FINGER * j
+        if j < down:
+            rows[:, at : at + 2] = 0.1 if down == 1 else 0.03 + 0.03 * j, 1.5
+        else:
+            rows[:, at] = 0.012
+    return rows
+
+
+class Kernel:
+    """The kernel in the midst of playing."""
+
+    def __init__(self, fingers: int, down: int, force: float) -> None:
+        self.playing = fingers, down, force
+        self.model = kernel.prepare(Quantities(), RATE, fingers)
+        self.state = kernel.at_rest(self.model)
+        self.advance(*self.rows(round(0.5 * RATE)))
+
+    def rows(self, frames: int) -> tuple[Any, Any]:
+        """Controls, and room for probes."""
+        probes = np.zeros((frames, layout.probe_columns(self.playing[0])))
+        return controls(frames, *self.playing), probes
+
+    def advance(self, rows: Any, probes: Any) -> float:
+        """Seconds that so many rows took."""
+        start = time.perf_counter()
+        kernel.advance(self.model, self.state, rows, probes, np.zeros((0, 0)))
+        return time.perf_counter() - start
+
+    def fastest_ns(self) -> tuple[float, float]:
+        """Nanoseconds a sample, and evaluations of the friction law a sample."""
+        rows, probes = self.rows(FRAMES)
+        seconds = min(self.advance(rows, probes) for _ in range(RUNS))
+        return seconds / FRAMES * 1e9, float(probes[:, layout.ITERATIONS].mean())
+
+    def instructions(self) -> float:
+        """Instructions a sample."""
+        return (self._stepped(STEPPED) - self._stepped(0)) / STEPPED
+
+    def _stepped(self, frames: int) -> int:
+        rows, probes = self.rows(frames)
+        libc = ctypes.CDLL(None)
+        libc.ptrace.argtypes = [ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p]
+        child = os.fork()
+        if child == 0:
+            libc.ptrace(0, 0, None, None)  # PTRACE_TRACEME
+            os.kill(os.getpid(), signal.SIGSTOP)
+            self.advance(rows, probes)
+            os.kill(os.getpid(), signal.SIGSTOP)
+            os._exit(0)
+        os.waitpid(child, 0)
+        count = 0
+        while True:
+            libc.ptrace(SINGLE_STEP, child, None, None)
+            _, status = os.waitpid(child, 0)
+            if not os.WIFSTOPPED(status) or os.WSTOPSIG(status) != signal.SIGTRAP:
+                break
+            count += 1
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        return count
+
+
+def solve_friction(
+    free: Any, _compliance: Any, z: Any, _force: Any, tangent: Any, _bow: Any, _string: Any
+) -> Any:
+    """Friction: a linear one."""
+    v_r = 0.5 * free
+    return tangent[0] + 1e-3 * v_r, 0.9 * z + 1e-7 * v_r, v_r, tangent, 1, True
+
+
+def gradient(_model: Any, eta: Any) -> Any:
+    """The contact law's power."""
+    return 900.0 * eta
+
+
+def measure(_m: Any, s: Any, probe: Any) -> None:
+    """Probes, radiation, and the watch for a lost state."""
+    probe[0] = s.f_c[0]
+
+
+def radiate(_model: Any, _s: Any, bridge_force: Any) -> Any:
+    """Radiation alone."""
+    return bridge_force
+
+
+def move(_model: Any, s: Any, u_next: Any, _touching: Any, _bowed: Any) -> None:
+    """What moves the strings by forces and tension; with it goes the wait of a step's beginning."""
+    for i in range(layout.STRINGS):
+        u_next[i, 5] -= 1e-9 * s.f_c[i]
+
+
+PARTS = {
+    part.__name__: (part, module)
+    for part, module in (
+        (solve_friction, kernel),
+        (move, kernel),
+        (measure, kernel),
+        (radiate, kernel),
+        (gradient, finger),
+    )
+}
+
+
+def leave_out(name: str) -> None:
+    """Replace a part in this process, before anything is compiled."""
+    jit.IS_CACHED = False
+    part, module = PARTS[name]
+    again: list[tuple[Any, str]] = [(kernel, "measure"), (kernel, "step"), (kernel, "advance")]
+    if module is finger:
+        again = [(finger, "meet_fingers"), *again]
+    setattr(module, name, jit.compiled(part))
+    for where, function in again:
+        if function != name:
+            setattr(where, function, jit.compiled(getattr(where, function).py_func))
+    vars(kernel)["meet_fingers"] = vars(finger)["meet_fingers"]
+
+
+def main() -> None:
+    """Measure and print."""
+    if len(sys.argv) == 2:
+        leave_out(sys.argv[1])
+        print(Kernel(*CASES["and a finger"]).fastest_ns()[0])
+        return
+    print(f"{'':30}     ns  x real time  evaluations  instructions")
+    whole = 0.0
+    for name, case in CASES.items():
+        machine = Kernel(*case)
+        ns, evaluations = machine.fastest_ns()
+        instructions = machine.instructions() if sys.platform == "linux" else float("nan")
+        if name == "and a finger":
+            whole = ns
+        print(
+            f"{name:30} {ns:6.0f} {1e9 / RATE / ns:12.0f} {evaluations:12.2f} {instructions:13.0f}"
+        )
+    print("\nWith a finger, what it is faster by without")
+    for name, (part, _) in PARTS.items():
+        command = [sys.executable, __file__, name]
+        run = subprocess.run(command, check=True, capture_output=True, text=True)  # noqa: S603
+        print(f"{name:30} {whole - float(run.stdout):6.0f}  {part.__doc__}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,148 @@
+/* What all parts share: the records, small functions, and how a point force meets the grid. */
+
+#pragma once
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "records.h"
+
+/* ---- layout.py ------------------------------------------------------------------------------ */
+
+typedef const struct model *restrict Model;
+typedef struct state *restrict State;
+
+static inline double larger(double a, double b) { return a > b ? a : b; }
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double within(double x, double low, double high)
+{
+    return larger(low, smaller(x, high));
+}
+
+static inline int64_t whole_vectors(int64_t count)
+{
+    return (count + VECTOR - 1) & -VECTOR;
+}
+
+/* ---- elementary.py -------------------------------------------------------------------------- */
+
+/* A sum that stays as it is written. gcc, once it may reorder sums, turns pairs of terms that need
+ * not wait for each other back into a chain. */
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_assoc_barrier)
+#define PAIRED(sum) __builtin_assoc_barrier(sum)
+#endif
+#endif
+#ifndef PAIRED
+#define PAIRED(sum) (sum)
+#endif
+
+static inline int64_t bits_of(double x)
+{
+    int64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static inline double of_bits(int64_t bits)
+{
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static inline void sine_and_cosine(double angle, double *sine, double *cosine)
+{
+    const double half = 0.5 * angle, t = half * half, t_2 = t * t, t_4 = t_2 * t_2;
+    const double s_low = PAIRED(S_0 + S_1 * t) + t_2 * PAIRED(S_2 + S_3 * t);
+    const double s_high = PAIRED(S_4 + S_5 * t) + t_2 * PAIRED(S_6 + S_7 * t);
+    const double c_low = PAIRED(C_0 + C_1 * t) + t_2 * PAIRED(C_2 + C_3 * t);
+    const double c_high = PAIRED(C_4 + C_5 * t) + t_2 * PAIRED(C_6 + C_7 * t);
+    const double s = half * PAIRED(PAIRED(s_low) + t_4 * PAIRED(s_high));
+    const double c = PAIRED(c_low) + t_4 * PAIRED(PAIRED(c_high) + t_4 * C_8);
+    *sine = 2.0 * s * PAIRED(c);
+    *cosine = 1.0 - 2.0 * s * s;
+}
+
+static inline double exponential(double x)
+{
+    x = larger(x, LEAST);
+    const double twos = floor(x * PER_LN_2 + 0.5);
+    const double t = x - twos * LN_2, t_2 = t * t, t_4 = t_2 * t_2;
+    const double low = PAIRED(E_0 + E_1 * t) + t_2 * PAIRED(E_2 + E_3 * t);
+    const double middle = PAIRED(E_4 + E_5 * t) + t_2 * PAIRED(E_6 + E_7 * t);
+    const double high = PAIRED(E_8 + E_9 * t) + t_2 * PAIRED(E_10 + E_11 * t);
+    const double highest = PAIRED(high) + t_4 * PAIRED(E_12 + E_13 * t);
+    const double power_of_e = PAIRED(low) + t_4 * PAIRED(PAIRED(middle) + t_4 * PAIRED(highest));
+    const uint64_t exponent = (uint64_t)((int64_t)twos + EXPONENT_OF_1);
+    return of_bits((int64_t)(exponent << MANTISSA_BITS)) * PAIRED(power_of_e);
+}
+
+static inline double logarithm(double x)
+{
+    const int64_t bits = bits_of(x);
+    const int64_t twos = (bits - BITS_OF_ROOT_HALF) >> MANTISSA_BITS;
+    const double part = of_bits(bits - (int64_t)((uint64_t)twos << MANTISSA_BITS));
+    const double w = (part - 1.0) / (part + 1.0), t = w * w, t_2 = t * t, t_4 = t_2 * t_2;
+    const double low = PAIRED(L_0 + L_1 * t) + t_2 * PAIRED(L_2 + L_3 * t);
+    const double high = PAIRED(L_4 + L_5 * t) + t_2 * PAIRED(L_6 + L_7 * t);
+    const double highest = PAIRED(L_8 + L_9 * t) + t_2 * L_10;
+    const double series = PAIRED(low) + t_4 * PAIRED(PAIRED(high) + t_4 * PAIRED(highest));
+    return (double)twos * LN_2 + w * PAIRED(series);
+}
+
+/* ---- stencil.py ----------------------------------------------------------------------------- */
+
+static inline int64_t place(double position, int64_t N, double *restrict weights, bool cubic)
+{
+    int64_t l = (int64_t)position;
+    l = l > N - 2 ? N - 2 : l;
+    l = l < 1 ? 1 : l;
+    const double a = position - (double)l;
+    if (cubic) {
+        weights[0] = -a * (a - 1.0) * (a - 2.0) / 6.0;
+        weights[1] = (a - 1.0) * (a + 1.0) * (a - 2.0) / 2.0;
+        weights[2] = -a * (a + 1.0) * (a - 2.0) / 2.0;
+        weights[3] = a * (a + 1.0) * (a - 1.0) / 6.0;
+    } else {
+        weights[0] = 0.0;
+        weights[1] = 1.0 - a;
+        weights[2] = a;
+        weights[3] = 0.0;
+    }
+    const int64_t first = l - 1;
+    if (first == 0)
+        weights[0] = 0.0;
+    if (first + 3 == N)
+        weights[3] = 0.0;
+    return first;
+}
+
+static inline double reading(const double *u, int64_t first, const double *weights)
+{
+    const double *at = u + GHOST + first;
+    return (weights[0] * at[0] + weights[1] * at[1]) + (weights[2] * at[2] + weights[3] * at[3]);
+}
+
+static inline void spread(double *restrict u, int64_t first, const double *restrict weights,
+                          double amount)
+{
+    for (int j = 0; j < STENCIL; j++)
+        u[GHOST + first + j] += weights[j] * amount;
+}
+
+static inline double overlap(int64_t first_p, const double *weights_p, int64_t first_q,
+                             const double *weights_q)
+{
+    const int64_t shift = first_p - first_q;
+    double total = 0.0;
+    if (-STENCIL < shift && shift < STENCIL)
+        for (int64_t j = 0; j < STENCIL; j++) {
+            const int64_t at = j + shift;
+            if (0 <= at && at < STENCIL)
+                total += weights_p[j] * weights_q[at];
+        }
+    return total;
+}

@@ -66,6 +66,19 @@ def add_reporting(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
 
 
+def add_gesture(parser: Any) -> None:
+    """Add a gesture file, and what is kept of its run."""
+    parser.add_argument("gesture", type=Path, metavar="GESTURE.json", help="what bow and finger do")
+    parser.add_argument("--energy", action="store_true", help="keep the energy ledger too")
+    parser.add_argument(
+        "--strings",
+        type=positive,
+        default=0,
+        metavar="EVERY",
+        help="keep the strings' shapes every so many samples",
+    )
+
+
 def add_server(parser: Any) -> None:
     """Add which running server is meant."""
     parser.add_argument(

@@ -7,7 +7,13 @@ import json
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_reporting, compiling, positive, progress_bar
+from yehu_server.cli.arguments import (
+    add_command,
+    add_gesture,
+    add_reporting,
+    compiling,
+    progress_bar,
+)
 
 EXAMPLES = """\
 examples:
@@ -28,17 +34,9 @@ def add_to(commands: Any) -> None:
         description="Run the physical model through a gesture file and keep every signal.",
         epilog=EXAMPLES,
     )
-    parser.add_argument("gesture", type=Path, metavar="GESTURE.json", help="what bow and finger do")
+    add_gesture(parser)
     parser.add_argument(
         "-o", "--output", required=True, type=Path, metavar="OUT.npz", help="the arrays to write"
-    )
-    parser.add_argument("--energy", action="store_true", help="keep the energy ledger too")
-    parser.add_argument(
-        "--strings",
-        type=positive,
-        default=0,
-        metavar="EVERY",
-        help="keep the strings' shapes every so many samples",
     )
     add_reporting(parser)
 

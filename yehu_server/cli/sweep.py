@@ -7,7 +7,14 @@ import json
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_reporting, compiling, positive, progress_bar
+from yehu_server.cli.arguments import (
+    add_command,
+    add_gesture,
+    add_reporting,
+    compiling,
+    positive,
+    progress_bar,
+)
 
 EXAMPLES = """\
 examples:
@@ -28,7 +35,7 @@ def add_to(commands: Any) -> None:
         description="Run a gesture file with every combination of some figures, on all cores.",
         epilog=EXAMPLES,
     )
-    parser.add_argument("gesture", type=Path, metavar="GESTURE.json", help="what bow and finger do")
+    add_gesture(parser)
     parser.add_argument(
         "-o", "--output", required=True, type=Path, metavar="FOLDER", help="where results go"
     )
@@ -38,14 +45,6 @@ def add_to(commands: Any) -> None:
         required=True,
         metavar="NAME=VALUES",
         help="V1,V2,... or FROM:TO:STEPS of a control or instrument entry; may be repeated",
-    )
-    parser.add_argument("--energy", action="store_true", help="keep the energy ledgers too")
-    parser.add_argument(
-        "--strings",
-        type=positive,
-        default=0,
-        metavar="EVERY",
-        help="keep the strings' shapes every so many samples",
     )
     parser.add_argument(
         "--index-only", action="store_true", help="keep pitch and level of each, and no arrays"

@@ -49,11 +49,6 @@ VARIED_SHARE = 0.1  # of bow speed and force
 VARIED_CENTS = 6.0
 
 
-def as_it_is(note: float) -> float | None:
-    """The tuning of a key that sounds its own number."""
-    return note
-
-
 class Performer:
     """Plays one note at a time, the last one.
 
@@ -68,7 +63,8 @@ class Performer:
     seed : int
         Of the variation between notes; the same seed plays the same.
     tuning : callable
-        The pitch of a key, both as fractional MIDI notes; None for a key without one.
+        The pitch of a key, both as fractional MIDI notes; None for a key without one. By default
+        a key sounds its own number.
 
     Attributes
     ----------
@@ -84,7 +80,7 @@ class Performer:
         policy: RangePolicy = RangePolicy.TRANSPOSE,
         seed: int = 0,
         open_strings: OpenStrings = OpenStrings.ALWAYS,
-        tuning: Callable[[float], float | None] = as_it_is,
+        tuning: Callable[[float], float | None] = float,
     ) -> None:
         self._own = Ownership(sink)
         self._value = {p.address: p.default for p in TABLE if not p.owned}

@@ -154,7 +154,7 @@ def bindings_table(rows: Sequence[Sequence[Any]]) -> Table:
 
     table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for column in ("you move", "what moves", "from, to", "is at", "value", "terms"):
-        table.add_column(column, overflow="fold", no_wrap=column == "what moves")
+        table.add_column(column, overflow="fold", no_wrap=column in ("you move", "what moves"))
     for source, target, first, last, _curve, terms, place, value in rows:
         param = find(target.removeprefix(PREFIX))
         unit = "" if param.unit == "1" else f" {param.unit}"

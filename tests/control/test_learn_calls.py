@@ -67,6 +67,7 @@ def test_one_that_moves_something_already_can_be_learned_anew(stage, wire):
 def test_listening_can_be_ended(stage, arguments):
     stage.ask("/learn", "/playing/vibrato")
     assert told(stage.ask("/learn", *arguments), "/learning") == [[""]]
+    assert not stage.player.listens
     turn(stage, 20, 0, 127)
     assert told(stage.ear.heard(), "/learned") == []
     assert not stage.player.listens

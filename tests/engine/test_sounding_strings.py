@@ -59,6 +59,16 @@ def test_the_other_string_keeps_its_tuning(name, side, about_hz):
     assert before == pytest.approx(about_hz, rel=0.02)
 
 
+@pytest.mark.parametrize("frame", [3000, 3010, 3072])
+def test_a_string_is_another_at_the_very_sample(frame):
+    def heard(tuning: float) -> np.ndarray:
+        instrument = bow(1.0)
+        instrument.write("/string/inner/tuning", tuning, frame=frame, ramp_ms=0.0)
+        return play(instrument, 0.1)
+
+    assert np.flatnonzero(heard(0.0) != heard(-50.0))[0] == frame
+
+
 def test_tuning_while_it_sounds_makes_no_click():
     def steps(retuned: bool) -> float:
         instrument = bow(1.0)

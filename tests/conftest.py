@@ -1,7 +1,7 @@
 """Settings for all tests."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -36,3 +36,16 @@ def config_home(tmp_path, monkeypatch) -> Path:
 def own_presets(_config_home) -> Path:
     """The folder where whoever runs the tests would keep presets: an empty one."""
     return user_config_path("yehu-server") / "presets"
+
+
+@pytest.fixture
+def mappings(capsys) -> Callable[..., tuple[int, str, str]]:
+    """Run ``yehu-server mappings``; its exit code and what it printed."""
+    from yehu_server.cli import main
+
+    def run(*words: object) -> tuple[int, str, str]:
+        code = main(["mappings", *(str(word) for word in words)])
+        out, err = capsys.readouterr()
+        return code, out, err
+
+    return run

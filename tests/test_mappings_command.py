@@ -6,34 +6,21 @@ import json
 
 import pytest
 
-from yehu_server.cli import main
 from yehu_server.playing.mapping import load, shipped_mappings
 
 
-@pytest.fixture
-def told(capsys):
-    """Run the command; its exit code and what it printed."""
-
-    def run(*words: object) -> tuple[int, str, str]:
-        code = main(["mappings", *(str(word) for word in words)])
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return run
-
-
-def test_the_presets_are_listed_with_what_each_is_for(told):
-    code, out, _ = told("list")
+def test_the_presets_are_listed_with_what_each_is_for(mappings):
+    code, out, _ = mappings("list")
     assert code == 0
     lines = dict(line.split(maxsplit=1) for line in out.splitlines())
     assert list(lines) == shipped_mappings()
     assert all(lines.values())
-    assert json.loads(told("list", "--json")[1]) == lines
+    assert json.loads(mappings("list", "--json")[1]) == lines
 
 
 @pytest.mark.parametrize("name", shipped_mappings())
-def test_a_preset_is_shown_with_all_that_it_moves(told, name):
-    code, out, _ = told("show", name, "--json")
+def test_a_preset_is_shown_with_all_that_it_moves(mappings, name):
+    code, out, _ = mappings("show", name, "--json")
     assert code == 0
     shown, mapping = json.loads(out), load(name)
     assert (shown["name"], shown["mpe"]) == (name, mapping.mpe)
@@ -41,48 +28,48 @@ def test_a_preset_is_shown_with_all_that_it_moves(told, name):
     assert [(bind["source"], bind["target"]) for bind in shown["bind"]] == [
         (bind.source, bind.target) for bind in mapping.binds
     ]
-    table = told("show", name)[1]
+    table = mappings("show", name)[1]
     for bind in mapping.binds:
         assert bind.source in table
 
 
-def test_a_file_of_ones_own_is_shown_and_checked(told, tmp_path):
+def test_a_file_of_ones_own_is_shown_and_checked(mappings, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(
         'about = "[my] pedals"\n[start]\n"/playing/attack" = 25\n'
         '[[bind]]\nsource = "cc 4"\ntarget = "/playing/attack"\nspan = [200, 10]\n',
         encoding="utf-8",
     )
-    code, out, _ = told("show", path)
+    code, out, _ = mappings("show", path)
     assert code == 0
     assert "mine: [my] pedals" in out
     for part in ("cc 4", "200 ms", "10 ms", "/playing/attack = 25 ms"):
         assert part in out
-    assert told("check", path)[:2] == (0, f"{path}: right, 1 binds\n")
+    assert mappings("check", path)[:2] == (0, f"{path}: right, 1 binds\n")
 
 
-def test_the_bend_is_shown_as_its_range_says(told):
-    bend = json.loads(told("show", "keyboard", "--json")[1])["bind"][0]
+def test_the_bend_is_shown_as_its_range_says(mappings):
+    bend = json.loads(mappings("show", "keyboard", "--json")[1])["bind"][0]
     assert (bend["source"], bend["from"], bend["to"]) == ("bend", None, None)
-    assert "bend range" in told("show", "keyboard")[1]
+    assert "bend range" in mappings("show", "keyboard")[1]
 
 
 @pytest.mark.parametrize(
     ("text", "reason"),
     [("about = 3\n", "about: expected a line"), ("[[bind]]\n", "needs a source")],
 )
-def test_a_wrong_file_is_named_with_the_reason(told, tmp_path, text, reason):
+def test_a_wrong_file_is_named_with_the_reason(mappings, tmp_path, text, reason):
     path = tmp_path / "wrong"
     path.write_text(text, encoding="utf-8")
-    code, _, err = told("check", path)
+    code, _, err = mappings("check", path)
     assert code == 2
     assert str(path) in err
     assert reason in err
 
 
-def test_a_name_that_is_no_preset_lists_them(told):
-    code, _, err = told("show", "winds")
+def test_a_name_that_is_no_preset_lists_them(mappings):
+    code, _, err = mappings("show", "winds")
     assert code == 2
     assert "wind" in err
-    code, _, err = told("check", "wind")  # a file of that name, which there is not
+    code, _, err = mappings("check", "wind")  # a file of that name, which there is not
     assert code == 2

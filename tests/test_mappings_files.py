@@ -6,7 +6,6 @@ import json
 
 import pytest
 
-from yehu_server.cli import main
 from yehu_server.playing.mapping import load, shipped_mappings
 
 WRONG = """\
@@ -19,52 +18,40 @@ smoothing = -1
 
 
 @pytest.fixture
-def told(capsys):
-    """Run the command; its exit code and what it printed."""
-
-    def run(*words: object) -> tuple[int, str, str]:
-        code = main(["mappings", *(str(word) for word in words)])
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return run
-
-
-@pytest.fixture
 def own(config_home):
     folder = config_home / "yehu-server" / "mappings"
     folder.mkdir(parents=True)
     return folder
 
 
-def test_ones_own_mappings_are_listed_as_such(told, own):
+def test_ones_own_mappings_are_listed_as_such(mappings, own):
     (own / "pedals.toml").write_text('about = "three pedals"\n')
     (own / "wind.toml").write_text('base = "wind"\nabout = "a gentler one"\n')
     (own / "wrong.toml").write_text("mpe = 3\n")
-    code, out, _ = told("list")
+    code, out, _ = mappings("list")
     lines = dict(line.split(maxsplit=1) for line in out.splitlines())
     assert code == 0
     assert sorted(lines) == sorted({*shipped_mappings(), "pedals", "wrong"})
     assert lines["pedals"] == "yours: three pedals"
     assert lines["wind"] == "yours: a gentler one"
     assert "wrong.toml:1: mpe: expected" in lines["wrong"]
-    assert json.loads(told("list", "--json")[1]) == lines
+    assert json.loads(mappings("list", "--json")[1]) == lines
     assert "yours" not in lines["keyboard"]
 
 
-def test_a_name_is_looked_for_among_ones_own_first(told, own):
+def test_a_name_is_looked_for_among_ones_own_first(mappings, own):
     (own / "wind.toml").write_text('base = "wind"\nabout = "a gentler one"\n')
-    assert told("show", "wind")[1].startswith("wind: a gentler one\n")
-    code, _, err = told("show", "winds")
+    assert mappings("show", "wind")[1].startswith("wind: a gentler one\n")
+    code, _, err = mappings("show", "winds")
     assert code == 2
     assert "yours: wind" in err
 
 
-def test_all_that_is_wrong_with_files_is_told_line_by_line(told, tmp_path):
+def test_all_that_is_wrong_with_files_is_told_line_by_line(mappings, tmp_path):
     wrong, right = tmp_path / "wrong.toml", tmp_path / "right.toml"
     wrong.write_text(WRONG)
     right.write_text('base = "keyboard"\n')
-    code, out, err = told("check", wrong, right, tmp_path / "none.toml")
+    code, out, err = mappings("check", wrong, right, tmp_path / "none.toml")
     assert code == 2
     assert out == f"{right}: right, {len(load('keyboard').binds)} binds\n"
     lines = err.splitlines()
@@ -74,17 +61,17 @@ def test_all_that_is_wrong_with_files_is_told_line_by_line(told, tmp_path):
     assert "none.toml" in lines[-1]
 
 
-def test_all_terms_of_a_bind_are_shown(told, tmp_path):
+def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(
         '[[bind]]\nsource = "nrpn 2/44"\ntarget = "/playing/attack"\nspan = [200, 10]\n'
         "curve = [[0, 0], [1, 0.5]]\ninvert = true\nsmoothing = 50\nchannel = [3, 2]\nsoft = true\n"
         '[[bind]]\nsource = "/f"\ntarget = "/playing/volume"\ninput = [0, 127]\n'
     )
-    table = told("show", path)[1]
+    table = mappings("show", path)[1]
     for part in ("nrpn 300", "10 ms", "table", "channel 2", "50 ms", "soft", "/f", "0 to 127"):
         assert part in table.replace("\n", " ")
-    first, second = json.loads(told("show", path, "--json")[1])["bind"]
+    first, second = json.loads(mappings("show", path, "--json")[1])["bind"]
     assert first == {
         "source": "nrpn 300",
         "target": "/playing/attack",
@@ -103,27 +90,27 @@ def test_all_terms_of_a_bind_are_shown(told, tmp_path):
 
 
 @pytest.mark.parametrize("name", shipped_mappings())
-def test_a_preset_converted_is_the_same_again(told, tmp_path, name):
+def test_a_preset_converted_is_the_same_again(mappings, tmp_path, name):
     target = tmp_path / "mine.toml"
-    assert told("convert", name, "-o", target)[0] == 0
+    assert mappings("convert", name, "-o", target)[0] == 0
     assert load(str(target)).binds == load(name).binds
     assert load(str(target)).start == load(name).start
     assert load(str(target)).name == "mine"
     printed = tmp_path / f"{name}.toml"
-    printed.write_text(told("convert", name)[1], encoding="utf-8")
+    printed.write_text(mappings("convert", name)[1], encoding="utf-8")
     assert load(str(printed)) == load(name)
 
 
 @pytest.mark.parametrize("name", shipped_mappings())
-def test_what_show_prints_as_json_is_taken_back(told, tmp_path, name):
+def test_what_show_prints_as_json_is_taken_back(mappings, tmp_path, name):
     path = tmp_path / "shown"
-    path.write_text(told("show", name, "--json")[1])
+    path.write_text(mappings("show", name, "--json")[1])
     target = tmp_path / "mine.toml"
-    assert told("convert", path, "-o", target)[0] == 0
+    assert mappings("convert", path, "-o", target)[0] == 0
     assert load(str(target)) == load(name)
 
 
-def test_json_of_an_older_form_is_taken_too(told, tmp_path):
+def test_json_of_an_older_form_is_taken_too(mappings, tmp_path):
     path = tmp_path / "shown.json"
     bend = {"source": "bend", "target": "/playing/bend", "from": None, "to": None}
     wheel = {"source": "cc 1", "target": "/playing/vibrato", "from": 40.0, "to": 0.0}
@@ -131,7 +118,7 @@ def test_json_of_an_older_form_is_taken_too(told, tmp_path):
     data = {"name": "old", "about": "", "mpe": True, "start": {}, "bind": binds}
     path.write_text(json.dumps(data))
     target = tmp_path / "mine.toml"
-    told("convert", path, "-o", target)
+    mappings("convert", path, "-o", target)
     mapping = load(str(target))
     assert (mapping.name, mapping.mpe) == ("old", True)
     assert mapping.binds[0].is_by_range
@@ -142,20 +129,20 @@ def test_json_of_an_older_form_is_taken_too(told, tmp_path):
     "text",
     ["{", '{"bind": 3}', '{"bind": [3]}', '{"bind": [{}]}', '{"mpe": 1}', '{"x": 1}', "[", "x"],
 )
-def test_what_cannot_be_converted_writes_nothing(told, tmp_path, text):
+def test_what_cannot_be_converted_writes_nothing(mappings, tmp_path, text):
     path, target = tmp_path / "shown", tmp_path / "out.toml"
     path.write_text(text)
-    code, _, err = told("convert", path, "-o", target)
+    code, _, err = mappings("convert", path, "-o", target)
     assert code == 2
     assert str(path) in err
     assert not target.exists()
 
 
-def test_a_file_may_be_converted_in_its_place(told, tmp_path):
+def test_a_file_may_be_converted_in_its_place(mappings, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(
         '# mine\nbase = "wind"\n[[bind]]\nsource = "nrpn 2/44"\ntarget = "/playing/volume"\n'
     )
-    assert told("convert", path, "-o", path)[0] == 0
+    assert mappings("convert", path, "-o", path)[0] == 0
     assert path.read_text().startswith('# mine\nname = "mine"\nbase = "wind"\n')
     assert load(str(path)).of("nrpn 300")

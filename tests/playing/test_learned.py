@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -73,6 +74,12 @@ def test_a_knob_moves_what_it_learned_last():
     mapping, _ = learn(mapping, "/output/gain", Found("cc 1"), soft=False)
     assert moved_by(mapping, "cc 1") == ["/output/gain"]
     assert moved_by(mapping, "cc 1/33") == []
+
+
+def test_zones_that_the_command_line_asked_for_stay():
+    mapping, _ = learn(replace(load("keyboard"), mpe=True), "/playing/vibrato", KNOB, soft=False)
+    assert mapping.mpe
+    assert unlearn(mapping, "/playing/vibrato")[0].mpe
 
 
 def test_a_file_of_ones_own_keeps_its_comments_and_order(tmp_path):

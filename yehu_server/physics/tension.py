@@ -52,12 +52,6 @@ def tighten(model: Any, s: Any) -> None:
 
 
 @compiled
-def tension_varies(s: Any) -> bool:
-    """Whether any string is tightened in this step."""
-    return bool(s.give[0] != 0.0 or s.give[1] != 0.0)
-
-
-@compiled
 def take_up_slack(model: Any, s: Any, u_next: Array) -> None:
     """Move the strings by what their change of tension, slack h / spread (N), is by now."""
     for i in range(STRINGS):

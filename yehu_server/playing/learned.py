@@ -51,7 +51,7 @@ def learn(mapping: Mapping, target: str, found: Found, *, soft: bool) -> tuple[M
     dropped = [
         own for own in sheet.binds if replaced(own) == replaced(bind) or own.target == bind.target
     ]
-    return _keep(path, rebound(sheet, text, dropped, [bind])), path
+    return _keep(mapping, path, rebound(sheet, text, dropped, [bind])), path
 
 
 def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
@@ -67,7 +67,7 @@ def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     dropped = [own for own in sheet.binds if own.target == address]
     if not dropped:
         return mapping, 0
-    return _keep(path, rebound(sheet, text, dropped, [])), len(dropped)
+    return _keep(mapping, path, rebound(sheet, text, dropped, [])), len(dropped)
 
 
 def _sheet(mapping: Mapping, path: Path) -> tuple[Sheet, str]:
@@ -79,10 +79,11 @@ def _sheet(mapping: Mapping, path: Path) -> tuple[Sheet, str]:
     return sheet, as_toml(sheet)
 
 
-def _keep(path: Path, text: str) -> Mapping:
+def _keep(mapping: Mapping, path: Path, text: str) -> Mapping:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise MappingError(f"{path.parent}: {error.strerror}") from error
     write_text(path, text)
-    return with_bases(path, read_sheet(path))
+    # What `--mpe` added is in no file.
+    return replace(with_bases(path, read_sheet(path)), mpe=mapping.mpe)

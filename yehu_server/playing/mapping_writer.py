@@ -14,19 +14,7 @@ from tomlkit.items import AoT
 from yehu_server.errors import MappingError
 from yehu_server.params.table import find
 from yehu_server.playing.binds import Bind, Table
-from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_file import Sheet, sheet_of, toml_of
-
-
-def sheet_from(mapping: Mapping) -> Sheet:
-    """What one file would have to say to be a whole mapping, without a base."""
-    return Sheet(
-        mapping.name,
-        mapping.binds,
-        mapping.start,
-        mpe=mapping.mpe or None,
-        about=mapping.about,
-    )
 
 
 def entries_of(bind: Bind) -> dict[str, Any]:

@@ -16,7 +16,7 @@ import numpy as np
 from yehu_server.physics import bow, elementary, friction, kernel, layout
 
 SOURCE = Path(__file__).resolve().parent / "c" / "kernel.c"
-TYPES = {"f8": "double", "i8": "int64_t", "u1": "uint8_t", "u2": "uint16_t"}
+TYPES = {"f8": "double", "i8": "int64_t", "u1": "uint8_t", "u2": "uint16_t", "b1": "bool"}
 OPTIMISED = ("-O3", "-march=native")
 # What jit.FASTMATH allows numba: sums reordered, multiply-adds fused, reciprocals; and, as in
 # Python, no errno. NaN and infinity keep their meaning.
@@ -67,7 +67,7 @@ def struct(name: str, record: np.dtype[Any]) -> str:
 
 def header() -> str:
     """``records.h``: the constants, and the records of model and state."""
-    lines = ["#include <stddef.h>", "#include <stdint.h>"]
+    lines = ["#include <stdbool.h>", "#include <stddef.h>", "#include <stdint.h>"]
     for name, value in constants().items():
         text = value.hex() if isinstance(value, float) else str(value)
         lines.append(f"#define {name} ({text})")

@@ -15,12 +15,14 @@ static inline void meet_bridge(Model m, State s, int p)
         * overlap(m->bridge_first[i], m->bridge_weights[i], s->first[p], weights);
 }
 
-static inline void place_contacts(Model m, State s, const double *restrict control,
+static inline bool place_contacts(Model m, State s, const double *restrict control,
                                   int bowed_string)
 {
+    bool moved = false;
     const double x_b = control[X_B];
     if (s->placed == 0 || s->x[BOW] != x_b || s->string[BOW] != bowed_string) {
         const int i = bowed_string;
+        moved = true;
         s->x[BOW] = x_b;
         s->string[BOW] = (uint8_t)i;
         const double position = within(x_b / m->h[i], 1.0, m->bridge_x / m->h[i] - 1.0);
@@ -31,6 +33,7 @@ static inline void place_contacts(Model m, State s, const double *restrict contr
         const double x_f = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j];
         if (s->placed != 0 && s->x[STRINGS * j] == x_f)
             continue;
+        moved = true;
         for (int i = 0; i < STRINGS; i++) {
             const int p = STRINGS * j + i;
             s->x[p] = x_f;
@@ -41,65 +44,62 @@ static inline void place_contacts(Model m, State s, const double *restrict contr
         }
     }
     s->placed = 1;
+    return moved;
 }
 
-static inline void feel(State s, const double (*restrict u_next)[POINTS], int p)
+/* What a newton at a contact does: slack of both strings (1/N), and f_c (1). */
+struct reply {
+    double slack[STRINGS], pull[STRINGS];
+};
+
+static inline double feel(State s, const double (*restrict u_next)[POINTS], int p)
 {
     const int i = s->string[p];
-    const double bend_at = reading(s->bend[i], s->first[p], s->weights[p]);
-    const double at_bridge = s->shared_with_bridge[p] - s->give[i] * s->bend_at_bridge[i] * bend_at;
-    s->bend_at[p] = bend_at;
-    s->at_bridge[p] = at_bridge;
-    for (int j = 0; j < STRINGS; j++)
-        s->pull[p][j] = s->S_c_inverse[j][i] * at_bridge;
-    s->free[p] = reading(u_next[i], s->first[p], s->weights[p]) + s->slack[i] * bend_at
-        + at_bridge * s->f_c[i];
+    return reading(u_next[i], s->first[p], s->weights[p]) + s->slack[i] * s->bend_at[p]
+        + s->shared_with_bridge[p] * s->f_c[i];
 }
 
-static inline double answer(Model m, const struct state *s, int p, int q)
+static inline struct reply reply(State s, int q)
+{
+    const int i = s->string[q];
+    const double bend = s->bend_at[q], shared = s->shared_with_bridge[q];
+    struct reply of_q;
+    for (int j = 0; j < STRINGS; j++) {
+        of_q.slack[j] = s->give[j][i] * bend + s->tug[j][i] * shared;
+        of_q.pull[j] = s->tug[i][j] * bend + s->S_c_inverse[j][i] * shared;
+    }
+    return of_q;
+}
+
+static inline double answer(Model m, const struct state *s, int p, int q, struct reply of_q)
 {
     const int i = s->string[p];
-    double G = -s->at_bridge[p] * s->pull[q][i];
+    double G = -s->bend_at[p] * of_q.slack[i] - s->shared_with_bridge[p] * of_q.pull[i];
     if (p == q)
         G += s->yields[p];
     else if (s->string[q] == i)
         G += m->spread[i] * overlap(s->first[p], s->weights[p], s->first[q], s->weights[q]);
-    if (s->string[q] == i)
-        G -= s->give[i] * s->bend_at[p] * s->bend_at[q];
     return G;
 }
 
-static inline void feel_all(Model m, State s, const double (*restrict u_next)[POINTS], int near)
+static inline bool is_apart(const struct state *s, int p, int q)
 {
-    feel(s, u_next, BOW);
-    for (int c = 0; c < near; c++) {
-        const int p = s->near[c];
-        feel(s, u_next, p);
-        s->at_bow[p] = answer(m, s, p, BOW);
-    }
+    const int distance = (int)s->first[p] - (int)s->first[q];
+    return s->string[p] != s->string[q] || distance <= -STENCIL || distance >= STENCIL;
 }
 
-static inline void push(State s, int p, double force)
-{
-    const int i = s->string[p];
-    s->slack[i] += s->give[i] * s->bend_at[p] * force;
-    s->f_c[0] += s->pull[p][0] * force;
-    s->f_c[1] += s->pull[p][1] * force;
-}
-
-static inline void move(Model m, State s, double (*restrict u_next)[POINTS], int touching,
-                        bool bowed)
+static inline void move(Model m, State s, double (*restrict u_next)[POINTS], int near, bool bowed)
 {
     for (int i = 0; i < STRINGS; i++) {
-        s->slack[i] -= s->give[i] * s->bend_at_bridge[i] * s->f_c[i];
         if (s->slack[i] != 0.0)
             take_up(u_next[i], s->bend[i], m->N[i], s->slack[i]);
         spread(u_next[i], m->bridge_first[i], m->bridge_weights[i], m->spread[i] * s->f_c[i]);
     }
-    for (int c = 0; c < touching; c++) {
-        const int p = s->touching[c], i = s->string[p];
-        spread(u_next[i], s->first[p], s->weights[p], -m->spread[i] * s->f_f[p]);
-    }
+    for (int c = 0; c < near; c++)
+        for (int i = 0; i < STRINGS; i++) {
+            const int p = STRINGS * s->near[c] + i;
+            spread(u_next[i], s->first[p], s->weights[p], -m->spread[i] * s->f_f[p]);
+        }
     if (bowed) {
         const int i = s->string[BOW];
         spread(u_next[i], s->first[BOW], s->weights[BOW], -m->spread[i] * s->f_b);
@@ -122,100 +122,66 @@ static inline int meet_fingers(Model m, State s, const double *restrict control,
                                int prev)
 {
     int near = 0;
+    s->are_near = 0;
     for (int j = 0; j < m->fingers; j++) {
         const double press = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j + 1];
+        bool is_near = false;
         s->U[next][j] = advance_finger(m, s, j, press, now, prev);
         for (int i = 0; i < STRINGS; i++) {
-            const int p = STRINGS * j + i;
-            const double eta = reading(s->u[now][i], s->first[p], s->weights[p]) - s->U[now][j];
+            const int p = STRINGS * j + i, first = s->first[p];
+            const double *weights = s->weights[p];
+            const double eta = reading(s->u[now][i], first, weights) - s->U[now][j];
             if (s->Psi[p] != 0.0 && (eta <= 0.0 || s->Psi[p] < 0.0)) {
                 s->dropped_Psi += 0.5 * s->Psi[p] * s->Psi[p];
                 s->Psi[p] = 0.0;
             }
-            s->g[p] = 0.0;
-            s->f_f[p] = 0.0;
+            double ghat = 0.0;
             if (eta > 0.0) {
-                s->near[near++] = (uint8_t)p;
-                s->ghat[p] = m->ghat_1 * exponential(0.5 * (m->alpha - 1.0) * logarithm(eta));
-                s->eta_prev[p]
-                    = reading(s->u[prev][i], s->first[p], s->weights[p]) - s->U[prev][j];
+                is_near = true;
+                ghat = m->ghat_1 * exponential(0.5 * (m->alpha - 1.0) * logarithm(eta));
+                s->bend_at[p] = reading(s->bend[i], first, weights);
+                s->eta_prev[p] = reading(s->u[prev][i], first, weights) - s->U[prev][j];
             }
+            s->g[p] = s->ghat[p] = ghat;
+            s->f_f[p] = 0.0;
+        }
+        if (is_near) {
+            s->near[near++] = (uint8_t)j;
+            s->are_near |= 1 << j;
         }
     }
     return near;
 }
 
-static inline int press_fingers(Model m, State s, int next, int near, double f_b, double doubt,
-                                bool *friction_decides)
+static inline bool may_leave(const struct state *s, int p, double f_b, double doubt)
 {
-    int touching = 0;
-    *friction_decides = false;
-    for (int c = 0; c < near; c++) {
-        const int p = s->near[c];
-        const double Psi = s->Psi[p], ghat = s->ghat[p], at_bow = s->at_bow[p];
-        const double free = s->free[p] - s->U[next][p / STRINGS] - s->eta_prev[p];
-        const double travel = free - at_bow * f_b;
-        if (4.0 * Psi + ghat * (travel - fabs(at_bow) * doubt) < 0.0 && at_bow != 0.0)
-            *friction_decides = true;
-        const double g = 4.0 * Psi + ghat * travel < 0.0 ? -4.0 * Psi / travel : ghat;
-        s->g[p] = g;
-        if (g > 0.0) {
-            const double A_f = 0.25 * g * g + 0.5 * m->rate * m->beta * g * Psi;
-            s->touching[touching] = (uint8_t)p;
-            s->A_f[touching] = A_f;
-            s->d[touching] = A_f * free + g * Psi;
-            touching++;
-        }
-    }
-    return touching;
+    const double at_bow = s->at_bow[p];
+    const double travel = s->travel[p] - at_bow * f_b - fabs(at_bow) * doubt;
+    return 4.0 * s->Psi[p] + s->ghat[p] * travel < 0.0;
 }
 
-static inline void close_contacts(Model m, State s, int touching, double *restrict taken_out,
-                                  double *restrict taken_per_newton_out)
+static inline void limit_fingers(State s, int near, double f_b)
 {
-    const int bow = touching;
-    for (int row = 0; row < touching; row++) {
-        const int p = s->touching[row];
-        for (int column = 0; column <= row; column++) {
-            const int q = s->touching[column];
-            double G = answer(m, s, p, q);
-            if (p / STRINGS == q / STRINGS)
-                G += m->C_f;
-            s->G[column][row] = G;
+    for (int c = 0; c < near; c++)
+        for (int i = 0; i < STRINGS; i++) {
+            const int p = STRINGS * s->near[c] + i;
+            const double travel = s->travel[p] - s->at_bow[p] * f_b;
+            const double ghat = s->ghat[p];
+            s->g[p] = 4.0 * s->Psi[p] + ghat * travel < 0.0 ? -4.0 * s->Psi[p] / travel : ghat;
         }
-        s->G[row][bow] = s->at_bow[p];
-    }
-    double taken = 0.0, taken_per_newton = 0.0;
-    for (int row = 0; row < touching; row++) {
-        const double per_stiffness = 1.0 / (1.0 + s->A_f[row] * s->G[row][row]);
-        const double d = s->d[row] * per_stiffness, A_f = s->A_f[row] * per_stiffness;
-        s->d[row] = d;
-        s->A_f[row] = A_f;
-        for (int other = row + 1; other < touching; other++) {
-            const double G = s->G[row][other];
-            s->d[other] -= s->A_f[other] * G * d;
-            for (int column = other; column <= bow; column++)
-                s->G[other][column] -= A_f * G * s->G[row][column];
-        }
-        const double G = s->G[row][bow];
-        taken += G * d;
-        taken_per_newton += G * G * A_f;
-    }
-    *taken_out = taken;
-    *taken_per_newton_out = taken_per_newton;
 }
 
-static inline void push_fingers(Model m, State s, int next, int touching, double f_b)
+static inline double stiffness(Model m, const struct state *s, int p)
 {
-    for (int row = touching - 1; row >= 0; row--) {
-        const int p = s->touching[row];
-        double pushed = s->G[row][touching] * f_b;
-        for (int other = row + 1; other < touching; other++)
-            pushed += s->G[row][other] * s->f_f[s->touching[other]];
-        const double f_f = s->d[row] - s->A_f[row] * pushed, g = s->g[p], Psi = s->Psi[p];
-        s->f_f[p] = f_f;
-        push(s, p, f_f);
-        s->U[next][p / STRINGS] += m->C_f * f_f;
+    const double g = s->g[p];
+    return 0.25 * g * g + 0.5 * m->rate * m->beta * g * s->Psi[p];
+}
+
+static inline void settle(Model m, State s, int next, int p, double f_f)
+{
+    const double g = s->g[p], Psi = s->Psi[p];
+    s->f_f[p] = f_f;
+    s->U[next][p / STRINGS] += m->C_f * f_f;
+    if (g > 0.0)
         s->Psi[p] += 0.5 * (f_f - g * Psi) / (0.25 * g + 0.5 * m->rate * m->beta * Psi);
-    }
 }

@@ -6,7 +6,7 @@
  * energy ledger here.
  */
 
-#include "contacts.h"
+#include "closing.h"
 #include "friction.h"
 
 /* ---- radiation.py --------------------------------------------------------------------------- */
@@ -43,43 +43,51 @@ static void come_to_rest(Model m, State s)
     memset(s->slack, 0, sizeof s->slack);
     memset(s->give, 0, sizeof s->give);
     memset(s->bend, 0, sizeof s->bend);
+    memset(s->bend_at, 0, sizeof s->bend_at);
+    memset(s->eta_prev, 0, sizeof s->eta_prev);
     memset(s->tangent, 0, sizeof s->tangent);
     memset(s->x, 0, sizeof s->x);
     for (int t = 0; t < LEVELS; t++)
         for (int j = 0; j < MAX_FINGERS; j++)
             s->U[t][j] = m->rest_height;
-    s->level = 0;
     s->v_r = s->f_b = s->stored = 0.0;
     s->placed = 0;
 }
 
-static inline void step(Model m, State s, const double *restrict control)
+static inline void step(Model m, State s, const double *restrict control, int next, int now,
+                        int prev)
 {
-    const int now = s->level, next = (now + 1) % LEVELS, prev = (now + 2) % LEVELS;
     double (*const u_next)[POINTS] = s->u[next];
     const double half_rate = 0.5 * m->rate, v_b = control[V_B], F_b = control[F_N];
     s->dropped_z = s->dropped_Psi = 0.0;
-
-    bool bowed;
-    const int string = choose_string(m, s, F_b, &bowed);
-    place_contacts(m, s, control, string);
-    const int near = meet_fingers(m, s, control, next, now, prev);
 
     for (int i = 0; i < STRINGS; i++)
         advance_string(u_next[i], s->u[now][i], s->u[prev][i], s->bend[i], m->inside[i], m->N[i],
                        m->B[i], m->C[i], &s->square[i], &s->along[i]);
     pull_aside(m, s, control, u_next);
-    tighten(m, s);
-    const double Q = advance_bridge(m, s->q[next], s->q[now], s->q[prev], control[F_HAMMER]);
-    close_bridge(m, s, u_next, Q);
+    const double sum = advance_bridge(m, s->q[next], s->q[now], s->q[prev], control[F_HAMMER]);
+    close_bridge(m, s, u_next, sum);
 
-    feel_all(m, s, u_next, near);
-    for (int i = 0; i < STRINGS; i++)
+    bool bowed;
+    const int string = choose_string(m, s, F_b, &bowed);
+    const bool moved = place_contacts(m, s, control, string);
+    const int64_t were_near = s->are_near;
+    const int near = meet_fingers(m, s, control, next, now, prev);
+    if (moved || s->are_near != were_near)
+        s->apart = are_apart(s, near);
+    const bool apart = s->apart;
+    struct weight Q = weigh_fingers(m, s, near);
+
+    s->bend_at[BOW] = reading(s->bend[string], s->first[BOW], s->weights[BOW]);
+    const struct reply of_bow = reply(s, BOW);
+    for (int i = 0; i < STRINGS; i++) {
         s->zeta[next][i] = m->A_h * s->zeta[now][i] + m->B_h * s->zeta[prev][i];
-    const int under = s->string[BOW];
-    double free = s->free[BOW] - reading(s->u[prev][under], s->first[BOW], s->weights[BOW]);
-    free = half_rate * (free + s->zeta[next][under] - s->zeta[prev][under]) - v_b;
-    double compliance = half_rate * (answer(m, s, BOW, BOW) + m->C_h);
+        s->slack_per_newton[i] = of_bow.slack[i];
+        s->f_c_per_newton[i] = of_bow.pull[i];
+    }
+    double free = feel(s, u_next, BOW) - reading(s->u[prev][string], s->first[BOW], s->weights[BOW]);
+    free = half_rate * (free + s->zeta[next][string] - s->zeta[prev][string]) - v_b;
+    double compliance = half_rate * (answer(m, s, BOW, BOW, of_bow) + m->C_h);
     struct grip grip = {
         .v_r = free,
         .tangent = {s->tangent[0], s->tangent[1], s->tangent[2]},
@@ -87,31 +95,51 @@ static inline void step(Model m, State s, const double *restrict control)
     };
     int touching = 0, iterations = 0;
     if (near > 0) {
-        bool friction_decides, unused;
+        const double f_b = bowed ? s->f_b : 0.0;
         const double doubt = bowed ? fabs(s->f_b) + FRICTION_REACH * m->mu_S * fabs(F_b) : 0.0;
-        touching = press_fingers(m, s, next, near, bowed ? s->f_b : 0.0, doubt, &friction_decides);
-        if (bowed && friction_decides) {
-            grip = solve_friction(m, free, compliance, s->z[string], fabs(F_b), grip.tangent,
-                                  string);
-            iterations = grip.iterations;
-            touching = press_fingers(m, s, next, near, grip.f_b, 0.0, &unused);
+        bool leaving = false;
+        for (int c = 0; c < near; c++)
+            for (int i = 0; i < STRINGS; i++) {
+                const int j = s->near[c], p = STRINGS * j + i;
+                s->at_bow[p] = apart ? -s->bend_at[p] * of_bow.slack[i] : answer(m, s, p, BOW, of_bow);
+                s->travel[p] = feel(s, u_next, p) - s->U[next][j] - s->eta_prev[p];
+                leaving |= may_leave(s, p, f_b, doubt);
+            }
+        if (leaving) {
+            if (bowed) {
+                grip = solve_friction(m, free, compliance, s->z[string], fabs(F_b), grip.tangent,
+                                      string);
+                iterations = grip.iterations;
+            }
+            limit_fingers(s, near, grip.f_b);
+            Q = weigh_fingers(m, s, near);
         }
-        double taken, taken_per_newton;
-        close_contacts(m, s, touching, &taken, &taken_per_newton);
-        free -= half_rate * taken;
-        compliance -= half_rate * taken_per_newton;
+        struct taken taken;
+        if (apart)
+            taken = close_apart(s, near, Q, of_bow);
+        else
+            touching = close_together(m, s, near, &taken);
+        free -= half_rate * taken.reading;
+        compliance -= half_rate * taken.per_newton;
         grip.v_r = free;
+        grip.f_b = 0.0;
     }
     if (bowed) {
         grip = solve_friction(m, free, compliance, s->z[string], fabs(F_b), grip.tangent, string);
         iterations += grip.iterations;
     }
-    push_fingers(m, s, next, touching, grip.f_b);
+    for (int i = 0; i < STRINGS; i++) {
+        s->slack[i] += s->slack_per_newton[i] * grip.f_b;
+        s->f_c[i] += s->f_c_per_newton[i] * grip.f_b;
+    }
+    if (apart)
+        push_apart(m, s, next, near, grip.f_b);
+    else
+        push_together(m, s, next, touching, grip.f_b);
 
     s->zeta[next][string] -= m->C_h * grip.f_b;
     s->z_bar = s->r = 0.0;
     if (bowed) {
-        push(s, BOW, grip.f_b);
         s->z_bar = grip.z_bar;
         s->r = m->rate * 2.0 * (grip.z_bar - s->z[string]);
         s->z[string] = 2.0 * grip.z_bar - s->z[string];
@@ -121,11 +149,10 @@ static inline void step(Model m, State s, const double *restrict control)
     s->v_r = grip.v_r;
     s->iterations = iterations;
     memcpy(s->tangent, grip.tangent, sizeof grip.tangent);
-    move(m, s, u_next, touching, bowed);
+    move(m, s, u_next, near, bowed);
     s->bridge_travel = finish_bridge(m, s->q[next], s->q[prev], s->f_c[0] + s->f_c[1]);
     for (int i = 0; i < STRINGS; i++)
         support(u_next[i], m->N[i]);
-    s->level = (uint8_t)next;
 }
 
 static inline void measure(Model m, State s, double *restrict probe)
@@ -169,8 +196,14 @@ void advance(Model m, State s, const double *restrict controls, double *restrict
 {
     const int64_t control_columns = FINGER_CONTROLS + CONTROLS_PER_FINGER * m->fingers;
     const int64_t probe_columns = FINGER_PROBES + PROBES_PER_FINGER * m->fingers;
+    int now = s->level, next = (now + 1) % LEVELS, prev = (now + 2) % LEVELS;
     for (int64_t n = 0; n < frames; n++) {
-        step(m, s, controls + n * control_columns);
+        step(m, s, controls + n * control_columns, next, now, prev);
+        s->level = (uint8_t)next;
         measure(m, s, probes + n * probe_columns);
+        const int oldest = prev;
+        prev = now;
+        now = next;
+        next = oldest;
     }
 }

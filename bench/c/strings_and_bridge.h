@@ -36,13 +36,13 @@ static inline void support(double *u, int64_t N)
     u[N + 2] = -u[N];
 }
 
-static inline void tighten(Model m, State s)
+static inline void tighten(Model m, State s, int i, double *restrict slack, double *restrict give,
+                           double *restrict stretched)
 {
-    for (int i = 0; i < STRINGS; i++) {
-        const double weight = m->taut[i] / (1.0 + m->taut[i] * s->square[i]);
-        s->slack[i] = -s->along[i] * weight;
-        s->give[i] = m->spread[i] * weight;
-    }
+    *stretched = 1.0 + m->taut[i] * s->square[i];
+    const double weight = m->taut[i] / *stretched;
+    *slack = -s->along[i] * weight;
+    *give = m->spread[i] * weight;
 }
 
 static inline void take_up(double *restrict u_next, const double *restrict bend, int64_t N,
@@ -87,31 +87,33 @@ static inline double advance_bridge(Model m, double *restrict q_next, const doub
     return total;
 }
 
-static inline void tie(Model m, State s)
-{
-    for (int i = 0; i < STRINGS; i++)
-        s->bend_at_bridge[i] = reading(s->bend[i], m->bridge_first[i], m->bridge_weights[i]);
-    const double give_1 = s->give[0] * s->bend_at_bridge[0] * s->bend_at_bridge[0];
-    const double give_2 = s->give[1] * s->bend_at_bridge[1] * s->bend_at_bridge[1];
-    const double a = m->S_c[0][0] - give_1, b = m->S_c[0][1];
-    const double c = m->S_c[1][0], d = m->S_c[1][1] - give_2;
-    const double per_determinant = 1.0 / (a * d - b * c);
-    s->S_c_inverse[0][0] = d * per_determinant;
-    s->S_c_inverse[0][1] = -b * per_determinant;
-    s->S_c_inverse[1][0] = -c * per_determinant;
-    s->S_c_inverse[1][1] = a * per_determinant;
-}
-
 static inline void close_bridge(Model m, State s, double (*restrict u_next)[POINTS], double Q)
 {
-    tie(m, s);
-    double c[STRINGS];
+    double slack[STRINGS], give[STRINGS], stretched[STRINGS];
+    double bend[STRINGS], gap[STRINGS], own[STRINGS];
     for (int i = 0; i < STRINGS; i++) {
-        c[i] = Q - reading(u_next[i], m->bridge_first[i], m->bridge_weights[i]);
-        c[i] -= s->slack[i] * s->bend_at_bridge[i];
+        tighten(m, s, i, &slack[i], &give[i], &stretched[i]);
+        bend[i] = reading(s->bend[i], m->bridge_first[i], m->bridge_weights[i]);
+        gap[i] = Q - reading(u_next[i], m->bridge_first[i], m->bridge_weights[i]);
+        gap[i] -= slack[i] * bend[i];
+        own[i] = m->S_c[i][i] * stretched[i] - m->taut[i] * m->spread[i] * bend[i] * bend[i];
     }
-    s->f_c[0] = s->S_c_inverse[0][0] * c[0] + s->S_c_inverse[0][1] * c[1];
-    s->f_c[1] = s->S_c_inverse[1][0] * c[0] + s->S_c_inverse[1][1] * c[1];
+    const double b = m->S_c[0][1], both = stretched[0] * stretched[1];
+    const double per_determinant = 1.0 / (own[0] * own[1] - b * b * both);
+    double (*S)[STRINGS] = s->S_c_inverse;
+    S[0][0] = own[1] * stretched[0] * per_determinant;
+    S[1][1] = own[0] * stretched[1] * per_determinant;
+    S[0][1] = S[1][0] = -b * both * per_determinant;
+    for (int i = 0; i < STRINGS; i++)
+        s->f_c[i] = S[i][0] * gap[0] + S[i][1] * gap[1];
+    for (int i = 0; i < STRINGS; i++) {
+        const double lead = give[i] * bend[i];
+        s->slack[i] = slack[i] - lead * s->f_c[i];
+        for (int j = 0; j < STRINGS; j++) {
+            s->tug[i][j] = -lead * S[i][j];
+            s->give[i][j] = (i == j ? give[i] : 0.0) + lead * S[i][j] * (give[j] * bend[j]);
+        }
+    }
 }
 
 static inline double finish_bridge(Model m, double *restrict q_next, const double *restrict q_prev,

@@ -15,6 +15,7 @@ from yehu_server.jit import compiled
 from yehu_server.physics.layout import MAX_MODES, STRINGS, whole_vectors
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.stencil import place_cubic, read
+from yehu_server.physics.tension import tighten
 
 Array = Any
 
@@ -78,33 +79,42 @@ def advance_bridge(model: Any, q_next: Array, q: Array, q_prev: Array, f_hammer:
 
 
 @compiled
-def tie(model: Any, s: Any) -> None:
-    """Invert S_c of eq. (43), whose own entries give way as the strings' tension does."""
-    for i in range(STRINGS):
-        s.bend_at_bridge[i] = read(s.bend[i], model.bridge_first[i], model.bridge_weights[i])
-    give_1 = s.give[0] * s.bend_at_bridge[0] ** 2
-    give_2 = s.give[1] * s.bend_at_bridge[1] ** 2
-    a, b = model.S_c[0, 0] - give_1, model.S_c[0, 1]
-    c, d = model.S_c[1, 0], model.S_c[1, 1] - give_2
-    determinant = a * d - b * c
-    s.S_c_inverse[0, 0], s.S_c_inverse[0, 1] = d / determinant, -b / determinant
-    s.S_c_inverse[1, 0], s.S_c_inverse[1, 1] = -c / determinant, a / determinant
-
-
-@compiled
 def close_bridge(model: Any, s: Any, u_next: Array, Q: float) -> None:
-    """Tie both strings to the bridge at n+1; write the coupling forces f_c (N).
+    """Let tension and bridge hold both strings at n+1, as if nothing else touched them.
 
-    Everything after this meets strings that already follow the bridge.
-    Source: [Yehu] eqs. (43)-(45).
+    Everything after this meets strings that already follow the bridge. Written are the coupling
+    forces ``s.f_c`` (N), the slack of each string, and how these answer to more forces: a newton
+    on string j where Delta u^n is b metres leaves ``give[i, j]`` b of slack, and adds ``tug[j, i]`` b
+    to f_c of string i; one at the bridge ``tug[i, j]`` and ``S_c_inverse[i, j]``.
+    Source: [Yehu] eqs. (43)-(45); tension.py.
     """
-    tie(model, s)
-    c_1 = Q - read(u_next[0], model.bridge_first[0], model.bridge_weights[0])
-    c_2 = Q - read(u_next[1], model.bridge_first[1], model.bridge_weights[1])
-    c_1 -= s.slack[0] * s.bend_at_bridge[0]
-    c_2 -= s.slack[1] * s.bend_at_bridge[1]
-    S = s.S_c_inverse
-    s.f_c[0], s.f_c[1] = S[0, 0] * c_1 + S[0, 1] * c_2, S[1, 0] * c_1 + S[1, 1] * c_2
+    slack_0, give_0, stretched_0 = tighten(model, s, 0)
+    slack_1, give_1, stretched_1 = tighten(model, s, 1)
+    bend_0 = read(s.bend[0], model.bridge_first[0], model.bridge_weights[0])
+    bend_1 = read(s.bend[1], model.bridge_first[1], model.bridge_weights[1])
+    gap_0 = Q - read(u_next[0], model.bridge_first[0], model.bridge_weights[0]) - slack_0 * bend_0
+    gap_1 = Q - read(u_next[1], model.bridge_first[1], model.bridge_weights[1]) - slack_1 * bend_1
+
+    # S_c, whose own entries give way as tension does. Its rows are taken times `stretched`, so
+    # that no division waits for another.
+    b = model.S_c[0, 1]
+    a = model.S_c[0, 0] * stretched_0 - model.taut[0] * model.spread[0] * bend_0 * bend_0
+    d = model.S_c[1, 1] * stretched_1 - model.taut[1] * model.spread[1] * bend_1 * bend_1
+    both = stretched_0 * stretched_1
+    per_determinant = 1.0 / (a * d - b * b * both)
+    S_00, S_11 = d * stretched_0 * per_determinant, a * stretched_1 * per_determinant
+    S_01 = -b * both * per_determinant
+    s.S_c_inverse[0, 0], s.S_c_inverse[0, 1] = S_00, S_01
+    s.S_c_inverse[1, 0], s.S_c_inverse[1, 1] = S_01, S_11
+    f_0, f_1 = S_00 * gap_0 + S_01 * gap_1, S_01 * gap_0 + S_11 * gap_1
+    s.f_c[0], s.f_c[1] = f_0, f_1
+
+    lead_0, lead_1 = give_0 * bend_0, give_1 * bend_1
+    s.slack[0], s.slack[1] = slack_0 - lead_0 * f_0, slack_1 - lead_1 * f_1
+    s.tug[0, 0], s.tug[0, 1] = -lead_0 * S_00, -lead_0 * S_01
+    s.tug[1, 0], s.tug[1, 1] = -lead_1 * S_01, -lead_1 * S_11
+    s.give[0, 0], s.give[1, 1] = give_0 + lead_0 * lead_0 * S_00, give_1 + lead_1 * lead_1 * S_11
+    s.give[0, 1] = s.give[1, 0] = lead_0 * S_01 * lead_1
 
 
 @compiled

@@ -11,25 +11,36 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from yehu_server.jit import compiled
-from yehu_server.physics.layout import BOW, CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS, X_B
+from yehu_server.physics.layout import (
+    BOW,
+    CONTROLS_PER_FINGER,
+    FINGER_CONTROLS,
+    STENCIL,
+    STRINGS,
+    X_B,
+)
 from yehu_server.physics.stencil import overlap, place_cubic, place_linear, read, spread
 from yehu_server.physics.tension import take_up_slack
 
 Array = Any
+Reply = tuple[float, float, float, float]
 
 
 @compiled
-def place_contacts(model: Any, s: Any, control: Array, bowed_string: int) -> None:
-    """Move bow and fingers to where a row of controls has them.
+def place_contacts(model: Any, s: Any, control: Array, bowed_string: int) -> bool:
+    """Move bow and fingers to where a row of controls has them; return whether any moved.
 
     The bow keeps one node away from the bridge and from the loop, a finger one node
     away from the ends. Work is done only for what moved.
     Real time: safe.
     """
+    moved = False
     x_b = control[X_B]
     if s.placed == 0 or s.x[BOW] != x_b or s.string[BOW] != bowed_string:
-        i = bowed_string
+        i, moved = bowed_string, True
         s.x[BOW], s.string[BOW] = x_b, i
         h = model.h[i]
         position = max(1.0, min(x_b / h, model.bridge_x / h - 1.0))
@@ -38,13 +49,28 @@ def place_contacts(model: Any, s: Any, control: Array, bowed_string: int) -> Non
     for j in range(model.fingers):
         x_f = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j]
         if s.placed == 0 or s.x[STRINGS * j] != x_f:
+            moved = True
             for i in range(STRINGS):
                 p = STRINGS * j + i
                 s.x[p], s.string[p] = x_f, i
                 position = max(1.0, min(x_f / model.h[i], model.N[i] - 1.0))
                 s.first[p] = place_cubic(position, model.N[i], s.weights[p])
                 meet_bridge(model, s, p)
+    if moved:
+        sort_fingers(model, s)
     s.placed = 1
+    return moved
+
+
+@compiled
+def sort_fingers(model: Any, s: Any) -> None:
+    """Note the fingers' order along the strings."""
+    for j in range(model.fingers):
+        k = j
+        while k > 0 and s.x[STRINGS * s.order[k - 1]] > s.x[STRINGS * j]:
+            s.order[k] = s.order[k - 1]
+            k -= 1
+        s.order[k] = j
 
 
 @compiled
@@ -59,72 +85,60 @@ def meet_bridge(model: Any, s: Any, p: int) -> None:
 
 
 @compiled
-def feel(s: Any, u_next: Array, p: int) -> None:
-    """Find how contact `p` and the bridge feel each other in this step, and where it is free.
-
-    ``s.free`` is the reading of u^{n+1} there, the bridge closed, but for the contacts' forces.
-    """
+def feel(s: Any, u_next: Array, p: int) -> float:
+    """Return where contact `p` would find its string at n+1 but for the contacts' forces (m)."""
     i = s.string[p]
-    first, weights = s.first[p], s.weights[p]
-    s.bend_at[p] = read(s.bend[i], first, weights)
-    s.at_bridge[p] = s.shared_with_bridge[p] - s.give[i] * s.bend_at_bridge[i] * s.bend_at[p]
-    for j in range(STRINGS):
-        s.pull[p, j] = s.S_c_inverse[j, i] * s.at_bridge[p]
-    s.free[p] = read(u_next[i], first, weights) + s.slack[i] * s.bend_at[p]
-    s.free[p] += s.at_bridge[p] * s.f_c[i]
+    reading = read(u_next[i], s.first[p], s.weights[p])
+    return float(reading + s.slack[i] * s.bend_at[p] + s.shared_with_bridge[p] * s.f_c[i])
 
 
 @compiled
-def feel_all(model: Any, s: Any, u_next: Array, near: int) -> None:
-    """Let the bow and the fingers' contacts that are near `feel` this step, and each other."""
-    feel(s, u_next, BOW)
-    for c in range(near):
-        p = s.near[c]
-        feel(s, u_next, p)
-        s.at_bow[p] = answer(model, s, p, BOW)
+def reply(s: Any, q: int) -> Reply:
+    """Return what a newton at contact `q` does to both strings' slack (1/N) and f_c (1)."""
+    i = s.string[q]
+    bend, shared = s.bend_at[q], s.shared_with_bridge[q]
+    return (
+        s.give[0, i] * bend + s.tug[0, i] * shared,
+        s.give[1, i] * bend + s.tug[1, i] * shared,
+        s.tug[i, 0] * bend + s.S_c_inverse[0, i] * shared,
+        s.tug[i, 1] * bend + s.S_c_inverse[1, i] * shared,
+    )
 
 
 @compiled
-def answer(model: Any, s: Any, p: int, q: int) -> float:
-    """G[p, q]: how far the reading at `p` gives way to a newton at `q` (m/N).
+def answer(model: Any, s: Any, p: int, q: int, of_q: Reply) -> float:
+    """G[p, q]: how far the reading at `p` gives way to a newton at `q`, whose `reply` is known.
 
-    Both must `feel` this step.
+    In m/N. Both must `feel` this step.
     """
     i = s.string[p]
-    G = -s.at_bridge[p] * s.pull[q, i]
+    slack, pull = (of_q[0], of_q[2]) if i == 0 else (of_q[1], of_q[3])
+    G = -s.bend_at[p] * slack - s.shared_with_bridge[p] * pull
     if p == q:
         G += s.yields[p]
     elif s.string[q] == i:
         G += model.spread[i] * overlap(s.first[p], s.weights[p], s.first[q], s.weights[q])
-    if s.string[q] == i:
-        G -= s.give[i] * s.bend_at[p] * s.bend_at[q]
     return float(G)
 
 
 @compiled
-def push(s: Any, p: int, force: float) -> None:
-    """Let contact `p` push its string by -J `force` (N): what bridge and tension do then.
-
-    The bridge's share keeps eq. (44) true at n+1; the string itself follows in `move`.
-    """
-    s.slack[s.string[p]] += s.give[s.string[p]] * s.bend_at[p] * force
-    s.f_c[0] += s.pull[p, 0] * force
-    s.f_c[1] += s.pull[p, 1] * force
+def is_apart(s: Any, p: int, q: int) -> bool:
+    """Whether two contacts share no node."""
+    distance = np.int64(s.first[p]) - np.int64(s.first[q])
+    return bool(s.string[p] != s.string[q] or distance <= -STENCIL or distance >= STENCIL)
 
 
 @compiled
-def move(model: Any, s: Any, u_next: Array, touching: int, bowed: bool) -> None:
+def move(model: Any, s: Any, u_next: Array, near: int, bowed: bool) -> None:
     """Let the strings go where all forces, known by now, move them: eqs. (30) and (59)."""
-    for i in range(STRINGS):
-        s.slack[i] -= s.give[i] * s.bend_at_bridge[i] * s.f_c[i]
     take_up_slack(model, s, u_next)
     for i in range(STRINGS):
         force = model.spread[i] * s.f_c[i]
         spread(u_next[i], model.bridge_first[i], model.bridge_weights[i], force)
-    for c in range(touching):
-        p = s.touching[c]
-        i = s.string[p]
-        spread(u_next[i], s.first[p], s.weights[p], -model.spread[i] * s.f_f[p])
+    for c in range(near):
+        for i in range(STRINGS):
+            p = STRINGS * s.near[c] + i
+            spread(u_next[i], s.first[p], s.weights[p], -model.spread[i] * s.f_f[p])
     if bowed:
         i = s.string[BOW]
         spread(u_next[i], s.first[BOW], s.weights[BOW], -model.spread[i] * s.f_b)

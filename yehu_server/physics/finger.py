@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
-from yehu_server.physics.contacts import answer, push
 from yehu_server.physics.elementary import power
 from yehu_server.physics.layout import CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS
 from yehu_server.physics.quantities import Quantities
@@ -83,114 +82,71 @@ def limited(ghat: float, Psi: float, travel: float) -> float:
 
 @compiled
 def meet_fingers(model: Any, s: Any, control: Array, next_: int, now: int, prev: int) -> int:
-    """Let the fingers move, free of contacts, and list those contacts that may touch.
+    """Let the fingers move, free of contacts, and list those that may touch a string.
 
     Returns how many: ``s.near`` has them. What concerns them and is known at n is written here.
     """
-    near = 0
-    for j in range(model.fingers):
+    near, s.are_near = 0, 0
+    for k in range(model.fingers):
+        j = s.order[k]
         s.U[next_, j] = advance_finger(model, s, j, control, now, prev)
+        is_near = False
         for i in range(STRINGS):
             p = STRINGS * j + i
-            eta = read(s.u[now, i], s.first[p], s.weights[p]) - s.U[now, j]
+            first, weights = s.first[p], s.weights[p]
+            eta = read(s.u[now, i], first, weights) - s.U[now, j]
             reset_contact(s, p, eta)
-            s.g[p], s.f_f[p] = 0.0, 0.0
+            ghat = 0.0
             if eta > 0.0:
-                s.near[near] = p
-                near += 1
-                s.ghat[p] = gradient(model, eta)
+                is_near = True
+                ghat = gradient(model, eta)
                 # The same I_f at all three times, so that the energy closes as x_f moves.
-                s.eta_prev[p] = read(s.u[prev, i], s.first[p], s.weights[p]) - s.U[prev, j]
+                eta_prev = read(s.u[prev, i], first, weights) - s.U[prev, j]
+                s.bend_at[p], s.eta_prev[p] = read(s.bend[i], first, weights), eta_prev
+            s.g[p], s.ghat[p], s.f_f[p] = ghat, ghat, 0.0
+        if is_near:
+            s.near[near] = j
+            s.are_near |= 1 << j
+            near += 1
     return near
 
 
 @compiled
-def press_fingers(
-    model: Any, s: Any, next_: int, near: int, f_b: float, doubt: float
-) -> tuple[int, bool]:
-    """Linearise every contact for this step, eq. (35); list those that touch.
+def may_leave(s: Any, p: int, f_b: float, doubt: float) -> bool:
+    """Whether theta of eq. (34) may be below 1: with a friction force `f_b`, or `doubt` beside it.
 
-    Without other forces a contact's is then d, and A_f less for every metre that they push it.
-
-    Parameters
-    ----------
-    f_b, doubt : float, N
-        The friction force that theta of eq. (34) is found with, and how far off it may be.
-
-    Returns
-    -------
-    touching : int
-        How many: ``s.touching`` has them.
-    friction_decides : bool
-        Whether theta may be below 1, or a contact leave, for some friction force in doubt.
+    Both in N.
     """
-    touching = 0
-    friction_decides = False
+    at_bow = s.at_bow[p]
+    travel = s.travel[p] - at_bow * f_b - abs(at_bow) * doubt
+    return bool(4.0 * s.Psi[p] + s.ghat[p] * travel < 0.0)
+
+
+@compiled
+def limit_fingers(s: Any, near: int, f_b: float) -> None:
+    """Find theta of every contact for a friction force (N), so that ``s.g`` is that of eq. (34)."""
     for c in range(near):
-        p = s.near[c]
-        Psi, ghat, at_bow = s.Psi[p], s.ghat[p], s.at_bow[p]
-        free = s.free[p] - s.U[next_, p // STRINGS] - s.eta_prev[p]
-        travel = free - at_bow * f_b
-        if 4.0 * Psi + ghat * (travel - abs(at_bow) * doubt) < 0.0 and at_bow != 0.0:
-            friction_decides = True
-        g = limited(ghat, Psi, travel)
-        s.g[p] = g
-        if g > 0.0:
-            s.touching[touching] = p
-            s.A_f[touching] = 0.25 * g * g + 0.5 * model.rate * model.beta * g * Psi
-            s.d[touching] = s.A_f[touching] * free + g * Psi
-            touching += 1
-    return touching, friction_decides
+        for i in range(STRINGS):
+            p = STRINGS * s.near[c] + i
+            s.g[p] = limited(s.ghat[p], s.Psi[p], s.travel[p] - s.at_bow[p] * f_b)
 
 
 @compiled
-def close_contacts(model: Any, s: Any, touching: int) -> tuple[float, float]:
-    """Let one contact after the other press, until only the bow's force is open: eqs. (37)-(40).
-
-    Each takes its part of every G[p, q] that is still to come. Returns by how much the bow's
-    reading moves with all contacts closed (m), and how much less it gives way (m/N).
-    """
-    bow = touching
-    for row in range(touching):
-        p = s.touching[row]
-        for column in range(row + 1):
-            q = s.touching[column]
-            G = answer(model, s, p, q)
-            if p // STRINGS == q // STRINGS:
-                G += model.C_f
-            s.G[column, row] = G
-        s.G[row, bow] = s.at_bow[p]
-    taken, taken_per_newton = 0.0, 0.0
-    for row in range(touching):
-        per_stiffness = 1.0 / (1.0 + s.A_f[row] * s.G[row, row])
-        d, A_f = s.d[row] * per_stiffness, s.A_f[row] * per_stiffness
-        s.d[row], s.A_f[row] = d, A_f
-        for other in range(row + 1, touching):
-            G = s.G[row, other]
-            s.d[other] -= s.A_f[other] * G * d
-            for column in range(other, bow + 1):
-                s.G[other, column] -= A_f * G * s.G[row, column]
-        G = s.G[row, bow]
-        taken += G * d
-        taken_per_newton += G * G * A_f
-    return taken, taken_per_newton
+def stiffness(model: Any, s: Any, p: int) -> float:
+    """Return A_f of eq. (35): what a contact's force grows by with its travel (N/m)."""
+    g = s.g[p]
+    return float(0.25 * g * g + 0.5 * model.rate * model.beta * g * s.Psi[p])
 
 
 @compiled
-def push_fingers(model: Any, s: Any, next_: int, touching: int, f_b: float) -> None:
-    """Find the contacts' forces, the bow's known; push strings and fingers, and advance Psi.
+def settle(model: Any, s: Any, next_: int, p: int, f_f: float) -> None:
+    """Let a contact's force, known by now, move its finger; advance Psi.
 
-    By eq. (35) a contact's force is A_f times its travel, plus g Psi: so that is the travel of
+    By eq. (35) the force is A_f times the contact's travel, plus g Psi: so that is the travel of
     eq. (33).
     """
-    for row in range(touching - 1, -1, -1):
-        p = s.touching[row]
-        pushed = s.G[row, touching] * f_b
-        for other in range(row + 1, touching):
-            pushed += s.G[row, other] * s.f_f[s.touching[other]]
-        f_f = s.d[row] - s.A_f[row] * pushed
-        s.f_f[p] = f_f
-        push(s, p, f_f)
-        s.U[next_, p // STRINGS] += model.C_f * f_f
-        g, Psi = s.g[p], s.Psi[p]
+    s.f_f[p] = f_f
+    s.U[next_, p // STRINGS] += model.C_f * f_f
+    g, Psi = s.g[p], s.Psi[p]
+    if g > 0.0:
         s.Psi[p] += 0.5 * (f_f - g * Psi) / (0.25 * g + 0.5 * model.rate * model.beta * Psi)

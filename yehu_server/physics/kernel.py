@@ -26,14 +26,21 @@ from yehu_server.physics.bridge import (
     prepare_bridge,
     weigh_bridge,
 )
-from yehu_server.physics.contacts import answer, feel_all, move, place_contacts, push
+from yehu_server.physics.closing import (
+    close_fingers,
+    close_together,
+    note_neighbours,
+    push_fingers,
+    push_together,
+    weigh_fingers,
+)
+from yehu_server.physics.contacts import answer, feel, move, place_contacts, reply
 from yehu_server.physics.energy import book
 from yehu_server.physics.finger import (
-    close_contacts,
+    limit_fingers,
+    may_leave,
     meet_fingers,
     prepare_fingers,
-    press_fingers,
-    push_fingers,
 )
 from yehu_server.physics.friction import solve_friction
 from yehu_server.physics.layout import (
@@ -60,6 +67,7 @@ from yehu_server.physics.layout import (
 from yehu_server.physics.pluck import pull_aside
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
+from yehu_server.physics.stencil import read
 from yehu_server.physics.string import (
     advance_strings,
     most_loss,
@@ -67,7 +75,7 @@ from yehu_server.physics.string import (
     support,
     weigh_string,
 )
-from yehu_server.physics.tension import prepare_tension, tighten, weigh_tension
+from yehu_server.physics.tension import prepare_tension, weigh_tension
 
 Array = Any
 
@@ -123,12 +131,12 @@ def retune(model: Array, state: Array, i: int, T: float, sigma_0: float, sigma_1
 @compiled
 def come_to_rest(model: Any, s: Any) -> None:
     """Put a state back to rest in place, keeping its counters. Real time: safe."""
-    s.level = 0
     s.u[:], s.q[:], s.zeta[:], s.z[:] = 0.0, 0.0, 0.0, 0.0
     s.U[:], s.Psi[:] = model.rest_height, 0.0
     s.v_r, s.f_b, s.stored = 0.0, 0.0, 0.0
     s.s_1[:], s.s_2[:], s.history[:] = 0.0, 0.0, 0.0
     s.slack[:], s.give[:], s.bend[:], s.tangent[:] = 0.0, 0.0, 0.0, 0.0
+    s.bend_at[:], s.eta_prev[:] = 0.0, 0.0
     s.placed = 0
     s.x[:] = 0.0
 
@@ -157,77 +165,103 @@ def advance(model: Array, state: Array, controls: Array, probes: Array, ledger: 
     Source: [Yehu] section 3.7.
     """
     m, s = model[0], state[0]
+    now, next_, prev = int(s.level), (s.level + 1) % LEVELS, (s.level + 2) % LEVELS
     for n in range(controls.shape[0]):
-        step(m, s, controls[n])
+        step(m, s, controls[n], next_, now, prev)
+        s.level = next_
         if n < ledger.shape[0]:
             book(m, s, controls[n], ledger[n])
         measure(m, s, probes[n])
+        next_, now, prev = prev, next_, now
 
 
 @compiled
-def step(m: Any, s: Any, control: Array) -> None:
+def step(m: Any, s: Any, control: Array, next_: int, now: int, prev: int) -> None:
     """Advance strings, bridge, bow and fingers by one sample. See `advance`."""
-    now = s.level
-    next_, prev = (now + 1) % LEVELS, (now + 2) % LEVELS
     u_next, u, u_prev = s.u[next_], s.u[now], s.u[prev]
     half_rate = 0.5 * m.rate  # of delta_t.
     s.dropped_z, s.dropped_Psi = 0.0, 0.0
 
-    string, bowed = choose_string(m, s, control[F_N])
-    place_contacts(m, s, control, string)
-    near = meet_fingers(m, s, control, next_, now, prev)
-
     # Strings and modes free of contacts, eq. (58), then tied together, eqs. (43)-(45).
     advance_strings(m, s, u_next, u, u_prev)
     pull_aside(m, s, control, u_next)
-    tighten(m, s)
-    Q = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
-    close_bridge(m, s, u_next, Q)
+    q_sum = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
+    close_bridge(m, s, u_next, q_sum)
 
+    string, bowed = choose_string(m, s, control[F_N])
+    moved, were_near = place_contacts(m, s, control, string), s.are_near
+    near = meet_fingers(m, s, control, next_, now, prev)
+    if moved or s.are_near != were_near:
+        note_neighbours(m, s, near)
+    clear = s.clear != 0
+    Q = weigh_fingers(m, s, near)
     # The bow, eqs. (46)-(53), and the fingers, eqs. (33)-(40), from where they would be.
-    feel_all(m, s, u_next, near)
+    s.bend_at[BOW] = read(s.bend[string], s.first[BOW], s.weights[BOW])
+    of_bow = reply(s, BOW)
     advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
-    free = hair_velocity(m, s, s.free[BOW], u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
-    compliance = half_rate * (answer(m, s, BOW, BOW) + m.C_h)
+    free = hair_velocity(m, s, feel(s, u_next, BOW), u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
+    compliance = half_rate * (answer(m, s, BOW, BOW, of_bow) + m.C_h)
+    F_N_now = abs(control[F_N])
     f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
     tangent = s.tangent[0], s.tangent[1], s.tangent[2]
+    for i in range(STRINGS):
+        s.slack_per_newton[i], s.f_c_per_newton[i] = of_bow[i], of_bow[STRINGS + i]
     touching = 0
     if near > 0:
         # theta depends on the friction force, and that on the contacts. Mostly theta is 1 for
         # any friction; else it is found with that of a string which no finger touches.
         f_b, doubt = (s.f_b, abs(s.f_b) + most_friction(m, control[F_N])) if bowed else (0.0, 0.0)
-        touching, friction_decides = press_fingers(m, s, next_, near, f_b, doubt)
-        if bowed and friction_decides:
-            f_b, _, _, tangent, iterations, _ = solve_friction(
-                free, compliance, s.z[string], abs(control[F_N]), tangent, m, string
-            )
-            touching, _ = press_fingers(m, s, next_, near, f_b, 0.0)
-        taken, taken_per_newton = close_contacts(m, s, touching)
+        leaving = False
+        for c in range(near):
+            for i in range(STRINGS):
+                p = STRINGS * s.near[c] + i
+                if clear:
+                    s.at_bow[p] = -s.bend_at[p] * of_bow[i]
+                else:
+                    s.at_bow[p] = answer(m, s, p, BOW, of_bow)
+                s.travel[p] = feel(s, u_next, p) - s.U[next_, s.near[c]] - s.eta_prev[p]
+                leaving |= may_leave(s, p, f_b, doubt)
+        if leaving:
+            if bowed:
+                f_b, _, _, tangent, iterations, _ = solve_friction(
+                    free, compliance, s.z[string], F_N_now, tangent, m, string
+                )
+            limit_fingers(s, near, f_b)
+            Q = weigh_fingers(m, s, near)
+        if clear:
+            taken, taken_per_newton = close_fingers(s, near, Q, of_bow)
+        else:
+            touching, taken, taken_per_newton = close_together(m, s, near)
         free -= half_rate * taken
         compliance -= half_rate * taken_per_newton
         v_r = free
+        f_b = 0.0
     if bowed:
         f_b, z_bar, v_r, tangent, again, converged = solve_friction(
-            free, compliance, s.z[string], abs(control[F_N]), tangent, m, string
+            free, compliance, s.z[string], F_N_now, tangent, m, string
         )
         iterations += again
-    push_fingers(m, s, next_, touching, f_b)
+    for i in range(STRINGS):
+        s.slack[i] += s.slack_per_newton[i] * f_b
+        s.f_c[i] += s.f_c_per_newton[i] * f_b
+    if clear:
+        push_fingers(m, s, next_, near, f_b)
+    else:
+        push_together(m, s, next_, touching, f_b)
 
     # What the forces leave behind: eqs. (30), (59), (60), and z at n + 1/2.
     s.zeta[next_, string] -= m.C_h * f_b
     s.z_bar, s.r = 0.0, 0.0
     if bowed:
-        push(s, BOW, f_b)
         s.z_bar, s.r = z_bar, m.rate * 2.0 * (z_bar - s.z[string])
         s.z[string] = 2.0 * z_bar - s.z[string]
         s.unconverged += 0 if converged else 1
     s.f_b, s.v_r, s.iterations = f_b, v_r, iterations
     s.tangent[0], s.tangent[1], s.tangent[2] = tangent
-    move(m, s, u_next, touching, bowed)
+    move(m, s, u_next, near, bowed)
     s.bridge_travel = finish_bridge(m, s.q[next_], s.q[prev], s.f_c)
     for i in range(STRINGS):
         support(u_next[i], m.N[i])
-    s.level = next_
 
 
 @compiled

@@ -112,19 +112,16 @@ STATE = np.dtype(
         ("weights", np.float64, (MAX_CONTACTS, STENCIL)),
         ("yields", np.float64, MAX_CONTACTS),
         ("shared_with_bridge", np.float64, MAX_CONTACTS),
-        ("at_bridge", np.float64, MAX_CONTACTS),
-        ("pull", np.float64, (MAX_CONTACTS, STRINGS)),
-        ("free", np.float64, MAX_CONTACTS),
         ("at_bow", np.float64, MAX_CONTACTS),
         # the bridge, and tension modulation (tension.py), in the current step
         ("S_c_inverse", np.float64, (STRINGS, STRINGS)),
         ("bend", np.float64, (STRINGS, POINTS)),  # Delta u^n
         ("bend_at", np.float64, MAX_CONTACTS),
-        ("bend_at_bridge", np.float64, STRINGS),
         ("square", np.float64, STRINGS),  # <Delta u, Delta u>, and <Delta u, u* + u^{n-1}>
         ("along", np.float64, STRINGS),
         ("slack", np.float64, STRINGS),
-        ("give", np.float64, STRINGS),
+        ("give", np.float64, (STRINGS, STRINGS)),
+        ("tug", np.float64, (STRINGS, STRINGS)),
         # where a string is pulled aside (pluck.py)
         ("x_pluck", np.float64),
         ("pluck_string", np.uint8),
@@ -140,12 +137,24 @@ STATE = np.dtype(
         ("iterations", np.int64),
         ("f_f", np.float64, MAX_CONTACTS),
         ("f_ext", np.float64, MAX_FINGERS),
-        ("near", np.uint8, MAX_CONTACTS),  # which contacts may touch, and which do
-        ("touching", np.uint8, MAX_CONTACTS),
+        ("order", np.uint8, MAX_FINGERS),  # fingers from the loop to the bridge
+        ("near", np.uint8, MAX_FINGERS),  # which may touch, in that order
+        ("are_near", np.int64),  # one bit for each
+        ("clear", np.uint8),  # whether they meet their neighbours at most,
+        ("meets", np.uint8, MAX_FINGERS),  # whether the one before,
+        ("shared", np.float64, (MAX_FINGERS, STRINGS)),  # and how far it moves them (m/N)
         ("g", np.float64, MAX_CONTACTS),
-        ("A_f", np.float64, MAX_CONTACTS),
         ("ghat", np.float64, MAX_CONTACTS),
         ("eta_prev", np.float64, MAX_CONTACTS),
+        ("travel", np.float64, MAX_CONTACTS),
+        ("W", np.float64, (MAX_FINGERS, 3)),  # closing.py
+        ("slackens", np.float64, (MAX_FINGERS, STRINGS, STRINGS)),
+        ("held", np.float64, MAX_CONTACTS),
+        ("slackened", np.float64, STRINGS),
+        ("slack_per_newton", np.float64, STRINGS),
+        ("f_c_per_newton", np.float64, STRINGS),
+        ("touching", np.uint8, MAX_CONTACTS),  # contacts that are not
+        ("A_f", np.float64, MAX_CONTACTS),
         ("d", np.float64, MAX_CONTACTS),
         ("G", np.float64, (MAX_CONTACTS, MAX_CONTACTS)),
         # energy given up since the last sample (J), and stored at the last one

@@ -39,16 +39,21 @@ def weigh_tension(model: Any, i: int) -> None:
 
 
 @compiled
-def tighten(model: Any, s: Any) -> None:
-    """Let both strings stretch over a step free of other forces; note how they will give.
+def tighten(model: Any, s: Any, i: int) -> tuple[float, float, float]:
+    """Let a string stretch over a step free of other forces.
 
-    Writes ``s.slack``, what of Delta u^n u^{n+1} still lacks; and ``s.give``, how much more slack
-    a newton leaves for each metre of Delta u^n under it.
+    Returns
+    -------
+    slack : float
+        What of Delta u^n u^{n+1} still lacks.
+    give : float, 1/(N m)
+        How much more slack a newton leaves for each metre of Delta u^n under it.
+    stretched : float
+        1 + taut <Delta u, Delta u>, which both have been divided by.
     """
-    for i in range(STRINGS):
-        weight = model.taut[i] / (1.0 + model.taut[i] * s.square[i])
-        s.slack[i] = -s.along[i] * weight
-        s.give[i] = model.spread[i] * weight
+    stretched = 1.0 + model.taut[i] * s.square[i]
+    weight = model.taut[i] / stretched
+    return -s.along[i] * weight, model.spread[i] * weight, stretched
 
 
 @compiled

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.physics import bow, elementary, friction, kernel, layout
+from yehu_server.physics import bow, elementary, friction, kernel, layout, power
 
 SOURCE = Path(__file__).resolve().parent / "c" / "kernel.c"
 TYPES = {"f8": "double", "i8": "int64_t", "u1": "uint8_t", "u2": "uint16_t"}
@@ -47,7 +47,7 @@ def constants() -> dict[str, int | float]:
     """Every plain constant of the modules that the loop is made of."""
     return {
         name: value
-        for module in (layout, elementary, bow, friction, kernel)
+        for module in (layout, elementary, power, bow, friction, kernel)
         for name, value in vars(module).items()
         if name.isupper() and type(value) in {int, float}
     }

@@ -136,7 +136,7 @@ static inline int meet_fingers(Model m, State s, const double *restrict control,
             s->f_f[p] = 0.0;
             if (eta > 0.0) {
                 s->near[near++] = (uint8_t)p;
-                s->ghat[p] = m->ghat_1 * exponential(0.5 * (m->alpha - 1.0) * logarithm(eta));
+                s->ghat[p] = power(m, eta);
                 s->eta_prev[p]
                     = reading(s->u[prev][i], s->first[p], s->weights[p]) - s->U[prev][j];
             }

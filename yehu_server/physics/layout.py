@@ -26,6 +26,11 @@ MAX_FINGERS = 4
 STENCIL = 4  # nodes that one contact touches (cubic interpolation)
 MAX_CONTACTS = MAX_FINGERS * STRINGS + 1  # finger j on string i is contact 2 j + i
 BOW = MAX_CONTACTS - 1
+# Tables of a power, power.py
+EXPONENTS = 2048  # of all floats
+INTERVAL_BITS = 7
+INTERVALS = 1 << INTERVAL_BITS
+POWER_TERMS = 5
 
 MODEL = np.dtype(
     [
@@ -77,8 +82,6 @@ MODEL = np.dtype(
         ("M_f", np.float64),
         ("C_f", np.float64),
         ("K_f", np.float64),
-        ("ghat_1", np.float64),
-        ("alpha", np.float64),
         ("beta", np.float64),
         ("rest_height", np.float64),
         ("K_lift", np.float64),
@@ -90,6 +93,11 @@ MODEL = np.dtype(
         ("a_2", np.float64, MAX_SECTIONS),
         ("taps", np.float64, MAX_TAPS),
         ("last_tap", np.int64),
+        # ghat of eq. (33), a power of the penetration, by tables (power.py)
+        ("power_series", np.float64, POWER_TERMS),
+        ("power_of_twos", np.float64, EXPONENTS),
+        ("per_middle", np.float64, INTERVALS),
+        ("power_of_middle", np.float64, INTERVALS),
     ],
     align=True,
 )

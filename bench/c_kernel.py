@@ -57,11 +57,17 @@ def struct(name: str, record: np.dtype[Any]) -> str:
     """A C struct with the fields, shapes and, asserted, the places of a numpy record."""
     members = []
     asserts = [f'_Static_assert(sizeof(struct {name}) == {record.itemsize}, "{name}");']
+    end = 0
     for field, (dtype, offset, *_) in (record.fields or {}).items():
+        if offset - end >= dtype.alignment:
+            members.append(f"    char before_{field}[{offset - end}];")
+        end = offset + dtype.itemsize
         shape = "".join(f"[{size}]" for size in dtype.shape)
         members.append(f"    {TYPES[dtype.base.str[1:]]} {field}{shape};")
         place = f"offsetof(struct {name}, {field})"
         asserts.append(f'_Static_assert({place} == {offset}, "{name}.{field}");')
+    if record.itemsize - end >= record.alignment:
+        members.append(f"    char after[{record.itemsize - end}];")
     return "\n".join([f"struct {name} {{", *members, "};", *asserts])
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.physics import bow, elementary, friction, kernel, layout
+from yehu_server.physics import bow, elementary, friction, kernel, layout, power
 
 SOURCE = Path(__file__).resolve().parent / "c" / "kernel.c"
 TYPES = {"f8": "double", "i8": "int64_t", "u1": "uint8_t", "u2": "uint16_t", "b1": "bool"}
@@ -47,7 +47,7 @@ def constants() -> dict[str, int | float]:
     """Every plain constant of the modules that the loop is made of."""
     return {
         name: value
-        for module in (layout, elementary, bow, friction, kernel)
+        for module in (layout, elementary, power, bow, friction, kernel)
         for name, value in vars(module).items()
         if name.isupper() and type(value) in {int, float}
     }
@@ -57,11 +57,17 @@ def struct(name: str, record: np.dtype[Any]) -> str:
     """A C struct with the fields, shapes and, asserted, the places of a numpy record."""
     members = []
     asserts = [f'_Static_assert(sizeof(struct {name}) == {record.itemsize}, "{name}");']
+    end = 0
     for field, (dtype, offset, *_) in (record.fields or {}).items():
+        if offset - end >= dtype.alignment:
+            members.append(f"    char before_{field}[{offset - end}];")
+        end = offset + dtype.itemsize
         shape = "".join(f"[{size}]" for size in dtype.shape)
         members.append(f"    {TYPES[dtype.base.str[1:]]} {field}{shape};")
         place = f"offsetof(struct {name}, {field})"
         asserts.append(f'_Static_assert({place} == {offset}, "{name}.{field}");')
+    if record.itemsize - end >= record.alignment:
+        members.append(f"    char after[{record.itemsize - end}];")
     return "\n".join([f"struct {name} {{", *members, "};", *asserts])
 
 

@@ -16,7 +16,7 @@ from c_kernel import Advance
 
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.string import support
+from yehu_server.physics.string import follow_shape, support
 
 STEP_TOLERANCE = 1e-12  # of a field's largest value
 START_TOLERANCE = 1e-8
@@ -102,6 +102,7 @@ def roughen(model: Any, state: Any, controls: Any, rng: np.random.Generator) -> 
     for points in s["u"].reshape(-1, layout.STRINGS, layout.POINTS):
         for i in range(layout.STRINGS):
             support(points[i], int(m["N"][i]))
+    follow_shape(m, s)
     modes = int(m["modes"])
     s["q"][:, :modes] += 1e-8 * normal(size=(layout.LEVELS, modes))
     s["zeta"] += 1e-6 * normal(size=s["zeta"].shape)

@@ -102,13 +102,14 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
     What it writes must be reached by one of its arguments only: see `Restricted`. Division by
     zero follows IEEE 754 (``error_model="numpy"``), since a compiled callback has nobody to
-    raise to.
+    raise to. It makes no arrays, so none are counted (``_nrt``): each row taken of one would be
+    two atomic additions, by calls that put away all registers.
     """
-    return _compiled(function, pipeline_class=Restricted)
+    return _compiled(function, pipeline_class=Restricted, _nrt=False)
 
 
 def compiled_to_share(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile as `compiled` does, for a function whose arguments overlap."""
+    """Compile as `compiled` does, for a function whose arguments overlap, or that makes views."""
     return _compiled(function)
 
 

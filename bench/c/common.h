@@ -80,17 +80,20 @@ static inline double exponential(double x)
     return of_bits((int64_t)(exponent << MANTISSA_BITS)) * PAIRED(power_of_e);
 }
 
-static inline double logarithm(double x)
+/* ---- power.py ------------------------------------------------------------------------------- */
+
+static inline double power(Model m, double x)
 {
-    const int64_t bits = bits_of(x);
-    const int64_t twos = (bits - BITS_OF_ROOT_HALF) >> MANTISSA_BITS;
-    const double part = of_bits(bits - (int64_t)((uint64_t)twos << MANTISSA_BITS));
-    const double w = (part - 1.0) / (part + 1.0), t = w * w, t_2 = t * t, t_4 = t_2 * t_2;
-    const double low = PAIRED(L_0 + L_1 * t) + t_2 * PAIRED(L_2 + L_3 * t);
-    const double high = PAIRED(L_4 + L_5 * t) + t_2 * PAIRED(L_6 + L_7 * t);
-    const double highest = PAIRED(L_8 + L_9 * t) + t_2 * L_10;
-    const double series = PAIRED(low) + t_4 * PAIRED(PAIRED(high) + t_4 * PAIRED(highest));
-    return (double)twos * LN_2 + w * PAIRED(series);
+    const uint64_t bits = (uint64_t)bits_of(x);
+    const uint64_t exponent = (bits >> MANTISSA_BITS) & (EXPONENTS - 1);
+    const uint64_t interval = (bits >> INTERVAL_SHIFT) & (INTERVALS - 1);
+    const double part = of_bits((int64_t)((bits & MANTISSA_MASK) | BITS_OF_1));
+    const double t = part * m->per_middle[interval] - 1.0, t_2 = t * t;
+    const double *c = m->power_series;
+    const double high = PAIRED(c[2] + c[3] * t) + t_2 * c[4];
+    const double series = PAIRED(c[0] + c[1] * t) + t_2 * PAIRED(high);
+    const double about = m->power_of_twos[exponent] * m->power_of_middle[interval];
+    return about + about * t * PAIRED(series);
 }
 
 /* ---- stencil.py ----------------------------------------------------------------------------- */

@@ -138,7 +138,7 @@ static inline int meet_fingers(Model m, State s, const double *restrict control,
             double ghat = 0.0;
             if (eta > 0.0) {
                 is_near = true;
-                ghat = m->ghat_1 * exponential(0.5 * (m->alpha - 1.0) * logarithm(eta));
+                ghat = power(m, eta);
                 s->bend_at[p] = reading(s->bend[i], first, weights);
                 s->eta_prev[p] = reading(s->u[prev][i], first, weights) - s->U[prev][j];
             }

@@ -12,13 +12,13 @@ static inline void advance_string(double *restrict u_next, const double *restric
                                   const double *restrict B, const double *restrict C,
                                   double *restrict square_out, double *restrict along_out)
 {
-    const double b_0 = B[0], b_1 = B[1], b_2 = B[2], c_0 = C[0], c_1 = C[1];
+    const double b_0 = B[0], b_1 = B[1], b_2 = B[2], c_0 = C[0] + 2.0 * C[1], c_1 = C[1];
     const int64_t inner = whole_vectors(N - 1);
     double square = 0.0, along = 0.0;
     for (int64_t l = GHOST + 1; l < GHOST + 1 + inner; l++) {
         const double beside = u[l - 1] + u[l + 1];
         double star = b_0 * u[l] + b_1 * beside + b_2 * (u[l - 2] + u[l + 2]);
-        star += c_0 * u_prev[l] + c_1 * (u_prev[l - 1] + u_prev[l + 1]);
+        star += c_0 * u_prev[l] + c_1 * bend[l];
         star *= inside[l];
         const double delta = (beside - 2.0 * u[l]) * inside[l];
         u_next[l] = star;

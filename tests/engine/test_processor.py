@@ -174,7 +174,7 @@ def ringing() -> Instrument:
 
 
 def scale(instrument: Instrument, factor: float) -> None:
-    for name in MOVING:
+    for name in (*MOVING, "bend"):
         instrument._rig["state"][name] *= factor
 
 

@@ -8,6 +8,7 @@ import reference as ref
 
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.string import follow_shape
 
 
 def reference_params(quantities: Quantities, rate: float) -> ref.RefParams:
@@ -72,6 +73,7 @@ def kernel_state(model: Any, state: ref.RefState) -> Any:
             points = s["u"][at, i]
             points[layout.GHOST : layout.GHOST + N + 1] = u
             points[0], points[N + 2] = -points[2], -points[N]
+    follow_shape(model[0], s)
     modes, fingers = len(state.q), len(state.U)
     s["q"][level, :modes], s["q"][prev, :modes] = state.q, state.q_prev
     s["zeta"][level], s["zeta"][prev] = state.zeta, state.zeta_prev

@@ -9,6 +9,7 @@ import numpy as np
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.energy import stored_energy
 from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.string import follow_shape
 
 COLUMNS = {
     "F_N": layout.F_N,
@@ -107,6 +108,7 @@ def shaped(model: Any, string: int, shape: Callable[[Any], Any]) -> Any:
     u[:, layout.GHOST : layout.GHOST + N + 1] = shape(np.arange(N + 1) * h)
     u[:, layout.GHOST] = u[:, layout.GHOST + N] = 0.0
     u[:, 0], u[:, N + 2] = -u[:, 2], -u[:, N]
+    follow_shape(model[0], state[0])
     return state
 
 

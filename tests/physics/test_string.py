@@ -12,7 +12,7 @@ from yehu_server.physics import kernel, layout
 from yehu_server.physics import string as string_module
 from yehu_server.physics.grid import intervals, least_spacing
 from yehu_server.physics.quantities import Quantities, StringQuantities
-from yehu_server.physics.string import advance_string, prepare_strings, support
+from yehu_server.physics.string import advance_nodes, prepare_strings, support
 
 PARTIALS = 10
 RATES = (44100.0, 48000.0, 96000.0)
@@ -36,18 +36,20 @@ def prepared(string: StringQuantities, rate: float, N: int | None = None):
 def advanced(model, shape, steps):
     """The string let go from `shape` (inner nodes): its inner nodes, one row a step."""
     N = int(model["N"][0])
-    u = np.zeros((layout.LEVELS, layout.POINTS))
-    u[:, layout.GHOST + 1 : layout.GHOST + N] = shape
-    support(u[0], N)
-    u[:] = u[0]
+    u = np.zeros((layout.LEVELS, layout.STRINGS, layout.POINTS))
+    u[:, :, layout.GHOST + 1 : layout.GHOST + N] = shape
+    support(u[0, 0], N)
+    u[:] = u[0, 0]
+    bend = np.zeros((layout.STRINGS, layout.POINTS))
+    bend[:, 1:-1] = np.diff(u[0], 2) * model["inside"][:, 1:-1]
     kept = np.zeros((steps, N - 1))
     for n in range(steps):
         now, following, before = n % 3, (n + 1) % 3, (n + 2) % 3
-        kept[n] = u[now, layout.GHOST + 1 : layout.GHOST + N]
-        bend = np.zeros(layout.POINTS)
-        rows = u[following], u[now], u[before], bend, model["inside"][0]
-        advance_string(*rows, N, model["B"][0], model["C"][0])
-        support(u[following], N)
+        kept[n] = u[now, 0, layout.GHOST + 1 : layout.GHOST + N]
+        rows = u[following], u[now], u[before], bend, model["inside"]
+        advance_nodes(*rows, N, model["B"], model["C"])
+        for row in u[following]:
+            support(row, N)
     return kept
 
 
@@ -250,3 +252,11 @@ def test_no_more_loss_is_taken_than_the_grid_bears(i, rate):
     assert silk.sigma_1 < most < 1.0
     spacing = least_spacing(replace(silk, sigma_1=most), 1.0 / rate)
     assert spacing == pytest.approx(float(model["h"][0, i]), rel=1e-9)
+
+
+def test_the_first_node_of_every_string_begins_a_line_of_the_processors_cache():
+    model = kernel.prepare(YEHU, 44100.0)
+    state = kernel.at_rest(model)
+    rows = [*model["inside"][0], *state["bend"][0], *state["u"][0].reshape(-1, layout.POINTS)]
+    for row in rows:
+        assert row[layout.GHOST + 1 :].ctypes.data % layout.LINE_BYTES == 0

@@ -16,7 +16,7 @@ from yehu_server.params.table import SLOT, find
 from yehu_server.physics import kernel
 from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.grid import check_rate
-from yehu_server.physics.layout import MAX_FINGERS
+from yehu_server.physics.layout import MAX_FINGERS, new_record
 from yehu_server.physics.quantities import Quantities
 
 Array = Any
@@ -57,9 +57,7 @@ class Instrument:
         self.rate = rate
         self.quantities = quantities or Quantities()
         self._rig = (
-            np.zeros(1, native.RIG)
-            if memory is None
-            else np.frombuffer(memory, native.RIG, count=1)
+            new_record(native.RIG) if memory is None else np.frombuffer(memory, native.RIG, count=1)
         )
         self._address = self._rig.ctypes.data
         self._rig["model"] = kernel.prepare(self.quantities, rate, MAX_FINGERS)

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
-from yehu_server.physics.elementary import power
 from yehu_server.physics.layout import CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS
+from yehu_server.physics.power import power, prepare_power
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.stencil import read
 
@@ -25,10 +25,11 @@ Array = Any
 def prepare_fingers(model: np.void, quantities: Quantities) -> None:
     """Write the fingers' coefficients into `model`."""
     finger = quantities.finger
-    for name in ("M_f", "K_f", "alpha", "beta", "rest_height"):
+    for name in ("M_f", "K_f", "beta", "rest_height"):
         model[name] = getattr(finger, name)
     model["C_f"] = model["k"] ** 2 / finger.M_f
-    model["ghat_1"] = math.sqrt(0.5 * finger.K_f * (finger.alpha + 1.0))
+    ghat_1 = math.sqrt(0.5 * finger.K_f * (finger.alpha + 1.0))
+    prepare_power(model, ghat_1, 0.5 * (finger.alpha - 1.0))
     model["K_lift"] = finger.M_f * finger.omega_lift**2
     model["R_lift"] = 2.0 * finger.M_f * finger.omega_lift  # critical damping
 
@@ -61,7 +62,7 @@ def reset_contact(s: Any, p: int, eta: float) -> None:
 @compiled
 def gradient(model: Any, eta: float) -> float:
     """Return ghat of eq. (33) at a penetration (m) above zero."""
-    return float(model.ghat_1 * power(eta, 0.5 * (model.alpha - 1.0)))
+    return power(model, eta)
 
 
 @compiled

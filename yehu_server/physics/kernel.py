@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from yehu_server.errors import ParameterError
 from yehu_server.jit import compiled
 from yehu_server.physics.bow import (
@@ -63,6 +61,7 @@ from yehu_server.physics.layout import (
     STATE,
     STRINGS,
     V_B,
+    new_record,
 )
 from yehu_server.physics.pluck import pull_aside
 from yehu_server.physics.quantities import Quantities
@@ -90,7 +89,7 @@ def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
     """
     if not 1 <= fingers <= MAX_FINGERS:
         raise ParameterError(f"fingers: 1 to {MAX_FINGERS}, not {fingers}")
-    model = np.zeros(1, MODEL)
+    model = new_record(MODEL)
     record = model[0]
     record["k"], record["rate"] = 1.0 / rate, rate
     record["fingers"] = fingers
@@ -108,7 +107,7 @@ def at_rest(model: Any) -> Any:
 
     Returns: ndarray [shape=(1,), dtype=layout.STATE].
     """
-    state = np.zeros(1, STATE)
+    state = new_record(STATE)
     state["U"][:] = model["rest_height"][0]
     return state
 

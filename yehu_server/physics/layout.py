@@ -9,6 +9,8 @@ negative costs a comparison at every use, and keeps loops from becoming vectors.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from yehu_server.jit import compiled
@@ -16,8 +18,8 @@ from yehu_server.jit import compiled
 STRINGS = 2
 MAX_NODES = 512  # grid intervals of one string; 0.38 m of silk at 192 kHz takes about 130
 GHOST = 1  # points before l = 0, so that the stencil of D4 needs no special case
-VECTOR = 16  # numbers worked on at once: four vectors of AVX2, two of AVX-512
-POINTS = MAX_NODES + VECTOR
+VECTOR = 8  # numbers worked on at once: two vectors of AVX2, one of AVX-512
+POINTS = MAX_NODES + 2 * VECTOR
 LEVELS = 3  # u[n+1], u[n], u[n-1], taking turns
 MAX_MODES = 16
 MAX_SECTIONS = 32
@@ -26,8 +28,44 @@ MAX_FINGERS = 4
 STENCIL = 4  # nodes that one contact touches (cubic interpolation)
 MAX_CONTACTS = MAX_FINGERS * STRINGS + 1  # finger j on string i is contact 2 j + i
 BOW = MAX_CONTACTS - 1
+# Tables of a power, power.py
+EXPONENTS = 2048  # of all floats
+INTERVAL_BITS = 7
+INTERVALS = 1 << INTERVAL_BITS
+POWER_TERMS = 5
 
-MODEL = np.dtype(
+LINE_BYTES = 64  # of the processor's cache: vectors within one are read and written at once
+
+
+def lined_up(fields: list[Any]) -> np.dtype[Any]:
+    """A record in which the first node of each string begins a cache line, if the record does."""
+    kinds = {name: kind for name, (kind, *_) in (np.dtype(fields, align=True).fields or {}).items()}
+    offsets, end = [], 0
+    for kind in kinds.values():
+        unit, ahead = kind.alignment, 0
+        if kind.shape[-1:] == (POINTS,):
+            unit, ahead = LINE_BYTES, (GHOST + 1) * kind.base.itemsize
+        offsets.append(-(-(end + ahead) // unit) * unit - ahead)
+        end = offsets[-1] + kind.itemsize
+    return np.dtype(
+        {
+            "names": list(kinds),
+            "formats": list(kinds.values()),
+            "offsets": offsets,
+            "itemsize": -(-end // LINE_BYTES) * LINE_BYTES,
+        },
+        align=True,
+    )
+
+
+def new_record(kind: np.dtype[Any]) -> Any:
+    """One record, all zeros [shape=(1,)], at the beginning of a cache line."""
+    room = np.zeros(kind.itemsize + LINE_BYTES, np.uint8)
+    start = -room.ctypes.data % LINE_BYTES
+    return room[start : start + kind.itemsize].view(kind)
+
+
+MODEL = lined_up(
     [
         ("k", np.float64),
         ("rate", np.float64),  # 1 / k
@@ -77,8 +115,6 @@ MODEL = np.dtype(
         ("M_f", np.float64),
         ("C_f", np.float64),
         ("K_f", np.float64),
-        ("ghat_1", np.float64),
-        ("alpha", np.float64),
         ("beta", np.float64),
         ("rest_height", np.float64),
         ("K_lift", np.float64),
@@ -90,11 +126,15 @@ MODEL = np.dtype(
         ("a_2", np.float64, MAX_SECTIONS),
         ("taps", np.float64, MAX_TAPS),
         ("last_tap", np.int64),
-    ],
-    align=True,
+        # ghat of eq. (33), a power of the penetration, by tables (power.py)
+        ("power_series", np.float64, POWER_TERMS),
+        ("power_of_twos", np.float64, EXPONENTS),
+        ("per_middle", np.float64, INTERVALS),
+        ("power_of_middle", np.float64, INTERVALS),
+    ]
 )
 
-STATE = np.dtype(
+STATE = lined_up(
     [
         ("level", np.uint8),  # which of the LEVELS is "now"
         ("u", np.float64, (LEVELS, STRINGS, POINTS)),
@@ -115,7 +155,7 @@ STATE = np.dtype(
         ("at_bow", np.float64, MAX_CONTACTS),
         # the bridge, and tension modulation (tension.py), in the current step
         ("S_c_inverse", np.float64, (STRINGS, STRINGS)),
-        ("bend", np.float64, (STRINGS, POINTS)),  # Delta u^n
+        ("bend", np.float64, (STRINGS, POINTS)),  # Delta u^n; as a step begins, Delta u^{n-1}
         ("bend_at", np.float64, MAX_CONTACTS),
         ("square", np.float64, STRINGS),  # <Delta u, Delta u>, and <Delta u, u* + u^{n-1}>
         ("along", np.float64, STRINGS),
@@ -168,8 +208,7 @@ STATE = np.dtype(
         # counters, which outlive a lost state
         ("unconverged", np.int64),
         ("lost", np.int64),
-    ],
-    align=True,
+    ]
 )
 
 # Columns of the controls, one row a sample. Fingers follow in pairs (x_f, press).

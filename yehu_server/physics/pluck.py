@@ -9,7 +9,7 @@ import numpy as np
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import F_PLUCK, GHOST, POINTS, X_PLUCK
 from yehu_server.physics.stencil import place_cubic, read, spread
-from yehu_server.physics.string import support
+from yehu_server.physics.string import follow_shape, support
 
 Array = Any
 
@@ -66,3 +66,4 @@ def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: flo
     u[GHOST + first : GHOST + first + len(weights)] -= weights * at_bridge
     support(u, intervals)
     s["u"][:, i, :] = u
+    follow_shape(m, s)

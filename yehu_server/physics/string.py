@@ -8,7 +8,7 @@ import numpy as np
 
 from yehu_server.jit import compiled
 from yehu_server.physics.grid import intervals
-from yehu_server.physics.layout import GHOST, STRINGS, whole_vectors
+from yehu_server.physics.layout import GHOST, LEVELS, whole_vectors
 from yehu_server.physics.quantities import Quantities
 
 Array = Any
@@ -57,58 +57,67 @@ def most_loss(model: Any, i: int, T: float) -> float:
 
 
 @compiled
-def advance_string(
-    u_next: Array,
-    u: Array,
-    u_prev: Array,
-    bend: Array,
-    inside: Array,
-    N: int,
-    B: Array,
-    C: Array,
+def advance_node(
+    u_next: Array, u: Array, u_prev: Array, bend: Array, inside: Array, at: int, B: Array, C: Array
 ) -> tuple[float, float]:
-    """Advance one stiff string by one sample, free of contact forces: u* of eq. (58).
+    """Advance one node; return what it adds to the two sums of `advance_nodes`."""
+    beside = u[at - 1] + u[at + 1]
+    star = B[0] * u[at] + B[1] * beside + B[2] * (u[at - 2] + u[at + 2])
+    star += (C[0] + 2.0 * C[1]) * u_prev[at] + C[1] * bend[at]
+    delta = (beside - 2.0 * u[at]) * inside[at]
+    u_next[at], bend[at] = star * inside[at], delta
+    return delta * delta, delta * (star + u_prev[at])
+
+
+@compiled
+def advance_nodes(
+    u_next: Array, u: Array, u_prev: Array, bend: Array, inside: Array, N: int, B: Array, C: Array
+) -> tuple[float, float, float, float]:
+    """Advance two stiff strings by one sample, free of contact forces: u* of eq. (58).
+
+    Both in one loop, so that the sums of one need not wait for those of the other.
 
     Parameters
     ----------
-    u_next, u, u_prev : ndarray [shape=(POINTS,), m]
+    u_next, u, u_prev : ndarray [shape=(STRINGS, POINTS), m]
         Displacement one sample ahead, now and one sample ago, with one ghost node at
         each end, and zeros beyond.
-    bend : ndarray [shape=(POINTS,), m]
-        Written: Delta u, the second difference now.
-    inside : ndarray [shape=(POINTS,)]
-        One between the ends of the string, zero there and beyond.
-    B : ndarray [shape=(3,)]
+    bend : ndarray [shape=(STRINGS, POINTS), m]
+        The second difference of u_prev; written: Delta u, that of now.
+    inside : ndarray [shape=(STRINGS, POINTS)]
+        One between the ends of a string, zero there and beyond.
+    N : int
+        The grid intervals of the longer string.
+    B : ndarray [shape=(STRINGS, 3)]
         Weights of u at distance 0, 1 and 2.
-    C : ndarray [shape=(2,)]
+    C : ndarray [shape=(STRINGS, 2)]
         Weights of u_prev at distance 0 and 1.
 
     Returns
     -------
-    square, along : float, m^2
+    square_1, along_1, square_2, along_2 : float, m^2
         <Delta u, Delta u> and <Delta u, u* + u_prev> over the nodes, for tension.py.
 
     Real time: safe; no allocation, linear in N.
     Source: [Yehu] eq. (32) with simple supports, eq. (3).
     """
-    B_0, B_1, B_2 = B[0], B[1], B[2]
-    C_0, C_1 = C[0], C[1]
-    square, along = 0.0, 0.0
+    square_1, along_1, square_2, along_2 = 0.0, 0.0, 0.0, 0.0
     for l in range(whole_vectors(N - 1)):
         at = GHOST + 1 + l
-        beside = u[at - 1] + u[at + 1]
-        star = (
-            B_0 * u[at]
-            + B_1 * beside
-            + B_2 * (u[at - 2] + u[at + 2])
-            + C_0 * u_prev[at]
-            + C_1 * (u_prev[at - 1] + u_prev[at + 1])
-        )
-        delta = (beside - 2.0 * u[at]) * inside[at]
-        u_next[at], bend[at] = star * inside[at], delta
-        square += delta * delta
-        along += delta * (star + u_prev[at])
-    return square, along
+        square, along = advance_node(u_next[0], u[0], u_prev[0], bend[0], inside[0], at, B[0], C[0])
+        square_1 += square
+        along_1 += along
+        square, along = advance_node(u_next[1], u[1], u_prev[1], bend[1], inside[1], at, B[1], C[1])
+        square_2 += square
+        along_2 += along
+    return square_1, along_1, square_2, along_2
+
+
+def follow_shape(model: np.void, s: np.void) -> None:
+    """Make a state whose shapes were set from outside whole: what a step keeps of the last one."""
+    u_prev = s["u"][(int(s["level"]) + 2) % LEVELS]
+    delta = u_prev[:, :-2] - 2.0 * u_prev[:, 1:-1] + u_prev[:, 2:]
+    s["bend"][:, 1:-1] = delta * model["inside"][:, 1:-1]
 
 
 @compiled
@@ -121,14 +130,7 @@ def support(u: Array, N: int) -> None:
 @compiled
 def advance_strings(model: Any, s: Any, u_next: Array, u: Array, u_prev: Array) -> None:
     """Both strings, free of contact forces: arrays of shape (2, points)."""
-    for i in range(STRINGS):
-        s.square[i], s.along[i] = advance_string(
-            u_next[i],
-            u[i],
-            u_prev[i],
-            s.bend[i],
-            model.inside[i],
-            model.N[i],
-            model.B[i],
-            model.C[i],
-        )
+    N = max(model.N[0], model.N[1])
+    s.square[0], s.along[0], s.square[1], s.along[1] = advance_nodes(
+        u_next, u, u_prev, s.bend, model.inside, N, model.B, model.C
+    )

@@ -59,9 +59,10 @@ def tighten(model: Any, s: Any, i: int) -> tuple[float, float, float]:
 @compiled
 def take_up_slack(model: Any, s: Any, u_next: Array) -> None:
     """Move the strings by what their change of tension, slack h / spread (N), is by now."""
-    for i in range(STRINGS):
-        slack = s.slack[i]
-        if slack == 0.0:
-            continue
-        for l in range(whole_vectors(model.N[i] - 1)):
-            u_next[i, GHOST + 1 + l] += slack * s.bend[i, GHOST + 1 + l]
+    slack_1, slack_2 = s.slack[0], s.slack[1]
+    if slack_1 == 0.0 and slack_2 == 0.0:
+        return
+    for l in range(whole_vectors(max(model.N[0], model.N[1]) - 1)):
+        at = GHOST + 1 + l
+        u_next[0, at] += slack_1 * s.bend[0, at]
+        u_next[1, at] += slack_2 * s.bend[1, at]

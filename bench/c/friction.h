@@ -41,8 +41,9 @@ static inline struct imbalance imbalance(Model m, double v_r, double z, double t
     return (struct imbalance){
         .residual = PAIRED(v_r - other) - half * rise,
         .slope = PAIRED(1.0 - turn_other - swing * cosine) - dhalf * rise,
-        .curve = PAIRED(-swing * dangle - (2.0 * dangle * dhalf + half * ddangle) * cosine)
-                 + (swing * dangle - dw - 0.5 * v_r * ddw) * rise,
+        .curve = PAIRED(-0.5 * (swing * dangle)
+                        - PAIRED(dangle * dhalf + 0.5 * (half * ddangle)) * cosine)
+                 + 0.5 * PAIRED(swing * dangle - dw - 0.5 * (v_r * ddw)) * rise,
         .by_z = -0.5 * fabs(v_r) * (M_PI * w * per_width * cosine + per_z_ss * rise),
         .room = room,
         .closing = closing,
@@ -125,10 +126,10 @@ static inline struct grip solve_friction(Model m, double free, double compliance
             low = v_r;
         const double steep_2 = at.slope * at.slope;
         const double way = -at.residual * at.slope
-                           / larger(steep_2 - 0.5 * at.residual * at.curve, 0.5 * steep_2);
+                           / larger(steep_2 - at.residual * at.curve, 0.5 * steep_2);
         double step = v_r + way;
         const bool is_inside = low < step && step < high;
-        double missed = 0.25 * at.curve * at.curve * fabs(at.residual);
+        double missed = at.curve * at.curve * fabs(at.residual);
         missed += (jolt * (1.0 + fabs(v_r) * per_v) * fabs(way) + sag) * steep_2;
         missed *= way * way;
         if (is_inside && missed <= TOLERANCE * steep_2

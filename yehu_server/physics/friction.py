@@ -50,7 +50,7 @@ def imbalance(
     Returns
     -------
     residual, slope, curve : float, m/s, 1, s/m
-        r - z_dot, its first and its second derivative by v_r.
+        r - z_dot, its first and half its second derivative by v_r.
     by_z : float, 1/s
         The partial derivative of r by z_bar.
     room, closing : float, m and s
@@ -88,8 +88,8 @@ def imbalance(
     swing = half * dangle
     residual = (v_r - other) - half * rise
     slope = (1.0 - turn_other - swing * cosine) - dhalf * rise
-    curve = -swing * dangle - (2.0 * dangle * dhalf + half * ddangle) * cosine
-    curve += (swing * dangle - dw - 0.5 * v_r * ddw) * rise
+    curve = -0.5 * (swing * dangle) - (dangle * dhalf + 0.5 * (half * ddangle)) * cosine
+    curve += 0.5 * (swing * dangle - dw - 0.5 * (v_r * ddw)) * rise
     by_z = -0.5 * abs(v_r) * (math.pi * w * per_width * cosine + per_z_ss * rise)
     return residual, slope, curve, by_z, room, closing
 
@@ -164,7 +164,8 @@ def solve_friction(
     z_ba = bow.xi[string] * bow.mu_C * reach
     per_compliance = 1.0 / compliance
 
-    # Bristles that hold are linear but for epsilon_1(v_r): the rest is a last step, if slight.
+    # Bristles that hold are linear but for epsilon_1(v_r), which takes one more step where it
+    # falls off only slightly.
     pulled = free - compliance * epsilon_0 * z
     firmness = 1.0 + compliance * stiffness * half_k  # pulled / v_r
     per_firmness = 1.0 / firmness
@@ -175,6 +176,7 @@ def solve_friction(
         step = v_r + v_r * excess * slow
         f_b = (free - v_r) * per_compliance - v_r * (excess * per_compliance) * slow
         z_bar = z + step * half_k
+        # That leaves less than 4 |v_r| excess^2: a hundredth of the tolerance is as good as exact.
         excess *= slow
         if 400.0 * abs(v_r) * excess * excess <= TOLERANCE and bristles_hold(step, z_bar, z_ba):
             return f_b, z_bar, step, (0.0, 1.0, 0.0), 1, True
@@ -223,10 +225,10 @@ def solve_friction(
         else:
             low = v_r
         steep_2 = slope * slope
-        way = -residual * slope / max(steep_2 - 0.5 * residual * curve, 0.5 * steep_2)
+        way = -residual * slope / max(steep_2 - residual * curve, 0.5 * steep_2)
         step = v_r + way
         is_inside = low < step < high
-        missed = 0.25 * curve * curve * abs(residual)
+        missed = curve * curve * abs(residual)
         missed += (jolt * (1.0 + abs(v_r) * per_v) * abs(way) + sag) * steep_2
         missed *= way * way
         if is_inside and missed <= TOLERANCE * steep_2 and room * (room + closing * way) > 0.0:

@@ -53,31 +53,36 @@ static inline double of_bits(int64_t bits)
     return x;
 }
 
-static inline void sine_and_cosine(double angle, double *sine, double *cosine)
+static inline void sine_and_cosine(double half_turns, double *sine, double *cosine)
 {
-    const double half = 0.5 * angle, t = half * half, t_2 = t * t, t_4 = t_2 * t_2;
+    const double t = half_turns * half_turns, t_2 = t * t, t_4 = t_2 * t_2;
     const double s_low = PAIRED(S_0 + S_1 * t) + t_2 * PAIRED(S_2 + S_3 * t);
     const double s_high = PAIRED(S_4 + S_5 * t) + t_2 * PAIRED(S_6 + S_7 * t);
     const double c_low = PAIRED(C_0 + C_1 * t) + t_2 * PAIRED(C_2 + C_3 * t);
     const double c_high = PAIRED(C_4 + C_5 * t) + t_2 * PAIRED(C_6 + C_7 * t);
-    const double s = half * PAIRED(PAIRED(s_low) + t_4 * PAIRED(s_high));
-    const double c = PAIRED(c_low) + t_4 * PAIRED(PAIRED(c_high) + t_4 * C_8);
-    *sine = 2.0 * s * PAIRED(c);
-    *cosine = 1.0 - 2.0 * s * s;
+    *sine = half_turns * PAIRED(PAIRED(s_low) + t_4 * PAIRED(s_high));
+    *cosine = PAIRED(c_low) + t_4 * PAIRED(c_high);
 }
 
-static inline double exponential(double x)
+static inline double power_of_2(double x)
 {
-    x = larger(x, LEAST);
-    const double twos = floor(x * PER_LN_2 + 0.5);
-    const double t = x - twos * LN_2, t_2 = t * t, t_4 = t_2 * t_2;
-    const double low = PAIRED(E_0 + E_1 * t) + t_2 * PAIRED(E_2 + E_3 * t);
-    const double middle = PAIRED(E_4 + E_5 * t) + t_2 * PAIRED(E_6 + E_7 * t);
-    const double high = PAIRED(E_8 + E_9 * t) + t_2 * PAIRED(E_10 + E_11 * t);
-    const double highest = PAIRED(high) + t_4 * PAIRED(E_12 + E_13 * t);
-    const double power_of_e = PAIRED(low) + t_4 * PAIRED(PAIRED(middle) + t_4 * PAIRED(highest));
-    const uint64_t exponent = (uint64_t)((int64_t)twos + EXPONENT_OF_1);
-    return of_bits((int64_t)(exponent << MANTISSA_BITS)) * PAIRED(power_of_e);
+    const double twos = rint(x), t = x - twos, t_2 = t * t, t_4 = t_2 * t_2;
+    const double low = PAIRED(P_0 + P_1 * t) + t_2 * PAIRED(P_2 + P_3 * t);
+    const double middle = PAIRED(P_4 + P_5 * t) + t_2 * PAIRED(P_6 + P_7 * t);
+    const double high = PAIRED(P_8 + P_9 * t) + t_2 * PAIRED(P_10 + P_11 * t);
+    const int64_t exponent = (int64_t)twos > LEAST_EXPONENT ? (int64_t)twos : LEAST_EXPONENT;
+    const double scale = of_bits((int64_t)((uint64_t)(exponent + EXPONENT_OF_1) << MANTISSA_BITS));
+    return scale * PAIRED(PAIRED(PAIRED(low) + t_4 * PAIRED(middle)) + t_4 * t_4 * PAIRED(high));
+}
+
+static inline double slowing(double t)
+{
+    if (t < SLIGHT) {
+        const double t_2 = t * t;
+        return R_1 * t + t_2 * PAIRED(PAIRED(R_2 + R_3 * t) + t_2 * PAIRED(R_4 + R_5 * t));
+    }
+    const double root = sqrt(1.0 + t);
+    return t / (root * (1.0 + root));
 }
 
 /* ---- power.py ------------------------------------------------------------------------------- */

@@ -26,6 +26,10 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
     k, bow = model["k"], quantities.bow
     for name in ("epsilon_0", "epsilon_1", "v_s", "mu_C", "mu_S", "xi", "lift_force"):
         model[name] = getattr(bow, name)
+    stiffness = bow.epsilon_0 + 2.0 * bow.epsilon_1 / k
+    model["stiffness"], model["per_v_s"] = stiffness, 1.0 / bow.v_s
+    breakaway = bow.mu_C * (1.0 - np.array(bow.xi))
+    model["sharpness"] = np.pi * bow.epsilon_0 / (stiffness * breakaway)
     M_h, K_h, R_h = bow.M_h, bow.K_h, bow.R_h
     model["M_h"], model["K_h"], model["R_h"] = M_h, K_h, R_h
     Lambda = 4.0 * M_h + k**2 * K_h + 2.0 * k * R_h

@@ -105,6 +105,9 @@ MODEL = lined_up(
         ("mu_S", np.float64),
         ("xi", np.float64, STRINGS),
         ("lift_force", np.float64),
+        ("stiffness", np.float64),  # epsilon_0 + 2 epsilon_1 / k
+        ("per_v_s", np.float64),
+        ("sharpness", np.float64, STRINGS),  # friction.py: N, of chi's curve over f_b
         ("M_h", np.float64),
         ("K_h", np.float64),
         ("R_h", np.float64),

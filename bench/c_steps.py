@@ -182,6 +182,8 @@ def floors(model: Any, before: Any, after: Any, controls: Any) -> dict[str, floa
         "f_ext": float(m["K_lift"] * m["rest_height"]),
         "shared_with_bridge": newton,
         "at_bow": newton,
+        "slack_per_newton": size(after["give"]) * size(after["bend_at"]),
+        "f_c_per_newton": 1.0,
         "bridge_travel": travel,
         "history": forces,
         "probe: bridge forces": forces,

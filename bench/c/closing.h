@@ -16,58 +16,112 @@ struct weight {
     double on_11, on_12, on_22;
 };
 
-static inline bool are_apart(const struct state *s, int near)
+static inline void note_neighbours(Model m, State s, int near)
 {
-    for (int c = 0; c < near; c++)
+    s->clear = 1;
+    for (int a = 0; a < near; a++) {
+        s->meets[a] = 0;
         for (int i = 0; i < STRINGS; i++) {
-            const int p = STRINGS * s->near[c] + i;
+            const int p = STRINGS * s->near[a] + i;
             if (s->shared_with_bridge[p] != 0.0 || !is_apart(s, p, BOW))
-                return false;
-            for (int other = 0; other < c; other++)
-                if (!is_apart(s, p, STRINGS * s->near[other] + i))
-                    return false;
+                s->clear = 0;
+            for (int b = 0; b < a - 1; b++)
+                if (!is_apart(s, p, STRINGS * s->near[b] + i))
+                    s->clear = 0;
+            if (a > 0) {
+                const int q = STRINGS * s->near[a - 1] + i;
+                const double shared
+                    = overlap(s->first[p], s->weights[p], s->first[q], s->weights[q]);
+                s->shared[a][i] = m->spread[i] * shared;
+                if (shared != 0.0)
+                    s->meets[a] = 1;
+            }
         }
-    return true;
+    }
 }
 
 static inline struct weight weigh_fingers(Model m, State s, int near)
 {
     const double C_f = m->C_f;
     struct weight Q = {0.0, 0.0, 0.0};
-    for (int c = 0; c < near; c++) {
-        const int j = s->near[c], p = STRINGS * j, q = STRINGS * j + 1;
+    double W_11 = 0.0, W_12 = 0.0, W_22 = 0.0;
+    double Wb_11 = 0.0, Wb_12 = 0.0, Wb_21 = 0.0, Wb_22 = 0.0;
+    for (int a = 0; a < near; a++) {
+        const int p = STRINGS * s->near[a], q = p + 1;
+        double yield_p = s->yields[p] + C_f, across = C_f, yield_q = s->yields[q] + C_f;
+        double b_11 = s->bend_at[p], b_12 = 0.0, b_21 = 0.0, b_22 = s->bend_at[q];
+        if (s->meets[a]) {
+            const double shared_p = s->shared[a][0], shared_q = s->shared[a][1];
+            yield_p -= shared_p * shared_p * W_11;
+            across -= shared_p * shared_q * W_12;
+            yield_q -= shared_q * shared_q * W_22;
+            b_11 -= shared_p * Wb_11;
+            b_12 = -shared_p * Wb_12;
+            b_21 = -shared_q * Wb_21;
+            b_22 -= shared_q * Wb_22;
+        }
         const double A_p = stiffness(m, s, p), A_q = stiffness(m, s, q);
-        const double on_p = 1.0 + A_p * (s->yields[p] + C_f), on_q = 1.0 + A_q * (s->yields[q] + C_f);
-        const double across = A_p * C_f * A_q;
-        const double per_determinant = 1.0 / (on_p * on_q - across * C_f);
-        const double W_11 = A_p * on_q * per_determinant, W_12 = -across * per_determinant;
-        const double W_22 = A_q * on_p * per_determinant;
+        const double on_p = 1.0 + A_p * yield_p, on_q = 1.0 + A_q * yield_q;
+        W_12 = -A_p * across * A_q;
+        const double per_determinant = 1.0 / (on_p * on_q + W_12 * across);
+        W_12 *= per_determinant;
+        W_11 = A_p * on_q * per_determinant;
+        W_22 = A_q * on_p * per_determinant;
+        s->W[a][0] = W_11;
+        s->W[a][1] = W_12;
+        s->W[a][2] = W_22;
         const double held_p = s->g[p] * s->Psi[p], held_q = s->g[q] * s->Psi[q];
-        const double bend_p = s->bend_at[p], bend_q = s->bend_at[q];
-        s->held[p] = (held_p * on_q - held_q * A_p * C_f) * per_determinant;
-        s->held[q] = (held_q * on_p - held_p * A_q * C_f) * per_determinant;
-        s->W[j][0] = W_11;
-        s->W[j][1] = W_12;
-        s->W[j][2] = W_22;
-        Q.on_11 += bend_p * bend_p * W_11;
-        Q.on_12 += bend_p * bend_q * W_12;
-        Q.on_22 += bend_q * bend_q * W_22;
+        s->held[p] = (held_p * on_q - held_q * A_p * across) * per_determinant;
+        s->held[q] = (held_q * on_p - held_p * A_q * across) * per_determinant;
+        s->slackens[a][0][0] = b_11;
+        s->slackens[a][0][1] = b_12;
+        s->slackens[a][1][0] = b_21;
+        s->slackens[a][1][1] = b_22;
+        Wb_11 = W_11 * b_11 + W_12 * b_21;
+        Wb_12 = W_11 * b_12 + W_12 * b_22;
+        Wb_21 = W_12 * b_11 + W_22 * b_21;
+        Wb_22 = W_12 * b_12 + W_22 * b_22;
+        Q.on_11 += b_11 * Wb_11 + b_21 * Wb_21;
+        Q.on_12 += b_12 * Wb_11 + b_22 * Wb_21;
+        Q.on_22 += b_12 * Wb_12 + b_22 * Wb_22;
     }
     return Q;
 }
 
-static inline struct taken close_apart(State s, int near, struct weight Q, struct reply of_bow)
+static inline bool feel_fingers(Model m, State s, const double (*restrict u_next)[POINTS], int next,
+                                int near, struct reply of_bow, double f_b, double doubt)
 {
-    double sum_1 = 0.0, sum_2 = 0.0;
-    for (int c = 0; c < near; c++) {
-        const int j = s->near[c], p = STRINGS * j, q = STRINGS * j + 1;
-        const double *W = s->W[j];
-        const double f_p = W[0] * s->travel[p] + W[1] * s->travel[q] + s->held[p];
-        const double f_q = W[1] * s->travel[p] + W[2] * s->travel[q] + s->held[q];
+    bool leaving = false;
+    for (int a = 0; a < near; a++)
+        for (int i = 0; i < STRINGS; i++) {
+            const int j = s->near[a], p = STRINGS * j + i;
+            if (s->clear)
+                s->at_bow[p] = -s->bend_at[p] * of_bow.slack[i];
+            else
+                s->at_bow[p] = answer(m, s, p, BOW, of_bow);
+            s->travel[p] = feel(s, u_next, p) - s->U[next][j] - s->eta_prev[p];
+            leaving |= may_leave(s, p, f_b, doubt);
+        }
+    return leaving;
+}
+
+static inline struct taken close_in_turn(State s, int near, struct weight Q, struct reply of_bow)
+{
+    double sum_1 = 0.0, sum_2 = 0.0, f_p = 0.0, f_q = 0.0;
+    for (int a = 0; a < near; a++) {
+        const int p = STRINGS * s->near[a], q = p + 1;
+        const double *W = s->W[a];
+        double travel_p = s->travel[p], travel_q = s->travel[q];
+        if (s->meets[a]) {
+            travel_p -= s->shared[a][0] * f_p;
+            travel_q -= s->shared[a][1] * f_q;
+        }
+        f_p = W[0] * travel_p + W[1] * travel_q + s->held[p];
+        f_q = W[1] * travel_p + W[2] * travel_q + s->held[q];
         s->f_f[p] = f_p;
         s->f_f[q] = f_q;
-        sum_1 += s->bend_at[p] * f_p;
-        sum_2 += s->bend_at[q] * f_q;
+        sum_1 += s->slackens[a][0][0] * f_p + s->slackens[a][1][0] * f_q;
+        sum_2 += s->slackens[a][0][1] * f_p + s->slackens[a][1][1] * f_q;
     }
     const double give_11 = s->give[0][0], give_12 = s->give[0][1], give_22 = s->give[1][1];
     const double a = 1.0 - (Q.on_11 * give_11 + Q.on_12 * give_12);
@@ -94,20 +148,28 @@ static inline struct taken close_apart(State s, int near, struct weight Q, struc
     return (struct taken){-(bow_1 * of_1 + bow_2 * of_2), bow_1 * more_1 + bow_2 * more_2};
 }
 
-static inline void push_apart(Model m, State s, int next, int near, double f_b)
+static inline void push_in_turn(Model m, State s, int next, int near, double f_b)
 {
     const double slack_1 = s->slackened[0] + s->slack_per_newton[0] * f_b;
     const double slack_2 = s->slackened[1] + s->slack_per_newton[1] * f_b;
-    for (int c = 0; c < near; c++) {
-        const int j = s->near[c], p = STRINGS * j, q = STRINGS * j + 1;
-        const double *W = s->W[j];
-        const double way_p = s->bend_at[p] * slack_1, way_q = s->bend_at[q] * slack_2;
-        settle(m, s, next, p, s->f_f[p] + W[0] * way_p + W[1] * way_q);
-        settle(m, s, next, q, s->f_f[q] + W[1] * way_p + W[2] * way_q);
+    double f_p = 0.0, f_q = 0.0;
+    for (int a = near - 1; a >= 0; a--) {
+        const int p = STRINGS * s->near[a], q = p + 1;
+        const double *W = s->W[a];
+        double way_p = s->slackens[a][0][0] * slack_1 + s->slackens[a][0][1] * slack_2;
+        double way_q = s->slackens[a][1][0] * slack_1 + s->slackens[a][1][1] * slack_2;
+        if (a + 1 < near && s->meets[a + 1]) {
+            way_p -= s->shared[a + 1][0] * f_p;
+            way_q -= s->shared[a + 1][1] * f_q;
+        }
+        f_p = s->f_f[p] + W[0] * way_p + W[1] * way_q;
+        f_q = s->f_f[q] + W[1] * way_p + W[2] * way_q;
+        settle(m, s, next, p, f_p);
+        settle(m, s, next, q, f_q);
     }
 }
 
-static inline int close_together(Model m, State s, int near, struct taken *restrict taken)
+static inline struct taken close_together(Model m, State s, int near)
 {
     int bow = 0;
     for (int c = 0; c < near; c++)
@@ -120,6 +182,7 @@ static inline int close_together(Model m, State s, int near, struct taken *restr
                 bow++;
             }
         }
+    s->contacts = bow;
     for (int row = 0; row < bow; row++) {
         const int p = s->touching[row];
         const struct reply of_p = reply(s, p);
@@ -132,7 +195,7 @@ static inline int close_together(Model m, State s, int near, struct taken *restr
         }
         s->G[row][bow] = s->at_bow[p];
     }
-    *taken = (struct taken){0.0, 0.0};
+    struct taken taken = {0.0, 0.0};
     for (int row = 0; row < bow; row++) {
         const double per_stiffness = 1.0 / (1.0 + s->A_f[row] * s->G[row][row]);
         const double d = s->d[row] * per_stiffness, A_f = s->A_f[row] * per_stiffness;
@@ -145,14 +208,15 @@ static inline int close_together(Model m, State s, int near, struct taken *restr
                 s->G[other][column] -= A_f * G * s->G[row][column];
         }
         const double G = s->G[row][bow];
-        taken->reading += G * d;
-        taken->per_newton += G * G * A_f;
+        taken.reading += G * d;
+        taken.per_newton += G * G * A_f;
     }
-    return bow;
+    return taken;
 }
 
-static inline void push_together(Model m, State s, int next, int touching, double f_b)
+static inline void push_together(Model m, State s, int next, double f_b)
 {
+    const int touching = (int)s->contacts;
     for (int row = touching - 1; row >= 0; row--) {
         const int p = s->touching[row];
         double pushed = s->G[row][touching] * f_b;
@@ -166,4 +230,18 @@ static inline void push_together(Model m, State s, int next, int touching, doubl
             s->f_c[i] += of_p.pull[i] * f_f;
         }
     }
+}
+
+static inline struct taken close_fingers(Model m, State s, int near, struct weight Q,
+                                         struct reply of_bow)
+{
+    return s->clear ? close_in_turn(s, near, Q, of_bow) : close_together(m, s, near);
+}
+
+static inline void push_fingers(Model m, State s, int next, int near, double f_b)
+{
+    if (s->clear)
+        push_in_turn(m, s, next, near, f_b);
+    else
+        push_together(m, s, next, f_b);
 }

@@ -15,6 +15,16 @@ static inline void meet_bridge(Model m, State s, int p)
         * overlap(m->bridge_first[i], m->bridge_weights[i], s->first[p], weights);
 }
 
+static inline void sort_fingers(Model m, State s)
+{
+    for (int j = 0; j < m->fingers; j++) {
+        int k = j;
+        for (; k > 0 && s->x[STRINGS * s->order[k - 1]] > s->x[STRINGS * j]; k--)
+            s->order[k] = s->order[k - 1];
+        s->order[k] = (uint8_t)j;
+    }
+}
+
 static inline bool place_contacts(Model m, State s, const double *restrict control,
                                   int bowed_string)
 {
@@ -43,6 +53,8 @@ static inline bool place_contacts(Model m, State s, const double *restrict contr
             meet_bridge(m, s, p);
         }
     }
+    if (moved)
+        sort_fingers(m, s);
     s->placed = 1;
     return moved;
 }
@@ -123,7 +135,8 @@ static inline int meet_fingers(Model m, State s, const double *restrict control,
 {
     int near = 0;
     s->are_near = 0;
-    for (int j = 0; j < m->fingers; j++) {
+    for (int k = 0; k < m->fingers; k++) {
+        const int j = s->order[k];
         const double press = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j + 1];
         bool is_near = false;
         s->U[next][j] = advance_finger(m, s, j, press, now, prev);

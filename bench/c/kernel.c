@@ -74,8 +74,7 @@ static inline void step(Model m, State s, const double *restrict control, int ne
     const int64_t were_near = s->are_near;
     const int near = meet_fingers(m, s, control, next, now, prev);
     if (moved || s->are_near != were_near)
-        s->apart = are_apart(s, near);
-    const bool apart = s->apart;
+        note_neighbours(m, s, near);
     struct weight Q = weigh_fingers(m, s, near);
 
     s->bend_at[BOW] = reading(s->bend[string], s->first[BOW], s->weights[BOW]);
@@ -93,19 +92,11 @@ static inline void step(Model m, State s, const double *restrict control, int ne
         .tangent = {s->tangent[0], s->tangent[1], s->tangent[2]},
         .converged = true,
     };
-    int touching = 0, iterations = 0;
+    int iterations = 0;
     if (near > 0) {
         const double f_b = bowed ? s->f_b : 0.0;
         const double doubt = bowed ? fabs(s->f_b) + FRICTION_REACH * m->mu_S * fabs(F_b) : 0.0;
-        bool leaving = false;
-        for (int c = 0; c < near; c++)
-            for (int i = 0; i < STRINGS; i++) {
-                const int j = s->near[c], p = STRINGS * j + i;
-                s->at_bow[p] = apart ? -s->bend_at[p] * of_bow.slack[i] : answer(m, s, p, BOW, of_bow);
-                s->travel[p] = feel(s, u_next, p) - s->U[next][j] - s->eta_prev[p];
-                leaving |= may_leave(s, p, f_b, doubt);
-            }
-        if (leaving) {
+        if (feel_fingers(m, s, u_next, next, near, of_bow, f_b, doubt)) {
             if (bowed) {
                 grip = solve_friction(m, free, compliance, s->z[string], fabs(F_b), grip.tangent,
                                       string);
@@ -114,11 +105,7 @@ static inline void step(Model m, State s, const double *restrict control, int ne
             limit_fingers(s, near, grip.f_b);
             Q = weigh_fingers(m, s, near);
         }
-        struct taken taken;
-        if (apart)
-            taken = close_apart(s, near, Q, of_bow);
-        else
-            touching = close_together(m, s, near, &taken);
+        const struct taken taken = close_fingers(m, s, near, Q, of_bow);
         free -= half_rate * taken.reading;
         compliance -= half_rate * taken.per_newton;
         grip.v_r = free;
@@ -132,10 +119,7 @@ static inline void step(Model m, State s, const double *restrict control, int ne
         s->slack[i] += s->slack_per_newton[i] * grip.f_b;
         s->f_c[i] += s->f_c_per_newton[i] * grip.f_b;
     }
-    if (apart)
-        push_apart(m, s, next, near, grip.f_b);
-    else
-        push_together(m, s, next, touching, grip.f_b);
+    push_fingers(m, s, next, near, grip.f_b);
 
     s->zeta[next][string] -= m->C_h * grip.f_b;
     s->z_bar = s->r = 0.0;

@@ -83,9 +83,9 @@ def close_bridge(model: Any, s: Any, u_next: Array, Q: float) -> None:
     """Let tension and bridge hold both strings at n+1, as if nothing else touched them.
 
     Everything after this meets strings that already follow the bridge. Written are the coupling
-    forces ``s.f_c`` (N), the slack of each string, and how these answer to more forces: a newton
-    on string j where Delta u^n is b metres leaves ``give[i, j]`` b of slack, and adds ``tug[j, i]`` b
-    to f_c of string i; one at the bridge ``tug[i, j]`` and ``S_c_inverse[i, j]``.
+    forces ``s.f_c`` (N), the slack of each string, and how these answer to more forces. A newton
+    on string j where Delta u^n is b metres leaves ``give[i, j] b`` of slack on string i, and adds
+    ``tug[j, i] b`` to its f_c; one at the bridge ``tug[i, j]`` and ``S_c_inverse[i, j]``.
     Source: [Yehu] eqs. (43)-(45); tension.py.
     """
     slack_0, give_0, stretched_0 = tighten(model, s, 0)

@@ -13,11 +13,12 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.jit import compiled
-from yehu_server.physics.contacts import Reply, answer, is_apart, reply
-from yehu_server.physics.finger import settle, stiffness
+from yehu_server.physics.contacts import Reply, answer, feel, is_apart, reply
+from yehu_server.physics.finger import may_leave, settle, stiffness
 from yehu_server.physics.layout import BOW, STRINGS
 from yehu_server.physics.stencil import overlap
 
+Array = Any
 Weight = tuple[float, float, float]
 
 
@@ -46,8 +47,8 @@ def note_neighbours(model: Any, s: Any, near: int) -> None:
 def weigh_fingers(model: Any, s: Any, near: int) -> Weight:
     """Solve eq. (35) for both forces of each finger, one finger after the other.
 
-    The forces are W times what the finger's contacts travel without them, plus ``s.held``; and
-    W times ``s.slackens`` for each metre of slack that is still to come, less W ``s.shared`` for each newton
+    The forces are W times what the finger's contacts travel without them, plus ``s.held``; W times
+    ``s.slackens`` for each metre of slack still to come, less W ``s.shared`` for each newton
     of the next finger. Returns Q: by how much the sums grow for each metre of slack (N m),
     symmetric, on strings 11, 12, 22.
     """
@@ -87,11 +88,54 @@ def weigh_fingers(model: Any, s: Any, near: int) -> Weight:
 
 
 @compiled
-def close_fingers(s: Any, near: int, Q: Weight, of_bow: Reply) -> tuple[float, float]:
+def feel_fingers(
+    model: Any,
+    s: Any,
+    u_next: Array,
+    next_: int,
+    near: int,
+    of_bow: Reply,
+    f_b: float,
+    doubt: float,
+) -> bool:
+    """Find what the fingers' contacts travel in this step but for their own forces.
+
+    Returns whether one of them may leave: see `may_leave` for `f_b` and `doubt` (N).
+    """
+    leaving = False
+    for a in range(near):
+        for i in range(STRINGS):
+            p = STRINGS * s.near[a] + i
+            if s.clear:
+                s.at_bow[p] = -s.bend_at[p] * of_bow[i]
+            else:
+                s.at_bow[p] = answer(model, s, p, BOW, of_bow)
+            s.travel[p] = feel(s, u_next, p) - s.U[next_, s.near[a]] - s.eta_prev[p]
+            leaving |= may_leave(s, p, f_b, doubt)
+    return leaving
+
+
+@compiled
+def close_fingers(model: Any, s: Any, near: int, Q: Weight, of_bow: Reply) -> tuple[float, float]:
+    """Let all fingers press, until only the bow's force is open.
+
+    Returns
+    -------
+    taken : float, m
+        By how much the bow's reading moves with all contacts closed.
+    taken_per_newton : float, m/N
+        How much less it gives way.
+    """
+    if s.clear:
+        return close_in_turn(s, near, Q, of_bow)
+    return close_together(model, s, near)
+
+
+@compiled
+def close_in_turn(s: Any, near: int, Q: Weight, of_bow: Reply) -> tuple[float, float]:
     """Close fingers that meet their neighbours at most, weighed by `weigh_fingers`.
 
-    Returns as `close_together` does. What slack and f_c are by now, and what they become for each
-    newton of the bow's, is written.
+    What slack and f_c are by now, and what they become for each newton of the bow's, is written.
     """
     sum_1, sum_2 = 0.0, 0.0
     f_p, f_q = 0.0, 0.0
@@ -133,7 +177,16 @@ def close_fingers(s: Any, near: int, Q: Weight, of_bow: Reply) -> tuple[float, f
 
 @compiled
 def push_fingers(model: Any, s: Any, next_: int, near: int, f_b: float) -> None:
-    """Find the forces of fingers that `close_fingers` has closed, the bow's known."""
+    """Find the forces of the fingers, closed by `close_fingers`, the bow's known."""
+    if s.clear:
+        push_in_turn(model, s, next_, near, f_b)
+    else:
+        push_together(model, s, next_, f_b)
+
+
+@compiled
+def push_in_turn(model: Any, s: Any, next_: int, near: int, f_b: float) -> None:
+    """Find the forces of fingers that `close_in_turn` has closed."""
     slack_1 = s.slackened[0] + s.slack_per_newton[0] * f_b
     slack_2 = s.slackened[1] + s.slack_per_newton[1] * f_b
     f_p, f_q = 0.0, 0.0
@@ -152,18 +205,8 @@ def push_fingers(model: Any, s: Any, next_: int, near: int, f_b: float) -> None:
 
 
 @compiled
-def close_together(model: Any, s: Any, near: int) -> tuple[int, float, float]:
-    """Close contacts of which each feels each, by the matrix G.
-
-    Returns
-    -------
-    touching : int
-        How many: ``s.touching`` has them.
-    taken : float, m
-        By how much the bow's reading moves with all contacts closed.
-    taken_per_newton : float, m/N
-        How much less it gives way.
-    """
+def close_together(model: Any, s: Any, near: int) -> tuple[float, float]:
+    """Close contacts of which each feels each, by the matrix G."""
     bow = 0
     for c in range(near):
         for i in range(STRINGS):
@@ -173,6 +216,7 @@ def close_together(model: Any, s: Any, near: int) -> tuple[int, float, float]:
                 s.A_f[bow] = stiffness(model, s, p)
                 s.d[bow] = s.A_f[bow] * s.travel[p] + s.g[p] * s.Psi[p]
                 bow += 1
+    s.contacts = bow
     for row in range(bow):
         p = s.touching[row]
         of_p = reply(s, p)
@@ -196,12 +240,13 @@ def close_together(model: Any, s: Any, near: int) -> tuple[int, float, float]:
         G = s.G[row, bow]
         taken += G * d
         taken_per_newton += G * G * A_f
-    return bow, taken, taken_per_newton
+    return taken, taken_per_newton
 
 
 @compiled
-def push_together(model: Any, s: Any, next_: int, touching: int, f_b: float) -> None:
-    """Find the forces of contacts that `close_together` has closed, the bow's known."""
+def push_together(model: Any, s: Any, next_: int, f_b: float) -> None:
+    """Find the forces of contacts that `close_together` has closed."""
+    touching = s.contacts
     for row in range(touching - 1, -1, -1):
         p = s.touching[row]
         pushed = s.G[row, touching] * f_b

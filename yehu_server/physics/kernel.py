@@ -26,17 +26,15 @@ from yehu_server.physics.bridge import (
 )
 from yehu_server.physics.closing import (
     close_fingers,
-    close_together,
+    feel_fingers,
     note_neighbours,
     push_fingers,
-    push_together,
     weigh_fingers,
 )
 from yehu_server.physics.contacts import answer, feel, move, place_contacts, reply
 from yehu_server.physics.energy import book
 from yehu_server.physics.finger import (
     limit_fingers,
-    may_leave,
     meet_fingers,
     prepare_fingers,
 )
@@ -192,61 +190,44 @@ def step(m: Any, s: Any, control: Array, next_: int, now: int, prev: int) -> Non
     near = meet_fingers(m, s, control, next_, now, prev)
     if moved or s.are_near != were_near:
         note_neighbours(m, s, near)
-    clear = s.clear != 0
     Q = weigh_fingers(m, s, near)
+
     # The bow, eqs. (46)-(53), and the fingers, eqs. (33)-(40), from where they would be.
     s.bend_at[BOW] = read(s.bend[string], s.first[BOW], s.weights[BOW])
     of_bow = reply(s, BOW)
     advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
-    free = hair_velocity(m, s, feel(s, u_next, BOW), u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
+    at_bow = feel(s, u_next, BOW)
+    free = hair_velocity(m, s, at_bow, u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
     compliance = half_rate * (answer(m, s, BOW, BOW, of_bow) + m.C_h)
-    F_N_now = abs(control[F_N])
+    F_N_abs = abs(control[F_N])
     f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
     tangent = s.tangent[0], s.tangent[1], s.tangent[2]
     for i in range(STRINGS):
         s.slack_per_newton[i], s.f_c_per_newton[i] = of_bow[i], of_bow[STRINGS + i]
-    touching = 0
     if near > 0:
         # theta depends on the friction force, and that on the contacts. Mostly theta is 1 for
         # any friction; else it is found with that of a string which no finger touches.
         f_b, doubt = (s.f_b, abs(s.f_b) + most_friction(m, control[F_N])) if bowed else (0.0, 0.0)
-        leaving = False
-        for c in range(near):
-            for i in range(STRINGS):
-                p = STRINGS * s.near[c] + i
-                if clear:
-                    s.at_bow[p] = -s.bend_at[p] * of_bow[i]
-                else:
-                    s.at_bow[p] = answer(m, s, p, BOW, of_bow)
-                s.travel[p] = feel(s, u_next, p) - s.U[next_, s.near[c]] - s.eta_prev[p]
-                leaving |= may_leave(s, p, f_b, doubt)
-        if leaving:
+        if feel_fingers(m, s, u_next, next_, near, of_bow, f_b, doubt):
             if bowed:
                 f_b, _, _, tangent, iterations, _ = solve_friction(
-                    free, compliance, s.z[string], F_N_now, tangent, m, string
+                    free, compliance, s.z[string], F_N_abs, tangent, m, string
                 )
             limit_fingers(s, near, f_b)
             Q = weigh_fingers(m, s, near)
-        if clear:
-            taken, taken_per_newton = close_fingers(s, near, Q, of_bow)
-        else:
-            touching, taken, taken_per_newton = close_together(m, s, near)
+        taken, taken_per_newton = close_fingers(m, s, near, Q, of_bow)
         free -= half_rate * taken
         compliance -= half_rate * taken_per_newton
-        v_r = free
-        f_b = 0.0
+        f_b, v_r = 0.0, free
     if bowed:
         f_b, z_bar, v_r, tangent, again, converged = solve_friction(
-            free, compliance, s.z[string], F_N_now, tangent, m, string
+            free, compliance, s.z[string], F_N_abs, tangent, m, string
         )
         iterations += again
     for i in range(STRINGS):
         s.slack[i] += s.slack_per_newton[i] * f_b
         s.f_c[i] += s.f_c_per_newton[i] * f_b
-    if clear:
-        push_fingers(m, s, next_, near, f_b)
-    else:
-        push_together(m, s, next_, touching, f_b)
+    push_fingers(m, s, next_, near, f_b)
 
     # What the forces leave behind: eqs. (30), (59), (60), and z at n + 1/2.
     s.zeta[next_, string] -= m.C_h * f_b

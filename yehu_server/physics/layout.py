@@ -196,7 +196,8 @@ STATE = lined_up(
         ("slackened", np.float64, STRINGS),
         ("slack_per_newton", np.float64, STRINGS),
         ("f_c_per_newton", np.float64, STRINGS),
-        ("touching", np.uint8, MAX_CONTACTS),  # contacts that are not
+        ("touching", np.uint8, MAX_CONTACTS),  # contacts of which each feels each
+        ("contacts", np.int64),
         ("A_f", np.float64, MAX_CONTACTS),
         ("d", np.float64, MAX_CONTACTS),
         ("G", np.float64, (MAX_CONTACTS, MAX_CONTACTS)),

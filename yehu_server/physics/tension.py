@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
-from yehu_server.physics.layout import GHOST, STRINGS, whole_vectors
+from yehu_server.physics.layout import GHOST, whole_vectors
 from yehu_server.physics.quantities import Quantities
 
 Array = Any

@@ -196,12 +196,14 @@ def play(rig: Any, out: Array) -> None:
             retuned = has_new_strings(g)
             g.frame += 1
             frames += 1
-        as_before = frames - 1 if retuned else frames
-        kernel.advance(model, state, o.controls[:as_before], o.probes[:as_before], o.probes[:0])
-        if retuned:
-            retune(model, state, g)
-            last = o.controls[as_before:frames], o.probes[as_before:frames]
-            kernel.advance(model, state, last[0], last[1], o.probes[:0])
+        # Strings get their tuning at the very sample. One call, since all of it is inlined.
+        start, end = 0, frames - 1 if retuned else frames
+        while start < frames:
+            if start == end:
+                retune(model, state, g)
+                end = frames
+            kernel.advance(model, state, o.controls[start:end], o.probes[start:end], o.probes[:0])
+            start = end
         for n in range(frames):
             sample: Any = np.float32(play_out(o, n))
             tape[(first + n) & (TAPE - 1)] = sample

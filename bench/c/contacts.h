@@ -134,16 +134,30 @@ static inline int meet_fingers(Model m, State s, const double *restrict control,
                                int prev)
 {
     int near = 0;
+    double x_f = -1.0, reading_1 = 0.0, reading_2 = 0.0;
     s->are_near = 0;
     for (int k = 0; k < m->fingers; k++) {
         const int j = s->order[k];
         const double press = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j + 1];
+        const double U = s->U[now][j];
+        if (s->still[j] && press <= 0.0) {
+            const int p = STRINGS * j, q = p + 1;
+            if (s->x[p] != x_f) {
+                x_f = s->x[p];
+                reading_1 = reading(s->u[now][0], s->first[p], s->weights[p]);
+                reading_2 = reading(s->u[now][1], s->first[q], s->weights[q]);
+            }
+            if (reading_1 <= U && reading_2 <= U) {
+                s->U[next][j] = U;
+                continue;
+            }
+        }
         bool is_near = false;
         s->U[next][j] = advance_finger(m, s, j, press, now, prev);
         for (int i = 0; i < STRINGS; i++) {
             const int p = STRINGS * j + i, first = s->first[p];
             const double *weights = s->weights[p];
-            const double eta = reading(s->u[now][i], first, weights) - s->U[now][j];
+            const double eta = reading(s->u[now][i], first, weights) - U;
             if (s->Psi[p] != 0.0 && (eta <= 0.0 || s->Psi[p] < 0.0)) {
                 s->dropped_Psi += 0.5 * s->Psi[p] * s->Psi[p];
                 s->Psi[p] = 0.0;
@@ -158,9 +172,12 @@ static inline int meet_fingers(Model m, State s, const double *restrict control,
             s->g[p] = s->ghat[p] = ghat;
             s->f_f[p] = 0.0;
         }
+        s->still[j] = 0;
         if (is_near) {
             s->near[near++] = (uint8_t)j;
             s->are_near |= 1 << j;
+        } else if (press <= 0.0 && s->U[next][j] == U && U == s->U[prev][j]) {
+            s->still[j] = 1;
         }
     }
     return near;

@@ -47,6 +47,7 @@ static void come_to_rest(Model m, State s)
     memset(s->eta_prev, 0, sizeof s->eta_prev);
     memset(s->tangent, 0, sizeof s->tangent);
     memset(s->x, 0, sizeof s->x);
+    memset(s->still, 0, sizeof s->still);
     for (int t = 0; t < LEVELS; t++)
         for (int j = 0; j < MAX_FINGERS; j++)
             s->U[t][j] = m->rest_height;

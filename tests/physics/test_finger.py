@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from physics.runs import bump, cents, pitch, play, shaped
+from physics.runs import bump, cents, pitch, play, rows, shaped
 
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.finger import gradient, limited
@@ -138,6 +138,38 @@ def test_a_finger_at_rest_never_moves_and_touches_nothing():
     run = play({"F_N": 0.3, "v_b": 0.1}, 1.0, fingers=4)
     for j in range(4):
         assert np.all(run.finger(j) == [FINGER.rest_height, 0.0, 0.0])
+
+
+def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
+    """Bit for bit: pressed, lifted, at rest, hit there by a plucked string, and pressed again."""
+    model = kernel.prepare(YEHU, RATE, 2)
+    t = np.arange(round(0.6 * RATE)) / RATE
+    table = rows(
+        len(t),
+        2,
+        {"press": [np.where((t < 0.05) | (t > 0.5), 1.0, 0.0), 0.0], "x_f": [0.1, 0.012]},
+    )
+    table[:, layout.F_PLUCK] = np.where((t > 0.35) & (t < 0.4), 25.0, 0.0)
+    table[:, layout.X_PLUCK] = 0.1
+    found = []
+    for is_reminded in (False, True):
+        state = kernel.at_rest(model)
+        probes = np.zeros((len(t), layout.probe_columns(2)))
+        was_still = np.zeros((len(t), 2), bool)
+        for n in range(len(t)):
+            if is_reminded:
+                state["still"] = 0
+            part = slice(n, n + 1)
+            kernel.advance(model, state, table[part], probes[part], np.zeros((0, 0)))
+            was_still[n] = state["still"][0, :2]
+        found.append((probes, was_still))
+    (probes, was_still), (again, _) = found
+    hit = np.abs(probes[:, layout.FINGER_PROBES + 1]) > 0.0
+    assert was_still[(t > 0.3) & (t < 0.35), 0].all()
+    assert (hit & (t > 0.35) & (t < 0.5)).any()
+    assert not was_still[hit, 0].any()
+    assert was_still[:, 1].any()
+    assert np.array_equal(probes, again)
 
 
 # --- the contact law ----------------------------------------------------------------------

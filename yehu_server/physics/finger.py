@@ -35,13 +35,12 @@ def prepare_fingers(model: np.void, quantities: Quantities) -> None:
 
 
 @compiled
-def advance_finger(model: Any, s: Any, j: int, control: Array, now: int, prev: int) -> float:
+def advance_finger(model: Any, s: Any, j: int, press: float, now: int, prev: int) -> float:
     """Return U* of eq. (58), the finger's height free of contacts (m).
 
     A press (N) above zero drives the finger down; without one the hand lifts it with
     a critically damped spring, an outside force whose work counts as power in.
     """
-    press = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j + 1]
     U, U_prev = s.U[now, j], s.U[prev, j]
     if press > 0.0:
         s.f_ext[j] = -press
@@ -88,14 +87,26 @@ def meet_fingers(model: Any, s: Any, control: Array, next_: int, now: int, prev:
     Returns how many: ``s.near`` has them. What concerns them and is known at n is written here.
     """
     near, s.are_near = 0, 0
+    x_f, reading_1, reading_2 = -1.0, 0.0, 0.0
     for k in range(model.fingers):
         j = s.order[k]
-        s.U[next_, j] = advance_finger(model, s, j, control, now, prev)
+        press = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j + 1]
+        U = s.U[now, j]
+        if s.still[j] and press <= 0.0:
+            p, q = STRINGS * j, STRINGS * j + 1
+            if s.x[p] != x_f:  # those that are up wait at one place
+                x_f = s.x[p]
+                reading_1 = read(s.u[now, 0], s.first[p], s.weights[p])
+                reading_2 = read(s.u[now, 1], s.first[q], s.weights[q])
+            if reading_1 <= U and reading_2 <= U:
+                s.U[next_, j] = U
+                continue
+        s.U[next_, j] = advance_finger(model, s, j, press, now, prev)
         is_near = False
         for i in range(STRINGS):
             p = STRINGS * j + i
             first, weights = s.first[p], s.weights[p]
-            eta = read(s.u[now, i], first, weights) - s.U[now, j]
+            eta = read(s.u[now, i], first, weights) - U
             reset_contact(s, p, eta)
             ghat = 0.0
             if eta > 0.0:
@@ -105,10 +116,13 @@ def meet_fingers(model: Any, s: Any, control: Array, next_: int, now: int, prev:
                 eta_prev = read(s.u[prev, i], first, weights) - s.U[prev, j]
                 s.bend_at[p], s.eta_prev[p] = read(s.bend[i], first, weights), eta_prev
             s.g[p], s.ghat[p], s.f_f[p] = ghat, ghat, 0.0
+        s.still[j] = 0
         if is_near:
             s.near[near] = j
             s.are_near |= 1 << j
             near += 1
+        elif press <= 0.0 and s.U[next_, j] == U and s.U[prev, j] == U:
+            s.still[j] = 1
     return near
 
 

@@ -135,7 +135,7 @@ def come_to_rest(model: Any, s: Any) -> None:
     s.slack[:], s.give[:], s.bend[:], s.tangent[:] = 0.0, 0.0, 0.0, 0.0
     s.bend_at[:], s.eta_prev[:] = 0.0, 0.0
     s.placed = 0
-    s.x[:] = 0.0
+    s.x[:], s.still[:] = 0.0, 0
 
 
 @compiled

@@ -181,6 +181,7 @@ STATE = lined_up(
         ("f_f", np.float64, MAX_CONTACTS),
         ("f_ext", np.float64, MAX_FINGERS),
         ("order", np.uint8, MAX_FINGERS),  # fingers from the loop to the bridge
+        ("still", np.uint8, MAX_FINGERS),  # which are up, out of reach, and have come to rest
         ("near", np.uint8, MAX_FINGERS),  # which may touch, in that order
         ("are_near", np.int64),  # one bit for each
         ("clear", np.uint8),  # whether they meet their neighbours at most,

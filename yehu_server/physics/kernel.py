@@ -1,7 +1,9 @@
 """The model's time loop: one step of the scheme after another.
 
 [Yehu] section 3.7, in the order that lets contacts share nodes: strings and modes move
-freely, the bridge closes over them, the fingers press, the bow draws, all that moved is moved.
+freely, tension and bridge close over them, the fingers press, the bow draws, all that moved is
+moved. The strings come first, since nothing they need waits for the contacts; what fingers resist
+is worked out while they move.
 """
 
 from __future__ import annotations

@@ -97,6 +97,14 @@ def test_an_empty_block_is_no_time():
     assert instrument.frame == 0
 
 
+def test_a_block_with_gaps_in_memory_is_refused():
+    """What it is made of lies between its own samples and would be overwritten."""
+    wider = np.zeros((64, 2), np.float32)
+    with pytest.raises(TypeError, match="contiguous"):
+        Instrument(RATE).process(wider[:, 0])
+    assert not wider.any()
+
+
 def test_two_instruments_do_not_hear_each_other(whole):
     one, other = Instrument(RATE), Instrument(48000)
     busy(one)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ctypes import addressof, c_float
 from typing import Any
 
 import numpy as np
@@ -166,9 +167,12 @@ class Instrument:
         Parameters
         ----------
         out : ndarray [shape=(frames,) or (frames, channels), float32, contiguous]
+
+        Errors: TypeError where `out` is not contiguous.
         """
         if len(out):
-            native.callback.call(None, out.ctypes.data, len(out), None, 0, self._address)
+            address = addressof(c_float.from_buffer(out))  # four times as fast as `out.ctypes`
+            native.callback.call(None, address, len(out), None, 0, self._address)
 
     def come_to_rest(self) -> None:
         """Put the model to rest at once, its parameters where they are bound.

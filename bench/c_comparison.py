@@ -25,7 +25,6 @@ from typing import Any
 
 from c_kernel import FLAGS, OPTIMISED, SAME_LICENCE, TUNED, CKernel, NoCompilerError
 from c_steps import (
-    NO_LEDGER,
     START_FRAMES,
     START_TOLERANCE,
     STEP_TOLERANCE,
@@ -89,7 +88,7 @@ def one_call(
     for _ in range(20):
         by_numba(model, state, controls, probes)
     if build is None:
-        return lambda: kernel.advance(model, state, controls, probes, NO_LEDGER)
+        return lambda: kernel.advance(model, state, controls, probes, None)
     return build.bound(model, state, controls, probes)
 
 

@@ -21,7 +21,6 @@ from yehu_server.physics.string import follow_shape, support
 STEP_TOLERANCE = 1e-12  # of a field's largest value
 START_TOLERANCE = 1e-8
 START_FRAMES = 200
-NO_LEDGER = np.zeros((0, 0))
 # Friction is solved to a residual, not to rounding: with another number of iterations it ends
 # elsewhere within that. The tangent, where the next step starts, then is another one; with the
 # same number it is a derivative, which takes more from rounding than what it is one of.
@@ -47,7 +46,7 @@ AT_REST = {
 
 def by_numba(model: Any, state: Any, controls: Any, probes: Any) -> None:
     """The kernel of the package, without its ledger."""
-    kernel.advance(model, state, controls, probes, NO_LEDGER)
+    kernel.advance(model, state, controls, probes, None)
 
 
 def controls_for(

@@ -71,7 +71,7 @@ class Kernel:
     def advance(self, rows: Any, probes: Any) -> float:
         """Seconds that so many rows took."""
         start = time.perf_counter()
-        kernel.advance(self.model, self.state, rows, probes, np.zeros((0, 0)))
+        kernel.advance(self.model, self.state, rows, probes, None)
         return time.perf_counter() - start
 
     def fastest_ns(self) -> tuple[float, float]:

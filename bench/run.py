@@ -62,8 +62,7 @@ def kernel_runs(rate: float, fingers: int, *, bowed: bool, stopped: bool, moving
         controls[:, at] = 0.1 - 0.02 * finger + wander
         controls[:, at + 1] = 1.5 if stopped else 0.0
     probes = np.zeros((frames, layout.probe_columns(fingers)))
-    none = np.zeros((0, 0))
-    times = measured(lambda: kernel.advance(model, state, controls, probes, none))
+    times = measured(lambda: kernel.advance(model, state, controls, probes, None))
     return [SECONDS / t for t in times]
 
 

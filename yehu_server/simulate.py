@@ -98,7 +98,7 @@ def simulate(
             for i in range(STRINGS):
                 kept[i].append(now[i, GHOST : GHOST + int(m["N"][i]) + 1].copy())
         part = slice(start, min(start + hop, frames))
-        kernel.advance(model, state, controls[part], probes[part], ledger[part])
+        kernel.advance(model, state, controls[part], probes[part], ledger[part] if energy else None)
         if progress is not None:
             progress(part.stop / gesture.sample_rate, gesture.duration)
 

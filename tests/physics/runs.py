@@ -96,7 +96,7 @@ def play(
     book = np.zeros((frames if ledger else 0, len(layout.LEDGER)))
     level = int(state["level"][0])
     state["stored"] = stored_energy(model[0], state[0], level, (level + 2) % layout.LEVELS)
-    kernel.advance(model, state, controls, probes, book)
+    kernel.advance(model, state, controls, probes, book if ledger else None)
     return Run(rate, model, state, controls, probes, book)
 
 

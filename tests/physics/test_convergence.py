@@ -86,7 +86,7 @@ def simulated_shapes(rate):
         frames = round(time * rate) - done
         done += frames
         probes = np.zeros((frames, layout.probe_columns(1)))
-        kernel.advance(model, state, rows(frames, 1, {}), probes, np.zeros((0, 0)))
+        kernel.advance(model, state, rows(frames, 1, {}), probes, None)
         both = []
         for i in range(layout.STRINGS):
             N = int(model["N"][0, i])

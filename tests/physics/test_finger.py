@@ -160,7 +160,7 @@ def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
             if is_reminded:
                 state["still"] = 0
             part = slice(n, n + 1)
-            kernel.advance(model, state, table[part], probes[part], np.zeros((0, 0)))
+            kernel.advance(model, state, table[part], probes[part], None)
             was_still[n] = state["still"][0, :2]
         found.append((probes, was_still))
     (probes, was_still), (again, _) = found

@@ -15,7 +15,6 @@ from yehu_server.simulate import simulate
 YEHU = Quantities()
 RATE = 44100.0
 OPEN = {"F4": (0.7, 349.228), "C5": (-0.7, 523.251)}
-NO_LEDGER = np.zeros((0, 0))
 
 
 # --- sounding -----------------------------------------------------------------------------
@@ -92,7 +91,7 @@ def test_the_size_of_a_block_changes_nothing(fingers):
         ledger = np.zeros((frames, len(layout.LEDGER)))
         for start in range(0, frames, block):
             part = slice(start, start + block)
-            book = ledger[part] if block == 64 else NO_LEDGER
+            book = ledger[part] if block == 64 else None
             kernel.advance(model, state, controls[part], probes[part], book)
         results.append(probes)
     assert results[0].any()
@@ -193,7 +192,7 @@ def lost(request):
     PLACES[request.param](run.state)
     frames = round(0.05 * RATE)
     probes = np.zeros((frames, layout.probe_columns(2)))
-    kernel.advance(run.model, run.state, rows(frames, 2, PLAYING), probes, NO_LEDGER)
+    kernel.advance(run.model, run.state, rows(frames, 2, PLAYING), probes, None)
     return run.state, probes
 
 
@@ -238,7 +237,7 @@ def test_a_state_that_blew_up_is_lost_too():
     model = kernel.prepare(YEHU, RATE)
     state = shaped(model, 0, bump(0.02, 0.26, 1e9))
     probes = np.zeros((200, layout.probe_columns(1)))
-    kernel.advance(model, state, rows(200, 1, {}), probes, NO_LEDGER)
+    kernel.advance(model, state, rows(200, 1, {}), probes, None)
     assert state["lost"][0] == 1
     assert np.abs(probes[:, layout.BRIDGE_FORCE]).max() < 1e6
     # At rest from then on: but for the height of the finger, nothing is left to see.

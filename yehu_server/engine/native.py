@@ -202,7 +202,7 @@ def play(rig: Any, out: Array) -> None:
             if start == end:
                 retune(model, state, g)
                 end = frames
-            kernel.advance(model, state, o.controls[start:end], o.probes[start:end], o.probes[:0])
+            kernel.advance(model, state, o.controls[start:end], o.probes[start:end], None)
             start = end
         for n in range(frames):
             sample: Any = np.float32(play_out(o, n))

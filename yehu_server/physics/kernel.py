@@ -141,7 +141,9 @@ def come_to_rest(model: Any, s: Any) -> None:
 
 
 @compiled
-def advance(model: Array, state: Array, controls: Array, probes: Array, ledger: Array) -> None:
+def advance(
+    model: Array, state: Array, controls: Array, probes: Array, ledger: Array | None
+) -> None:
     """Run the model over one row of controls a sample.
 
     Parameters
@@ -154,8 +156,8 @@ def advance(model: Array, state: Array, controls: Array, probes: Array, ledger: 
         of each finger. Finite: a caller checks what comes from outside.
     probes : ndarray [shape=(frames, probe_columns)]
         Written: columns as named in ``layout``.
-    ledger : ndarray [shape=(frames, len(LEDGER))] or [shape=(0, 0)]
-        Written where it has rows.
+    ledger : ndarray [shape=(frames, len(LEDGER))] or None
+        Written. Without it, what keeps it is not compiled.
 
     A state that is lost (not finite) comes back at rest at the next sample, and is
     counted in ``state.lost``; the sample that lost it reads -1 iterations, and zeros.
@@ -168,7 +170,7 @@ def advance(model: Array, state: Array, controls: Array, probes: Array, ledger: 
     for n in range(controls.shape[0]):
         step(m, s, controls[n], next_, now, prev)
         s.level = next_
-        if n < ledger.shape[0]:
+        if ledger is not None:
             book(m, s, controls[n], ledger[n])
         measure(m, s, probes[n])
         next_, now, prev = prev, next_, now

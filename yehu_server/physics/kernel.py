@@ -157,7 +157,7 @@ def advance(
     probes : ndarray [shape=(frames, probe_columns)]
         Written: columns as named in ``layout``.
     ledger : ndarray [shape=(frames, len(LEDGER))] or None
-        Written. Without it, what keeps it is not compiled.
+        Written where it has rows. Without it, what keeps it is not compiled.
 
     A state that is lost (not finite) comes back at rest at the next sample, and is
     counted in ``state.lost``; the sample that lost it reads -1 iterations, and zeros.
@@ -170,7 +170,7 @@ def advance(
     for n in range(controls.shape[0]):
         step(m, s, controls[n], next_, now, prev)
         s.level = next_
-        if ledger is not None:
+        if ledger is not None and n < ledger.shape[0]:
             book(m, s, controls[n], ledger[n])
         measure(m, s, probes[n])
         next_, now, prev = prev, next_, now

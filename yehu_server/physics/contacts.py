@@ -109,7 +109,7 @@ def reply(s: Any, q: int) -> Reply:
 def answer(model: Any, s: Any, p: int, q: int, of_q: Reply) -> float:
     """G[p, q]: how far the reading at `p` gives way to a newton at `q`, whose `reply` is known.
 
-    In m/N. Both must `feel` this step.
+    In m/N. ``s.bend_at`` of both must be this step's.
     """
     i = s.string[p]
     slack, pull = (of_q[0], of_q[2]) if i == 0 else (of_q[1], of_q[3])

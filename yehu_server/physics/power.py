@@ -13,10 +13,9 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
+from yehu_server.physics.elementary import EXPONENT_OF_1, MANTISSA_BITS
 from yehu_server.physics.layout import EXPONENTS, INTERVAL_BITS, INTERVALS, POWER_TERMS
 
-MANTISSA_BITS = 52
-EXPONENT_OF_1 = 1023
 INTERVAL_SHIFT = MANTISSA_BITS - INTERVAL_BITS
 MANTISSA_MASK = (1 << MANTISSA_BITS) - 1
 BITS_OF_1 = EXPONENT_OF_1 << MANTISSA_BITS

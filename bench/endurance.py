@@ -1,303 +1,294 @@
-"""Deadlines under load: an idle stream, the instrument, and an ordinary Python callback.
+"""An hour of playing: deadlines beside an idle stream, memory, and a replay of all of it.
 
     .venv/bin/python bench/endurance.py [--seconds N] [--save bench/results/NAME.json]
 
-Each of the three plays for N seconds (an hour by default), in short turns, so
-that all meet the same machine. The load is dense MIDI and OSC from another process and a busy
-Python thread in the process that plays. Without --audio-device it starts a JACK server with
-the dummy driver, which waits for nobody and has no real-time rights: hence the idle stream.
+`yehu-server serve` plays with --record and --capture. Another process sends dense OSC and MIDI, and
+OSCQuery clients listen to every address. Beside it, on the same device, plays an idle stream: what
+that one misses, the machine missed. Memory is read every few seconds. In the end the capture is
+replayed and compared with the recording, sample by sample. Without --audio-device it starts a
+JACK server with the dummy driver, which has no real-time rights.
 """
 
 from __future__ import annotations
 
 import argparse
+import asyncio
 import contextlib
-import ctypes.util
 import json
-import multiprocessing
 import os
 import platform
-import random
-import shutil
-import socket
+import re
+import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
+from urllib.request import urlopen
 
 import numpy as np
+import soundfile
+from load import CARD, SPAWN, send_load, sound_card
 from rich.console import Console
 from rich.table import Table
 from run import processor
 
-from yehu_server import server
-from yehu_server.audio.output import NULL, Output, OutputOptions, OutputState
-from yehu_server.control.packets import pack
-from yehu_server.control.ports import MidiOptions
-from yehu_server.engine.telemetry import BINS_PER_DEADLINE
-from yehu_server.server import ServeOptions, Server
+from yehu_server.audio.output import NULL, Output, OutputOptions
+from yehu_server.engine import native
+from yehu_server.engine.instrument import Instrument
 
-TURN_S = 20.0
-SETTLED_S = 1.0
-COUNTED = ("callbacks", "missed", "late_callbacks", "underruns", "applied", "late_events")
-QUANTILES = (0.5, 0.99, 0.999, 0.9999)
-JACK = "yehu-bench"
-SPAWN = multiprocessing.get_context("spawn")
-
-
-# ---------------------------------------------------------------- a sound card, if need be
-
-
-def start(program: list[str], out: int = subprocess.DEVNULL) -> subprocess.Popen[bytes]:
-    """Start a program whose complaints are of no interest."""
-    return subprocess.Popen(program, stdout=out, stderr=subprocess.DEVNULL)  # noqa: S603
+COMMAND = [sys.executable, "-c", "from yehu_server.cli import main; raise SystemExit(main())"]
+STARTED_WITHIN_S, ENDED_WITHIN_S = 120.0, 60.0
+SETTLED_S = 3.0
+SAMPLE_EVERY_S = 10.0
+PAGES = 8
+CALLBACKS = ("callbacks", "missed", "late_callbacks", "underruns")
+COUNTERS = (
+    *("frame", "missed_deadlines", "late_callbacks", "underruns", "device_losses"),
+    *("applied_events", "late_events", "dropped_events", "unconverged_solves", "lost_states"),
+    *("osc_messages", "osc_dropped", "osc_failures", "midi_messages", "midi_malformed"),
+    *("http_failures", "http_unsent"),
+)
+COMPARED_FRAMES = 1 << 20
 
 
-@contextlib.contextmanager
-def dummy_jack(period: int, rate: int = 48000) -> Iterator[None]:
-    """A JACK server without a sound card, for all that is started meanwhile."""
-    os.environ |= {"JACK_DEFAULT_SERVER": JACK, "JACK_NO_AUDIO_RESERVATION": "1"}
-    os.environ["JACK_NO_START_SERVER"] = "1"
-    card = ["-d", "dummy", "-r", str(rate), "-p", str(period)]
-    program = ["jackd", "--no-realtime", "--no-mlock", "-p", "128", "-n", JACK, *card]
-    jackd = start(program)
-    deadline = time.monotonic() + 10.0
-    try:
-        while b"playback_1" not in start(["jack_lsp"], subprocess.PIPE).communicate()[0]:
-            if time.monotonic() > deadline:
-                sys.exit("JACK's server does not start")
-            if jackd.poll() is not None:  # the one before is still in JACK's registry
-                jackd = start(program)
-            time.sleep(0.05)
-        yield
-    finally:
-        jackd.terminate()
-        try:
-            jackd.wait(3.0)
-        except subprocess.TimeoutExpired:
-            jackd.kill()
+# ---------------------------------------------------------------- beside the instrument
 
 
-def sound_card(wanted: str | None, period: int) -> contextlib.AbstractContextManager[object]:
-    """The named output, or one that is made for the occasion."""
-    if wanted is not None:
-        return contextlib.nullcontext()
-    if shutil.which("jackd") is None or ctypes.util.find_library("jack") is None:
-        sys.exit("without JACK, name an output: --audio-device NAME")
-    return dummy_jack(period)
-
-
-# ---------------------------------------------------------------- the load
-
-
-def midi_out(name: str) -> Any:
-    """A MIDI output that others can open, of the first MIDI system there is."""
-    import rtmidi
-
-    for api in rtmidi.get_compiled_api():
-        with contextlib.suppress(rtmidi.RtMidiError, SystemError, NotImplementedError):
-            midi = rtmidi.MidiOut(api, name=name)
-            midi.open_virtual_port("out")
-            return midi
-    sys.exit("there is no MIDI system")
-
-
-def send_load(port: int) -> None:
-    """Notes, wheels and touch over MIDI, 600 messages a second; OSC, 2,000 a second."""
-    osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    osc.connect(("127.0.0.1", port))
-    midi = midi_out("load")
-    chance = random.Random(1)  # noqa: S311
-    note, due = 65, time.monotonic()
+def play_idle(device: str, blocksize: int, answer: Any) -> None:
+    """The same callback with nothing to play, until it is asked for its counts."""
+    output = Output(OutputOptions(device=device, blocksize=blocksize), lambda _line: None)
+    instrument = Instrument(output.find(), memory=output.memory.buffer)
+    output.begin(instrument)
     while True:
-        midi.send_message([0x80, note, 64])
-        note = chance.randrange(65, 90)
-        midi.send_message([0x90, note, chance.randrange(20, 127)])
-        for _ in range(50):
-            for message in ([0xE0, chance.randrange(128)], [0xD0], [0xB0, 1]):
-                midi.send_message([*message, chance.randrange(128)])
-            with contextlib.suppress(ConnectionRefusedError):
-                for _ in range(5):
-                    osc.send(pack("/yehu/bow/position", chance.uniform(0.05, 0.2)))
-                    osc.send(pack("/yehu/playing/pressure", chance.uniform(0.2, 0.6)))
-            due += 0.005
-            time.sleep(max(0.0, due - time.monotonic()))
-
-
-@contextlib.contextmanager
-def load_on(port: int) -> Iterator[None]:
-    """The load, from without and within."""
-    sender = SPAWN.Process(target=send_load, args=(port,))
-    sender.start()
-    ending = threading.Event()
-
-    def work() -> None:
-        while not ending.is_set():
-            sum(number * number for number in range(1000))
-
-    busy = threading.Thread(target=work)
-    busy.start()
-    try:
-        yield
-    finally:
-        ending.set()
-        busy.join()
-        sender.kill()
-        sender.join()
-
-
-# ---------------------------------------------------------------- who plays
-
-
-class PythonOutput(Output):
-    """What most programs do: a Python callback, in the process that handles messages."""
-
-    underruns = 0
-
-    def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:
-        super().__init__(options, changed)
-        self._asked = options
-        self._stream: Any = None
-
-    def find(self) -> float:
-        """See `Output`."""
-        import sounddevice
-
-        from yehu_server.audio.devices import choose, outputs
-
-        self._card = choose(outputs(sounddevice), self._asked.device)
-        return float(self._card.rate)
-
-    def begin(self, instrument: Any) -> None:
-        """See `Output`."""
-        import sounddevice
-
-        def play(out: Any, _frames: int, _times: Any, status: Any) -> None:
-            self.underruns += bool(status.output_underflow)
-            instrument.process(out)
-
-        instrument.channels = min(self._asked.channels, self._card.channels)
-        self._stream = sounddevice.OutputStream(
-            device=self._card.index,
-            samplerate=instrument.rate,
-            blocksize=self._asked.blocksize,
-            channels=instrument.channels,
-            latency=self._asked.latency,
-            dtype="float32",
-            clip_off=True,
-            dither_off=True,
-            callback=play,
-        )
-        self._stream.start()
-        self.state = OutputState(self._card.full_name, 1e3 * self._stream.latency)
-
-    def end(self) -> None:
-        """See `Output`."""
-        if self._stream is not None:
-            self._stream.close()
-
-
-def take_turn(kind: str, seconds: float, device: str, block: int, answer: Any) -> None:
-    """Play for a while; answer with what was counted."""
-    if kind == "python":
-        vars(server)["Output"] = PythonOutput
-    options = ServeOptions(
-        output=OutputOptions(device=device, blocksize=block),
-        midi=MidiOptions() if kind != "idle" else None,
-        osc=("127.0.0.1", 0),
-    )
-    playing = Server(options, lambda _line: None)
-    playing.start()
-    with contextlib.nullcontext() if kind == "idle" else load_on(playing.osc.port):
-        time.sleep(SETTLED_S + (0.0 if kind == "idle" else 2.0))
-        before = counts(playing)
-        time.sleep(seconds)
-        after = counts(playing)
-    answer.send({what: after[what] - before[what] for what in before})
-    playing.stop()
+        answer.send({what: int(instrument.meters()[what]) for what in CALLBACKS})
+        if not answer.recv():
+            break
+    output.end()
     os._exit(0)
 
 
-def counts(playing: Server) -> dict[str, Any]:
-    """All that is counted, so far."""
-    meters = playing.instrument.meters()
-    counted: dict[str, Any] = {what: int(meters[what]) for what in COUNTED}
-    if isinstance(playing.output, PythonOutput):
-        counted["underruns"] = playing.output.underruns
-    counted["frames"] = int(meters["frame"])
-    counted["loads"] = meters["loads"].copy()
-    counted["midi"] = playing.midi.received if playing.midi else 0
-    counted["osc"] = playing.osc.traffic.packets
-    return counted
+def listen(port: int, answer: Any) -> None:
+    """Pages that listen to every address that has a value; count what they are told."""
+    counts = [0] * PAGES
+    answer.send(asyncio.run(_listen(port, counts, answer)))
 
 
-def quantile(loads: Any, share: float) -> float:
-    """The load that so large a share of callbacks stays below, to a sixty-fourth."""
-    return (int(np.searchsorted(np.cumsum(loads), share * loads.sum())) + 1) / BINS_PER_DEADLINE
+async def _listen(port: int, counts: list[int], answer: Any) -> list[int]:
+    import aiohttp
+
+    async with aiohttp.ClientSession() as session:
+        async with session.get(f"http://127.0.0.1:{port}/") as response:
+            paths = list(_paths(await response.json()))
+        pages = [asyncio.create_task(_page(session, port, paths, counts, i)) for i in range(PAGES)]
+        await asyncio.to_thread(answer.recv)
+        for page in pages:
+            page.cancel()
+        await asyncio.gather(*pages, return_exceptions=True)
+    return counts
+
+
+def _paths(node: dict[str, Any]) -> Iterator[str]:
+    if "VALUE" in node:
+        yield node["FULL_PATH"]
+    for child in node.get("CONTENTS", {}).values():
+        yield from _paths(child)
+
+
+async def _page(session: Any, port: int, paths: list[str], counts: list[int], i: int) -> None:
+    async with session.ws_connect(f"ws://127.0.0.1:{port}/") as page:
+        for path in paths:
+            await page.send_json({"COMMAND": "LISTEN", "DATA": path})
+        async for _message in page:
+            counts[i] += 1
+
+
+@contextlib.contextmanager
+def helper(work: Any, *arguments: Any) -> Iterator[Any]:
+    """Run a function in a process of its own; yield the pipe to it."""
+    here, there = SPAWN.Pipe()
+    process = SPAWN.Process(target=work, args=(*arguments, there), daemon=True)
+    process.start()
+    there.close()
+    try:
+        yield here
+    finally:
+        process.join(5.0)
+        process.kill()
+        process.join()
+
+
+# ---------------------------------------------------------------- the instrument
+
+
+class Playing:
+    """``yehu-server serve``, as a command, and what it tells of itself."""
+
+    def __init__(self, device: str, blocksize: int, folder: Path) -> None:
+        words = ["--audio-device", device, "--blocksize", str(blocksize)]
+        words += ["--osc", "127.0.0.1:0", "--http", "127.0.0.1:0"]
+        words += ["--record", str(folder / "take.wav"), "--capture", str(folder / "take.jsonl")]
+        self.lines: list[str] = []
+        self.process = subprocess.Popen(  # noqa: S603 - our own command
+            [*COMMAND, "serve", *words], stderr=subprocess.PIPE, text=True
+        )
+        threading.Thread(target=self._read, args=(self.process.stderr,), daemon=True).start()
+        self.osc = int(self._said(r"OSC at [\d.]+:(\d+)"))
+        self.http = int(self._said(r"OSCQuery at http://[\d.]+:(\d+)"))
+
+    def _read(self, pipe: IO[str]) -> None:
+        self.lines.extend(line.rstrip() for line in pipe)
+
+    def _said(self, pattern: str) -> str:
+        deadline = time.monotonic() + STARTED_WITHIN_S
+        while time.monotonic() < deadline and self.process.poll() is None:
+            for line in list(self.lines):
+                if found := re.search(pattern, line):
+                    return found[1]
+            time.sleep(0.05)
+        sys.exit("serve does not start:\n" + "\n".join(self.lines))
+
+    def status(self) -> dict[str, float]:
+        """Its metrics, by the names of the status values."""
+        with urlopen(f"http://127.0.0.1:{self.http}/metrics", timeout=10.0) as page:
+            lines = page.read().decode().splitlines()
+        pairs = (line.split() for line in lines if not line.startswith("#"))
+        return {
+            name.removeprefix("yehu_").removesuffix("_total"): float(value) for name, value in pairs
+        }
+
+    def memory_mb(self) -> float | None:
+        """Memory of it and its helper processes, shared pages once; Linux only."""
+        total = 0
+        for pid in [self.process.pid, *_children(self.process.pid)]:
+            try:
+                text = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii")
+            except OSError:
+                return None
+            found = re.search(r"^Pss: +(\d+) kB", text, re.MULTILINE)
+            total += int(found[1]) if found else 0
+        return total / 1000.0
+
+    def end(self) -> int:
+        """Let it end; return its exit code."""
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(ENDED_WITHIN_S)
+
+
+def _children(pid: int) -> list[int]:
+    children = []
+    for task in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            children += [int(child) for child in task.read_text(encoding="ascii").split()]
+    return children
+
+
+def replayed_equal(folder: Path) -> tuple[int, int]:
+    """Replay the capture; return frames recorded, and how many differ or are missing."""
+    again = folder / "again.wav"
+    words = ["replay", str(folder / "take.jsonl"), "-o", str(again), "--quiet"]
+    subprocess.run([*COMMAND, *words], check=True)  # noqa: S603
+    with soundfile.SoundFile(folder / "take.wav") as take, soundfile.SoundFile(again) as other:
+        frames, differing = take.frames, abs(take.frames - other.frames)
+        while len(samples := take.read(COMPARED_FRAMES, dtype="float32")):
+            same = other.read(len(samples), dtype="float32")
+            differing += int(np.count_nonzero(samples[: len(same)] != same))
+    return frames, differing
+
+
+# ---------------------------------------------------------------- the whole
+
+
+def play(device: str, blocksize: int, seconds: float, folder: Path) -> dict[str, Any]:
+    """Play and count."""
+    with helper(play_idle, device, blocksize) as idle:
+        idle.recv()
+        playing = Playing(device, blocksize, folder)
+        with helper(listen, playing.http) as pages:
+            sender = SPAWN.Process(target=send_load, args=(playing.osc,), daemon=True)
+            sender.start()
+            time.sleep(SETTLED_S)
+            idle.send(True)
+            idle_before, before = idle.recv(), playing.status()
+            samples, started = [], time.monotonic()
+            while (left := started + seconds - time.monotonic()) > 0.0:
+                time.sleep(min(SAMPLE_EVERY_S, left))
+                samples.append((time.monotonic() - started, playing.memory_mb()))
+                if playing.process.poll() is not None:
+                    sys.exit("serve ended:\n" + "\n".join(playing.lines))
+            idle.send(True)
+            idle_after, after = idle.recv(), playing.status()
+            sender.kill()
+            sender.join()
+            pages.send(None)
+            told = pages.recv()
+        code = playing.end()
+        idle.send(False)
+    frames, differing = replayed_equal(folder)
+    return {
+        "exit_code": code,
+        "said": [line for line in playing.lines if "could not" in line or "so far" in line],
+        "instrument": {what: int(after[what] - before[what]) for what in COUNTERS},
+        "load": after["load"],
+        "worst_load": after["worst_load"],
+        "idle_stream": {what: idle_after[what] - idle_before[what] for what in CALLBACKS},
+        "told_to_pages": told,
+        "memory_mb": [[round(at_s), mb] for at_s, mb in samples],
+        "recorded_frames": frames,
+        "replay_differs_in": differing,
+    }
+
+
+def quarters(memory: list[list[float]]) -> list[float]:
+    """Median memory of each quarter of the time."""
+    edges = np.linspace(0, len(memory), 5).astype(int)
+    return [float(np.median([mb for _, mb in memory[a:b]])) for a, b in pairwise(edges) if b > a]
+
+
+def print_report(figures: dict[str, Any]) -> None:
+    """Tell what came of it."""
+    table = Table(title="callbacks", title_justify="left")
+    for column in ("", "missed", "late", "under-runs"):
+        table.add_column(column)
+    idle, own = figures["idle_stream"], figures["instrument"]
+    table.add_row("idle stream", *(str(idle[what]) for what in CALLBACKS[1:]))
+    counts = ("missed_deadlines", "late_callbacks", "underruns")
+    table.add_row("the instrument", *(str(own[what]) for what in counts))
+    console = Console(width=100)
+    console.print(table)
+    console.print(", ".join(f"{what} {count}" for what, count in own.items()))
+    console.print(f"load {figures['load']:.3f}, worst {figures['worst_load']:.3f}")
+    if None not in [mb for _, mb in figures["memory_mb"]]:
+        shown = ", ".join(f"{mb:.0f}" for mb in quarters(figures["memory_mb"]))
+        console.print(f"memory, median of each quarter: {shown} MB")
+    console.print(f"told to {PAGES} pages: {sum(figures['told_to_pages'])} messages")
+    differing, frames = figures["replay_differs_in"], figures["recorded_frames"]
+    console.print(f"replay differs in {differing} of {frames} frames")
 
 
 def main() -> None:
     """Measure and print everything."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=3600.0, help="of each (default: 3600)")
-    parser.add_argument("--blocksize", type=int, default=128)
+    parser.add_argument("--seconds", type=float, default=3600.0, help="default: 3600")
+    parser.add_argument("--blocksize", type=int, default=64)
     parser.add_argument("--audio-device", help="see yehu-server devices (default: a dummy)")
     parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
     arguments = parser.parse_args()
-    device = arguments.audio_device or "system, JACK"
+    device = arguments.audio_device or CARD
     if device == NULL:
         sys.exit("the silent clock has no deadlines")
-
-    names = {
-        "idle": "idle stream",
-        "instrument": "the instrument, under load",
-        "python": "a Python callback, under load",
-    }
-    totals: dict[str, dict[str, Any]] = {}
-    left = arguments.seconds
-    with sound_card(arguments.audio_device, arguments.blocksize):
-        while left > 0.0:
-            for kind, name in names.items():
-                here, there = SPAWN.Pipe()
-                turn = SPAWN.Process(
-                    target=take_turn,
-                    args=(kind, min(left, TURN_S), device, arguments.blocksize, there),
-                )
-                turn.start()
-                there.close()
-                try:
-                    counted = here.recv()
-                except EOFError:
-                    sys.exit(f"{name}: ended before its time")
-                finally:
-                    turn.join()
-                total = totals.setdefault(kind, dict.fromkeys(counted, 0))
-                for what, count in counted.items():
-                    total[what] = total[what] + count
-            left -= TURN_S
-
-    table = Table(title=f"blocks of {arguments.blocksize} frames, {arguments.seconds:g} s each")
-    table.add_column("", no_wrap=True)
-    for column in ("callbacks", "missed", "late", "under-runs", "MIDI", "OSC", "late events"):
-        table.add_column(column)
-    for share in QUANTILES:
-        table.add_column(f"load {100 * share:g} %")
-    figures = {}
-    for kind, name in names.items():
-        total = totals[kind]
-        loads = total.pop("loads")
-        row = [total[what] for what in ("callbacks", "missed", "late_callbacks", "underruns")]
-        row += [total["midi"], total["osc"], total["late_events"]]
-        total["load_quantiles"] = {str(share): quantile(loads, share) for share in QUANTILES}
-        shares = [f"{share:.2f}" for share in total["load_quantiles"].values()]
-        table.add_row(name, *map(str, row), *shares)
-        figures[name] = total
-    Console(width=150).print(table)
+    native.warm_up()  # before processes have to wait for each other
+    with (
+        sound_card(arguments.audio_device, arguments.blocksize),
+        tempfile.TemporaryDirectory() as f,
+    ):
+        figures = play(device, arguments.blocksize, arguments.seconds, Path(f))
+    print_report(figures)
     if arguments.save:
-        arguments.save.parent.mkdir(parents=True, exist_ok=True)
         record = {
             "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
             "python": platform.python_version(),
@@ -306,6 +297,7 @@ def main() -> None:
             "blocksize": arguments.blocksize,
             "figures": figures,
         }
+        arguments.save.parent.mkdir(parents=True, exist_ok=True)
         arguments.save.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 

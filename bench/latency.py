@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from endurance import JACK, SPAWN, dummy_jack, midi_out, start
+from load import JACK, SPAWN, dummy_jack, midi_out, start
 from rich.console import Console
 from rich.table import Table
 from run import processor

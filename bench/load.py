@@ -1,0 +1,107 @@
+"""A sound card and a load for benchmarks: JACK's dummy driver, dense MIDI and OSC.
+
+.venv/bin/python bench/load.py PORT     sends the load to an OSC port, until it is killed
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes.util
+import multiprocessing
+import os
+import random
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from yehu_server.control.packets import pack
+
+CARD = "system, JACK"
+JACK = "yehu-bench"
+SPAWN = multiprocessing.get_context("spawn")
+
+# ---------------------------------------------------------------- a sound card, if need be
+
+
+def start(program: list[str], out: int = subprocess.DEVNULL) -> subprocess.Popen[bytes]:
+    """Start a program whose complaints are of no interest."""
+    return subprocess.Popen(program, stdout=out, stderr=subprocess.DEVNULL)  # noqa: S603
+
+
+@contextlib.contextmanager
+def dummy_jack(period: int, rate: int = 48000) -> Iterator[None]:
+    """A JACK server without a sound card, for all that is started meanwhile."""
+    os.environ |= {"JACK_DEFAULT_SERVER": JACK, "JACK_NO_AUDIO_RESERVATION": "1"}
+    os.environ["JACK_NO_START_SERVER"] = "1"
+    card = ["-d", "dummy", "-r", str(rate), "-p", str(period)]
+    program = ["jackd", "--no-realtime", "--no-mlock", "-p", "128", "-n", JACK, *card]
+    jackd = start(program)
+    deadline = time.monotonic() + 10.0
+    try:
+        while b"playback_1" not in start(["jack_lsp"], subprocess.PIPE).communicate()[0]:
+            if time.monotonic() > deadline:
+                sys.exit("JACK's server does not start")
+            if jackd.poll() is not None:  # the one before is still in JACK's registry
+                jackd = start(program)
+            time.sleep(0.05)
+        yield
+    finally:
+        jackd.terminate()
+        try:
+            jackd.wait(3.0)
+        except subprocess.TimeoutExpired:
+            jackd.kill()
+
+
+def sound_card(wanted: str | None, period: int) -> contextlib.AbstractContextManager[object]:
+    """The named output, or one that is made for the occasion."""
+    if wanted is not None:
+        return contextlib.nullcontext()
+    if shutil.which("jackd") is None or ctypes.util.find_library("jack") is None:
+        sys.exit("without JACK, name an output: --audio-device NAME")
+    return dummy_jack(period)
+
+
+# ---------------------------------------------------------------- the load
+
+
+def midi_out(name: str) -> Any:
+    """A MIDI output that others can open, of the first MIDI system there is."""
+    import rtmidi
+
+    for api in rtmidi.get_compiled_api():
+        with contextlib.suppress(rtmidi.RtMidiError, SystemError, NotImplementedError):
+            midi = rtmidi.MidiOut(api, name=name)
+            midi.open_virtual_port("out")
+            return midi
+    sys.exit("there is no MIDI system")
+
+
+def send_load(port: int) -> None:
+    """Notes, wheels and touch over MIDI, 600 messages a second; OSC, 2,000 a second."""
+    osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    osc.connect(("127.0.0.1", port))
+    midi = midi_out("load")
+    chance = random.Random(1)  # noqa: S311
+    note, due = 65, time.monotonic()
+    while True:
+        midi.send_message([0x80, note, 64])
+        note = chance.randrange(65, 90)
+        midi.send_message([0x90, note, chance.randrange(20, 127)])
+        for _ in range(50):
+            for message in ([0xE0, chance.randrange(128)], [0xD0], [0xB0, 1]):
+                midi.send_message([*message, chance.randrange(128)])
+            with contextlib.suppress(ConnectionRefusedError):
+                for _ in range(5):
+                    osc.send(pack("/yehu/bow/position", chance.uniform(0.05, 0.2)))
+                    osc.send(pack("/yehu/playing/pressure", chance.uniform(0.2, 0.6)))
+            due += 0.005
+            time.sleep(max(0.0, due - time.monotonic()))
+
+
+if __name__ == "__main__":
+    send_load(int(sys.argv[1]))

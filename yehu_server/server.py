@@ -36,6 +36,7 @@ from yehu_server.errors import MappingError, OutputError
 from yehu_server.files import PLAIN_NAME, check_target, shipped_folder
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
+from yehu_server.playing.delay import Delay
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_watch import MappingWatch
@@ -46,9 +47,6 @@ log = logging.getLogger(__name__)
 
 KEEP_EVERY_S = 0.05
 LOOK_EVERY_S = 0.5  # at the mapping's files
-# A message is heard one block after it arrived, so that its frame is still to be played, and
-# this much later, which is what Python takes to act on it.
-HANDLING_MS = 1.0
 FADE_MS = 50.0  # after the notes' release
 # Short turns for Python's threads, so that handlers are not late when one is busy.
 SWITCH_INTERVAL_S = 0.0001
@@ -66,7 +64,7 @@ class ServeOptions:
     announce: bool | None = None  # None: where it listens beyond this machine
     style: Style = field(default_factory=Style)
     reread: Callable[[], Mapping] | None = None  # the mapping's files; None: they are not watched
-    jitter_ms: float | None = None  # None: one block and HANDLING_MS
+    jitter_ms: float | None = None  # None: see playing.delay
     record: Path | None = None
     capture: Path | None = None
     recordings: Path = field(default_factory=lambda: user_music_path() / "yehu-server")
@@ -103,12 +101,12 @@ class Server:
             calibration = calibration_for(rate, a4=options.style.a4, progress=progress)
             quantities = calibration.tuned(Quantities())
             self.instrument = Instrument(rate, quantities, memory=self.output.memory.buffer)
-            usual_ms = 1e3 * options.output.blocksize / rate + HANDLING_MS
+            self._delay = Delay(self.instrument, options.output.blocksize, options.jitter_ms)
             self.player = LivePlayer(
                 self.instrument,
                 options.style,
                 calibration=calibration,
-                delay_ms=usual_ms if options.jitter_ms is None else options.jitter_ms,
+                delay_ms=1e3 * self._delay.frames / rate,
             )
             self.handler = OscHandler(self.player, self)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
@@ -210,9 +208,15 @@ class Server:
             if self._capture is not None:
                 self._write_capture(self._capture)
             self._report_troubles()
+            self._follow_device()
             if self._watch is not None and time.monotonic() >= self._next_look:
                 self._next_look = time.monotonic() + LOOK_EVERY_S
                 self._look_at(self._watch)
+
+    def _follow_device(self) -> None:
+        """Let the delay of what arrives be as long as the device's period asks for."""
+        self._delay.look()
+        self.player.delay = self._delay.frames
 
     def _look_at(self, watch: MappingWatch) -> None:
         """Take up the mapping if its files have changed and are right."""
@@ -329,6 +333,7 @@ class Server:
             "problem": output.problem,
             "rate": self.instrument.rate,
             "blocksize": self.options.output.blocksize,
+            "period": self._delay.period,
             "latency_ms": output.latency_ms,
             "delay_ms": 1e3 * self.player.delay / self.instrument.rate,
             "uptime_s": time.monotonic() - self._started,

@@ -291,6 +291,104 @@ def test_one_callback_that_begins_late_hardly_moves_the_time():
     assert clock.meters["late_callbacks"] == 1
 
 
+# ---------------------------------------------------------------- requests of several blocks
+
+
+class Host(Clock):
+    """A sound server with a period of its own, that keeps what is over of a block."""
+
+    def __init__(self, period: int, block: int, **options: float) -> None:
+        super().__init__(48000.0, block, **options)
+        self.period, self._kept = period, 0
+        self.begun_ns = self.exact_ns
+        self._instrument = Instrument(48000.0)
+        self.ahead: list[float] = []  # frames played before their time, after each request
+
+    def frame_at(self, moment_ns: float) -> float:
+        """The frame that what arrives at a moment is stamped with, but for the delay."""
+        return told(self._instrument, self.meters).frame_at(round(moment_ns))
+
+    def ask(self, late_ns: float = 0.0, takes_ns: float = 50e3) -> None:
+        """Let one period pass."""
+        begun = now = self.begun_ns + late_ns
+        while self._kept < self.period:
+            self.exact_ns = now
+            self.tick()
+            self.meters["ended_ns"] = round(now + takes_ns)
+            now += takes_ns + 2e3
+            self._kept += self.block
+        self.ahead.append(self.frame - self.frame_at(begun))
+        self._kept -= self.period
+        self.begun_ns += self.period * self.ns_per_frame
+
+    def ask_for(self, seconds: float) -> None:
+        for _ in range(round(seconds * 48000.0 / self.period)):
+            self.ask()
+
+
+@pytest.mark.parametrize("takes_ns", [20e3, 500e3])
+@pytest.mark.parametrize(("period", "block"), [(64, 64), (64, 128), (1024, 128), (8192, 128)])
+def test_how_much_a_device_asks_for_at_once_is_told(period, block, takes_ns):
+    host = Host(period, block)
+    for _ in range(4 * 48000 // period):
+        host.ask(takes_ns=takes_ns)
+    assert host.meters["longest"] == max(period, block)
+    assert host.meters["ahead"] == pytest.approx(max(period, block), abs=1.0)
+    assert host.meters["late_callbacks"] == 0
+
+
+@pytest.mark.parametrize(("period", "block"), [(96, 128), (127, 128), (1024, 100), (1024, 1000)])
+def test_where_its_period_is_no_number_of_blocks_all_it_plays_ahead_is_told(period, block):
+    host = Host(period, block)
+    host.ask_for(4.0)
+    host.ahead.clear()
+    windows = []
+    for _ in range(100):
+        host.ask_for(0.1)
+        windows.append(float(host.meters["ahead"][0]))
+    assert max(windows) == pytest.approx(max(host.ahead), abs=0.1 * block)
+    assert host.meters["late_callbacks"] == 0
+
+
+@pytest.mark.parametrize("period", [256, 1024, 2048])
+def test_time_goes_on_where_a_device_begins_to_ask_for_more_at_once(period):
+    host = Host(128, 128)
+    host.ask_for(6.0)
+    for now in (period, 128):
+        host.period, begun, first = now, host.begun_ns, host.frame
+        for _ in range(20):
+            host.ask()
+            assert host.frame_at(begun) == pytest.approx(first, abs=1.0)
+            begun, first = host.begun_ns, host.frame
+        host.ask_for(0.3)
+        assert host.meters["longest"] == now
+        assert host.meters["ahead"] == pytest.approx(now, abs=1.0)
+    assert host.meters["late_callbacks"] == 0
+
+
+def test_a_period_longer_than_a_stall_is_followed_from_its_second_request_on():
+    host = Host(128, 128)
+    host.ask_for(6.0)
+    host.period = 8192
+    host.ask()
+    host.ask()
+    for _ in range(5):
+        begun, first = host.begun_ns, host.frame
+        host.ask()
+        assert host.frame_at(begun) == pytest.approx(first, abs=5.0)
+    assert host.meters["ahead"] == pytest.approx(8192, abs=5.0)
+
+
+def test_what_catches_up_after_a_stall_is_not_taken_for_a_longer_period_for_long():
+    host = Host(128, 128)
+    host.ask_for(4.0)
+    for late_ms in range(300, 0, -3):  # the silent clock, after 0.3 s: block upon block
+        host.ask(late_ns=1e6 * late_ms)
+    host.ask_for(0.3)
+    assert host.meters["ahead"] == pytest.approx(128.0, abs=1.0)
+    assert host.meters["longest"] == 128
+
+
 # ---------------------------------------------------------------- the frame of a moment
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+import time
 
 import mido
 import numpy as np
@@ -68,6 +69,16 @@ def test_messages_of_one_source_keep_their_order_over_corrections_of_the_clock(l
     assert [arrivals.frame_of(0) for _ in range(5)] == [100, 200, 200, 210, 210]
     frames = iter([10**7, 300])  # a device that began anew
     assert [arrivals.frame_of(0) for _ in range(2)] == [10**7, 300]
+
+
+def test_messages_of_one_source_keep_their_order_where_the_delay_becomes_shorter(live, instrument):
+    instrument.process(np.zeros(480, np.float32))
+    arrivals, frames = Arrivals(live), []
+    for number in range(100):
+        live.delay = 1072 if 20 <= number < 60 else 176
+        frames.append(arrivals.frame_of(time.monotonic_ns() + 100_000 * number))
+    assert frames == sorted(frames)
+    assert frames[30] - frames[10] > 1072 - 176
 
 
 def test_a_decision_never_precedes_an_earlier_one(live, instrument):

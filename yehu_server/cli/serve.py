@@ -72,7 +72,11 @@ def _add_audio(group: Any) -> None:
         "--rate", type=_rate, metavar="HZ", help="sample rate (default: the device's)"
     )
     group.add_argument(
-        "--blocksize", type=_blocksize, default=128, metavar="FRAMES", help="default: 128"
+        "--blocksize",
+        type=_blocksize,
+        default=128,
+        metavar="FRAMES",
+        help="how much to compute at a time; JACK keeps its own period (default: 128)",
     )
     group.add_argument(
         "--latency",
@@ -160,7 +164,8 @@ def _add_playing(group: Any) -> None:
         "--jitter-buffer",
         type=_jitter,
         metavar="MS",
-        help="delay of what comes in, so that it keeps its rhythm (default: one block and 1 ms)",
+        help="delay of what comes in, so that it keeps its rhythm (default: as much as the device "
+        "asks for at once, and 1 ms)",
     )
 
 

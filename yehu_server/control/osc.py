@@ -57,9 +57,7 @@ class OscHandler:
         self._desk = desk
         self.counts = Counts()
         self.clients = Clients(player.values, PREFIX, desk.status)
-        # Before any message of now that would be heard later is decided on.
-        ahead_s = AHEAD_S + player.delay / player.instrument.rate
-        self._schedule: Schedule[tuple[Message, Peer]] = Schedule(ahead_s)
+        self._schedule: Schedule[tuple[Message, Peer]] = Schedule()
         self._tags = TagClock(player)
         self._arrivals = Arrivals(player)
         self._calls: dict[str, Act] = {
@@ -124,6 +122,8 @@ class OscHandler:
 
     def tick(self) -> None:
         """See `sockets.Handler`."""
+        # Before any message of now that would be heard later is decided on.
+        self._schedule.ahead_s = AHEAD_S + self._player.delay / self._player.instrument.rate
         for due_s, (message, peer) in self._schedule.due():
             self._act(message, peer, self._tags.frame_at(due_s))
         self.clients.flush()

@@ -65,7 +65,7 @@ class Schedule(Generic[T]):
     """
 
     def __init__(self, ahead_s: float = AHEAD_S, most: int = MOST) -> None:
-        self._ahead_s = ahead_s
+        self.ahead_s = ahead_s
         self._most = most
         self._order = itertools.count()
         self._waiting: list[tuple[float, int, T]] = []
@@ -83,7 +83,7 @@ class Schedule(Generic[T]):
     def due(self) -> list[tuple[float, T]]:
         """What is to be handed out now, with the times it is meant for."""
         ready = []
-        horizon = time.time() + self._ahead_s
+        horizon = time.time() + self.ahead_s
         while self._waiting and self._waiting[0][0] <= horizon:
             due_s, _, thing = heapq.heappop(self._waiting)
             ready.append((due_s, thing))
@@ -93,7 +93,7 @@ class Schedule(Generic[T]):
         """Seconds until the next thing is to be handed out."""
         if not self._waiting:
             return None
-        return max(0.0, self._waiting[0][0] - self._ahead_s - time.time())
+        return max(0.0, self._waiting[0][0] - self.ahead_s - time.time())
 
     def clear(self) -> None:
         """Forget everything."""

@@ -247,7 +247,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     t.waiting, t.unreported = mail.waiting, mail.unreported
     restore_denormals(mode)
     account(t, thread_cpu_ns() - cpu_ns, flags)
-    t.running = 0
+    t.running, t.ended_ns = 0, monotonic_ns()
     store_release(rig, TAPED_AT, g.frame)
     publish(rig)
     return 0

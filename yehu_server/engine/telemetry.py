@@ -5,7 +5,9 @@ version number that is odd while it writes (a seqlock): a reader who sees the ve
 reads again. Nobody waits for a reader.
 
 A delay-locked loop gives each block's first frame a time without the jitter of the callback's
-start: what comes in is stamped against that, so that it keeps its rhythm.
+start: what comes in is stamped against that, so that it keeps its rhythm. A device whose own
+period is longer than a block calls back several times in a row: the loop follows the first of
+them, and how far the others run ahead of that time is what a message has to wait for.
 Source: [Adriaensen], the loop's equations.
 """
 
@@ -28,7 +30,10 @@ BINS_PER_DEADLINE = 64
 LOOP_HZ = 0.3  # bandwidth of the delay-locked loop
 ASTRAY_NS = 50_000_000  # so far off, the loop starts anew at once;
 ASTRAY_S = 0.1  # after so long, where it is off by more than LATE_BLOCKS
-LATE_BLOCKS = 2
+LATE_BLOCKS = 2  # of the device's own
+IN_A_ROW = 0.125  # of a block: callbacks closer than this, and as much too early, are one request
+LONGEST_PERIOD_S = 0.5
+AHEAD_WINDOW_S = 0.1
 LOAD_MEMORY_S = 1.0
 UNDERRUN = 4  # paOutputUnderflow
 
@@ -41,8 +46,17 @@ METERS = np.dtype(
         ("due_ns", np.int64),
         ("ns_per_frame", np.float64),
         ("block", np.int64),  # frames of the last callback
-        ("error_ns", np.int64),  # how late the last callback began
-        ("astray", np.int64),  # callbacks in a row that were far from due
+        ("ended_ns", np.int64),  # when the last callback returned
+        # Requests of the device: a callback, or several in a row.
+        ("asked_from", np.int64),  # first frame of the last request
+        ("error_ns", np.int64),  # how late it began
+        ("astray", np.int64),  # frames of requests in a row that were far from due
+        ("ahead_window", np.int64),  # a running number
+        ("ahead_from", np.int64),  # first frame of this window
+        ("ahead_now", np.float64),  # in this window
+        ("longest_now", np.int64),
+        ("ahead", np.float64),  # frames played before their time, at most; of the last window
+        ("longest", np.int64),  # frames of the longest request; of the last window
         # How the callback fares.
         ("callbacks", np.int64),
         ("late_callbacks", np.int64),  # begun LATE_BLOCKS or more after they were due
@@ -95,24 +109,46 @@ def close_window(t: Any, m: Any, s: Any) -> None:
 
 @compiled
 def tell_time(t: Any, frame: int, started_ns: int, frames: int) -> None:
-    """Follow the callback's starts with the delay-locked loop."""
+    """Follow the starts of the device's requests with the delay-locked loop."""
     due = t.due_ns + int(t.block * t.ns_per_frame)
     error = started_ns - due
-    late = LATE_BLOCKS * t.block * 1e9 / t.rate
-    if t.callbacks > 0 and error - t.error_ns > late:
-        t.late_callbacks += 1
-    t.astray = t.astray + 1 if abs(error) > late else 0
-    is_lost = abs(error) > ASTRAY_NS or t.astray * t.block > ASTRAY_S * t.rate
+    close_ns = IN_A_ROW * t.block * 1e9 / t.rate
+    if t.callbacks > 0 and started_ns - t.ended_ns < close_ns and error < -close_ns:
+        # Of the same request; unless we only catch up, and time is not where we thought.
+        is_lost = -error > max(ASTRAY_NS, LATE_BLOCKS * t.longest * 1e9 / t.rate)
+        t.due_ns = due
+    else:
+        is_lost = begin_request(t, frame, due, error)
     if t.callbacks == 0 or is_lost:
         t.due_ns, t.error_ns, t.astray = started_ns, 0, 0
         t.ns_per_frame = 1e9 / t.rate
-    else:
-        turn = 2.0 * math.pi * LOOP_HZ * t.block / t.rate
-        t.due_ns, t.error_ns = due + int(math.sqrt(2.0) * turn * error), error
-        t.ns_per_frame += turn * turn * error / max(t.block, 1)
     t.frame = frame
     t.block = frames
     t.callbacks += 1
+    # As if a request took no time, so that it does not hang on how long we compute.
+    t.ahead_now = max(t.ahead_now, frame + frames - t.asked_from - t.error_ns / t.ns_per_frame)
+
+
+@compiled
+def begin_request(t: Any, frame: int, due: int, error: int) -> bool:
+    """Take one step of the loop; return whether it is far off and has to start anew."""
+    asked = min(frame - t.asked_from, int(LONGEST_PERIOD_S * t.rate))
+    t.asked_from = frame
+    t.longest_now = max(t.longest_now, asked)
+    if frame - t.ahead_from >= AHEAD_WINDOW_S * t.rate:
+        t.ahead, t.longest = t.ahead_now, t.longest_now
+        t.ahead_now, t.longest_now = 0.0, 0
+        t.ahead_from = frame
+        t.ahead_window += 1
+    late = LATE_BLOCKS * asked * 1e9 / t.rate
+    if t.callbacks > 0 and error - t.error_ns > late:
+        t.late_callbacks += 1
+    turn = 2.0 * math.pi * LOOP_HZ * asked / t.rate
+    t.due_ns, t.error_ns = due + int(math.sqrt(2.0) * turn * error), error
+    t.ns_per_frame += turn * turn * error / max(asked, 1)
+    t.astray = t.astray + asked if abs(error) > late else 0
+    # A device is late for a moment, but never early.
+    return bool(abs(error) > ASTRAY_NS or -error > late or t.astray > ASTRAY_S * t.rate)
 
 
 @compiled

@@ -1,0 +1,78 @@
+"""How long what arrives waits, so that it keeps its rhythm."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.playing.delay import HELD_WINDOWS, Delay
+
+RATE, BLOCK = 48000, 128
+HANDLING = 48  # frames
+
+
+class Device:
+    """An instrument that tells of a device what it is told to."""
+
+    def __init__(self, fixed_ms: float | None = None) -> None:
+        self._instrument = Instrument(RATE)
+        self.delay = Delay(self._instrument, BLOCK, fixed_ms)
+
+    def window(self, ahead: float, longest: int | None = None) -> int:
+        """Let a window pass; the delay after it."""
+        told = self._instrument._rig["published"]
+        told["ahead_window"] += 1
+        told["ahead"], told["longest"] = ahead, round(ahead) if longest is None else longest
+        for _ in range(2):
+            self.delay.look()
+        return self.delay.frames
+
+
+def test_what_arrives_waits_for_a_block_and_a_millisecond_at_first():
+    assert Device().delay.frames == BLOCK + HANDLING
+    assert Device().delay.period == BLOCK
+
+
+@pytest.mark.parametrize("period", [256, 1024, 8192])
+def test_what_two_windows_in_a_row_tell_is_waited_for(period):
+    device = Device()
+    assert device.window(period) == BLOCK + HANDLING
+    assert device.window(period) == period + HANDLING
+    assert device.delay.period == period
+
+
+def test_what_happens_once_is_an_accident():
+    device = Device()
+    chance = np.random.default_rng(1)
+    for _ in range(100):
+        assert device.window(chance.choice([3000.0, 14400.0])) == BLOCK + HANDLING
+        assert device.delay.period == BLOCK
+        for _ in range(chance.integers(1, 3)):
+            device.window(BLOCK)
+
+
+def test_a_device_that_is_a_little_early_or_late_changes_nothing():
+    device = Device()
+    chance = np.random.default_rng(1)
+    for period in (128, 1024):
+        waits = {device.window(period + chance.uniform(-40.0, 23.0), period) for _ in range(200)}
+        assert waits - {BLOCK + HANDLING} <= {period + HANDLING}
+
+
+def test_a_device_that_asks_for_less_is_believed_after_a_while():
+    device = Device()
+    for _ in range(2):
+        device.window(1024)
+    waits = [device.window(256) for _ in range(HELD_WINDOWS + 1)]
+    assert device.delay.period == 256
+    assert waits[: HELD_WINDOWS - 1] == [1024 + HANDLING] * (HELD_WINDOWS - 1)
+    assert waits[-1] == 256 + HANDLING
+
+
+@pytest.mark.parametrize("fixed_ms", [0.0, 5.0, 100.0])
+def test_what_a_player_asked_for_stays_whatever_the_device_does(fixed_ms):
+    device = Device(fixed_ms)
+    for ahead in (128, 1024, 1024, 1024):
+        assert device.window(ahead) == round(48 * fixed_ms)
+    assert device.delay.period == 1024  # is told all the same

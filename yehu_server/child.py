@@ -22,6 +22,8 @@ Message = dict[str, Any]
 log = logging.getLogger(__name__)
 
 GOODBYE_S = 1.0
+PIPE_BYTES = 1 << 20  # events that wait while the parent is stopped
+F_SETPIPE_SZ = 1031  # Linux's
 
 
 class Child:
@@ -36,6 +38,8 @@ class Child:
         however the process ended.
     share : sequence of int
         File descriptors that the process gets, under the same numbers.
+
+    Errors: OSError, MemoryError or RuntimeError where the system has no room for it.
     """
 
     def __init__(
@@ -52,8 +56,18 @@ class Child:
             pass_fds=share,
             start_new_session=True,  # Ctrl-C is for the parent
         )
-        threading.Thread(target=self._listen, name=f"{self._name} events", daemon=True).start()
-        threading.Thread(target=self._overhear, name=f"{self._name} log", daemon=True).start()
+        self._widen()
+        events = threading.Thread(target=self._listen, name=f"{self._name} events", daemon=True)
+        overheard = threading.Thread(target=self._overhear, name=f"{self._name} log", daemon=True)
+        try:
+            overheard.start()
+            events.start()
+        except BaseException:  # nobody would hear it
+            self.kill()
+            for pipe in (self._process.stdout, self._process.stderr):
+                if pipe is not None:
+                    pipe.close()
+            raise
 
     @property
     def is_alive(self) -> bool:
@@ -91,17 +105,31 @@ class Child:
             with self._sending, contextlib.suppress(OSError):
                 pipe.close()
 
+    def _widen(self) -> None:
+        """Let no process wait for us in the midst of what it has to do."""
+        with contextlib.suppress(ImportError, OSError, AttributeError):
+            from fcntl import fcntl
+
+            if sys.platform == "linux" and self._process.stdout is not None:
+                fcntl(self._process.stdout, F_SETPIPE_SZ, PIPE_BYTES)
+
     def _listen(self) -> None:
-        for line in self._lines(self._process.stdout):
-            try:
-                message = json.loads(line)
-            except ValueError:
-                log.debug("%s: %s", self._name, line.rstrip())
-            else:
-                self._tell(message)
+        try:
+            for line in self._lines(self._process.stdout):
+                self._read(line)
+        except (OSError, MemoryError):  # who is not heard is as good as gone
+            self._process.kill()
         self._process.wait()
         self._hang_up()
         self._tell({"event": "gone"})
+
+    def _read(self, line: str) -> None:
+        try:
+            message = json.loads(line)
+        except ValueError:
+            log.debug("%s: %s", self._name, line.rstrip())
+        else:
+            self._tell(message)
 
     def _tell(self, message: Message) -> None:
         try:
@@ -110,8 +138,9 @@ class Child:
             log.exception("%s: could not act on %s", self._name, message)
 
     def _overhear(self) -> None:
-        for line in self._lines(self._process.stderr):
-            log.debug("%s: %s", self._name, line.rstrip())
+        with contextlib.suppress(OSError, MemoryError):
+            for line in self._lines(self._process.stderr):
+                log.debug("%s: %s", self._name, line.rstrip())
 
     @staticmethod
     def _lines(pipe: IO[bytes] | None) -> Iterator[str]:

@@ -34,6 +34,7 @@ from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import MappingError, OutputError
 from yehu_server.files import PLAIN_NAME, check_target, shipped_folder
+from yehu_server.lasting import keep_on
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
 from yehu_server.playing.delay import Delay
@@ -204,14 +205,16 @@ class Server:
     # -- what is kept beside playing -----------------------------------------------------------
 
     def _keep(self) -> None:
-        while not self._ending.wait(KEEP_EVERY_S):
-            if self._capture is not None:
-                self._write_capture(self._capture)
-            self._report_troubles()
-            self._follow_device()
-            if self._watch is not None and time.monotonic() >= self._next_look:
-                self._next_look = time.monotonic() + LOOK_EVERY_S
-                self._look_at(self._watch)
+        keep_on(self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", self._said)
+
+    def _keep_up(self) -> None:
+        self._follow_device()
+        if self._capture is not None:
+            self._write_capture(self._capture)
+        self._report_troubles()
+        if self._watch is not None and time.monotonic() >= self._next_look:
+            self._next_look = time.monotonic() + LOOK_EVERY_S
+            self._look_at(self._watch)
 
     def _follow_device(self) -> None:
         """Let the delay of what arrives be as long as the device's period asks for."""

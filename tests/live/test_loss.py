@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -293,3 +294,50 @@ def test_a_helper_process_that_crashes_leaves_no_pipe_open(until):
     until(lambda: {"event": "gone"} in events, 2.0, "its end")
     time.sleep(0.1)
     assert open_files() <= before
+
+
+@pytest.mark.parametrize("started", [0, 1])
+def test_a_helper_process_that_nobody_could_listen_to_is_ended(monkeypatch, started):
+    before, threads = open_files(), iter([True] * started + [False])
+    start = threading.Thread.start
+
+    def fail(thread: threading.Thread) -> None:
+        if not next(threads):
+            raise RuntimeError("can't start new thread")
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", fail)
+    with pytest.raises(RuntimeError, match="thread"):
+        Child("yehu_server.control.midi_process", lambda _event: None)
+    monkeypatch.undo()
+    assert open_files() <= before
+
+
+TALKS = """
+import time
+from yehu_server.child import Parent
+parent = Parent()
+for _ in range(5000):
+    parent.tell("midi", port="keystep", at=time.monotonic_ns(), bytes=[144, 60, 100])
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere pipes hold what they hold")
+def test_a_helper_process_need_not_wait_for_a_parent_that_is_stopped(monkeypatch, until):
+    held = threading.Event()
+
+    def hear(_event: dict) -> None:
+        held.wait()  # as if we were stopped
+
+    popen = subprocess.Popen
+    monkeypatch.setattr(
+        subprocess,
+        "Popen",
+        lambda _words, **options: popen([sys.executable, "-c", TALKS], **options),
+    )
+    helper = Child("talks", hear)
+    try:
+        until(lambda: not helper.is_alive, 20.0, "5,000 messages of it to be said")
+    finally:
+        held.set()
+        helper.stop()

@@ -7,6 +7,7 @@ device until it is back.
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import mmap
 import os
@@ -23,6 +24,7 @@ import numpy as np
 from yehu_server.child import Child, Message
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.errors import DeviceError
+from yehu_server.lasting import SHORTAGES, AwakeTime, Backoff, keep_on, why
 
 log = logging.getLogger(__name__)
 
@@ -30,6 +32,7 @@ NULL = "null"
 NULL_RATE = 48000.0
 FIRST_LOOK_S, COMPILING_S = 10.0, 300.0
 HUNG_AFTER_S = 2.0
+LISTEN_S = 0.05  # for events of the device's process, at a time
 AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
 HOPELESS_S = 0.5  # the silent clock gives up catching up
 
@@ -72,7 +75,8 @@ class SilentClock:
         period = len(self._block) / self._instrument.rate
         due = time.monotonic()
         while not self._ending.is_set():
-            self._instrument.process(self._block)
+            with contextlib.suppress(MemoryError):
+                self._instrument.process(self._block)
             due += period
             early = due - time.monotonic()
             if early > 0.0:
@@ -125,7 +129,10 @@ class Output:
         self._instrument: Instrument | None = None
         self._thread = threading.Thread(target=self._supervise, name="audio", daemon=True)
         self._ending = threading.Event()
-        self._again_after_s = AGAIN_AFTER_S
+        self._awake = AwakeTime()
+        self._heart = (0, 0.0)  # callbacks, and the awake time of the last
+        self._refused = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)  # by the device
+        self._short = Backoff()  # of what a process needs
         self._look_at = 0.0  # monotonic s
         if options.device != NULL:
             self._look()
@@ -138,10 +145,9 @@ class Output:
         if self._options.device == NULL:
             self.state.problem = "asked for silence"
             return self._options.rate or NULL_RATE
-        try:
-            event = self._events.get(timeout=FIRST_LOOK_S)
-        except queue.Empty:
-            event = {"event": "missing", "reason": "the sound system does not answer"}
+        if self._child is None:
+            return self._options.rate or NULL_RATE
+        event = self._await({"found", "missing", "failed", "gone"}, "the sound system")
         if event["event"] == "found":
             self._found = event
             return self._options.rate or float(event["rate"])
@@ -165,7 +171,7 @@ class Output:
                 self.end()
                 raise DeviceError(reason)
             if reason:
-                self._give_up(reason)
+                self._give_up(reason, self._refused)
         if self._options.device != NULL:
             self._thread.start()
 
@@ -183,9 +189,13 @@ class Output:
     def _look(self) -> None:
         """Let a fresh process look for the device."""
         self._events = queue.Queue()
-        self._child = Child(
-            "yehu_server.audio.stream", self._events.put, share=[self.memory.descriptor]
-        )
+        try:
+            self._child = Child(
+                "yehu_server.audio.stream", self._events.put, share=[self.memory.descriptor]
+            )
+        except SHORTAGES as error:
+            self._give_up(f"the audio process cannot be started: {why(error)}", self._short)
+            return
         self._child.send("look", device=self._options.device)
 
     def _open(self, found: Message) -> None:
@@ -207,19 +217,21 @@ class Output:
     def _take_up(self) -> str:
         """Hand the instrument over from the clock to the device; return why it cannot be."""
         instrument = self._instrument
-        ready = self._await({"ready", "failed", "gone"})
+        ready = self._await({"ready", "failed", "gone"}, "the audio device")
         if ready["event"] != "ready" or self._child is None or instrument is None:
             return self._reason(ready)
         self._stop_clock()
         instrument.channels = self._channels
         self._child.send("start")
-        started = self._await({"started", "failed", "gone"})
+        started = self._await({"started", "failed", "gone"}, "the audio device")
         if started["event"] != "started":
             self._drop_child()
             instrument.recover()
             self._start_clock()
             return self._reason(started)
-        self._again_after_s = AGAIN_AFTER_S
+        self._refused.worked()
+        self._short.worked()
+        self._heart = (-1, 0.0)
         name = self._wanted["name"]
         self.state = OutputState(name, ready["latency_ms"], self.state.losses)
         self._changed(f"playing on {name} at {instrument.rate:g} Hz")
@@ -229,27 +241,28 @@ class Output:
     def _reason(event: Message) -> str:
         return str(event.get("reason", "the audio process ended"))
 
-    def _give_up(self, reason: str) -> None:
+    def _give_up(self, reason: str, backoff: Backoff) -> None:
         """Look again only after a while, each time a longer one."""
         self._drop_child()
+        self._look_at = time.monotonic() + backoff.failed()
         if reason != self.state.problem:
+            self.state.problem = reason
             self._changed(f"no sound: {reason}")
-        self.state.problem = reason
-        self._look_at = time.monotonic() + self._again_after_s
-        self._again_after_s = min(2.0 * self._again_after_s, AGAIN_AFTER_AT_MOST_S)
 
-    def _await(self, kinds: set[str]) -> Message:
+    def _await(self, kinds: set[str], what: str) -> Message:
         """The next event of some kinds; none within the time is as bad as the end."""
-        deadline = time.monotonic() + FIRST_LOOK_S
+        deadline = self._awake() + FIRST_LOOK_S
         while not self._ending.is_set():
             try:
-                event = self._events.get(timeout=max(0.01, deadline - time.monotonic()))
+                event = self._events.get(timeout=LISTEN_S)
             except queue.Empty:
-                return {"event": "gone", "reason": "the audio device does not answer"}
+                if self._awake() < deadline:
+                    continue
+                return {"event": "gone", "reason": f"{what} does not answer"}
             if event["event"] in kinds:
                 return event
             if event["event"] == "compiling":
-                deadline = time.monotonic() + COMPILING_S
+                deadline = self._awake() + COMPILING_S
                 self._changed("compiling for the audio process, since nothing can be cached")
         return {"event": "gone"}
 
@@ -260,46 +273,50 @@ class Output:
             child.stop() if gently else child.kill()
 
     def _supervise(self) -> None:
-        """Follow the device as it goes and comes."""
-        heart = (0, time.monotonic())
-        while not self._ending.is_set():
-            try:
-                event = self._events.get(timeout=0.05)
-            except queue.Empty:
-                event = {"event": ""}
-            if event["event"] == "found":
-                self._open(event)
-                reason = self._take_up()
-                if reason:
-                    self._give_up(reason)
-            elif event["event"] in ("lost", "gone", "failed") or self._has_stopped(heart):
-                self._lose(self._reason(event))
-            is_time = self._child is None and time.monotonic() >= self._look_at
-            if is_time and not self._ending.is_set():
-                self._look()
-            heart = self._listen_to_heart(heart)
+        keep_on(self._follow, self._ending, 0.0, "audio", self._changed)
 
-    def _listen_to_heart(self, heart: tuple[int, float]) -> tuple[int, float]:
-        beats = int(self._meters()["callbacks"])
-        return (beats, time.monotonic()) if beats != heart[0] else heart
+    def _follow(self) -> None:
+        """Follow the device as it goes and comes: one turn."""
+        if self.state.device is None and self._clock is None:  # the turn before has failed
+            self._rest_on_clock()
+        try:
+            event = self._events.get(timeout=LISTEN_S)
+        except queue.Empty:
+            event = {"event": ""}
+        if event["event"] == "found":
+            self._open(event)
+            reason = self._take_up()
+            if reason:
+                self._give_up(reason, self._refused)
+        elif event["event"] in ("lost", "gone", "failed") or self._has_stopped():
+            self._lose(self._reason(event))
+        is_time = self._child is None and time.monotonic() >= self._look_at
+        if is_time and not self._ending.is_set():
+            self._look()
 
-    def _has_stopped(self, heart: tuple[int, float]) -> bool:
-        on_device = self.state.device is not None
-        return on_device and time.monotonic() - heart[1] > HUNG_AFTER_S
+    def _has_stopped(self) -> bool:
+        """Whether the device calls no more, as far as we were awake to see it."""
+        beats, now = int(self._meters()["callbacks"]), self._awake()
+        if beats != self._heart[0] or self.state.device is None:
+            self._heart = beats, now
+        return now - self._heart[1] > HUNG_AFTER_S
 
     def _lose(self, reason: str) -> None:
         """Go on to the silent clock; the process must be gone before that plays."""
         device = self.state.device
         if device is None:
-            self._give_up(reason)
+            self._give_up(reason, self._refused)
             return
+        problem = f"{device} is gone"
+        self.state = OutputState(losses=self.state.losses + 1, problem=problem)
+        self._rest_on_clock()
+        self._changed(f"{problem}; on the silent clock until it is back")
+
+    def _rest_on_clock(self) -> None:
         self._drop_child()
         if self._instrument is not None:
             self._instrument.recover()
         self._start_clock()
-        problem = f"{device} is gone"
-        self.state = OutputState(losses=self.state.losses + 1, problem=problem)
-        self._changed(f"{problem}; on the silent clock until it is back")
 
     # -- the silent clock ----------------------------------------------------------------------
 

@@ -26,6 +26,7 @@ from yehu_server.cli.arguments import (
     whole,
     within,
 )
+from yehu_server.limits import allow_files
 
 EXAMPLES = """\
 examples:
@@ -39,6 +40,7 @@ The OSC messages are described in docs/osc.md, OSCQuery in docs/oscquery.md. Ctr
 """
 
 HTTP = ("127.0.0.1", 9001)
+FILES_NEEDED = 40  # open ones: 30 by itself, and some clients
 LEVELS = ("debug", "info", "warning", "error")
 REFRESHES_PER_SECOND = 10
 
@@ -195,6 +197,7 @@ def _add_running(group: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
+    allow_files(FILES_NEEDED)
     ended = threading.Event()
     code = 0
 

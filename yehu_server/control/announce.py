@@ -13,9 +13,11 @@ from yehu_server.control.addresses import lan_address, plain
 from yehu_server.control.loops import LoopThread
 from yehu_server.control.sockets import OscPorts
 from yehu_server.control.web import NAME, WebServer
+from yehu_server.lasting import Backoff
 
 OSC, OSCQUERY = "_osc._udp.local.", "_oscjson._tcp.local."
 LONGEST_LABEL = 63  # bytes; of DNS
+AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 2.0, 60.0
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,8 @@ class Announcer:
     def __init__(self, services: Sequence[Service], said: Callable[[str], None]) -> None:
         self._services = services
         self._said = said
-        self._thread = LoopThread(self._announce, "zeroconf")
+        patience = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)
+        self._thread = LoopThread(self._announce, "zeroconf", self._not_announced, patience)
 
     def start(self) -> None:
         """Begin to announce."""
@@ -75,11 +78,7 @@ class Announcer:
         if any(ipaddress.ip_address(host).is_unspecified for host in hosts):
             self._said("not announced: this machine has no network")
             return
-        try:
-            found = AsyncZeroconf(interfaces=hosts)
-        except (OSError, RuntimeError, zeroconf.Error) as error:
-            self._said(_failure(error))
-            return
+        found = AsyncZeroconf(interfaces=hosts)
         host = socket.gethostname().partition(".")[0]
         name = f"{NAME} {host}".encode()[:LONGEST_LABEL].decode(errors="ignore")
         infos = [
@@ -101,13 +100,10 @@ class Announcer:
             names = {info.name.removesuffix(f".{info.type}") for info in infos}
             self._said(f"announced as {' and '.join(sorted(names))}")
             await asyncio.Event().wait()
-        except (OSError, zeroconf.Error) as error:
-            self._said(_failure(error))
         finally:
             with contextlib.suppress(zeroconf.Error):
                 await started
             await found.async_close()
 
-
-def _failure(error: Exception) -> str:
-    return f"not announced: {str(error) or type(error).__name__}"
+    def _not_announced(self, error: BaseException) -> None:
+        self._said(f"not announced: {str(error) or type(error).__name__}")

@@ -1,19 +1,45 @@
-"""A thread with an asyncio loop of its own."""
+"""A thread with an asyncio loop of its own, that outlasts the system's troubles."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
+import logging
 import threading
+import time
 from collections.abc import Callable, Coroutine
 from typing import Any
 
+from yehu_server.lasting import Backoff, why
+
+log = logging.getLogger(__name__)
+
+SHORT = {errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM}
+SAID_FOR_S = 60.0
+
 
 class LoopThread:
-    """Runs one coroutine function in a thread, from `start` to `stop`, which cancels it."""
+    """Runs one coroutine function in a thread, from `start` to `stop`, which cancels it.
 
-    def __init__(self, main: Callable[[], Coroutine[Any, Any, None]], name: str) -> None:
+    Parameters
+    ----------
+    failed : callable
+        Told of an error that ended it, once for each reason in a row; it is run again.
+    """
+
+    def __init__(
+        self,
+        main: Callable[[], Coroutine[Any, Any, None]],
+        name: str,
+        failed: Callable[[BaseException], None],
+        backoff: Backoff | None = None,
+    ) -> None:
         self._main = main
+        self._name = name
+        self._failed = failed
+        self._backoff = backoff or Backoff()
+        self._said_at = -SAID_FOR_S
         self._runner = asyncio.Runner(loop_factory=asyncio.new_event_loop)
         self.loop = self._runner.get_loop()
         self._ended = asyncio.Event()
@@ -36,14 +62,31 @@ class LoopThread:
         self._runner.close()
 
     def _run(self) -> None:
+        self.loop.set_exception_handler(self._complain)
         with self._runner:
             self._runner.run(self._until_ended())
 
     async def _until_ended(self) -> None:
-        main = asyncio.ensure_future(self._main())
         ended = asyncio.ensure_future(self._ended.wait())
-        await asyncio.wait((main, ended), return_when=asyncio.FIRST_COMPLETED)
+        while not ended.done():
+            main = asyncio.ensure_future(self._main())
+            await asyncio.wait((main, ended), return_when=asyncio.FIRST_COMPLETED)
+            main.cancel()
+            (error,) = await asyncio.gather(main, return_exceptions=True)
+            if error is None:
+                break
+            if not isinstance(error, asyncio.CancelledError):
+                if self._backoff.is_news(why(error)):
+                    log.debug("%s", self._name, exc_info=error)
+                    self._failed(error)
+                await asyncio.wait((ended,), timeout=self._backoff.failed())
         ended.cancel()
-        main.cancel()
-        with contextlib.suppress(asyncio.CancelledError):
-            await main
+
+    def _complain(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Say in a line, once a minute, that the loop is short of files; it tries again itself."""
+        error = context.get("exception")
+        if not (isinstance(error, OSError) and error.errno in SHORT):
+            loop.default_exception_handler(context)
+        elif time.monotonic() - self._said_at >= SAID_FOR_S:
+            self._said_at = time.monotonic()
+            log.warning("%s: %s; trying again", self._name, why(error))

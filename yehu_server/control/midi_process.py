@@ -20,6 +20,7 @@ LOOK_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # look for a MIDI system, where there is none
 SENSE_EVERY_S = 0.05
 SENSE_WITHIN_S = 0.33  # active sensing: a message at least every 300 ms
+SLEPT_S = 0.25  # between two looks for it: it was we who were away
 CLIENT = "yehu-server MIDI"
 ACTIVE_SENSING, CLOCKS = 0xFE, {0xF8, 0xF9}
 MOST_BYTES = 3  # system exclusive says nothing to us
@@ -55,6 +56,10 @@ class Input:
             self._senses = False
             self._parent.tell("silent", port=self.name)
 
+    def wait_anew(self) -> None:
+        """Let the other have as much time as if it had just said something."""
+        self._last = time.monotonic()
+
     def close(self) -> None:
         """Close the port."""
         self.midi.cancel_callback()
@@ -75,6 +80,7 @@ class Inputs:
         self._problem = ""
         self._refused: set[str] = set()
         self._watch: JackWatch | None = None
+        self._sensed = time.monotonic()
 
     @property
     def has_system(self) -> bool:
@@ -102,9 +108,13 @@ class Inputs:
                 self._add(name, full_name)
 
     def sense(self) -> None:
-        """See `Input.sense`."""
+        """See `Input.sense`. What came while we were stopped is still to be heard."""
+        before, self._sensed = self._sensed, time.monotonic()
         for port in list(self._open.values()):
-            port.sense()
+            if self._sensed - before > SLEPT_S:
+                port.wait_anew()
+            else:
+                port.sense()
 
     def _start(self) -> bool:
         finder, problem = open_client(self._api)

@@ -5,17 +5,19 @@ from __future__ import annotations
 import contextlib
 import logging
 import threading
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import mido
 
 from yehu_server.child import Child, Message
+from yehu_server.lasting import Backoff, keep_on
 from yehu_server.playing.live import Arrivals, LivePlayer
 
 log = logging.getLogger(__name__)
 
-AGAIN_AFTER_S = 0.5
+LIVES_S = 5.0  # a process that ended sooner has something wrong
 
 
 @dataclass
@@ -46,7 +48,9 @@ class MidiPorts:
         self._numbers: dict[str, int] = {}  # a port keeps its number when it comes back
         self._connected: dict[str, None] = {}
         self._ending = threading.Event()
-        self._child: Child | None = None
+        self._gone = threading.Event()
+        self._backoff = Backoff()
+        self._thread = threading.Thread(target=self._supervise, name="MIDI", daemon=True)
         self.received = 0
         self.malformed = 0
         self.problem = ""
@@ -58,17 +62,36 @@ class MidiPorts:
 
     def start(self) -> None:
         """Begin to listen."""
-        options = self._options
-        self._child = Child("yehu_server.control.midi_process", self._heard)
-        self._child.send(
-            "open", patterns=list(options.patterns), virtual=options.virtual, api=options.api
-        )
+        self._thread.start()
 
     def stop(self) -> None:
         """Stop listening."""
         self._ending.set()
-        if self._child is not None:
-            self._child.stop()
+        self._gone.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def _supervise(self) -> None:
+        keep_on(self._serve, self._ending, 0.0, "MIDI inputs", self._changed)
+
+    def _serve(self) -> None:
+        """Have a process that holds the inputs until it ends, as it does with JACK's server."""
+        self._gone.clear()
+        if self._ending.is_set():  # before `_gone` was cleared
+            return
+        begun, options = time.monotonic(), self._options
+        child = Child("yehu_server.control.midi_process", self._heard)
+        child.send(
+            "open", patterns=list(options.patterns), virtual=options.virtual, api=options.api
+        )
+        self._gone.wait()
+        child.stop()
+        if self._ending.is_set():
+            return
+        self._let_go()
+        if time.monotonic() - begun > LIVES_S:
+            self._backoff.worked()
+        self._ending.wait(self._backoff.failed())
 
     def _heard(self, event: Message) -> None:
         kind = event["event"]
@@ -92,8 +115,8 @@ class MidiPorts:
         elif kind == "system":
             self.problem = ""
             log.info("MIDI: through %s", event["api"])
-        elif kind == "gone" and not self._ending.is_set():
-            self._replace()
+        elif kind == "gone":
+            self._gone.set()
 
     def _receive(self, event: Message) -> None:
         self.received += 1
@@ -109,12 +132,10 @@ class MidiPorts:
         with contextlib.suppress(KeyError):
             self._player.let_go_of(self._numbers[port], frame=self._player.frame_of())
 
-    def _replace(self) -> None:
-        """Begin anew after the process ended, as it does with JACK's server."""
+    def _let_go(self) -> None:
+        """End what all ports have left sounding."""
         for port in self._connected:
             self._let_go_of(port)
         if self._connected:
             self._changed(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
         self._connected.clear()
-        if not self._ending.wait(AGAIN_AFTER_S):
-            self.start()

@@ -87,7 +87,9 @@ class WebServer:
         self._listening = _listen(*options.address)
         self.host, self.port = self._listening.getsockname()[:2]
         self._talking: set[web.RequestHandler] = set()  # connections that are WebSockets
-        self._thread = LoopThread(self._serve, "web")
+        self._thread = LoopThread(
+            self._serve, "OSCQuery", lambda error: log.warning("OSCQuery: %s; trying again", error)
+        )
 
     def start(self) -> None:
         """Begin to serve."""
@@ -119,7 +121,8 @@ class WebServer:
         server = runner.server
         assert server is not None  # noqa: S101 - setup makes it
         try:
-            await web.SockSite(runner, self._listening).start()
+            # A copy, since it is closed at the end, and we may have to begin again.
+            await web.SockSite(runner, self._listening.dup()).start()
             while True:
                 await asyncio.sleep(SWEEP_S)
                 self._close_excess(server.connections)

@@ -1,0 +1,68 @@
+"""A controller that promised to say something regularly, and does not."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server.control import midi_process
+from yehu_server.control.midi_process import ACTIVE_SENSING, SENSE_EVERY_S, Input, Inputs
+
+MS = 1_000_000
+
+
+class Port:
+    """An RtMidi input."""
+
+    def ignore_types(self, **_types: bool) -> None:
+        pass
+
+    def set_callback(self, callback) -> None:
+        self.receive = callback
+
+
+class Desk:
+    """One open port, a clock, and what is told of it."""
+
+    def __init__(self, monkeypatch) -> None:
+        self.now_ns = 100_000 * MS
+        self.told: list[str] = []
+        monkeypatch.setattr(midi_process.time, "monotonic", lambda: 1e-9 * self.now_ns)
+        monkeypatch.setattr(midi_process.time, "monotonic_ns", lambda: self.now_ns)
+        self.inputs = Inputs(self, {"patterns": [], "virtual": None, "api": None})
+        self.port = Port()
+        self.inputs._open["keystep"] = Input(self.port, "keystep", None, self)
+
+    def tell(self, event: str, **_details: object) -> None:
+        self.told.append(event)
+
+    def sense_for(self, ms: int) -> None:
+        for _ in range(round(ms / (1e3 * SENSE_EVERY_S))):
+            self.now_ns += round(1e9 * SENSE_EVERY_S)
+            self.inputs.sense()
+
+
+@pytest.fixture
+def desk(monkeypatch) -> Desk:
+    desk = Desk(monkeypatch)
+    desk.port.receive(([ACTIVE_SENSING], 0.0))
+    return desk
+
+
+def test_a_controller_that_falls_silent_is_told_of_once(desk):
+    desk.sense_for(300)
+    assert desk.told == []
+    desk.sense_for(1000)
+    assert desk.told == ["silent"]
+
+
+@pytest.mark.parametrize("slept_s", [0.4, 2.5, 3600.0])
+def test_a_controller_is_not_taken_for_silent_because_we_slept(desk, slept_s):
+    desk.sense_for(200)
+    desk.now_ns += round(1e9 * slept_s)
+    desk.sense_for(300)
+    assert desk.told == []
+    desk.port.receive(([ACTIVE_SENSING], 0.0))
+    desk.sense_for(300)
+    assert desk.told == []
+    desk.sense_for(200)
+    assert desk.told == ["silent"]

@@ -1,0 +1,95 @@
+"""Threads go on through the system's troubles, and know when they slept."""
+
+from __future__ import annotations
+
+import errno
+import os
+import threading
+
+import pytest
+
+from yehu_server import lasting
+from yehu_server.lasting import LONGEST_TURN_S, AwakeTime, Backoff, keep_on, why
+
+TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE), "/somewhere")
+
+
+def test_the_wait_after_failures_becomes_longer_up_to_a_bound_and_begins_anew():
+    backoff = Backoff(1.0, 5.0)
+    assert [backoff.failed() for _ in range(5)] == [1.0, 2.0, 4.0, 5.0, 5.0]
+    backoff.worked()
+    assert backoff.failed() == 1.0
+
+
+def test_a_reason_is_news_once():
+    backoff = Backoff()
+    assert [backoff.is_news(reason) for reason in ("a", "a", "b", "b", "a")] == [1, 0, 1, 0, 1]
+    backoff.worked()
+    assert backoff.is_news("a")
+
+
+def test_why_says_what_the_system_says():
+    assert why(TOO_MANY) == os.strerror(errno.EMFILE)
+    assert why(RuntimeError("can't start new thread")) == "can't start new thread"
+    assert why(MemoryError()) == "MemoryError"
+
+
+class Work:
+    """Fails with these, each turn with the next, and then ends."""
+
+    def __init__(self, monkeypatch, *errors: BaseException | None) -> None:
+        monkeypatch.setattr(Backoff, "failed", lambda _backoff: 0.0)
+        self.ending = threading.Event()
+        self.turns = 0
+        self.said: list[str] = []
+        self._errors = list(errors)
+
+    def turn(self) -> None:
+        self.turns += 1
+        if not self._errors:
+            self.ending.set()
+            return
+        error = self._errors.pop(0)
+        if error is not None:
+            raise error
+
+    def tell(self, line: str) -> None:
+        self.said.append(line)
+
+
+@pytest.mark.parametrize(
+    "error", [TOO_MANY, MemoryError(), RuntimeError("can't start new thread"), KeyError("defect")]
+)
+def test_work_outlasts_errors_and_says_so_once(monkeypatch, error):
+    work = Work(monkeypatch, None, error, error, error)
+    keep_on(work.turn, work.ending, 0.0, "work", work.tell)
+    assert work.turns == 5
+    assert work.said == [f"work: {why(error)}; trying again"]
+
+
+def test_work_says_so_again_when_all_was_well_in_between(monkeypatch):
+    work = Work(monkeypatch, TOO_MANY, None, TOO_MANY)
+    keep_on(work.turn, work.ending, 0.0, "work", work.tell)
+    assert len(work.said) == 2
+
+
+def test_work_outlasts_that_nobody_can_be_told(monkeypatch):
+    def fail(_line: str) -> None:
+        raise MemoryError
+
+    work = Work(monkeypatch, TOO_MANY, TOO_MANY)
+    keep_on(work.turn, work.ending, 0.0, "work", fail)
+    assert work.turns == 3
+
+
+def test_what_is_longer_between_two_questions_was_sleep(monkeypatch):
+    now = 100.0
+    monkeypatch.setattr(lasting.time, "monotonic", lambda: now)
+    awake = AwakeTime()
+    before = awake()
+    for _ in range(10):
+        now += 0.05
+        awake()
+    assert awake() - before == pytest.approx(0.5)
+    now += 3600.0
+    assert awake() - before == pytest.approx(0.5 + LONGEST_TURN_S)

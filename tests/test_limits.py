@@ -1,0 +1,91 @@
+"""Where the system lets us open few files only."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+resource = pytest.importorskip("resource", reason="there is no such limit on Windows")
+
+from yehu_server import limits  # noqa: E402
+from yehu_server.cli.serve import FILES_NEEDED  # noqa: E402
+from yehu_server.errors import YehuError  # noqa: E402
+from yehu_server.limits import MOST_FILES, allow_files  # noqa: E402
+
+COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def serve(files: int, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run ``serve`` for a moment with so many open files allowed."""
+    ports = ("--osc", "127.0.0.1:0", "--http", "127.0.0.1:0")
+    return subprocess.run(
+        [sys.executable, "-c", COMMAND, "serve", "--audio-device", "null", *ports, *words],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=180.0,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files)),
+    )
+
+
+@pytest.mark.parametrize("files", [8, 16, 24, FILES_NEEDED - 1])
+def test_too_few_files_are_told_in_one_line_that_says_how_many_are_needed(files):
+    run = serve(files, "--duration", "0.1")
+    assert run.returncode == 2
+    (line,) = run.stderr.splitlines()
+    assert line == (
+        f"yehu-server: {files} open files are too few: {FILES_NEEDED} are needed "
+        "(raise the limit: ulimit -n)"
+    )
+
+
+def test_with_as_many_as_it_says_it_plays(tmp_path):
+    files = ("--record", str(tmp_path / "take.wav"), "--capture", str(tmp_path / "take.jsonl"))
+    run = serve(FILES_NEEDED, "--duration", "0.5", *files)
+    assert run.returncode == 0
+    assert "Too many" not in run.stderr
+    assert (tmp_path / "take.wav").exists()
+
+
+class System:
+    """A stand-in for Python's module `resource`."""
+
+    RLIMIT_NOFILE, RLIM_INFINITY = 7, -1
+
+    def __init__(self, soft: int, hard: int) -> None:
+        self.limits = soft, hard
+
+    def getrlimit(self, _which: int) -> tuple[int, int]:
+        return self.limits
+
+    def setrlimit(self, _which: int, limits: tuple[int, int]) -> None:
+        self.limits = limits
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ((256, -1), (MOST_FILES, -1)),  # macOS
+        ((256, 1024), (1024, 1024)),
+        ((1 << 20, 1 << 20), (1 << 20, 1 << 20)),
+        ((-1, -1), (-1, -1)),
+    ],
+)
+def test_as_many_files_are_taken_as_the_user_may_have(monkeypatch, before, after):
+    system = System(*before)
+    monkeypatch.setattr(limits, "resource", system)
+    allow_files(40)
+    assert system.limits == after
+
+
+def test_a_system_that_grants_no_more_is_not_asked_twice(monkeypatch):
+    system = System(20, -1)
+    monkeypatch.setattr(limits, "resource", system)
+    monkeypatch.setattr(system, "setrlimit", lambda *_: (_ for _ in ()).throw(ValueError))
+    with pytest.raises(YehuError, match="20 open files are too few: 40 are needed"):
+        allow_files(40)

@@ -18,6 +18,7 @@ import soundfile
 
 import yehu_server
 from yehu_server import cli
+from yehu_server.audio.file import sound_file
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLE = {
@@ -466,11 +467,29 @@ def test_a_name_too_long_for_the_disk_is_refused(into, out):
 
 
 def test_an_older_result_is_replaced(into, out):
-    (out / "x").write_text("older")
-    code, _, _ = into(out / "x")
-    assert code == 0
+    results = []
+    for _ in range(2):
+        code, _, _ = into(out / "x")
+        assert code == 0
+        results.append((out / "x").stat().st_ino)
+    assert results[0] != results[1]
     assert (out / "x").read_bytes()[:4] in {b"RIFF", b"PK\x03\x04"}
     assert len(list(out.iterdir())) == 1
+
+
+@pytest.mark.parametrize("name", ["x", "x.wav", "x.flac"])
+def test_what_is_no_result_of_a_rendering_is_replaced_only_when_told(command, tune, out, name):
+    target = out / name
+    soundfile.write(target, np.ones(100), 44100, format="FLAC" if "flac" in name else "WAV")
+    before = target.read_bytes()
+    code, stdout, err = command("render", tune, "-o", target)
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert f"{name}: exists; --overwrite replaces it" in err
+    assert target.read_bytes() == before
+    assert command("render", tune, "-o", target, "--overwrite")[0] == 0
+    assert command("render", tune, "-o", target)[0] == 0
+    assert list(out.iterdir()) == [target]
 
 
 def test_an_output_that_cannot_be_written_is_found_before_anything_is_compiled(
@@ -506,13 +525,18 @@ def test_a_full_disk_is_told_in_one_line_and_an_older_file_stays(tmp_path, out, 
     else:
         source = midi_file(tmp_path / "tune.mid", seconds=3.0)
         first = "render"
-    (out / name).write_text("older")
+    if first == "render":
+        with sound_file(out / name, 44100, name[-4:].strip("."), "16") as older:
+            older.write(np.ones(100, np.float32))
+    else:
+        (out / name).write_text("older")
+    before = (out / name).read_bytes()
     process = start(first, source, "-o", out / name, *options, code=FULL_DISK)
     stdout, err = process.communicate(timeout=60)
     assert (process.returncode, stdout) == (2, "")
     assert is_one_line(err)
-    assert name in err or str(out) in err
-    assert (out / name).read_text() == "older"
+    assert "File too large" in err
+    assert (out / name).read_bytes() == before
     assert len(list(out.iterdir())) == 1
 
 

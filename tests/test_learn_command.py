@@ -60,17 +60,17 @@ def test_what_is_moved_is_learned_and_told(server, at, capsys):
     out = capsys.readouterr().out
     assert "move what shall move /yehu/playing/vibrato" in out
     assert "/my/fader moves /yehu/output/gain, kept in" in out
-    assert [bind.target for bind in load("keyboard").of("/my/fader")] == ["/output/gain"]
-    assert server.player.mapping == load("keyboard")
+    assert [bind.target for bind in load("mine/keyboard").of("/my/fader")] == ["/output/gain"]
+    assert server.player.mapping == load("mine/keyboard")
 
 
 def test_what_was_learned_is_forgotten(server, at, capsys):
     with a_fader_that_moves(server):
         main(["learn", "--soft", "/playing/vibrato", *at])
-    assert load("keyboard").of("/my/fader")[0].is_soft
+    assert load("mine/keyboard").of("/my/fader")[0].is_soft
     assert main(["learn", "--forget", "/playing/vibrato", *at]) == 0
     assert "/playing/vibrato: 1 forgotten" in capsys.readouterr().out
-    assert not load("keyboard").of("/my/fader")
+    assert not load("mine/keyboard").of("/my/fader")
 
 
 @pytest.mark.parametrize(

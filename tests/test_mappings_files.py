@@ -44,7 +44,7 @@ def test_a_name_is_looked_for_among_ones_own_first(mappings, own):
     assert mappings("show", "wind")[1].startswith("wind: a gentler one\n")
     code, _, err = mappings("show", "winds")
     assert code == 2
-    assert "yours: wind" in err
+    assert "yours: mine/wind" in err
 
 
 def test_all_that_is_wrong_with_files_is_told_line_by_line(mappings, tmp_path):
@@ -143,6 +143,11 @@ def test_a_file_may_be_converted_in_its_place(mappings, tmp_path):
     path.write_text(
         '# mine\nbase = "wind"\n[[bind]]\nsource = "nrpn 2/44"\ntarget = "/playing/volume"\n'
     )
-    assert mappings("convert", path, "-o", path)[0] == 0
+    before = path.read_text()
+    code, _, err = mappings("convert", path, "-o", path)
+    assert code == 2
+    assert "mine.toml: exists; --overwrite replaces it" in err
+    assert path.read_text() == before
+    assert mappings("convert", path, "-o", path, "--overwrite")[0] == 0
     assert path.read_text().startswith('# mine\nname = "mine"\nbase = "wind"\n')
     assert load(str(path)).of("nrpn 300")

@@ -1,14 +1,16 @@
-"""Reading what is small; writing results whole or not at all."""
+"""Reading what is small; writing results whole or not at all, and never over what is kept."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import io
+import itertools
 import os
 import re
 import secrets
 import stat
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 from yehu_server.errors import OutputError
@@ -28,8 +30,13 @@ def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
     return data.decode("utf-8")
 
 
-def check_target(target: Path, inputs: Iterable[Path] = ()) -> None:
-    """Refuse a target that could not be written, or would overwrite one of the inputs.
+def why(error: OSError) -> str:
+    """Why the system refused, in words."""
+    return error.strerror or str(error)
+
+
+def check_target(target: Path) -> None:
+    """Refuse a target that could not be written.
 
     Errors: OutputError where the folder is missing or not writable, or the target is not a
     regular file.
@@ -44,33 +51,152 @@ def check_target(target: Path, inputs: Iterable[Path] = ()) -> None:
             raise OutputError(f"{target}: is a folder; name a file")
         if target.exists() and not stat.S_ISREG(target.stat().st_mode):
             raise OutputError(f"{target}: is not a regular file")
-        if any(path.exists() and target.exists() and path.samefile(target) for path in inputs):
-            raise OutputError(f"{target}: would overwrite what is read")
     except OSError as error:
         raise OutputError(f"{target}: cannot write: {error.strerror}") from error
     if not os.access(folder, os.W_OK):
         raise OutputError(f"{target}: the folder {folder} is not writable")
 
 
+def check_apart(outputs: Mapping[str, Path], inputs: Iterable[Path] = ()) -> None:
+    """Refuse outputs that would be one file, or be one that is read; also by links to it.
+
+    Parameters
+    ----------
+    outputs : dict
+        The files to be written, by the options that name them.
+    inputs : iterable of Path
+
+    Errors: OutputError.
+    """
+    read = list(inputs)
+    for (name, target), (other, another) in itertools.combinations(outputs.items(), 2):
+        if is_same(target, another):
+            raise OutputError(f"{target}: {name} and {other} would write to one file")
+    for name, target in outputs.items():
+        if any(is_same(target, path) for path in read):
+            raise OutputError(f"{target}: {name} would overwrite what is read")
+
+
+def is_same(one: Path, other: Path) -> bool:
+    """Whether two paths are one file, or would be."""
+    try:
+        return one.samefile(other)
+    except OSError:  # one of them is not there yet
+        return os.path.realpath(one) == os.path.realpath(other)
+
+
+def anything(_target: Path) -> bool:
+    """Let any file be replaced; see `replacing`."""
+    return True
+
+
+def nothing(_target: Path) -> bool:
+    """Let no file be replaced; see `replacing`."""
+    return False
+
+
+def check_free(target: Path, may_replace: Callable[[Path], bool] = nothing) -> None:
+    """Refuse a target that is there, unless it may be replaced. Errors: OutputError."""
+    if os.path.lexists(target) and not may_replace(target):
+        raise OutputError(f"{target}: exists; --overwrite replaces it")
+
+
+def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.FileIO:
+    """Open a new file, to be written as things happen.
+
+    Parameters
+    ----------
+    overwrite : bool
+        Whether the new file may take the place of an older one, at once. Other links to that
+        keep what they have.
+    room_bytes : int
+        What must fit on the disk.
+
+    Errors: OutputError, as of `check_target`, where there is an older one, or on a full disk;
+    an older one is as it was then.
+    """
+    check_target(target)
+    path = _beside(target.resolve()) if overwrite else target
+    try:
+        file = io.FileIO(path, "x")
+        try:
+            write_all(file, bytes(room_bytes))
+            file.seek(0)
+            file.truncate()
+            if overwrite:
+                path.replace(target.resolve())
+        except OSError:
+            discard(file, path)
+            file.close()
+            raise
+    except FileExistsError:
+        raise OutputError(f"{target}: exists") from None
+    except OSError as error:
+        raise OutputError(f"{target}: cannot write: {why(error)}") from error
+    return file
+
+
+def discard(file: io.FileIO, path: Path) -> None:
+    """Remove an open file, unless another has taken its place."""
+    with contextlib.suppress(OSError):
+        if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+            path.unlink()
+
+
+def write_all(file: io.FileIO, data: bytes) -> None:
+    """Write to an unbuffered file, all of it. Errors: OSError, where some of it may be written."""
+    rest = memoryview(data)
+    while rest:
+        rest = rest[file.write(rest) :]
+
+
 @contextlib.contextmanager
-def replacing(target: Path) -> Iterator[Path]:
+def replacing(target: Path, may_replace: Callable[[Path], bool] = anything) -> Iterator[Path]:
     """Yield a path beside `target` to write to; move it there when the block succeeds.
 
     Whatever ends the block early (an error, an interrupt) removes the partial file and
     leaves an older `target` as it was.
-    Errors: OutputError as `check_target`, or where writing fails (a full disk).
+
+    Parameters
+    ----------
+    may_replace : callable
+        Told an older target, at the beginning and at the end; whether it may be replaced.
+
+    Errors: OutputError as `check_target` and `check_free`, or where writing fails (a full disk).
     """
     check_target(target)
-    partial = target.resolve().parent / f".yehu-server-{secrets.token_hex(8)}.part"
+    check_free(target, may_replace)
+    partial = _beside(target.resolve())
     try:
         partial.touch(exist_ok=False)
         yield partial
-        partial.replace(target.resolve())
+        _move(partial, target, may_replace)
     except OSError as error:
-        raise OutputError(f"{target}: cannot write: {error.strerror or error}") from error
+        raise OutputError(f"{target}: cannot write: {why(error)}") from error
     finally:
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)
+
+
+def _move(partial: Path, target: Path, may_replace: Callable[[Path], bool]) -> None:
+    """Move a file to its place; what another has put there meanwhile cannot come between."""
+    place = target.resolve()
+    try:
+        place.touch(exist_ok=False)
+    except FileExistsError:
+        check_free(target, may_replace)
+        partial.replace(place)
+        return
+    try:
+        partial.replace(place)
+    except OSError:
+        place.unlink(missing_ok=True)
+        raise
+
+
+def _beside(target: Path) -> Path:
+    """A hidden name in the same folder, on the same disk."""
+    return target.parent / f".yehu-server-{secrets.token_hex(8)}.part"
 
 
 def write_text(target: Path, text: str) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from yehu_server.audio.file import SoundWriter, check_format, sound_file
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
+from yehu_server.files import anything, why
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Calibration, calibration_for
 from yehu_server.playing.fingering import RangePolicy
@@ -133,16 +134,18 @@ def render(
     target: Path,
     options: Options,
     progress: Callable[[float, float], None] | None = None,
+    may_replace: Callable[[Path], bool] = anything,
 ) -> Summary:
     """Render a score to a sound file.
 
-    `progress` is told seconds done and seconds of the score.
+    `progress` is told seconds done and seconds of the score; `may_replace` an older target.
     Errors: YehuError; nothing is left behind.
     """
     check_format(options.format_name, options.subtype)
     performance = Performance(score, options)
     start = time.perf_counter()
-    with sound_file(target, options.rate, options.format_name, options.subtype) as file:
+    form = (options.format_name, options.subtype)
+    with sound_file(target, options.rate, *form, may_replace) as file:
         blocks = _told(performance.blocks(), options.rate, score.duration_s, progress)
         if options.normalize:
             _write_normalized(blocks, file, target.parent)
@@ -178,7 +181,7 @@ def _write_normalized(blocks: Iterator[Samples], file: SoundWriter, folder: Path
                 scratch.write(samples.tobytes())
             scratch.seek(0)
         except OSError as error:
-            raise OutputError(f"{folder}: cannot write: {error.strerror}") from error
+            raise OutputError(f"{folder}: cannot write: {why(error)}") from error
         factor = np.float32(NORMALIZED_PEAK / peak if peak > 0.0 else 1.0)
         while data := scratch.read(4 * BLOCK):
             file.write(np.frombuffer(data, np.float32) * factor)

@@ -13,6 +13,7 @@ import numpy as np
 
 from yehu_server.audio.file import sound_file
 from yehu_server.engine.instrument import Instrument
+from yehu_server.files import anything
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.quantities import Quantities, override
 from yehu_server.score.capture import Capture
@@ -56,6 +57,7 @@ def replay(
     format_name: str,
     subtype: str,
     progress: Callable[[float, float], None] | None = None,
+    may_replace: Callable[[Path], bool] = anything,
 ) -> Replayed:
     """Render a capture to a sound file. Errors: YehuError; nothing is left behind."""
     check_rate(capture.rate)
@@ -63,7 +65,8 @@ def replay(
     changes = {"string_1": {"T": first}, "string_2": {"T": second}}
     instrument = Instrument(capture.rate, override(Quantities(), changes))
     start = time.perf_counter()
-    with sound_file(target, round(capture.rate), format_name, subtype) as file:
+    rate = round(capture.rate)
+    with sound_file(target, rate, format_name, subtype, may_replace) as file:
         for samples in blocks(capture, instrument):
             file.write(samples)
             if progress is not None:

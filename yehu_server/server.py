@@ -33,7 +33,14 @@ from yehu_server.control.web import Sources, WebOptions, WebServer
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import MappingError, OutputError
-from yehu_server.files import PLAIN_NAME, check_target, shipped_folder
+from yehu_server.files import (
+    PLAIN_NAME,
+    anything,
+    check_free,
+    check_target,
+    nothing,
+    shipped_folder,
+)
 from yehu_server.lasting import keep_on
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress, calibration_for
@@ -68,6 +75,7 @@ class ServeOptions:
     jitter_ms: float | None = None  # None: see playing.delay
     record: Path | None = None
     capture: Path | None = None
+    overwrite: bool = False  # whether these two may take the place of older files
     recordings: Path = field(default_factory=lambda: user_music_path() / "yehu-server")
 
 
@@ -91,6 +99,10 @@ class Server:
         said: Callable[[str], None] = log.info,
         progress: Progress | None = None,
     ) -> None:
+        for target in (options.record, options.capture):
+            if target is not None:
+                check_target(target)
+                check_free(target, anything if options.overwrite else nothing)
         self.options = options
         self._said = said
         self._started = time.monotonic()
@@ -118,16 +130,17 @@ class Server:
                 sources = Sources(self.player.values, self.status, folder, self._more_calls)
                 self.web = WebServer(options.http, self.osc, self.handler.clients, sources)
                 undo.callback(self.web.stop)
-            for target in (options.record, options.capture):
-                if target is not None:
-                    check_target(target)
             if options.capture is not None:
                 self.instrument.report_events()
             for address, value in options.style.settings:
                 self.player.hold(address, value)
             undo.pop_all()
-        self._recorder: Recorder | None = None
+        self._take: Recorder | None = None  # of the command; it ends with the server
+        self._recorder: Recorder | None = None  # of whoever asked for it by OSC
         self._capture: CaptureWriter | None = None
+        self._lost_capture = False
+        self.is_interruptible = False  # whether an exception may cut `stop` short just now
+        self._hurry = threading.Event()
         self.midi = MidiPorts(self.player, options.midi, said) if options.midi else None
         self._watch = (
             MappingWatch(options.style.mapping, options.reread) if options.reread else None
@@ -161,9 +174,17 @@ class Server:
                     rate=self.instrument.rate,
                     seed=self.options.style.seed,
                     tensions=[silk.T for silk in self.instrument.quantities.strings],
+                    overwrite=self.options.overwrite,
                 )
+                undo.callback(self._capture.discard)
             if self.options.record is not None:
-                self._recorder = Recorder(self.instrument, self.options.record, 0, self._said)
+                self._take = Recorder(
+                    self.instrument,
+                    self.options.record,
+                    0,
+                    self._said,
+                    overwrite=self.options.overwrite,
+                )
             undo.pop_all()
         self.osc.start()
         if self.web is not None:
@@ -175,7 +196,26 @@ class Server:
         self._keeper.start()
 
     def stop(self) -> None:
-        """End all notes, let them fade, close everything."""
+        """End all notes, let them fade, close everything; the takes whatever else fails."""
+        try:
+            self.is_interruptible = True
+            self._end_playing()
+        finally:
+            self.is_interruptible = False
+            self._ending.set()
+            self._keeper.join()
+            self._close_takes()
+
+    def hurry(self) -> None:
+        """Let `stop` not wait for what fades; any thread may call, and a signal's handler."""
+        self._hurry.set()
+
+    @property
+    def kept_all(self) -> bool:
+        """Whether nothing is missing in what the command was to record and to capture."""
+        return not self._lost_capture and (self._take is None or self._take.is_whole)
+
+    def _end_playing(self) -> None:
         if self.midi is not None:
             self.midi.stop()
         if self._announcer is not None:
@@ -188,19 +228,27 @@ class Server:
         fade_ms = self.player.value("/playing/release") + FADE_MS
         self._wait_for(frame + self.instrument.frames(fade_ms))
         self.output.end()
-        self._ending.set()
-        self._keeper.join()
+
+    def _close_takes(self) -> None:
         if self._capture is not None:
             self._write_capture(self._capture)
-            with contextlib.suppress(OutputError):
-                self._capture.close(self.instrument.frame)
-        self._stop_recorder()
+        capture, self._capture = self._capture, None
+        if capture is not None:
+            try:
+                capture.close(self.instrument.frame)
+            except OutputError as error:
+                self._lose_capture(error)
+        for recorder in (self._take, self._recorder):
+            if recorder is not None:
+                recorder.stop()
+                self._tell_of(recorder)
 
     def _wait_for(self, frame: int) -> None:
-        """Until a frame is played, or the clock stands still."""
+        """Until a frame is played, the clock stands still, or somebody is in a hurry."""
         patience = time.monotonic() + 1.0 + (frame - self.instrument.frame) / self.instrument.rate
         while self.instrument.frame < frame and time.monotonic() < patience:
-            time.sleep(0.005)
+            if self._hurry.wait(0.005):
+                return
 
     # -- what is kept beside playing -----------------------------------------------------------
 
@@ -246,8 +294,12 @@ class Server:
                 capture.note("lost", int(meters["frame"]), events=lost)
                 self._unreported = unreported
         except OutputError as error:
-            self._capture = None
-            self._said(f"capture ended: {error}")
+            self._lose_capture(error)
+
+    def _lose_capture(self, error: OutputError) -> None:
+        self._capture = None
+        self._lost_capture = True
+        self._said(f"capture ended: {error}; it is kept as far as it got")
 
     def _report_troubles(self) -> None:
         meters = self.instrument.meters()
@@ -304,25 +356,30 @@ class Server:
         return target.name
 
     def stop_recording(self) -> str:
-        """End the recording; return the file's name. Errors: OutputError where none runs."""
-        if self._recorder is None:
-            raise OutputError("nothing is being recorded")
-        name = self._recorder.target.name
-        self._stop_recorder()
-        return name
+        """End what `start_recording` began; return the file's name.
 
-    def _stop_recorder(self) -> None:
+        Errors: OutputError where none runs, or it has ended by itself.
+        """
         recorder, self._recorder = self._recorder, None
-        if recorder is not None:
-            recorder.stop()
-            if recorder.target.exists():
-                self._said(f"{recorder.target}: {recorder.seconds:.1f} s")
+        if recorder is None:
+            more = "; --record ends with the server" if self._take is not None else ""
+            raise OutputError(f"nothing is being recorded{more}")
+        recorder.stop()
+        if recorder.failure:
+            raise OutputError(f"the recording has ended: {recorder.failure}")
+        self._tell_of(recorder)
+        return recorder.target.name
+
+    def _tell_of(self, recorder: Recorder) -> None:
+        if not recorder.failure:  # or it has been told
+            self._said(f"{recorder.target}: {recorder.seconds:.1f} s")
 
     @property
     def recording(self) -> str:
-        """The name of the file that is being recorded, or nothing."""
-        recorder = self._recorder
-        return recorder.target.name if recorder is not None and recorder.is_running else ""
+        """The names of the files that are being recorded, or nothing."""
+        recorders = (self._take, self._recorder)
+        running = [each for each in recorders if each is not None and each.is_running]
+        return "; ".join(each.target.name for each in running)
 
     def status(self) -> dict[str, float | str]:
         """How things stand, by the names of `control.status.STATUS`; any thread may call."""

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import soundfile
 
-from yehu_server.audio import file as audio
-from yehu_server.audio.file import check_format, sound_file
+from yehu_server.audio import wav
+from yehu_server.audio.file import check_format, is_rendered, sound_file
 from yehu_server.errors import OutputError
 
 STEP = {"16": 2.0**-15, "24": 2.0**-23, "float": 2.0**-23}
@@ -107,8 +107,8 @@ def test_the_target_appears_only_when_it_is_whole(tmp_path):
 def test_a_wav_file_longer_than_its_sizes_can_say_is_refused(
     tmp_path, monkeypatch, subtype, bytes_each
 ):
-    assert audio.WAV_LIMIT <= 2**32
-    monkeypatch.setattr(audio, "WAV_LIMIT", 1000 * bytes_each)
+    assert wav.WAV_LIMIT <= 2**32
+    monkeypatch.setattr(wav, "WAV_LIMIT", 1000 * bytes_each)
     write(tmp_path / "just.wav", noise(1000), subtype=subtype)
     with pytest.raises(OutputError, match=r"long\.wav.*FLAC"):
         write(tmp_path / "long.wav", noise(1001), subtype=subtype)
@@ -126,7 +126,7 @@ def test_a_disk_that_is_full_only_for_the_last_samples_is_told(tmp_path, kind, s
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (short, hard))
     try:
-        with pytest.raises(OutputError, match="full"):
+        with pytest.raises(OutputError, match="cannot write: File too large"):
             write(target, samples, kind, subtype)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
@@ -151,3 +151,31 @@ def test_a_device_is_not_replaced_by_a_file(tmp_path):
     with pytest.raises(OutputError, match="regular"), sound_file(link, 44100, "wav", "24"):
         pass
     assert link.is_symlink()
+
+
+def test_only_what_was_rendered_is_known_to_be_a_rendering(tmp_path):
+    for kind, subtype in MATRIX:
+        target = tmp_path / f"{subtype}.{kind}"
+        write(target, noise(1000), kind, subtype)
+        assert is_rendered(target)
+    for kind in ("wav", "flac"):
+        soundfile.write(tmp_path / f"other.{kind}", noise(1000), 44100)
+        assert not is_rendered(tmp_path / f"other.{kind}")
+    (tmp_path / "text").write_text("a score")
+    assert not is_rendered(tmp_path / "text")
+    (tmp_path / "empty").touch()  # as mktemp makes it
+    assert is_rendered(tmp_path / "empty")
+
+
+def test_what_another_put_there_meanwhile_is_not_replaced(tmp_path):
+    target = tmp_path / "sound.wav"
+
+    def write_while_another_does() -> None:
+        with sound_file(target, 44100, "wav", "24", is_rendered) as file:
+            file.write(noise(1000))
+            target.write_text("a take")
+
+    with pytest.raises(OutputError, match="exists"):
+        write_while_another_does()
+    assert target.read_text() == "a take"
+    assert list(tmp_path.iterdir()) == [target]

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import resource
+import signal
+import threading
+
 import numpy as np
 import pytest
 import soundfile
 
-from yehu_server.audio import recorder
+from yehu_server.audio import recorder, wav
 from yehu_server.audio.recorder import Recorder
 from yehu_server.engine.instrument import TAPE_FRAMES, Instrument
 from yehu_server.errors import OutputError
@@ -50,11 +54,12 @@ def test_a_recording_may_begin_later(instrument, tmp_path):
     assert samples == pytest.approx(played, abs=2.0**-22)
 
 
-def test_what_was_missed_is_silence_so_that_the_rest_keeps_its_place(
+def test_what_was_missed_is_said_and_is_silence_so_that_the_rest_keeps_its_place(
     instrument, tmp_path, monkeypatch
 ):
     monkeypatch.setattr(recorder, "EVERY_S", 10.0)  # held up until it is stopped
-    recording = Recorder(instrument, tmp_path / "r.wav", 0, pytest.fail)
+    said: list[str] = []
+    recording = Recorder(instrument, tmp_path / "r.wav", 0, said.append)
     played = play(instrument, TAPE_FRAMES + 1000)
     recording.stop()
     samples, _ = soundfile.read(tmp_path / "r.wav", dtype="float32")
@@ -63,17 +68,128 @@ def test_what_was_missed_is_silence_so_that_the_rest_keeps_its_place(
     assert len(samples) == len(played)
     assert not samples[:missed].any()
     assert (samples[missed:] == played[missed:]).all()
+    assert not recording.is_whole
+    (line,) = said
+    assert f"{missed / RATE:.1f} s are missing from 0.0 s on" in line
 
 
 def test_a_file_as_long_as_can_be_ends_the_recording_and_is_kept(instrument, tmp_path, monkeypatch):
-    monkeypatch.setattr(recorder, "FRAMES_LIMIT", 2000)
+    monkeypatch.setattr(wav, "WAV_LIMIT", 4 * 2000)
     monkeypatch.setattr(recorder, "EVERY_S", 0.001)
     said: list[str] = []
     recording = Recorder(instrument, tmp_path / "r.wav", 0, said.append)
-    play(instrument, 4000)
-    recording._thread.join(10.0)
-    assert "as long as a file can be" in said[0]
-    assert soundfile.info(tmp_path / "r.wav").frames >= 2000
+    until(recording, lambda: [play(instrument, 100), not recording.is_running][1])
+    assert "too long for a WAV file" in said[0]
+    assert 1000 < soundfile.info(tmp_path / "r.wav").frames <= 2000
+    assert not recording.is_whole
+
+
+def until(recording: Recorder, condition) -> None:
+    for _ in range(10_000):
+        if condition():
+            return
+        recording._thread.join(0.001)
+    pytest.fail("never")
+
+
+@pytest.mark.parametrize("name", ["r.wav", "r.flac"])
+def test_a_recording_can_be_opened_at_any_moment_as_after_a_kill(
+    instrument, tmp_path, monkeypatch, name
+):
+    monkeypatch.setattr(recorder, "EVERY_S", 0.001)
+    target = tmp_path / name
+    recording = Recorder(instrument, target, 0, pytest.fail)
+    played = np.zeros(0, np.float32)
+    for _ in range(4):
+        played = np.concatenate([played, play(instrument, 5000)])
+        until(recording, lambda: recording._position == len(played))  # noqa: B023
+        killed = tmp_path / f"copy of {name}"
+        killed.write_bytes(target.read_bytes())
+        samples, _ = soundfile.read(killed, dtype="float32")
+        held_back = 0 if name.endswith("wav") else 2 * 4096
+        assert len(played) - held_back <= len(samples) <= len(played)
+        assert samples == pytest.approx(played[: len(samples)], abs=2.0**-22)
+    recording.stop()
+    assert soundfile.info(target).frames == len(played)
+
+
+@pytest.fixture
+def disk():
+    """A disk that is full for a while: no file may be longer than so many bytes."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    yield lambda most_bytes: resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, hard))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    signal.signal(signal.SIGXFSZ, handler)
+
+
+@pytest.mark.parametrize("name", ["r.wav", "r.flac"])
+def test_a_full_disk_ends_the_recording_and_keeps_it_as_far_as_it_got(
+    instrument, tmp_path, monkeypatch, disk, name
+):
+    monkeypatch.setattr(recorder, "EVERY_S", 0.001)
+    said: list[str] = []
+    recording = Recorder(instrument, tmp_path / name, 0, said.append)
+    played = play(instrument, 10_000)
+    until(recording, lambda: recording._position == 10_000)
+    disk(50_001)
+    played = np.concatenate([played, *(play(instrument, 1000) for _ in range(40))])
+    until(recording, lambda: not recording.is_running)
+    recording.stop()
+    samples, rate = soundfile.read(tmp_path / name, dtype="float32")
+    assert len(samples) == ((50_001 - 58) // 4 if name.endswith("wav") else len(samples))
+    assert len(samples) >= 8192
+    assert samples == pytest.approx(played[: len(samples)], abs=2.0**-22)
+    assert recording.seconds == len(samples) / rate
+    (line,) = said
+    assert f"{name}: cannot write" in line
+    assert f"{recording.seconds:.1f} s are kept" in line
+    assert not recording.is_whole
+
+
+@pytest.mark.parametrize("name", ["r.wav", "r.flac"])
+def test_a_disk_without_room_for_a_second_refuses_and_leaves_no_file(
+    instrument, tmp_path, disk, name
+):
+    disk(100_000)
+    threads = threading.active_count()
+    with pytest.raises(OutputError, match="cannot write"):
+        Recorder(instrument, tmp_path / name, 0, pytest.fail)
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / name).write_text("older")
+    with pytest.raises(OutputError, match="cannot write"):
+        Recorder(instrument, tmp_path / name, 0, pytest.fail, overwrite=True)
+    assert (tmp_path / name).read_text() == "older"
+    assert threading.active_count() == threads
+
+
+def test_an_older_file_is_replaced_only_where_that_is_asked_for(instrument, tmp_path):
+    target, link = tmp_path / "r.wav", tmp_path / "linked"
+    target.write_text("older")
+    link.hardlink_to(target)
+    with pytest.raises(OutputError, match=r"r\.wav: exists"):
+        Recorder(instrument, target, 0, pytest.fail)
+    recording = Recorder(instrument, target, 0, pytest.fail, overwrite=True)
+    play(instrument, 1000)
+    recording.stop()
+    assert soundfile.info(target).frames == 1000
+    assert link.read_text() == "older"
+    assert sorted(tmp_path.iterdir()) == [link, target]
+
+
+def test_a_link_into_nowhere_is_not_followed(instrument, tmp_path):
+    (tmp_path / "r.wav").symlink_to(tmp_path / "elsewhere.wav")
+    with pytest.raises(OutputError, match="exists"):
+        Recorder(instrument, tmp_path / "r.wav", 0, pytest.fail)
+    assert not (tmp_path / "elsewhere.wav").exists()
+
+
+def test_a_recording_of_nothing_leaves_no_file(instrument, tmp_path):
+    said: list[str] = []
+    recording = Recorder(instrument, tmp_path / "r.wav", 0, said.append)
+    recording.stop()
+    assert "nothing to write" in recording.failure
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_place_that_cannot_be_written_is_refused_at_once(instrument, tmp_path):

@@ -434,5 +434,20 @@ def serve(jackd) -> Iterator[Callable[..., Serve]]:
         yield start
 
 
+@pytest.fixture
+def silent() -> Iterator[Callable[..., Serve]]:
+    """Start ``yehu-server serve`` with options, on a silent clock and without MIDI."""
+    native.warm_up()
+    words = ("--audio-device", "null", "--midi-api", "none", "--osc", "127.0.0.1:0", "--no-http")
+    with contextlib.ExitStack() as ending:
+
+        def start(*more: object) -> Serve:
+            made = Serve(dict(os.environ), *words, *more)
+            ending.callback(made.close)
+            return made
+
+        yield start
+
+
 if __name__ == "__main__":
     record(sys.argv[1], int(sys.argv[2]))

@@ -36,10 +36,12 @@ def movers(mapping: Mapping, target: str) -> list[str]:
 def test_what_is_learned_for_a_shipped_mapping_is_there_at_the_next_start(settings, name):
     mapping, path = learn(load(name), "/playing/vibrato_press", KNOB, soft=False)
     assert path == settings / "mappings" / f"{name}.toml"
-    again = load(name)
+    again = load(name, own_first=True)
     assert again == mapping
     assert moved_by(again, "cc 20") == ["/playing/vibrato_press"]
-    assert set(load(name).binds) - {again.of("cc 20")[0]} <= set(mapping.binds)
+    assert set(again.binds) - {again.of("cc 20")[0]} <= set(load(name).binds)
+    assert moved_by(load(name), "cc 20") == []  # who renders is not told of it
+    assert load(f"mine/{name}") == mapping
 
 
 @pytest.mark.parametrize("param", [p for p in TABLE if not p.owned], ids=lambda p: p.address)
@@ -48,7 +50,7 @@ def test_every_parameter_that_the_player_does_not_move_can_be_learned(param):
     (bind,) = mapping.of("cc 20")
     assert bind.is_soft
     assert [bind.apply(0.0), bind.apply(1.0)] == pytest.approx([param.lo, param.hi])
-    assert load("keyboard") == mapping
+    assert load("mine/keyboard") == mapping
 
 
 def test_what_the_player_moves_cannot_be_learned(settings):

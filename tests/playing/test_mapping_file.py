@@ -310,11 +310,15 @@ def test_what_begins_elsewhere_and_the_zones_go_over_the_base(read):
     assert dict(mapping.start) == dict(load("mpe").start) | {"/playing/speed": 0.1}
 
 
-def test_a_base_may_have_a_base_and_the_users_comes_before_the_shipped(own, read):
+def test_a_base_may_have_a_base_and_the_shipped_comes_before_the_users(own, read):
     own("wind", 'base = "wind"\n' + BIND)
-    own("pedal", 'base = "wind"\nabout = "my pedal"\n')
+    own("pedal", 'base = "mine/wind"\nabout = "my pedal"\n')
     assert own_mappings() == ["pedal", "wind"]
-    assert len(load("wind").of("cc 4")) == 1
+    assert load("wind").of("cc 4") == ()
+    assert load("wind", own_first=True) == load("mine/wind")
+    assert len(load("mine/wind").of("cc 4")) == 1
+    assert read('base = "wind"\n').of("cc 4") == ()
+    assert [file.stem for file in read('base = "wind"\n').files] == ["mine", "wind"]
     mapping = read('base = "pedal"\n')
     assert mapping.binds == (*load(str(mapping_folder() / "wind.toml")).binds, *mapping.of("cc 4"))
     assert [file.stem for file in mapping.files] == ["mine", "pedal", "wind", "wind"]
@@ -330,6 +334,8 @@ def test_bases_that_go_round_are_refused(own):
     file.write_text('base = "two"\n')
     with pytest.raises(MappingError, match=r"two\.toml:1: base: no mapping 'two'"):
         load("one")
+    with pytest.raises(MappingError, match=r"no mapping 'mine/keyboard' .*yours: mine/one"):
+        load("mine/keyboard")
 
 
 def test_an_error_in_a_base_names_that_file(own, read):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import resource
 
 import numpy as np
 import pytest
@@ -159,3 +160,34 @@ def test_a_replay_counts_what_it_did(tmp_path):
     assert result.events == 3
     assert result.duration_s == 0.2
     assert (tmp_path / "x.wav").exists()
+
+
+def test_a_full_disk_leaves_whole_lines(tmp_path):
+    path = tmp_path / "c"
+    writer = CaptureWriter(path, rate=RATE, seed=0, tensions=TENSIONS)
+    begun = path.read_bytes()
+    first = json.dumps([1, "/bow/speed", 0.5, 0]) + "\n"
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(begun) + len(first) + 9, hard))
+    try:
+        with pytest.raises(OutputError, match="cannot write"):
+            writer.events(np.array([(1, SPEED, 0.5, 0), (2, SPEED, 0.5, 0)], EVENT))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_bytes() == begun + first.encode()
+    assert len(read_capture(path).events) == 1
+
+
+def test_an_older_capture_is_replaced_only_where_that_is_asked_for(tmp_path):
+    path = write(tmp_path / "c", EVENTS, end=12345)
+    older = path.read_bytes()
+    with pytest.raises(OutputError, match="exists"):
+        CaptureWriter(path, rate=RATE, seed=0, tensions=TENSIONS)
+    assert path.read_bytes() == older
+    CaptureWriter(path, rate=RATE, seed=0, tensions=TENSIONS, overwrite=True).close(7)
+    assert read_capture(path).frames == 7
+
+
+def test_a_capture_of_nothing_can_be_taken_back(tmp_path):
+    CaptureWriter(tmp_path / "c", rate=RATE, seed=0, tensions=TENSIONS).discard()
+    assert list(tmp_path.iterdir()) == []

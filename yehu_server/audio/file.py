@@ -1,49 +1,92 @@
-"""Sound files, written as they come, whole or not at all."""
+"""Sound files: results whole or not at all, and takes that are right at every moment."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+import io
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import soundfile
 
+from yehu_server.audio import wav
+from yehu_server.audio.flac import FlacStream
+from yehu_server.audio.wav import WavStream
 from yehu_server.errors import OutputError
-from yehu_server.files import replacing
+from yehu_server.files import anything, replacing, why
 
 FORMATS = ("wav", "flac")
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}
-BYTES = {"16": 2, "24": 3, "float": 4}
-WAV_LIMIT = 2**32 - 4096  # RIFF sizes have 32 bits
+RENDERED = "yehu-server render"  # what a file says of who made it, which may so be made again
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class SoundWriter:
-    """A sound file being written; see `sound_file`."""
+    """A mono sound file being written, whose header is right after each write.
 
-    def __init__(self, file: soundfile.SoundFile, target: Path, limit: int | None) -> None:
-        self._file = file
+    Parameters
+    ----------
+    file : io.FileIO
+        A new one, unbuffered; it stays open.
+    target : Path
+        What it is called in errors.
+    format_name : "wav" or "flac"
+    subtype : "16", "24" or "float"
+    software : str
+        What the file says of who made it.
+
+    Errors: OutputError. What was written before stays.
+    """
+
+    def __init__(
+        self,
+        file: io.FileIO,
+        target: Path,
+        rate: int,
+        format_name: str,
+        subtype: str,
+        software: str = "",
+    ) -> None:
+        check_format(format_name, subtype)
+        is_wav = format_name == "wav"
         self._target = target
-        self._limit = limit
+        self._limit = wav.WAV_LIMIT // wav.BYTES[subtype] if is_wav else None
         self.frames = 0
         self.peak = 0.0
         self._power = 0.0
+        with self._telling():
+            make = WavStream if is_wav else FlacStream
+            self._stream: WavStream | FlacStream = make(file, rate, subtype, software)
+
+    @property
+    def kept_frames(self) -> int:
+        """Frames that are in the file for sure: an encoder may hold some back."""
+        return self._stream.frames
 
     def write(self, samples: Samples) -> None:
-        """Append samples [shape=(frames,), full scale]. Errors: OutputError."""
+        """Append samples [shape=(frames,), full scale]."""
         self.frames += len(samples)
         if self._limit is not None and self.frames > self._limit:
             raise OutputError(f"{self._target}: too long for a WAV file (4 GiB); use FLAC")
         self.peak = max(self.peak, float(np.abs(samples).max(initial=0.0)))
         self._power += float(np.square(samples, dtype=np.float64).sum())
+        with self._telling():
+            self._stream.write(samples)
+
+    def close(self) -> None:
+        """Write what is still held back."""
+        with self._telling():
+            self._stream.close()
+
+    @contextlib.contextmanager
+    def _telling(self) -> Iterator[None]:
         try:
-            self._file.write(samples)
-        # soundfile asserts that all frames were written: they are not on a full disk.
-        except (AssertionError, soundfile.LibsndfileError) as error:
-            raise OutputError(f"{self._target}: cannot write: is the disk full?") from error
+            yield
+        except OSError as error:
+            raise OutputError(f"{self._target}: cannot write: {why(error)}") from error
 
     @property
     def rms(self) -> float:
@@ -68,39 +111,44 @@ def check_format(format_name: str, subtype: str) -> None:
 
 
 @contextlib.contextmanager
-def sound_file(target: Path, rate: int, format_name: str, subtype: str) -> Iterator[SoundWriter]:
+def sound_file(
+    target: Path,
+    rate: int,
+    format_name: str,
+    subtype: str,
+    may_replace: Callable[[Path], bool] = anything,
+) -> Iterator[SoundWriter]:
     """Open a mono sound file that appears at `target` only once it is complete.
 
     Parameters
     ----------
     format_name : "wav" or "flac"
     subtype : "16", "24" or "float"
+    may_replace : callable
+        Told an older target; whether it may be replaced.
 
     Errors: OutputError.
     """
     check_format(format_name, subtype)
-    limit = WAV_LIMIT // BYTES[subtype] if format_name == "wav" else None
-    with replacing(target) as partial:
+    with replacing(target, may_replace) as partial, io.FileIO(partial, "w") as file:
+        writer = SoundWriter(file, target, rate, format_name, subtype, RENDERED)
         try:
-            file = soundfile.SoundFile(
-                partial,
-                "w",
-                samplerate=rate,
-                channels=1,
-                format=format_name.upper(),
-                subtype=SUBTYPES[subtype],
-            )
-        except soundfile.LibsndfileError as error:
-            raise OutputError(f"{target}: cannot write: {error}") from error
-        with file:
-            writer = SoundWriter(file, target, limit)
             yield writer
-            if writer.frames == 0:
-                raise OutputError(f"{target}: there is nothing to write")
-        # What libsndfile still buffered is written on closing, where it cannot complain.
-        try:
-            whole = soundfile.info(partial).frames == writer.frames
-        except soundfile.LibsndfileError:
-            whole = False
-        if not whole:
-            raise OutputError(f"{target}: cannot write: is the disk full?")
+        except BaseException:
+            with contextlib.suppress(OutputError):
+                writer.close()
+            raise
+        writer.close()
+        if writer.frames == 0:
+            raise OutputError(f"{target}: there is nothing to write")
+
+
+def is_rendered(target: Path) -> bool:
+    """Whether a file is one that `sound_file` made, or holds nothing."""
+    try:
+        if target.stat().st_size == 0:
+            return True
+        with soundfile.SoundFile(target) as file:
+            return str(file.software).startswith(RENDERED)
+    except (OSError, soundfile.LibsndfileError):
+        return False

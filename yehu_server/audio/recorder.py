@@ -2,49 +2,59 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from yehu_server.audio.file import WAV_LIMIT, format_of, sound_file
+from yehu_server.audio.file import SoundWriter, format_of
+from yehu_server.audio.wav import BYTES
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
-from yehu_server.files import check_target
-
-log = logging.getLogger(__name__)
+from yehu_server.files import create, discard
 
 EVERY_S = 0.05
 SUBTYPES = {"wav": "float", "flac": "24"}
-FRAMES_LIMIT = WAV_LIMIT // 4 - (1 << 20)
+ROOM_S = 1.0  # what must fit on the disk for a recording to begin
 
 
 class Recorder:
-    """One recording, in a thread of its own; the file appears when it is complete.
+    """One recording, in a thread of its own, into a file that is right at every moment.
 
     Parameters
     ----------
     start : int
         The frame to begin at.
-    failed : callable
-        Told in a line when the recording ends by itself, such as on a full disk.
+    said : callable
+        Told in a line when the recording ends by itself, such as on a full disk, or when some
+        of it is missing.
+    overwrite : bool
+        Whether to take the place of an older file.
 
-    Errors: OutputError where the file could not be written.
+    Errors: OutputError where the file could not be written, or is there.
     """
 
     def __init__(
-        self, instrument: Instrument, target: Path, start: int, failed: Callable[[str], None]
+        self,
+        instrument: Instrument,
+        target: Path,
+        start: int,
+        said: Callable[[str], None],
+        *,
+        overwrite: bool = False,
     ) -> None:
-        self._format = format_of(target)
-        check_target(target)
+        format_name, rate = format_of(target), round(instrument.rate)
+        subtype = SUBTYPES[format_name]
+        room_bytes = round(ROOM_S * rate) * BYTES[subtype]
         self.target = target
         self.missed_frames = 0
+        self.failure = ""  # why it ended by itself
         self._instrument = instrument
         self._position = start
-        self._start = start
-        self._failed = failed
+        self._said = said
+        self._file = create(target, overwrite=overwrite, room_bytes=room_bytes)
+        self._writer = SoundWriter(self._file, target, rate, format_name, subtype)
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
         self._thread.start()
@@ -55,9 +65,14 @@ class Recorder:
         return self._thread.is_alive()
 
     @property
+    def is_whole(self) -> bool:
+        """Whether nothing is missing so far."""
+        return not self.failure and self.missed_frames == 0
+
+    @property
     def seconds(self) -> float:
         """How long the recording is."""
-        return (self._position - self._start) / self._instrument.rate
+        return self._writer.kept_frames / self._instrument.rate
 
     def stop(self) -> None:
         """End the recording with what is played so far."""
@@ -65,22 +80,42 @@ class Recorder:
         self._thread.join()
 
     def _run(self) -> None:
-        rate, subtype = round(self._instrument.rate), SUBTYPES[self._format]
         try:
-            with sound_file(self.target, rate, self._format, subtype) as file:
-                ending = False
-                while not ending and file.frames < FRAMES_LIMIT:
-                    ending = self._ending.wait(EVERY_S)
-                    begin, samples = self._instrument.taped(self._position)
-                    if begin > self._position:  # we were held up for longer than the tape
-                        self.missed_frames += begin - self._position
-                        file.write(np.zeros(begin - self._position, np.float32))
-                    file.write(samples)
-                    self._position = begin + len(samples)
+            ending = False
+            while not ending:
+                ending = self._ending.wait(EVERY_S)
+                begin, samples = self._instrument.taped(self._position)
+                if begin > self._position:  # we were held up for longer than the tape
+                    self._miss(begin)
+                self._writer.write(samples)
+                self._position = begin + len(samples)
         except OutputError as error:
-            self._failed(f"recording ended: {error}")
-            return
-        if not ending:
-            self._failed(f"recording ended: {self.target} is as long as a file can be")
-        if self.missed_frames:
-            log.warning("%s: %d frames are missing, as zeros", self.target, self.missed_frames)
+            self.failure = str(error)
+        self._close()
+        if self.failure:
+            kept = f"; {self.seconds:.1f} s are kept" if self.seconds else ""
+            self._said(f"recording ended: {self.failure}{kept}")
+
+    def _miss(self, begin: int) -> None:
+        """Silence for what is lost, so that the rest keeps its place."""
+        rate = self._instrument.rate
+        lost, at = begin - self._position, self._writer.frames
+        self.missed_frames += lost
+        self._said(
+            f"{self.target}: {lost / rate:.1f} s are missing from {at / rate:.1f} s on, as "
+            "silence: the disk was too slow"
+        )
+        while self._position < begin:
+            frames = min(begin - self._position, round(rate))
+            self._writer.write(np.zeros(frames, np.float32))
+            self._position += frames
+
+    def _close(self) -> None:
+        try:
+            self._writer.close()
+        except OutputError as error:
+            self.failure = self.failure or str(error)
+        if self._writer.kept_frames == 0:
+            self.failure = self.failure or f"{self.target}: there is nothing to write"
+            discard(self._file, self.target)
+        self._file.close()

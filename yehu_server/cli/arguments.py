@@ -66,6 +66,32 @@ def add_reporting(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
 
 
+def add_output(parser: argparse.ArgumentParser) -> None:
+    """Add the sound file to write."""
+    parser.add_argument(
+        "-o", "--output", required=True, type=Path, metavar="OUT", help="the sound file to write"
+    )
+    parser.add_argument(
+        "--overwrite",
+        action="store_true",
+        help="replace OUT whatever it is; else only what render and replay made",
+    )
+
+
+def check_output(arguments: argparse.Namespace) -> Callable[[Path], bool]:
+    """Refuse what `add_output` was told where that may not be written; return what may go.
+
+    Errors: OutputError.
+    """
+    from yehu_server.audio.file import is_rendered
+    from yehu_server.files import anything, check_free, check_target
+
+    may_replace = anything if arguments.overwrite else is_rendered
+    check_target(arguments.output)
+    check_free(arguments.output, may_replace)
+    return may_replace
+
+
 def add_gesture(parser: Any) -> None:
     """Add a gesture file, and what is kept of its run."""
     parser.add_argument("gesture", type=Path, metavar="GESTURE.json", help="what bow and finger do")
@@ -101,7 +127,7 @@ def add_playing(group: Any) -> None:
     group.add_argument(
         "--mapping",
         metavar="FILE",
-        help="what controllers do: the name of a mapping, yours or shipped, or a file "
+        help="what controllers do: the name of a mapping, mine/NAME for one of yours, or a file "
         "(default: keyboard)",
     )
     group.add_argument(
@@ -163,11 +189,12 @@ def add_playing(group: Any) -> None:
     )
 
 
-def mapping_of(arguments: argparse.Namespace) -> Mapping:
+def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:
     """The mapping that `add_playing` was told. Errors: MappingError."""
     from yehu_server.playing.mapping import DEFAULT, MPE, load
 
-    mapping = load(arguments.mapping or (MPE if arguments.mpe else DEFAULT))
+    name = arguments.mapping or (MPE if arguments.mpe else DEFAULT)
+    mapping = load(name, own_first=is_live)
     return replace(mapping, mpe=mapping.mpe or arguments.mpe)
 
 
@@ -181,8 +208,14 @@ def add_presets_folder(group: Any) -> None:
     )
 
 
-def style_of(arguments: argparse.Namespace) -> Style:
-    """What `add_playing` was told. Errors: YehuError for files and values that are wrong."""
+def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
+    """What `add_playing` was told.
+
+    Live, mappings and presets of the user's own count before shipped ones of the same name.
+    Else what their folders hold counts only where it is named: what is rendered hangs on the
+    words of the command alone.
+    Errors: YehuError for files and values that are wrong.
+    """
     from yehu_server.params.table import assignment
     from yehu_server.playing.fingering import OpenStrings, RangePolicy
     from yehu_server.playing.presets import Presets
@@ -191,16 +224,20 @@ def style_of(arguments: argparse.Namespace) -> Style:
 
     if arguments.keyboard_map is not None and arguments.tuning is None:
         raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
-    presets = Presets(arguments.presets)
+    own_first = is_live or arguments.presets is not None
+    presets = Presets(arguments.presets, own_first=own_first)
     start: tuple[tuple[str, float], ...] = ()
+    file = None
     if arguments.preset is not None:
+        file = presets.find_file(arguments.preset)
         preset = presets.find(arguments.preset)
         start = tuple(preset.values.items())
         for remark in preset.remarks():
             print(f"yehu-server: {remark}", file=sys.stderr)
     return Style(
-        mapping=mapping_of(arguments),
+        mapping=mapping_of(arguments, is_live=is_live),
         presets=presets,
+        preset=file,
         start=start,
         programs=arguments.programs,
         settings=tuple(assignment(text) for text in arguments.set),

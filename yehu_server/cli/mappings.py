@@ -64,6 +64,9 @@ def add_to(commands: Any) -> None:
     convert.add_argument(
         "-o", "--output", type=Path, metavar="OUT", help="the file to write (default: print it)"
     )
+    convert.add_argument(
+        "--overwrite", action="store_true", help="replace OUT where it is there, also the FILE"
+    )
     for action in (actions.choices["list"], show):
         action.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -86,7 +89,7 @@ def _about(name: str) -> str:
     from yehu_server.playing.mapping import load
 
     try:
-        return load(name).about
+        return load(name, own_first=True).about
     except MappingError as error:  # one that is wrong does not hide the others
         return str(error)
 
@@ -96,7 +99,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
     if arguments.live:
         return _show_live(arguments)
-    mapping = load(arguments.mapping or DEFAULT)
+    mapping = load(arguments.mapping or DEFAULT, own_first=True)
     if arguments.json:
         print(json.dumps(_fields(mapping)))
     else:
@@ -161,12 +164,12 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _convert(arguments: argparse.Namespace) -> int:
-    from yehu_server.files import replacing
+    from yehu_server.files import anything, nothing, replacing
     from yehu_server.playing.mapping import find_file, with_bases
     from yehu_server.playing.mapping_file import json_of, sheet_of, text_of, toml_of
     from yehu_server.playing.mapping_writer import as_toml, tidied
 
-    path = find_file(arguments.mapping)
+    path = find_file(arguments.mapping, own_first=True)
     text = text_of(path)
     is_json = text.lstrip().startswith("{")  # as no TOML does
     data = json_of(path, text) if is_json else toml_of(path, text)
@@ -178,7 +181,8 @@ def _convert(arguments: argparse.Namespace) -> int:
     if arguments.output is None:
         print(converted, end="")
     else:
-        with replacing(arguments.output) as partial:
+        may_replace = anything if arguments.overwrite else nothing
+        with replacing(arguments.output, may_replace) as partial:
             partial.write_text(converted, encoding="utf-8", newline="\n")
     return 0
 

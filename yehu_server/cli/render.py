@@ -7,13 +7,15 @@ import json
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import (
     add_command,
+    add_output,
     add_playing,
     add_reporting,
     channel,
+    check_output,
     compiling,
     decibels,
     progress_bar,
@@ -21,6 +23,9 @@ from yehu_server.cli.arguments import (
     style_of,
     whole,
 )
+
+if TYPE_CHECKING:
+    from yehu_server.playing.style import Style
 
 EXAMPLES = """\
 examples:
@@ -42,9 +47,7 @@ def add_to(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     parser.add_argument("midi", nargs="+", type=Path, metavar="IN.mid", help="what to play")
-    parser.add_argument(
-        "-o", "--output", required=True, type=Path, metavar="OUT", help="the sound file to write"
-    )
+    add_output(parser)
     parser.add_argument(
         "--rate",
         type=whole,
@@ -96,7 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.audio.file import format_of
     from yehu_server.engine.native import warm_up
-    from yehu_server.files import check_target
+    from yehu_server.files import check_apart
     from yehu_server.physics.grid import check_rate
     from yehu_server.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibration import calibration_for
@@ -104,7 +107,11 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.score.smf import concatenate, read_score
 
     check_rate(arguments.rate)
-    check_target(arguments.output, arguments.midi)
+    may_replace = check_output(arguments)
+    style = style_of(arguments)
+    instrument = [] if arguments.instrument is None else [arguments.instrument]
+    check_apart({"-o": arguments.output}, [*arguments.midi, *style.files, *instrument])
+    _tell_of_own(arguments, style)
     channels = arguments.channel
     options = Options(
         rate=arguments.rate,
@@ -114,7 +121,7 @@ def run(arguments: argparse.Namespace) -> int:
         tail_s=arguments.tail,
         gain_db=arguments.gain_db,
         normalize=arguments.normalize,
-        style=style_of(arguments),
+        style=style,
         quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
     )
     score = concatenate([read_score(path) for path in arguments.midi])
@@ -129,11 +136,13 @@ def run(arguments: argparse.Namespace) -> int:
         )
     options = replace(options, calibration=calibration)
     with progress_bar(arguments, "rendering") as progress:
-        summary = render(score, arguments.output, options, progress)
+        summary = render(score, arguments.output, options, progress, may_replace)
     if arguments.json:
         fields = dict(vars(summary))
         by_channel = fields.pop("notes_by_channel")
         fields["policy"] = summary.policy.value
+        fields["mapping"] = {"name": style.mapping.name, "files": [*map(str, style.mapping.files)]}
+        fields["preset"] = None if style.preset is None else str(style.preset)
         fields["channels"] = {str(channel + 1): notes for channel, notes in by_channel.items()}
         print(json.dumps(fields))
     elif not arguments.quiet:
@@ -141,3 +150,13 @@ def run(arguments: argparse.Namespace) -> int:
 
         print(render_report(arguments.output, summary))
     return 0
+
+
+def _tell_of_own(arguments: argparse.Namespace, style: Style) -> None:
+    """Say it where a mapping of the user's own would count in live playing."""
+    from yehu_server.playing.mapping import MINE, own_mappings
+
+    own = style.mapping.files[0].stem
+    if (arguments.mapping or own) == own and own in own_mappings() and not arguments.quiet:
+        line = f"mapping {own}: the one that comes along; --mapping {MINE}{own} takes yours"
+        print(f"yehu-server: {line}", file=sys.stderr)

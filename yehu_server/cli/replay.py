@@ -8,7 +8,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_reporting, compiling, progress_bar
+from yehu_server.cli.arguments import (
+    add_command,
+    add_output,
+    add_reporting,
+    check_output,
+    compiling,
+    progress_bar,
+)
 
 EXAMPLES = """\
 examples:
@@ -30,9 +37,7 @@ def add_to(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     parser.add_argument("capture", type=Path, metavar="CAPTURE", help="what serve --capture wrote")
-    parser.add_argument(
-        "-o", "--output", required=True, type=Path, metavar="OUT", help="the sound file to write"
-    )
+    add_output(parser)
     parser.add_argument("--format", choices=("wav", "flac"), help="default: by the ending of OUT")
     parser.add_argument(
         "--subtype",
@@ -47,11 +52,12 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.audio.file import format_of
     from yehu_server.audio.recorder import SUBTYPES
     from yehu_server.engine.native import warm_up
-    from yehu_server.files import check_target
+    from yehu_server.files import check_apart
     from yehu_server.replay import replay
     from yehu_server.score.capture import read_capture
 
-    check_target(arguments.output, [arguments.capture])
+    may_replace = check_output(arguments)
+    check_apart({"-o": arguments.output}, [arguments.capture])
     format_name = arguments.format or format_of(arguments.output)
     capture = read_capture(arguments.capture)
     for warning in capture.warnings:
@@ -65,6 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
             format_name=format_name,
             subtype=arguments.subtype or SUBTYPES[format_name],
             progress=progress,
+            may_replace=may_replace,
         )
     if arguments.json:
         print(json.dumps(vars(result)))

@@ -43,6 +43,7 @@ HTTP = ("127.0.0.1", 9001)
 FILES_NEEDED = 40  # open ones: 30 by itself, and some clients
 LEVELS = ("debug", "info", "warning", "error")
 REFRESHES_PER_SECOND = 10
+INTERRUPTED = 130  # exit code
 
 
 def add_to(commands: Any) -> None:
@@ -173,10 +174,18 @@ def _add_playing(group: Any) -> None:
 
 def _add_running(group: Any) -> None:
     group.add_argument(
-        "--record", type=Path, metavar="OUT", help="record everything to a WAV or FLAC file"
+        "--record", type=Path, metavar="OUT", help="record everything to a new WAV or FLAC file"
     )
     group.add_argument(
-        "--capture", type=Path, metavar="FILE", help="write every event, for yehu-server replay"
+        "--capture",
+        type=Path,
+        metavar="FILE",
+        help="write every event to a new file, for yehu-server replay",
+    )
+    group.add_argument(
+        "--overwrite",
+        action="store_true",
+        help="let --record and --capture take the place of files that are there",
     )
     group.add_argument(
         "--recordings",
@@ -198,34 +207,62 @@ def _add_running(group: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     allow_files(FILES_NEEDED)
-    ended = threading.Event()
-    code = 0
-
-    def end(number: int, _frame: Any) -> None:
-        if ended.is_set() and number == signal.SIGINT:
-            raise KeyboardInterrupt  # the second Ctrl-C does not wait
-        ended.set()
-
+    ending = _Ending()
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
-            signal.signal(getattr(signal, name), end)
+            signal.signal(getattr(signal, name), ending)
     _set_up_log(arguments)
-    with compiling(arguments):
-        _serve(arguments, ended)
-    return code
+    try:
+        with compiling(arguments):
+            return _serve(arguments, ending)
+    except KeyboardInterrupt:
+        if ending.server is None:
+            raise
+        return INTERRUPTED
 
 
-def _serve(arguments: argparse.Namespace, ended: threading.Event) -> None:
+class _Ending:
+    """What Ctrl-C and other signals ask for.
+
+    The first ends the playing, the second does not wait for what fades, and the third leaves
+    at once. None of them harms a take.
+    """
+
+    def __init__(self) -> None:
+        self.asked = threading.Event()
+        self.server: Any = None  # once it plays
+        self._times = 0
+
+    def __call__(self, number: int, _frame: Any) -> None:
+        """Handle a signal."""
+        self._times += number == signal.SIGINT
+        self.asked.set()
+        if self._times < 2:
+            return
+        if self.server is not None:
+            self.server.hurry()
+        if self.server is None or (self._times > 2 and self.server.is_interruptible):
+            raise KeyboardInterrupt
+
+
+def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
+    """Serve until it is enough; return the exit code."""
     from yehu_server.control.addresses import lan_address
+    from yehu_server.playing.mapping import is_own
     from yehu_server.report import connect_lines, query_line
     from yehu_server.server import Server
 
     say = logging.getLogger("yehu_server").info
+    options = _options(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress:
-        server = Server(_options(arguments), say, progress)
+        server = Server(options, say, progress)
     if server.output.state.problem and arguments.audio_device != "null":
         say(f"{server.output.state.problem}: playing on a silent clock")
+    mapping = options.style.mapping
+    if is_own(mapping):
+        say(f"mapping {mapping.name}, as you have it: {mapping.files[0]}")
     server.start()
+    ending.server = server
     try:
         where = (server.osc.host, server.osc.port, lan_address())
         for line in connect_lines(*where, is_open=not arguments.osc_allow):
@@ -235,9 +272,10 @@ def _serve(arguments: argparse.Namespace, ended: threading.Event) -> None:
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
         say(f"the system grants OSC a buffer of {buffer_kb} kB; Ctrl-C ends")
         with _status_line(server):
-            _wait(ended, arguments.duration)
+            _wait(ending.asked, arguments.duration)
     finally:
         server.stop()
+    return 0 if server.kept_all else 2
 
 
 def _wait(ended: threading.Event, duration_s: float | None) -> None:
@@ -253,11 +291,19 @@ def _options(arguments: argparse.Namespace) -> Any:
     from yehu_server.control.addresses import Allowed, parse_address
     from yehu_server.control.ports import MidiOptions
     from yehu_server.control.web import WebOptions
+    from yehu_server.files import check_apart
     from yehu_server.physics.grid import check_rate
     from yehu_server.server import ServeOptions
 
     if arguments.rate is not None:
         check_rate(arguments.rate)
+    style = style_of(arguments, is_live=True)
+    outputs = {"--record": arguments.record, "--capture": arguments.capture}
+    config = [] if arguments.config is None else [arguments.config]
+    check_apart(
+        {name: path for name, path in outputs.items() if path is not None},
+        [*style.files, *config],
+    )
     options = ServeOptions(
         output=OutputOptions(
             device=arguments.audio_device,
@@ -275,11 +321,12 @@ def _options(arguments: argparse.Namespace) -> Any:
         if arguments.http != "none"
         else None,
         announce=arguments.announce,
-        style=style_of(arguments),
-        reread=partial(mapping_of, arguments) if arguments.watch else None,
+        style=style,
+        reread=partial(mapping_of, arguments, is_live=True) if arguments.watch else None,
         jitter_ms=arguments.jitter_buffer,
         record=arguments.record,
         capture=arguments.capture,
+        overwrite=arguments.overwrite,
     )
     if arguments.recordings is not None:
         options.recordings = arguments.recordings

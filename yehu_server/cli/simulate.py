@@ -45,12 +45,13 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     import time
 
-    from yehu_server.files import check_target
+    from yehu_server.files import check_apart, check_target
     from yehu_server.score.gesture import read_gesture
     from yehu_server.simulate import simulate
 
     gesture = read_gesture(arguments.gesture)
-    check_target(arguments.output, [arguments.gesture])
+    check_target(arguments.output)
+    check_apart({"-o": arguments.output}, [arguments.gesture])
     start = time.perf_counter()
     with compiling(arguments), progress_bar(arguments, "simulating") as progress:
         result = simulate(

@@ -1,5 +1,9 @@
 """Mappings: which controllers move which parameters. Found by name, with the base each names.
 
+A plain name is a shipped mapping's first, so that what a render or a file names is the same for
+everyone; ``mine/NAME`` is the user's own. Only who plays live looks among their own first, where
+what was learned is kept.
+
 The format of the files is described in mappings/README.md.
 """
 
@@ -18,6 +22,7 @@ from yehu_server.playing.mapping_file import Complaints, Sheet, read_sheet, text
 from yehu_server.playing.sources import is_address
 
 DEFAULT, MPE = "keyboard", "mpe"
+MINE = "mine/"  # before the name of one of the user's own
 
 
 def mapping_folder() -> Path:
@@ -82,20 +87,32 @@ def _names(folder: Path) -> list[str]:
     return sorted(file.stem for file in folder.glob("*.toml"))
 
 
-def load(name_or_path: str) -> Mapping:
-    """Read a mapping by its name, the user's before a shipped one, or from a file.
+def is_own(mapping: Mapping) -> bool:
+    """Whether it comes from the user's folder."""
+    return any(_is_same(file.parent, own_folder()) for file in mapping.files[:1])
+
+
+def load(name_or_path: str, *, own_first: bool = False) -> Mapping:
+    """Read a mapping by its name, or from a file.
+
+    Parameters
+    ----------
+    name_or_path : str
+        A name, ``mine/`` and the name of one of the user's own, or a path.
+    own_first : bool
+        Whether a plain name is one of the user's own first; else a shipped one's.
 
     Errors: MappingError, naming file and line.
     """
-    path = find_file(name_or_path)
+    path = find_file(name_or_path, own_first=own_first)
     return with_bases(path, read_sheet(path))
 
 
-def find_file(name_or_path: str) -> Path:
-    """The file of a mapping; what is no plain name is a path. Errors: MappingError."""
+def find_file(name_or_path: str, *, own_first: bool = False) -> Path:
+    """The file of a mapping; what is no name is a path. Errors: MappingError."""
     if not _is_name(name_or_path):
         return Path(name_or_path)
-    found = _named(name_or_path)
+    found = _named(name_or_path, own_first=own_first)
     if found is None:
         raise MappingError(_unknown(name_or_path, "; or name a file"))
     return found
@@ -141,14 +158,18 @@ def _over(below: Mapping, sheet: Sheet) -> Mapping:
 
 
 def _is_name(text: str) -> bool:
-    path = Path(text)
-    return path.suffix == "" and path.name == text
+    name = text.removeprefix(MINE)
+    path = Path(name)
+    return path.suffix == "" and path.name == name
 
 
-def _named(name: str, of: Path | None = None) -> Path | None:
+def _named(name: str, of: Path | None = None, *, own_first: bool = False) -> Path | None:
     """The file of a name; as the base `of` a file never that file itself."""
-    for folder in (own_folder(), mapping_folder()):
-        file = folder / f"{name}.toml"
+    folders = [mapping_folder(), own_folder()]
+    if name.startswith(MINE):
+        del folders[0]
+    for folder in reversed(folders) if own_first else folders:
+        file = folder / f"{name.removeprefix(MINE)}.toml"
         try:
             if file.is_file() and not (of is not None and _is_same(file, of)):
                 return file
@@ -167,5 +188,5 @@ def _is_same(one: Path, other: Path) -> bool:
 def _unknown(name: str, hint: str = "") -> str:
     known = ", ".join(shipped_mappings())
     if own := own_mappings():
-        known += f"; yours: {', '.join(own)}"
+        known += f"; yours: {', '.join(MINE + name for name in own)}"
     return f"no mapping {name!r} (shipped: {known}{hint})"

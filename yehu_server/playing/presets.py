@@ -14,6 +14,7 @@ from yehu_server.files import MAX_SETTINGS_BYTES, PLAIN_NAME, read_text, shipped
 from yehu_server.params.preset import SAVED, VERSION, Preset, parse
 
 ENDING = ".toml"
+MINE = "mine/"  # before the name of one of the player's own
 EMPTY = f'version = {VERSION}\nabout = ""\n\n[values]\n'
 Stamp = tuple[int, int]
 
@@ -31,8 +32,14 @@ def read_preset(path: Path, name: str | None = None) -> Preset:
         raise PresetError(f"{name or path}: {error}") from error
 
 
+def is_name(name_or_path: str) -> bool:
+    """Whether it is the name of a preset; else it is a path."""
+    name = name_or_path.removeprefix(MINE)
+    return PLAIN_NAME.fullmatch(name) is not None and not name.endswith(ENDING)
+
+
 class Presets:
-    """Presets by plain name; one of the player's own hides a shipped one of its name.
+    """Presets by plain name, or by ``mine/`` and the name of one of the player's own.
 
     Files are read again when they have changed.
 
@@ -41,9 +48,13 @@ class Presets:
     own : Path, optional
         The player's folder, made when something is saved; by default among the settings that
         the system keeps for this program.
+    own_first : bool
+        Whether one of the player's own hides a shipped one of its name or program, as it does
+        live. Else the shipped one counts, and own ones have no program.
     """
 
-    def __init__(self, own: Path | None = None) -> None:
+    def __init__(self, own: Path | None = None, *, own_first: bool = True) -> None:
+        self._own_first = own_first
         self.own = own or user_config_path("yehu-server") / "presets"
         self.shipped = shipped_folder("presets")
         self._known: dict[Path, tuple[Stamp, Preset]] = {}
@@ -56,19 +67,30 @@ class Presets:
         """Whether it is the player's own."""
         return _file(self.own, name).is_file()
 
+    def file(self, name: str) -> Path:
+        """Where one of them is. Errors: PresetError."""
+        folders = [self.shipped, self.own]
+        if name.startswith(MINE):
+            del folders[0]
+        for folder in reversed(folders) if self._own_first else folders:
+            path = _file(folder, name.removeprefix(MINE))
+            if path.is_file():
+                return path
+        raise PresetError(f"no preset {name!r} (there are: {', '.join(self.names())})")
+
     def load(self, name: str) -> Preset:
         """Read one of them. Errors: PresetError."""
-        for folder in (self.own, self.shipped):
-            path = _file(folder, name)
-            if path.is_file():
-                return self._read(path, name)
-        raise PresetError(f"no preset {name!r} (there are: {', '.join(self.names())})")
+        return self._read(self.file(name), name.removeprefix(MINE))
 
     def find(self, name_or_path: str) -> Preset:
         """Read one of them, or a file of any place. Errors: PresetError."""
-        if PLAIN_NAME.fullmatch(name_or_path) and not name_or_path.endswith(ENDING):
+        if is_name(name_or_path):
             return self.load(name_or_path)
         return read_preset(Path(name_or_path))
+
+    def find_file(self, name_or_path: str) -> Path:
+        """The file that `find` reads. Errors: PresetError."""
+        return self.file(name_or_path) if is_name(name_or_path) else Path(name_or_path)
 
     def all(self) -> tuple[list[Preset], list[PresetError]]:
         """All of them by name, and what is wrong with files that cannot be read."""
@@ -80,9 +102,16 @@ class Presets:
                 errors.append(error)
         return presets, errors
 
+    def _is_only_own(self, name: str) -> bool:
+        return not _file(self.shipped, name).is_file()
+
     def of_program(self, program: int) -> Preset | None:
         """The preset of a MIDI program, 1 to 128: the player's own first, then by name."""
-        found = [preset for preset in self.all()[0] if preset.program == program]
+        found = [
+            preset
+            for preset in self.all()[0]
+            if preset.program == program and (self._own_first or not self._is_only_own(preset.name))
+        ]
         return min(found, key=lambda preset: not self.is_own(preset.name), default=None)
 
     def save(self, name: str, values: Mapping[str, float]) -> None:

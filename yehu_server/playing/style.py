@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Calibration
@@ -20,7 +21,8 @@ from yehu_server.playing.tuning import EQUAL, Tuning
 class Style:
     """See ``yehu-server render --help``.
 
-    `settings` are held parameters and their values, `start` those that a preset begins with.
+    `settings` are held parameters and their values, `start` those that a preset begins with;
+    `preset` is its file.
     """
 
     mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
@@ -33,6 +35,13 @@ class Style:
     policy: RangePolicy = RangePolicy.TRANSPOSE
     open_strings: OpenStrings = OpenStrings.ALWAYS
     seed: int = 0
+    preset: Path | None = None
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """What was read for it."""
+        preset = () if self.preset is None else (self.preset,)
+        return (*self.mapping.files, *preset, *self.tuning.files)
 
     def performer(
         self,

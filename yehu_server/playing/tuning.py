@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from yehu_server.errors import ParameterError
@@ -41,12 +41,14 @@ class Tuning:
 
     `keys` has the pitches of keys 0 to 127 (fractional MIDI notes; None for an unmapped
     key), or is None where each key sounds its own number. They are relative to A4, whatever
-    it is; if `fixed`, to an A4 of 440 Hz, and stay where they are when A4 moves.
+    it is; if `fixed`, to an A4 of 440 Hz, and stay where they are when A4 moves. `files` are
+    what it was read from.
     """
 
     name: str
     keys: tuple[float | None, ...] | None = None
     fixed: bool = False
+    files: tuple[Path, ...] = field(default=(), compare=False)
 
     def pitch(self, note: float, a4: float) -> float | None:
         """Return what a key sounds, as a fractional MIDI note relative to `a4` (Hz).
@@ -101,7 +103,8 @@ def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
             keys[key] = pitch
     if all(key is None for key in keys):
         raise ParameterError(f"{keyboard}: maps no key")
-    return Tuning(name, tuple(keys), fixed=keyboard is not None)
+    files = (scale,) if keyboard is None else (scale, keyboard)
+    return Tuning(name, tuple(keys), fixed=keyboard is not None, files=files)
 
 
 def _found(path: Path, ending: str) -> Path:

@@ -6,6 +6,8 @@ before a crash can be read.
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import platform
 from collections.abc import Iterable, Sequence
@@ -21,12 +23,13 @@ from yehu_server import __version__
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.engine.mailbox import EVENT
 from yehu_server.errors import OutputError, ScoreError
-from yehu_server.files import check_target
+from yehu_server.files import create, discard, why, write_all
 from yehu_server.jit import source_hash
 from yehu_server.params.table import ENGINE, SLOT
 
 FORMAT, VERSION = "yehu-server capture", 1
 MOST_BYTES = 1 << 30
+ROOM_BYTES = 1 << 16  # what must fit on the disk for a capture to begin
 SILENCED = "silence"
 ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: SILENCED}
 INDICES = {address: slot for slot, address in ADDRESSES.items()}
@@ -45,18 +48,28 @@ def build() -> dict[str, str]:
 
 
 class CaptureWriter:
-    """A capture being written; each call leaves the file readable.
+    """A capture being written; whatever ends it, each line of the file is whole.
+
+    Parameters
+    ----------
+    overwrite : bool
+        Whether to take the place of an older file.
 
     Errors: OutputError.
     """
 
-    def __init__(self, target: Path, *, rate: float, seed: int, tensions: Sequence[float]) -> None:
-        check_target(target)
+    def __init__(
+        self,
+        target: Path,
+        *,
+        rate: float,
+        seed: int,
+        tensions: Sequence[float],
+        overwrite: bool = False,
+    ) -> None:
         self._target = target
-        try:
-            self._file = target.open("w", encoding="utf-8")
-        except OSError as error:
-            raise OutputError(f"{target}: cannot write: {error.strerror}") from error
+        self._file = create(target, overwrite=overwrite, room_bytes=ROOM_BYTES)
+        self._whole_bytes = 0
         values = {param.address: param.default for param in ENGINE}
         header: dict[str, Any] = {"format": FORMAT, "version": VERSION, "rate": rate, "seed": seed}
         header["tensions"] = list(tensions)
@@ -78,12 +91,22 @@ class CaptureWriter:
         self._write([{"end": frame}])
         self._file.close()
 
+    def discard(self) -> None:
+        """End it, and leave no file."""
+        discard(self._file, self._target)
+        self._file.close()
+
     def _write(self, lines: Iterable[Any]) -> None:
+        data = "".join(json.dumps(line) + "\n" for line in lines).encode()
         try:
-            self._file.writelines(json.dumps(line) + "\n" for line in lines)
-            self._file.flush()
+            write_all(self._file, data)
+            self._whole_bytes += len(data)
         except OSError as error:
-            raise OutputError(f"{self._target}: cannot write: {error.strerror}") from error
+            with contextlib.suppress(OSError):  # what is no whole line is taken back
+                written = self._file.seek(0, io.SEEK_END) - self._whole_bytes
+                self._file.truncate(self._whole_bytes + data.rfind(b"\n", 0, written) + 1)
+            self._file.close()
+            raise OutputError(f"{self._target}: cannot write: {why(error)}") from error
 
 
 @dataclass

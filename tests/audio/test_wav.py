@@ -1,0 +1,69 @@
+"""WAV as we write it, against libsndfile and against the format's own words."""
+
+from __future__ import annotations
+
+import io
+import struct
+
+import numpy as np
+import pytest
+import soundfile
+
+from yehu_server.audio.file import SUBTYPES
+from yehu_server.audio.wav import WavStream, encoded
+
+EDGES = [1.0, -1.0, 0.0, -0.0, 1.5, -1.5, 2**-24, -(2**-24), 2**-31, -(2**-31), 3 * 2**-32]
+
+
+def samples() -> np.ndarray:
+    random = np.random.default_rng(1)
+    small = random.uniform(-1.0, 1.0, 5000) * 10.0 ** random.uniform(-12.0, 0.0, 5000)
+    return np.concatenate([random.uniform(-1.2, 1.2, 5000), small, EDGES]).astype(np.float32)
+
+
+def chunks(data: bytes) -> dict[bytes, bytes]:
+    """The chunks of a RIFF file, in their order."""
+    assert (data[:4], data[8:12]) == (b"RIFF", b"WAVE")
+    assert struct.unpack("<I", data[4:8])[0] == len(data) - 8
+    found, at = {}, 12
+    while at < len(data):
+        name, (size,) = data[at : at + 4], struct.unpack("<I", data[at + 4 : at + 8])
+        found[name] = data[at + 8 : at + 8 + size]
+        at += 8 + size + size % 2
+    assert at == len(data)
+    return found
+
+
+def written(path, subtype: str, software: str = "") -> bytes:
+    with io.FileIO(path, "w") as file:
+        stream = WavStream(file, 48000, subtype, software)
+        for part in np.array_split(samples(), 3):
+            stream.write(part)
+        stream.close()
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("subtype", ["16", "24", "float"])
+def test_samples_are_the_bytes_that_libsndfile_makes_of_them(tmp_path, subtype):
+    reference = tmp_path / "reference.wav"
+    soundfile.write(reference, samples(), 48000, subtype=SUBTYPES[subtype])
+    theirs = chunks(reference.read_bytes())
+    assert encoded(samples(), subtype) == theirs[b"data"]
+    ours = chunks(written(tmp_path / "ours.wav", subtype))
+    assert ours[b"data"] == theirs[b"data"]
+    assert ours[b"fmt "][:16] == theirs[b"fmt "]
+
+
+def test_floats_have_the_header_that_the_format_asks_for(tmp_path):
+    ours = chunks(written(tmp_path / "ours.wav", "float"))
+    assert list(ours) == [b"fmt ", b"fact", b"data"]
+    assert ours[b"fmt "] == struct.pack("<HHIIHHH", 3, 1, 48000, 192000, 4, 32, 0)
+    assert ours[b"fact"] == struct.pack("<I", len(samples()))
+
+
+@pytest.mark.parametrize("subtype", ["16", "24", "float"])
+def test_the_same_samples_are_the_same_bytes(tmp_path, monkeypatch, subtype):
+    first = written(tmp_path / "first.wav", subtype, "someone")
+    monkeypatch.setattr("time.time", lambda: 0.0)
+    assert written(tmp_path / "second.wav", subtype, "someone") == first
+    assert chunks(first)[b"LIST"] == b"INFOISFT\x08\x00\x00\x00someone\0"

@@ -1,0 +1,106 @@
+"""WAV, written so that the header is right after every write.
+
+Whoever ends us, and whenever, leaves a file that any program opens. The format is Microsoft's
+of 1994: what is not PCM has an extended ``fmt`` chunk and a ``fact`` chunk. No time stamp is in
+it, so that the same samples are the same bytes.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import struct
+from typing import Any
+
+import numpy as np
+
+from yehu_server.files import write_all
+
+BYTES = {"16": 2, "24": 3, "float": 4}  # of a sample
+PCM, IEEE_FLOAT = 1, 3
+WAV_LIMIT = 2**32 - 4096  # RIFF sizes have 32 bits
+
+Samples = np.ndarray[Any, np.dtype[np.float32]]
+
+
+class WavStream:
+    """A mono WAV file being written.
+
+    Parameters
+    ----------
+    file : io.FileIO
+        A new one, unbuffered.
+    subtype : "16", "24" or "float"
+    software : str
+        What to say of who made it; nothing by default.
+
+    Errors: OSError. What was written before stays, and is whole.
+    """
+
+    def __init__(self, file: io.FileIO, rate: int, subtype: str, software: str = "") -> None:
+        self.frames = 0  # in the file for sure
+        self._file = file
+        self._rate = rate
+        self._subtype = subtype
+        self._about = _about(software)
+        self._header_bytes = len(self._header())
+        write_all(file, self._header())
+
+    def write(self, samples: Samples) -> None:
+        """Append samples [shape=(frames,), full scale]."""
+        try:
+            write_all(self._file, encoded(samples, self._subtype))
+            self.frames += len(samples)
+            self._tell()
+        except OSError:
+            with contextlib.suppress(OSError):
+                self._cut()
+            raise
+
+    def close(self) -> None:
+        """End the stream; the file stays open."""
+        if self.frames * BYTES[self._subtype] % 2:
+            write_all(self._file, b"\0")  # chunks have even lengths
+
+    def _cut(self) -> None:
+        """Take back what is no whole sample."""
+        each = BYTES[self._subtype]
+        self.frames = (self._file.seek(0, io.SEEK_END) - self._header_bytes) // each
+        self._file.truncate(self._header_bytes + self.frames * each)
+        self._tell()
+
+    def _tell(self) -> None:
+        self._file.seek(0)
+        write_all(self._file, self._header())
+        self._file.seek(0, io.SEEK_END)
+
+    def _header(self) -> bytes:
+        each = BYTES[self._subtype]
+        is_pcm = self._subtype != "float"
+        form = PCM if is_pcm else IEEE_FLOAT
+        fmt = struct.pack("<HHIIHH", form, 1, self._rate, self._rate * each, each, 8 * each)
+        size = self.frames * each
+        chunks = _chunk(b"fmt ", fmt if is_pcm else fmt + struct.pack("<H", 0))
+        if not is_pcm:
+            chunks += _chunk(b"fact", struct.pack("<I", self.frames))
+        chunks += self._about + b"data" + struct.pack("<I", size)
+        return b"RIFF" + struct.pack("<I", 4 + len(chunks) + size + size % 2) + b"WAVE" + chunks
+
+
+def encoded(samples: Samples, subtype: str) -> bytes:
+    """Samples as the bytes of a WAV file; what is beyond full scale is held there."""
+    if subtype == "float":
+        return samples.astype("<f4").tobytes()
+    scaled = np.rint(samples.astype(np.float64) * 2.0**31).clip(-(2.0**31), 2.0**31 - 1.0)
+    highest = scaled.astype("<i4").view(np.uint8).reshape(-1, 4)[:, -BYTES[subtype] :]
+    return highest.tobytes()
+
+
+def _chunk(name: bytes, data: bytes) -> bytes:
+    return name + struct.pack("<I", len(data)) + data + b"\0" * (len(data) % 2)
+
+
+def _about(software: str) -> bytes:
+    if not software:
+        return b""
+    return _chunk(b"LIST", b"INFO" + _chunk(b"ISFT", software.encode("ascii") + b"\0"))

@@ -107,10 +107,10 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.score.smf import concatenate, read_score
 
     check_rate(arguments.rate)
-    may_replace = check_output(arguments)
     style = style_of(arguments)
     instrument = [] if arguments.instrument is None else [arguments.instrument]
     check_apart({"-o": arguments.output}, [*arguments.midi, *style.files, *instrument])
+    may_replace = check_output(arguments)
     _tell_of_own(arguments, style)
     channels = arguments.channel
     options = Options(

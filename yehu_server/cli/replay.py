@@ -56,8 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.replay import replay
     from yehu_server.score.capture import read_capture
 
-    may_replace = check_output(arguments)
     check_apart({"-o": arguments.output}, [arguments.capture])
+    may_replace = check_output(arguments)
     format_name = arguments.format or format_of(arguments.output)
     capture = read_capture(arguments.capture)
     for warning in capture.warnings:

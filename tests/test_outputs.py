@@ -1,0 +1,112 @@
+"""What a command may write over: nothing that it reads, and nothing that somebody made."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+
+from yehu_server.cli import main
+
+MAPPING = 'base = "keyboard"\n'
+
+
+@pytest.fixture
+def refused(capsys, monkeypatch, tmp_path):
+    """Run a command that must be refused in one line; that line."""
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words: str | Path) -> str:
+        assert main([str(word) for word in words]) == 2
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert err.count("\n") == 1
+        return err
+
+    return run
+
+
+@pytest.fixture
+def files(tmp_path) -> dict[str, Path]:
+    """Files that commands read."""
+    texts = {"w.toml": MAPPING, "below.toml": MAPPING, "p.toml": "version = 1\n[values]\n"}
+    texts["s.scl"] = "! s.scl\ns\n 1\n 2/1\n"
+    texts["k.kbm"] = "0\n0\n127\n60\n69\n440.0\n0\n"
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+    return {name: tmp_path / name for name in texts}
+
+
+def serving(name: str, output: str) -> list[str]:
+    words = {
+        "w.toml": ["--mapping", "w.toml"],
+        "p.toml": ["--preset", "p.toml"],
+        "s.scl": ["--tuning", "s.scl"],
+        "k.kbm": ["--tuning", "s.scl", "--keyboard-map", "k.kbm"],
+    }
+    return ["serve", *words[name], output, "out"]
+
+
+@pytest.mark.parametrize("output", ["--record", "--capture"])
+@pytest.mark.parametrize("name", ["w.toml", "p.toml", "s.scl", "k.kbm"])
+def test_a_take_does_not_go_over_what_is_read_nor_over_a_link_to_it(
+    refused, files, tmp_path, name, output
+):
+    out, before = tmp_path / "out", files[name].read_text()
+    for link in (out.symlink_to, out.hardlink_to):
+        link(files[name])
+        for more in ([], ["--overwrite"]):
+            err = refused(*serving(name, output), *more)
+            assert f"out: {output} would overwrite what is read" in err
+        out.unlink()
+    plain = [word if word != "out" else name for word in serving(name, output)]
+    assert "would overwrite what is read" in refused(*plain, "--overwrite")
+    assert files[name].read_text() == before
+
+
+def test_a_take_does_not_go_over_the_config_that_names_it(refused, tmp_path):
+    (tmp_path / "c.toml").write_text('capture = "c.toml"\noverwrite = true\n')
+    assert "--capture would overwrite what is read" in refused("serve", "--config", "c.toml")
+
+
+def test_two_things_do_not_go_to_one_file(refused, tmp_path):
+    (tmp_path / "folder").symlink_to(tmp_path)
+    for other in ("x.wav", "./x.wav", tmp_path / "x.wav", "folder/x.wav"):
+        err = refused("serve", "--record", "x.wav", "--capture", other, "--overwrite")
+        assert "--record and --capture would write to one file" in err
+    (tmp_path / "x.wav").write_text("older")
+    (tmp_path / "y.wav").hardlink_to(tmp_path / "x.wav")
+    (tmp_path / "z.wav").symlink_to("x.wav")
+    for other in ("y.wav", "z.wav"):
+        assert "one file" in refused(
+            "serve", "--record", "x.wav", "--capture", other, "--overwrite"
+        )
+    assert (tmp_path / "x.wav").read_text() == "older"
+
+
+@pytest.mark.parametrize("option", ["--mapping", "--preset", "--instrument"])
+def test_a_rendering_does_not_go_over_what_is_read(refused, files, tmp_path, option):
+    (tmp_path / "tune.mid").write_bytes(b"")
+    texts = {"--mapping": MAPPING, "--preset": files["p.toml"].read_text(), "--instrument": ""}
+    (tmp_path / "read").write_text(texts[option])
+    named = ["render", "tune.mid", option, "./read", "-o", "read", "--overwrite"]
+    assert "-o would overwrite what is read" in refused(*named)
+    over = ["render", "tune.mid", "-o", tmp_path / "tune.mid", "--overwrite"]
+    assert "-o would overwrite what is read" in refused(*over)
+
+
+def test_a_replay_does_not_go_over_its_capture(refused, tmp_path):
+    (tmp_path / "c").write_text("{}")
+    err = refused("replay", "c", "-o", "c", "--overwrite")
+    assert "-o would overwrite what is read" in err
+
+
+def test_a_mapping_is_converted_into_a_new_file(refused, tmp_path):
+    (tmp_path / "mine.toml").write_text("# what I made\n")
+    err = refused("mappings", "convert", "wind", "-o", "mine.toml")
+    assert "mine.toml: exists; --overwrite replaces it" in err
+    assert (tmp_path / "mine.toml").read_text() == "# what I made\n"
+    assert main(["mappings", "convert", "wind", "-o", "mine.toml", "--overwrite"]) == 0
+    assert "[[bind]]" in (tmp_path / "mine.toml").read_text()

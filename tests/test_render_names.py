@@ -1,0 +1,86 @@
+"""A rendering hangs on what its command names, not on what was learned or kept elsewhere."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import mido
+import pytest
+
+from yehu_server.cli import main
+from yehu_server.playing.learned import learn
+from yehu_server.playing.learner import Found
+from yehu_server.playing.mapping import load, mapping_folder
+
+# What a folder of presets may hold.
+LOUD = 'version = 1\nprogram = 3\n[values]\n"/playing/pressure" = 0.9\n'
+
+
+@pytest.fixture
+def tune(tmp_path) -> Path:
+    track = mido.MidiTrack()
+    track.append(mido.Message("program_change", program=2))
+    track.append(mido.Message("control_change", control=20, value=3))
+    track.append(mido.Message("note_on", note=67, velocity=90))
+    track.append(mido.Message("note_off", note=67, time=120))
+    path = tmp_path / "tune.mid"
+    mido.MidiFile(tracks=[track]).save(path)
+    return path
+
+
+pytestmark = pytest.mark.usefixtures("config_home")
+
+
+@pytest.fixture
+def rendered(tune, tmp_path, capsys):
+    """Render the tune: the sound, what was printed as JSON, and what was said."""
+
+    def run(*words: object) -> tuple[bytes, dict, str]:
+        out = tmp_path / "out.wav"
+        code = main(["render", str(tune), "-o", str(out), "--json", *map(str, words)])
+        printed, err = capsys.readouterr()
+        assert code == 0, err
+        return out.read_bytes(), json.loads(printed), err
+
+    return run
+
+
+@pytest.mark.parametrize("words", [(), ("--mapping", "keyboard")])
+def test_what_was_learned_live_changes_no_rendering(rendered, words):
+    before, told, err = rendered(*words)
+    shipped = mapping_folder() / "keyboard.toml"
+    assert told["mapping"] == {"name": "keyboard", "files": [str(shipped)]}
+    assert err == ""
+    _, own = learn(load("keyboard"), "/playing/pressure", Found("cc 20"), soft=False)
+    after, told, err = rendered(*words)
+    assert after == before
+    assert told["mapping"]["files"] == [str(shipped)]
+    assert "--mapping mine/keyboard takes yours" in err
+    for name in ("mine/keyboard", own):
+        sound, told, err = rendered("--mapping", name)
+        assert sound != before
+        assert told["mapping"]["files"] == [str(own), str(shipped)]
+        assert err == ""
+
+
+def test_what_was_learned_live_changes_no_file_that_has_a_shipped_base(rendered, tmp_path):
+    mine = tmp_path / "pedals.toml"
+    mine.write_text('base = "keyboard"\n')
+    before, _, _ = rendered("--mapping", mine)
+    learn(load("keyboard"), "/playing/pressure", Found("cc 20"), soft=False)
+    assert rendered("--mapping", mine)[0] == before
+
+
+def test_a_preset_of_ones_own_counts_where_it_is_named(rendered, config_home):
+    own = config_home / "yehu-server" / "presets"
+    named, programs = ("--preset", "flautando"), ("--programs",)
+    before = [rendered(*words)[0] for words in (named, programs)]
+    own.mkdir(parents=True)
+    (own / "flautando.toml").write_text(LOUD)
+    assert [rendered(*words)[0] for words in (named, programs)] == before
+    sound, told, _ = rendered("--preset", "mine/flautando")
+    assert sound != before[0]
+    assert told["preset"] == str(own / "flautando.toml")
+    assert rendered(*named, "--presets", own)[0] == sound
+    assert rendered(*programs, "--presets", own)[0] != before[1]

@@ -202,7 +202,9 @@ def test_a_string_that_dies_away_never_holds_a_denormal():
         assert denormals(instrument) == 0
         sizes.append(float(np.abs(instrument._rig["state"]["u"]).max()))
     assert sizes[0] > 1e-300  # it rang at first
-    assert sizes[-1] < 100.0 * SMALLEST  # and came to where denormals would be
+    # And it came to where denormals would be. There its rounding keeps it from dying altogether,
+    # at 60 to 500 times the smallest normal number: that hangs on the processor.
+    assert sizes[-1] < 1e4 * SMALLEST
 
 
 # ---------------------------------------------------------------- other processors

@@ -17,6 +17,17 @@ settings.register_profile("yehu", deadline=None, derandomize=True, database=None
 settings.load_profile("yehu")
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--all", action="store_true", help="also run the tests that are marked slow")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if not config.getoption("--all"):
+        for item in items:
+            if item.get_closest_marker("slow"):
+                item.add_marker(pytest.mark.skip(reason="slow: run with --all"))
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _config_home(tmp_path_factory) -> Iterator[None]:
     """No test reads the mappings or settings of whoever runs it."""

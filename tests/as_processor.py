@@ -1,0 +1,75 @@
+"""Runs a command as another x86-64 processor would run it, rounding for rounding.
+
+    .venv/bin/python tests/as_processor.py generic .venv/bin/pytest tests/physics
+
+numba compiles for that processor, and numpy, its linear algebra and the C library leave the
+code alone that they choose on newer ones. Where this processor can't run the other's code,
+it says so and exits with 77. `NUMBA_CACHE_DIR` should name a folder of its own.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+from dataclasses import dataclass
+
+CANNOT = 77  # exit code
+
+
+@dataclass(frozen=True)
+class Processor:
+    """What an x86-64 processor has, by the names that each library has for it."""
+
+    needs: frozenset[str]  # LLVM's features beyond those of 2003
+    openblas: str
+    numpy: frozenset[str]  # levels that numpy has code for
+    without: str = ""  # glibc's features that it lacks
+
+
+OF_2013 = frozenset(("avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"))
+AVX_512 = frozenset(("avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"))
+
+PROCESSORS = {  # by LLVM's names
+    "generic": Processor(frozenset(), "Nehalem", frozenset(), "-AVX2,-AVX,-FMA,-FMA4"),
+    "haswell": Processor(OF_2013, "Haswell", frozenset(("X86_V3",))),
+    "skylake-avx512": Processor(OF_2013 | AVX_512, "SkylakeX", frozenset(("X86_V3", "X86_V4"))),
+}
+
+
+def missing(name: str) -> list[str]:
+    """What this processor lacks to run code for the named one."""
+    if platform.machine() not in {"x86_64", "AMD64"}:
+        return ["x86-64"]
+    from llvmlite import binding
+
+    here = binding.get_host_cpu_features()
+    return sorted(feature for feature in PROCESSORS[name].needs if not here.get(feature))
+
+
+def environment(name: str) -> dict[str, str]:
+    """The variables by which libraries take this processor for the named one."""
+    import numpy as np
+
+    processor = PROCESSORS[name]
+    levels = set(np.show_config(mode="dicts")["SIMD Extensions"].get("found", []))
+    return {
+        "NUMBA_CPU_NAME": name,
+        "NUMBA_CPU_FEATURES": "",  # else those of this processor stay
+        "NPY_DISABLE_CPU_FEATURES": " ".join(sorted(levels - processor.numpy)),
+        "OPENBLAS_CORETYPE": processor.openblas,
+        "GLIBC_TUNABLES": f"glibc.cpu.hwcaps={processor.without}",
+    }
+
+
+def main() -> None:
+    """Become the command, or say why not."""
+    name, *command = sys.argv[1:]
+    if lacking := missing(name):
+        sys.stderr.write(f"its code does not run here, for lack of {', '.join(lacking)}\n")
+        sys.exit(CANNOT)
+    os.execvpe(command[0], command, {**os.environ, **environment(name)})  # noqa: S606
+
+
+if __name__ == "__main__":
+    main()

@@ -19,6 +19,7 @@ MAX_TEXT_BYTES = 64 * 2**20
 MAX_SETTINGS_BYTES = 2**20  # of files that are read while the instrument plays
 # What a name that comes over the network must look like: no path, nothing hidden.
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
+MOST_SHOWN = 40  # characters of what is none
 
 
 def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
@@ -33,6 +34,25 @@ def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
 def why(error: OSError) -> str:
     """Why the system refused, in words."""
     return error.strerror or str(error)
+
+
+def inside(folder: Path, name: str, ending: str = "") -> Path:
+    """The file of a name that came over the network: one of this folder, wherever its links lead.
+
+    Errors: OutputError for what is no plain name, or a symbolic link that leads out of the folder.
+    """
+    if not PLAIN_NAME.fullmatch(name):
+        shown = name if len(name) <= MOST_SHOWN else f"{name[:MOST_SHOWN]}..."
+        raise OutputError(f"{shown!r} is not a plain name of letters, digits, . _ - and spaces")
+    path = folder / f"{name}{ending}"
+    # Of a link to nowhere, too: writing through it would make the file it names.
+    if os.path.islink(path) and not _is_within(path, folder):  # noqa: PTH114 - Path's raises
+        raise OutputError(f"{path.name} is a link that leads out of {folder}")
+    return path
+
+
+def _is_within(path: Path, folder: Path) -> bool:
+    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
 
 
 def check_target(target: Path) -> None:

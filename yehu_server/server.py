@@ -34,10 +34,10 @@ from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import MappingError, OutputError
 from yehu_server.files import (
-    PLAIN_NAME,
     anything,
     check_free,
     check_target,
+    inside,
     nothing,
     shipped_folder,
 )
@@ -339,12 +339,11 @@ class Server:
 
         Errors: OutputError.
         """
-        if not PLAIN_NAME.fullmatch(name):
-            raise OutputError(f"{name!r} is not a plain name of letters, digits, . _ - and spaces")
+        ending = "" if Path(name).suffix in (".wav", ".flac") else ".wav"
+        target = inside(self.options.recordings, name, ending)
         if self._recorder is not None and self._recorder.is_running:
             raise OutputError(f"already recording {self._recorder.target.name}")
         folder = self.options.recordings
-        target = folder / (name if Path(name).suffix in (".wav", ".flac") else f"{name}.wav")
         try:
             folder.mkdir(parents=True, exist_ok=True)
             if target.exists():

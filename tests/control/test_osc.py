@@ -1021,6 +1021,26 @@ def test_a_name_that_is_more_than_a_name_records_nothing(house, name):
     assert house.is_well()
 
 
+@pytest.mark.parametrize("is_there", [True, False])
+def test_a_link_in_the_recordings_that_leads_out_is_not_written_through(
+    make_hall, tmp_path, is_there
+):
+    hall = make_hall()
+    folder = hall.server.options.recordings
+    folder.mkdir(exist_ok=True)
+    secret = tmp_path / "secret"
+    if is_there:
+        secret.write_text("kept")
+    (folder / "take.wav").symlink_to(secret)
+    client = hall.client()
+    client.tell("/record/start", "take")
+    address, reason = client.wait_for("/error")
+    assert address == "/yehu/record/start"
+    assert reason.startswith("take.wav is a link that leads out of")
+    assert hall.server.recording == ""
+    assert secret.exists() == is_there
+
+
 def test_a_folder_that_cannot_be_reached_is_answered(make_hall, tmp_path):
     hall = make_hall()
     hall.server.options.recordings = tmp_path / ("x" * 300)  # stands in for one without access

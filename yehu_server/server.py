@@ -121,6 +121,7 @@ class Server:
                 calibration=calibration,
                 delay_ms=1e3 * self._delay.frames / rate,
             )
+            self.player.presets.all()  # read now, so that to tell of them takes no time later
             self.handler = OscHandler(self.player, self)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
             undo.callback(self.osc.stop)

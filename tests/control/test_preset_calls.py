@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from yehu_server.control import preset_calls
+from yehu_server.control.preset_calls import SAVES_A_SECOND, SAVES_AT_ONCE
 from yehu_server.params.preset import POSSIBLE
 from yehu_server.playing.presets import Presets
 
@@ -125,6 +127,22 @@ def test_one_of_ones_own_may_be_saved_over_and_deleted(stage, own):
     assert list(own.iterdir()) == []
 
 
+def test_presets_are_saved_so_many_at_once_and_one_more_each_second(stage, own, monkeypatch):
+    monkeypatch.setattr(preset_calls, "time", stage.clock)
+    for number in range(20):
+        stage.tell("/preset/save", f"mine {number}")
+    assert len(list(own.iterdir())) == SAVES_AT_ONCE
+    address, reason = stage.ask("/preset/save", "another")[-1].arguments
+    assert (address, reason) == (
+        "/yehu/preset/save",
+        "presets are saved too often; try again in a second",
+    )
+    stage.clock.now += 1.0 / SAVES_A_SECOND
+    for name in ("another", "and another"):
+        stage.tell("/preset/save", name)
+    assert len(list(own.iterdir())) == SAVES_AT_ONCE + 1
+
+
 def test_presets_are_listed_and_a_broken_one_is_told(stage, own):
     (own / "mine.toml").write_text(HEAD + 'about = "wild"\n')
     (own / "bad.toml").write_text("version = 9\n")
@@ -193,3 +211,12 @@ def test_a_wrong_call_changes_nothing_and_says_why(stage, call, arguments, reaso
     assert refused.arguments[0] == "/yehu" + call
     assert reason in refused.arguments[1]
     assert stage.player.values() == before
+
+
+def test_a_list_reads_no_files_while_the_server_plays(make_hall, own, monkeypatch):
+    (own / "mine.toml").write_text(HEAD)
+    (own / "bad.toml").write_text("version = 9\n")
+    client = make_hall().client()
+    monkeypatch.setattr("yehu_server.playing.presets.read_text", None)
+    client.tell("/preset/list")
+    assert client.wait_for("/presets") == [len(SHIPPED.names()) + 1]

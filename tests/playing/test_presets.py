@@ -14,15 +14,15 @@ import pytest
 from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError, PresetError
-from yehu_server.files import MAX_SETTINGS_BYTES
 from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.physics.quantities import Quantities
+from yehu_server.playing import presets as folders
 from yehu_server.playing.calibration import calibration_for
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.presets import Presets, read_preset
+from yehu_server.playing.presets import MOST_BYTES, MOST_NAMED, MOST_OWN, Presets, read_preset
 from yehu_server.playing.style import Style
 
 HEAD = "version = 1\n"
@@ -147,6 +147,76 @@ def test_no_name_leads_out_of_the_folder(presets, tmp_path, name):
     assert sorted(tmp_path.rglob("*")) == before
 
 
+@pytest.mark.parametrize("is_there", [True, False])
+def test_no_link_leads_out_of_the_folder(presets, put, tmp_path, is_there):
+    secret = tmp_path / "secret.toml"
+    text = HEAD + '[values]\n"/playing/vibrato" = 10\n'
+    if is_there:
+        secret.write_text(text)
+    put("good", HEAD)
+    (presets.own / "mine.toml").symlink_to(secret)
+    for call in (presets.load, presets.delete, lambda name: presets.save(name, DEFAULTS)):
+        with pytest.raises(PresetError, match=r"mine\.toml is a link that leads out of"):
+            call("mine")
+    found, errors = presets.all()
+    assert "mine" not in [preset.name for preset in found]
+    assert ["is a link that leads out of" in str(error) for error in errors] == [True]
+    assert secret.exists() == is_there
+    assert not is_there or secret.read_text() == text
+    assert (presets.own / "mine.toml").is_symlink()
+
+
+def test_a_link_within_the_folder_and_a_folder_that_is_a_link_are_followed(presets, put, tmp_path):
+    put("good", HEAD + '[values]\n"/playing/vibrato" = 10\n')
+    (presets.own / "same.toml").symlink_to("good.toml")
+    (tmp_path / "elsewhere").symlink_to(presets.own)
+    for folder in (presets, Presets(tmp_path / "elsewhere")):
+        assert folder.load("same").values == {"/playing/vibrato": 10.0}
+        folder.save("same", DEFAULTS)
+        put("good", HEAD + '[values]\n"/playing/vibrato" = 10\n')
+
+
+def test_links_that_go_round_in_a_ring_are_an_error(presets, put):
+    put("good", HEAD)
+    (presets.own / "a.toml").symlink_to("b.toml")
+    (presets.own / "b.toml").symlink_to("a.toml")
+    with pytest.raises(PresetError, match="a: "):
+        presets.load("a")
+
+
+def test_a_folder_holds_so_many_presets_and_no_more(presets, put):
+    for number in range(MOST_OWN):
+        put(f"mine {number}", HEAD)
+    with pytest.raises(PresetError, match=f"there are {MOST_OWN} presets of your own; delete one"):
+        presets.save("one more", DEFAULTS)
+    assert not (presets.own / "one more.toml").exists()
+    presets.save("mine 7", DEFAULTS)  # over one there is
+    presets.delete("mine 8")
+    presets.save("one more", DEFAULTS)
+
+
+def test_of_more_presets_than_there_may_be_the_first_are_listed_and_the_rest_told(presets, put):
+    for number in range(MOST_OWN + 3):
+        put(f"mine {number:03}", HEAD)
+    found, errors = presets.all()
+    assert len(found) == MOST_OWN + len(SHIPPED)
+    assert [str(error) for error in errors] == [f"{presets.own}: 3 more than {MOST_OWN}, left out"]
+    assert presets.load(f"mine {MOST_OWN + 2}").name == f"mine {MOST_OWN + 2}"
+    with pytest.raises(PresetError) as refused:
+        presets.load("x")
+    assert str(refused.value).endswith(f" and {MOST_OWN + len(SHIPPED) - MOST_NAMED} more)")
+
+
+def test_a_file_is_read_once_whether_it_is_right_or_not(presets, put, monkeypatch):
+    put("good", HEAD)
+    put("bad", "version = 3\n")
+    before = presets.all()
+    monkeypatch.setattr(folders, "read_text", None)
+    again = presets.all()
+    assert again[0] == before[0]
+    assert [str(error) for error in again[1]] == [str(error) for error in before[1]]
+
+
 def test_a_preset_of_ones_own_hides_a_shipped_one_until_it_is_deleted(presets, put):
     with pytest.raises(PresetError, match="save under another name"):
         presets.save("tremolo", DEFAULTS)
@@ -191,7 +261,7 @@ def test_a_broken_file_does_not_hide_the_others(presets, put):
 
 
 def test_a_file_that_would_take_long_to_read_is_refused(presets, put):
-    put("long", "version = 1\n" + "#" * MAX_SETTINGS_BYTES)
+    put("long", "version = 1\n" + "#" * MOST_BYTES)
     with pytest.raises(PresetError, match="long: File too large"):
         presets.load("long")
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 
+from yehu_server.control.allowance import Allowance
 from yehu_server.control.clients import Clients
 from yehu_server.control.packets import pack
 from yehu_server.control.peers import Peer
@@ -12,6 +14,8 @@ from yehu_server.control.request import Desk, Request
 from yehu_server.errors import PresetError
 from yehu_server.params.preset import Preset, morph
 from yehu_server.playing.live import LivePlayer
+
+SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # by whoever it is: each is written to the disk
 
 
 class PresetCalls:
@@ -41,6 +45,7 @@ class PresetCalls:
         self._complain = complain
         self._desk = desk
         self._prefix = clients.prefix
+        self._saves = Allowance(SAVES_A_SECOND, SAVES_AT_ONCE)
         self.by_address: dict[str, Callable[[Request], None]] = {
             "/preset/load": self._load,
             "/preset/morph": self._morph,
@@ -71,6 +76,8 @@ class PresetCalls:
 
     def _save(self, call: Request) -> None:
         name = call.word()
+        if not self._saves.takes(time.monotonic()):
+            raise PresetError("presets are saved too often; try again in a second")
         self._presets.save(name, self._player.sound())
         self._desk.tree_changed(f"{self._prefix}/preset")
         call.peer.send(pack(f"{self._prefix}/preset/saved", name))

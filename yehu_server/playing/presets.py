@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -9,12 +10,16 @@ import tomlkit
 from platformdirs import user_config_path
 from tomlkit.exceptions import TOMLKitError
 
-from yehu_server.errors import PresetError
-from yehu_server.files import MAX_SETTINGS_BYTES, PLAIN_NAME, read_text, shipped_folder, write_text
+from yehu_server.errors import OutputError, PresetError
+from yehu_server.files import PLAIN_NAME, inside, read_text, shipped_folder, write_text
 from yehu_server.params.preset import SAVED, VERSION, Preset, parse
 
 ENDING = ".toml"
 MINE = "mine/"  # before the name of one of the player's own
+# What may be asked for while the instrument plays takes some milliseconds to read.
+MOST_OWN = 128  # presets: as many as there are MIDI programs
+MOST_BYTES = 1 << 14  # of one; it takes under 1000, and the rest are comments
+MOST_NAMED = 20  # in an error
 EMPTY = f'version = {VERSION}\nabout = ""\n\n[values]\n'
 Stamp = tuple[int, int]
 
@@ -22,7 +27,7 @@ Stamp = tuple[int, int]
 def read_preset(path: Path, name: str | None = None) -> Preset:
     """Read a file of any place. Errors: PresetError, naming it."""
     try:
-        return parse(read_text(path, MAX_SETTINGS_BYTES), name or path.stem)
+        return parse(read_text(path, MOST_BYTES), name or path.stem)
     except UnicodeDecodeError as error:
         raise PresetError(f"{name or path}: not a preset file ({error})") from error
     except (OSError, ValueError) as error:  # a path may have a NUL
@@ -57,26 +62,29 @@ class Presets:
         self._own_first = own_first
         self.own = own or user_config_path("yehu-server") / "presets"
         self.shipped = shipped_folder("presets")
-        self._known: dict[Path, tuple[Stamp, Preset]] = {}
+        # What was read, or why it could not be.
+        self._known: dict[Path, tuple[Stamp, Preset | str]] = {}
 
     def names(self) -> list[str]:
         """All names, sorted."""
-        return sorted({*_names(self.own), *_names(self.shipped)})
+        return sorted({*_names(self.own)[:MOST_OWN], *_names(self.shipped)})
 
     def is_own(self, name: str) -> bool:
         """Whether it is the player's own."""
-        return _file(self.own, name).is_file()
+        return self._own_file(name).is_file()
 
     def file(self, name: str) -> Path:
         """Where one of them is. Errors: PresetError."""
-        folders = [self.shipped, self.own]
+        places = [self._own_file, self._shipped_file]
         if name.startswith(MINE):
-            del folders[0]
-        for folder in reversed(folders) if self._own_first else folders:
-            path = _file(folder, name.removeprefix(MINE))
+            del places[1]
+        for place in places if self._own_first else reversed(places):
+            path = place(name.removeprefix(MINE))
             if path.is_file():
                 return path
-        raise PresetError(f"no preset {name!r} (there are: {', '.join(self.names())})")
+        names = self.names()
+        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+        raise PresetError(f"no preset {name!r} (there are: {', '.join(names[:MOST_NAMED])}{more})")
 
     def load(self, name: str) -> Preset:
         """Read one of them. Errors: PresetError."""
@@ -95,6 +103,9 @@ class Presets:
     def all(self) -> tuple[list[Preset], list[PresetError]]:
         """All of them by name, and what is wrong with files that cannot be read."""
         presets, errors = [], []
+        excess = len(_names(self.own)) - MOST_OWN
+        if excess > 0:
+            errors.append(PresetError(f"{self.own}: {excess} more than {MOST_OWN}, left out"))
         for name in self.names():
             try:
                 presets.append(self.load(name))
@@ -103,7 +114,7 @@ class Presets:
         return presets, errors
 
     def _is_only_own(self, name: str) -> bool:
-        return not _file(self.shipped, name).is_file()
+        return not self._shipped_file(name).is_file()
 
     def of_program(self, program: int) -> Preset | None:
         """The preset of a MIDI program, 1 to 128: the player's own first, then by name."""
@@ -119,15 +130,18 @@ class Presets:
 
         The rest of an older file of this name (comments, `about`, `program`, what it names
         besides) stays; it is as it was where writing fails.
-        Errors: PresetError for a shipped one's name, or an older file that cannot be read.
+        Errors: PresetError for a shipped one's name, an older file that cannot be read, or where
+        there are MOST_OWN already.
         """
-        path = _file(self.own, name)
+        path = self._own_file(name)
         text = EMPTY
         if path.exists():
             read_preset(path, name)
-            text = read_text(path, MAX_SETTINGS_BYTES)
-        elif _file(self.shipped, name).exists():
+            text = read_text(path, MOST_BYTES)
+        elif self._shipped_file(name).exists():
             raise PresetError(f"{name!r} comes with the program; save under another name")
+        elif len(_names(self.own)) >= MOST_OWN:
+            raise PresetError(f"there are {MOST_OWN} presets of your own; delete one first")
         try:
             document = tomlkit.parse(text)
         except TOMLKitError as error:
@@ -145,9 +159,9 @@ class Presets:
 
     def delete(self, name: str) -> None:
         """Remove one of the player's own. Errors: PresetError."""
-        path = _file(self.own, name)
+        path = self._own_file(name)
         if not path.is_file():
-            shipped = _file(self.shipped, name).exists()
+            shipped = self._shipped_file(name).exists()
             why = f"{name!r} comes with the program" if shipped else f"no preset {name!r}"
             raise PresetError(why)
         try:
@@ -156,25 +170,44 @@ class Presets:
             raise PresetError(f"{name}: {error.strerror}") from error
 
     def _read(self, path: Path, name: str) -> Preset:
+        """Read a file, unless it is known as it is now. Errors: PresetError."""
         try:
             status = path.stat()
         except OSError as error:
+            self._known.pop(path, None)
             raise PresetError(f"{name}: {error.strerror}") from error
         stamp = (status.st_mtime_ns, status.st_size)
         known = self._known.get(path)
         if known is None or known[0] != stamp:
-            known = self._known[path] = (stamp, read_preset(path, name))
+            known = self._known[path] = (stamp, _tried(path, name))
+        if isinstance(known[1], str):
+            raise PresetError(known[1])
         return known[1]
 
+    def _own_file(self, name: str) -> Path:
+        """Where one of the player's own is. Errors: PresetError, as of `inside`."""
+        try:
+            return inside(self.own, name, ENDING)
+        except OutputError as error:
+            raise PresetError(str(error)) from error
 
-def _file(folder: Path, name: str) -> Path:
-    """Where a preset of a folder is. Errors: PresetError for what is no plain name."""
-    if not PLAIN_NAME.fullmatch(name):
-        shown = name if len(name) <= 40 else f"{name[:40]}..."
-        reason = "is not a plain name of letters, digits, . _ - and spaces"
-        raise PresetError(f"{shown!r} {reason}")
-    return folder / f"{name}{ENDING}"
+    def _shipped_file(self, name: str) -> Path:
+        """Where a shipped one is: by a link, as some installers have it, or not."""
+        return self.shipped / f"{name}{ENDING}"
+
+
+def _tried(path: Path, name: str) -> Preset | str:
+    try:
+        return read_preset(path, name)
+    except PresetError as error:
+        return str(error)
 
 
 def _names(folder: Path) -> list[str]:
-    return [file.stem for file in folder.glob(f"*{ENDING}") if PLAIN_NAME.fullmatch(file.stem)]
+    """The names of the presets of a folder, sorted."""
+    try:
+        files = os.listdir(folder)  # noqa: PTH208 - names are enough
+    except OSError:
+        return []
+    names = (file.removesuffix(ENDING) for file in files if file.endswith(ENDING))
+    return sorted(name for name in names if PLAIN_NAME.fullmatch(name))

@@ -429,10 +429,12 @@ def test_pitch_and_bow_alone_make_a_theremin(stage):
     landing = rms(stage.pass_time(0.1))
     heard = values(stage.ask("/bow", 0.2, 0.6))
     assert heard == {"/yehu/bow/speed": f32(0.2), "/yehu/bow/force": f32(0.6)}
+    assert stage.player.pitch == 69.0
     assert rms(stage.pass_time(0.5)[-9600:]) > 5.0 * landing
     stage.tell("/bow", 0.0, 0.0)
     stage.pass_time(0.1)
     assert stage.player.value("/bow/side") == 0.0
+    assert stage.player.pitch is None
 
 
 def test_the_bow_by_hand_is_kept_within_its_bounds(stage):

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import mido
+import numpy as np
 import pytest
 
+from yehu_server.analysis.level import a_weighted_db
+from yehu_server.engine.instrument import Instrument
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibration import calibration_for
 from yehu_server.playing.fingering import OpenStrings
+from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Key, Performer
 
@@ -76,6 +82,89 @@ def test_notes_may_lie_between_the_keys(player, listener):
     assert listener.where() == ("F", 2.5)
     player.note_off(Key(0, 67.5))
     assert listener["/bow/speed"] == 0.0
+
+
+# ---------------------------------------------------------------- what is told, and how loud it is
+
+
+def test_the_pitch_drawn_by_hand_is_told_while_the_bow_is_on_the_string(player):
+    player.slide(69.5)
+    assert player.pitch is None  # nobody bows yet
+    player.draw(0.2, 0.7)
+    assert player.pitch == 69.5
+    player.slide(76.25)
+    assert player.pitch == 76.25
+    player.draw(0.0, 0.0)
+    assert player.pitch is None
+
+
+def test_the_pitch_by_hand_is_where_the_last_note_left_the_finger(player):
+    player.draw(0.2, 0.7)
+    assert player.pitch == 65.0  # nobody stopped the string
+    player.note_on(Key(0, 74))
+    player.note_off(Key(0, 74))
+    assert player.pitch is None
+    player.draw(0.2, 0.7)
+    assert player.pitch == 74.0
+    player.all_sound_off()
+    assert player.pitch is None
+    player.draw(0.2, 0.7)
+    assert player.pitch == 65.0
+
+
+def test_what_is_drawn_by_hand_is_as_loud_as_the_rest(player, listener):
+    player.slide(76.0)
+    player.draw(0.2, 0.7)
+    assert listener["/output/balance"] == pytest.approx(-6.0 * 0.9)
+    player.slide(67.0)
+    assert listener["/output/balance"] == 0.0
+    player.slide(76.0)
+    player.write("/body/evenness", 0.5)
+    assert listener["/output/balance"] == pytest.approx(-3.0)
+    assert all(move.ramp_ms > 0.0 for move in listener.of("/output/balance"))
+
+
+RATE = 44100.0
+CALIBRATION = calibration_for(RATE)
+
+
+def drawn_by_hand(pitches, seconds: float, evenness: float) -> np.ndarray:
+    """The sound of a bow drawn by hand while the finger goes through pitches."""
+    quantities = CALIBRATION.tuned(Quantities())
+    instrument = Instrument(RATE, quantities)
+    player = Performer(instrument, Intonation(CALIBRATION, quantities))
+    player.write("/body/evenness", evenness)
+    out = []
+    for pitch in pitches:
+        player.slide(float(pitch), frame=instrument.frame)
+        player.draw(0.2, 0.6, frame=instrument.frame)
+        sound = np.zeros(round(seconds * RATE / len(pitches)), np.float32)
+        instrument.process(sound)
+        out.append(sound)
+    return np.concatenate(out)
+
+
+def test_by_hand_the_loudest_note_is_not_much_louder_than_the_softest():
+    """By hand nobody sees to it that each note is bowed as it likes: it is not as even as notes."""
+
+    def spread(evenness: float) -> float:
+        sounds = [drawn_by_hand([pitch], 0.6, evenness) for pitch in (66, 73, 78)]
+        levels = [a_weighted_db(sound[-11025:], RATE) for sound in sounds]
+        return max(levels) - min(levels)
+
+    assert spread(0.0) > 15.0
+    assert spread(1.0) < 8.0
+
+
+def test_a_slide_by_hand_is_evened_out_without_a_click():
+    """The balance is a gain, so that the two sounds are alike but for that gain."""
+    path = np.linspace(66.0, 88.0, 60)
+    bare, even = (drawn_by_hand(path, 1.0, evenness) for evenness in (0.0, 1.0))
+    heard = np.flatnonzero(np.abs(bare) > 1e-3)
+    gain_db = 20.0 * np.log10(even[heard] / bare[heard])
+    rate_db_per_ms = np.diff(gain_db) / np.diff(heard) * RATE / 1000.0
+    assert np.ptp(gain_db) > 10.0
+    assert np.abs(rate_db_per_ms).max() < 2.0
 
 
 # ---------------------------------------------------------------- several ports

@@ -13,6 +13,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.params.spec import TURNED_ON, Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.calibration import OPEN_NOTES
+from yehu_server.playing.evenness import Evenness
 from yehu_server.playing.fingering import (
     OPEN_WITHIN,
     Fingering,
@@ -39,8 +40,6 @@ class Key:
 
 
 BEND_RAMP_MS = find("/playing/bend").smooth_ms
-# A loud note before a soft one has to die away before it may be turned up.
-RISING_MS, FALLING_MS = 90.0, 15.0
 # The power of dynamics that the level follows: with the slower bow 0.5 is some 12 dB below 1,
 # 0.1 some 35. By ear.
 SWELL = 1.5
@@ -96,8 +95,10 @@ class Performer:
         self._held: dict[Key, float] = {}  # in the order pressed; values are fitted notes
         self._sounding: Key | None = None
         self._began: int | None = None  # the frame of the stroke of the bow
+        self._place = float(OPEN_NOTES[0])  # the pitch that the finger was put to last
         self._by_hand = False  # the bow is drawn by `draw`
-        self._balance = 0.0  # dB
+        self._speed = 0.0  # of the bow drawn so (m/s)
+        self._evenness = Evenness(self._own, self._intonation, self._value.__getitem__)
         # What a parameter of the player moves while a note sounds.
         self._followers: dict[str, tuple[Callable[[int | None], None], ...]] = {
             "/playing/bend": (self._follow_bend,),
@@ -126,8 +127,10 @@ class Performer:
 
     @property
     def pitch(self) -> float | None:
-        """The pitch (fractional MIDI note) that the finger aims at while a note sounds."""
-        return None if self._sounding is None else self._pitch
+        """The pitch (fractional MIDI note) of the finger while a note sounds, or the bow does."""
+        if self._sounding is not None:
+            return self._pitch
+        return self._place if self._by_hand else None
 
     @property
     def sounding(self) -> Key | None:
@@ -250,6 +253,7 @@ class Performer:
             self._own.take_back("/bow/speed", "/bow/side")
             self._right.lift(LIFTING_MS, frame)
             self._left.leave(frame)
+            self._place = float(OPEN_NOTES[0])
             self._own.sink.silence(frame=frame)
 
     # -- by hand -----------------------------------------------------------------------------
@@ -264,9 +268,11 @@ class Performer:
             self._held[self._sounding] = pitch
             self._follow_bend(frame)
             return pitch
+        self._place = pitch
         self._left.stop(self._choose(pitch), frame, slide_ms=BEND_RAMP_MS)
         if self._by_hand:
             self._own.sink.write("/bow/side", self._left.side, frame=frame)
+            self._even_out(frame)
         return pitch
 
     def draw(self, speed: float, force: float, *, frame: int | None = None) -> tuple[float, float]:
@@ -280,6 +286,8 @@ class Performer:
         self._by_hand = speed != 0.0 or force != 0.0
         side = (self._left.side or 1.0) if self._by_hand else 0.0
         self.write("/bow/side", side, frame=frame)
+        self._speed = abs(speed)
+        self._even_out(frame)
         return speed, force
 
     def lift(self, *, frame: int | None = None) -> None:
@@ -308,7 +316,7 @@ class Performer:
             slide_ms = 0.0
         elif self._is_on("/playing/portamento"):
             slide_ms = self._value["/playing/portamento_time"]
-        pitch = self._pitch
+        pitch = self._place = self._pitch
         self._left.stop(self._choose(pitch), frame, pitch=pitch, slide_ms=slide_ms)
         self._left.rock(frame)
         self._left.begin_rocking(frame)
@@ -371,21 +379,15 @@ class Performer:
 
     def _even_out(self, frame: int | None) -> None:
         """Let the note be as loud as the others, as far as asked."""
-        fingering = self._left.fingering
-        if self._sounding is None or fingering is None:
-            return
-        pitch, string = self._pitch, fingering.string
-        heard = float(OPEN_NOTES[string]) if fingering.position is None else pitch
-        balance = self._intonation.balance_db(string, heard, self._right.wished_speed)
-        balance *= self._value["/body/evenness"]
-        ramp_ms = RISING_MS if balance > self._balance else FALLING_MS
-        self._balance = balance
-        self._own.move("/output/balance", balance, frame, ramp_ms)
+        if (pitch := self.pitch) is not None:
+            speed = self._speed if self._by_hand else self._right.wished_speed
+            self._evenness.follow(self._left.fingering, pitch, speed, frame)
 
     def _follow_bend(self, frame: int | None) -> None:
         if self._sounding is None or self._left.fingering is None:
             return
         pitch, string = self._pitch, self._left.fingering.string
+        self._place = pitch
         speed = self._right.wished_speed
         fingering = stay(pitch, string, self._intonation, speed, self._string)
         if not self._right.bows_alike(pitch):

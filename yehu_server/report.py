@@ -14,6 +14,7 @@ from yehu_server.analysis.pitch import note_name
 from yehu_server.audio.devices import AudioDevice
 from yehu_server.control.addresses import shown
 from yehu_server.control.calls import PREFIX
+from yehu_server.lines import one_line
 from yehu_server.params.table import find
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.mapping import Mapping as ControllerMapping
@@ -102,20 +103,20 @@ def devices_report(
     from rich.console import Console
     from rich.table import Table
 
-    console = Console()
+    console = Console(markup=False, emoji=False)
     table = Table(title="audio outputs", title_justify="left")
     for column in ("name", "host API", "channels", "rate", "latency", ""):
         table.add_column(column, overflow="fold")
     for device in audio:
         numbers = (str(device.channels), f"{device.rate:g} Hz", f"{device.latency_ms:.1f} ms")
         mark = "default" if device.is_default else ""
-        table.add_row(device.name, device.host_api, *numbers, mark)
-    console.print(table if audio else f"no audio outputs{_because(audio_problem)}")
+        table.add_row(one_line(device.name), one_line(device.host_api), *numbers, mark)
+    console.print(table if audio else one_line(f"no audio outputs{_because(audio_problem)}"))
     table = Table(title=f"MIDI inputs ({midi_api})", title_justify="left")
     table.add_column("name", overflow="fold")
     for name in midi:
-        table.add_row(name)
-    console.print(table if midi else f"no MIDI inputs{_because(midi_problem)}")
+        table.add_row(one_line(name))
+    console.print(table if midi else one_line(f"no MIDI inputs{_because(midi_problem)}"))
 
 
 def mapping_report(mapping: ControllerMapping) -> None:
@@ -123,8 +124,8 @@ def mapping_report(mapping: ControllerMapping) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console(markup=False, highlight=False)
-    console.print(f"{mapping.name}: {mapping.about}" if mapping.about else mapping.name)
+    console = Console(markup=False, emoji=False, highlight=False)
+    console.print(one_line(f"{mapping.name}: {mapping.about}" if mapping.about else mapping.name))
     table = Table()
     for column in ("you move", "what moves", "from", "to", "curve"):
         table.add_column(column, overflow="fold")
@@ -137,7 +138,7 @@ def mapping_report(mapping: ControllerMapping) -> None:
         if bind.is_by_range:
             ends = ["- bend range", "+ bend range"][:: -1 if bind.invert else 1]
         cells = (bind.source, bind.target, *ends, bind.curve_name, "; ".join(bind.terms))
-        table.add_row(*cells[: len(table.columns)])
+        table.add_row(*map(one_line, cells[: len(table.columns)]))
     console.print(table)
     for address, value in mapping.start:
         param = find(address)
@@ -160,7 +161,8 @@ def bindings_table(rows: Sequence[Sequence[Any]]) -> Table:
         unit = "" if param.unit == "1" else f" {param.unit}"
         at = "-" if place < 0.0 else f"{100.0 * place:.0f} %"
         span = f"{first:.4g}, {last:.4g}{unit}"
-        table.add_row(source, param.address, span, at, f"{value:.4g}{unit}", terms)
+        cells = (source, param.address, span, at, f"{value:.4g}{unit}", terms)
+        table.add_row(*map(one_line, cells))
     return table
 
 
@@ -184,7 +186,7 @@ def status_line(status: Mapping[str, float | str]) -> str:
     ]
     if status["recording"]:
         parts.append(f"recording {status['recording']}")
-    return " | ".join(parts)
+    return one_line(" | ".join(parts))
 
 
 def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]:

@@ -203,6 +203,18 @@ def test_an_address_of_any_length_is_answered(house):
     assert client.next(0.5)
 
 
+@pytest.mark.parametrize(
+    "call",
+    ["/get", "/preset/load", "/preset/save", "/preset/delete", "/learn", "/unlearn", "/bow/force"],
+)
+def test_an_error_is_of_bounded_length_and_keeps_its_reason(stage, call):
+    (refused,) = stage.ask(call, "x" * 60_000)
+    address, reason = refused.arguments
+    assert address == "/yehu" + call
+    assert len(reason) < 1100
+    assert any(word in reason for word in ("unknown", "plain name", "expected a number"))
+
+
 def test_near_names_are_looked_for_only_where_they_are_told(stage, monkeypatch):
     looked = []
     monkeypatch.setattr(

@@ -24,6 +24,7 @@ from yehu_server.cli import (
 )
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import expand
+from yehu_server.cli.terminal import warn
 from yehu_server.errors import YehuError
 
 
@@ -38,14 +39,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = parser.parse_args(words)
         code: int = arguments.run(arguments)
     except YehuError as error:
-        line = str(error).replace("\n", "\\n")
-        print(f"yehu-server: {line}", file=sys.stderr)
+        warn(str(error))
         return 2
     except MemoryError:
-        print("yehu-server: not enough memory", file=sys.stderr)
+        warn("not enough memory")
         return 2
     except KeyboardInterrupt:
-        print("yehu-server: interrupted, nothing written", file=sys.stderr)
+        warn("interrupted, nothing written")
         return 130
     return code
 

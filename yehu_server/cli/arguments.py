@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
+from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
+from yehu_server.lines import one_line
 
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
@@ -36,8 +38,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong and leave with code 2."""
-        line = message.replace("\n", "\\n")
-        self.exit(2, f"{self.prog}: {Parser._source}{line} (see {self.prog} --help)\n")
+        line = one_line(f"{Parser._source}{message}")
+        self.exit(2, f"{self.prog}: {line} (see {self.prog} --help)\n")
 
 
 def add_command(
@@ -233,7 +235,7 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
         preset = presets.find(arguments.preset)
         start = tuple(preset.values.items())
         for remark in preset.remarks():
-            print(f"yehu-server: {remark}", file=sys.stderr)
+            warn(remark)
     return Style(
         mapping=mapping_of(arguments, is_live=is_live),
         presets=presets,
@@ -257,9 +259,9 @@ def compiling(arguments: argparse.Namespace) -> Iterator[None]:
     if arguments.quiet:
         pass
     elif not IS_CACHED:
-        print(f"yehu-server: compiling; {cache_folder()} is not writable", file=sys.stderr)
+        warn(f"compiling; {cache_folder()} is not writable")
     elif not any(cache_folder().rglob("*.nbi")):
-        print("yehu-server: compiling for this machine, once ...", file=sys.stderr)
+        warn("compiling for this machine, once ...")
     yield
 
 

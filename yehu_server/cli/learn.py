@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_command, add_server, server_of
+from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import ParameterError, YehuError
 
 if TYPE_CHECKING:
@@ -61,16 +62,16 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
     if arguments.forget:
         client.send("/unlearn", address)
         _, count = client.answer("/unlearned").arguments
-        print(f"{address}: {count} forgotten")
+        tell(f"{address}: {count} forgotten")
         return
     client.send("/learn", address, int(arguments.soft))
     (target,) = client.answer("/learning").arguments
-    print(f"move what shall move {target} ... (Ctrl-C ends)", flush=True)
+    tell(f"move what shall move {target} ... (Ctrl-C ends)", flush=True)
     try:
         for message in client.answers(LONGEST_S):
             if message.address == "/learned":
                 _, source, file = message.arguments
-                print(f"{source} moves {target}, kept in {file}")
+                tell(f"{source} moves {target}, kept in {file}")
                 return
     except KeyboardInterrupt:
         client.send("/learn")
@@ -88,7 +89,7 @@ def _ask(client: OscClient, arguments: argparse.Namespace) -> None:
         try:
             _one(client, address, arguments)
         except YehuError as error:
-            print(f"yehu-server: {error}", file=sys.stderr)
+            warn(str(error))
 
 
 def _complete() -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_action, add_command, add_server, server_of
+from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import MappingError, ParameterError
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def _list(arguments: argparse.Namespace) -> int:
         print(json.dumps(abouts))
     else:
         width = max(map(len, abouts))
-        print("\n".join(f"{name:{width}}  {about}" for name, about in abouts.items()))
+        tell("\n".join(f"{name:{width}}  {about}" for name, about in abouts.items()))
     return 0
 
 
@@ -124,7 +125,7 @@ def _show_live(arguments: argparse.Namespace) -> int:
         if arguments.json:
             print(json.dumps([dict(zip(BINDING, row, strict=True)) for row in rows]))
             return 0
-        console = Console(markup=False, highlight=False)
+        console = Console(markup=False, emoji=False, highlight=False)
         if not sys.stdout.isatty():
             console.print(bindings_table(rows))
             return 0
@@ -157,9 +158,9 @@ def _check(arguments: argparse.Namespace) -> int:
         except MappingError as error:
             code = 2
             for line in (str(error), *error.more):
-                print(f"yehu-server: {line}", file=sys.stderr)
+                warn(line)
         else:
-            print(f"{file}: right, {len(mapping.binds)} binds")
+            tell(f"{file}: right, {len(mapping.binds)} binds")
     return code
 
 
@@ -178,7 +179,9 @@ def _convert(arguments: argparse.Namespace) -> int:
     if arguments.output is not None and sheet.name == path.stem:
         sheet = replace(sheet, name=arguments.output.stem)
     converted = as_toml(sheet) if is_json else tidied(sheet, text)
-    if arguments.output is None:
+    if arguments.output is None and sys.stdout.isatty():
+        tell(converted.rstrip("\n"))
+    elif arguments.output is None:
         print(converted, end="")
     else:
         may_replace = anything if arguments.overwrite else nothing

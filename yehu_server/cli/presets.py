@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import add_action, add_command, add_presets_folder
+from yehu_server.cli.terminal import tell, warn
 
 EXAMPLES = """\
 examples:
@@ -58,7 +58,7 @@ def _list(arguments: argparse.Namespace) -> int:
         width = max((len(preset.name) for preset in found), default=0)
         for preset in found:
             mark = "your own: " if presets.is_own(preset.name) else ""
-            print(f"{preset.name:{width}}  {preset.program or '-':>3}  {mark}{preset.about}")
+            tell(f"{preset.name:{width}}  {preset.program or '-':>3}  {mark}{preset.about}")
     _warn(str(error) for error in errors)
     return 0
 
@@ -72,13 +72,13 @@ def _show(arguments: argparse.Namespace) -> int:
         fields = {"name": preset.name, "about": preset.about, "program": preset.program}
         print(json.dumps(fields | {"values": preset.values, "unknown": preset.unknown}))
         return 0
-    print(f"{preset.name}: {preset.about}" if preset.about else preset.name)
+    tell(f"{preset.name}: {preset.about}" if preset.about else preset.name)
     if preset.program is not None:
-        print(f"MIDI program {preset.program}")
+        tell(f"MIDI program {preset.program}")
     width = max(map(len, preset.values), default=0)
     for address, value in preset.values.items():
         unit = find(address).unit
-        print(f"{address:{width}}  {value:g}" + ("" if unit == "1" else f" {unit}"))
+        tell(f"{address:{width}}  {value:g}" + ("" if unit == "1" else f" {unit}"))
     _warn(preset.remarks())
     return 0
 
@@ -96,10 +96,10 @@ def _check(arguments: argparse.Namespace) -> int:
             _warn([str(error)])
         else:
             _warn(preset.remarks())
-            print(f"{file}: right, {len(preset.values)} values")
+            tell(f"{file}: right, {len(preset.values)} values")
     return code
 
 
 def _warn(lines: Iterable[str]) -> None:
     for line in lines:
-        print(f"yehu-server: {line}", file=sys.stderr)
+        warn(line)

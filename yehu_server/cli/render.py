@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +22,7 @@ from yehu_server.cli.arguments import (
     style_of,
     whole,
 )
+from yehu_server.cli.terminal import tell, warn
 
 if TYPE_CHECKING:
     from yehu_server.playing.style import Style
@@ -126,7 +126,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     score = concatenate([read_score(path) for path in arguments.midi])
     for warning in score.warnings:
-        print(f"yehu-server: {warning}", file=sys.stderr)
+        warn(warning)
     with compiling(arguments):
         warm_up()
     with progress_bar(arguments, "calibrating", "notes") as progress:
@@ -148,7 +148,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif not arguments.quiet:
         from yehu_server.report import render_report
 
-        print(render_report(arguments.output, summary))
+        tell(render_report(arguments.output, summary))
     return 0
 
 

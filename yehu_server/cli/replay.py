@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ from yehu_server.cli.arguments import (
     compiling,
     progress_bar,
 )
+from yehu_server.cli.terminal import tell, warn
 
 EXAMPLES = """\
 examples:
@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     format_name = arguments.format or format_of(arguments.output)
     capture = read_capture(arguments.capture)
     for warning in capture.warnings:
-        print(f"yehu-server: {arguments.capture}: {warning}", file=sys.stderr)
+        warn(f"{arguments.capture}: {warning}")
     with compiling(arguments):
         warm_up()
     with progress_bar(arguments, "replaying") as progress:
@@ -78,5 +78,5 @@ def run(arguments: argparse.Namespace) -> int:
     elif not arguments.quiet:
         from yehu_server.report import replay_report
 
-        print(replay_report(arguments.output, result))
+        tell(replay_report(arguments.output, result))
     return 0

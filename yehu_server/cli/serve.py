@@ -27,6 +27,7 @@ from yehu_server.cli.arguments import (
     within,
 )
 from yehu_server.limits import allow_files
+from yehu_server.lines import one_line
 
 EXAMPLES = """\
 examples:
@@ -345,13 +346,21 @@ class _Handler(logging.Handler):
             sys.stderr.flush()
 
 
+class _PlainFormatter(logging.Formatter):
+    def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802 - logging's name
+        return f"yehu-server: {one_line(record.message)}"
+
+    def formatException(self, ei: Any) -> str:  # noqa: N802 - logging's name
+        return "\n".join(map(one_line, super().formatException(ei).split("\n")))
+
+
 class _JsonFormatter(logging.Formatter):
     def format(self, record: logging.LogRecord) -> str:
         fields = {
             "time": self.formatTime(record, "%Y-%m-%dT%H:%M:%S%z"),
             "level": record.levelname.lower(),
             "logger": record.name,
-            "message": record.getMessage(),
+            "message": one_line(record.getMessage()),
         }
         if record.exc_info:
             fields["exception"] = self.formatException(record.exc_info)
@@ -360,8 +369,7 @@ class _JsonFormatter(logging.Formatter):
 
 def _set_up_log(arguments: argparse.Namespace) -> None:
     handler = _Handler()
-    plain = logging.Formatter("yehu-server: %(message)s")
-    handler.setFormatter(_JsonFormatter() if arguments.json_log else plain)
+    handler.setFormatter(_JsonFormatter() if arguments.json_log else _PlainFormatter())
     logging.basicConfig(handlers=[handler], level=logging.WARNING, force=True)
     logging.getLogger("yehu_server").setLevel(arguments.log_level.upper())
     arguments.quiet = arguments.json_log or arguments.log_level in ("warning", "error")

@@ -14,6 +14,7 @@ from yehu_server.cli.arguments import (
     compiling,
     progress_bar,
 )
+from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
 examples:
@@ -67,5 +68,5 @@ def run(arguments: argparse.Namespace) -> int:
     elif not arguments.quiet:
         from yehu_server.report import simulate_report
 
-        print(simulate_report(arguments.output, result))
+        tell(simulate_report(arguments.output, result))
     return 0

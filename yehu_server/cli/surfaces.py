@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import add_command
+from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
 examples:
@@ -69,12 +70,12 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.check:
         stale = [surface for surface in surfaces if not is_fresh(surface, folder, server)]
         for surface in stale:
-            print(f"{folder / surface.name}: stale; yehu-server surfaces -o {folder} writes it")
+            tell(f"{folder / surface.name}: stale; yehu-server surfaces -o {folder} writes it")
         return 1 if stale else 0
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: {error.strerror}") from error
     for surface in surfaces:
-        print(f"{write(surface, folder, server)}: for {surface.about}")
+        tell(f"{write(surface, folder, server)}: for {surface.about}")
     return 0

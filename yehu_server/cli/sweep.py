@@ -15,6 +15,7 @@ from yehu_server.cli.arguments import (
     positive,
     progress_bar,
 )
+from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
 examples:
@@ -82,5 +83,5 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps({"runs": len(rows), "elapsed_s": elapsed, "simulated_s": seconds}))
     elif not arguments.quiet:
         pace = f"{seconds:.1f} s in {elapsed:.1f} s"
-        print(f"{arguments.output / INDEX}: {len(rows)} runs, {pace}")
+        tell(f"{arguments.output / INDEX}: {len(rows)} runs, {pace}")
     return 0

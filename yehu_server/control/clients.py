@@ -10,9 +10,10 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from yehu_server.control.packets import pack, shortened
+from yehu_server.control.packets import pack
 from yehu_server.control.peers import Peer
 from yehu_server.control.status import PLACE, as_argument
+from yehu_server.lines import shortened
 from yehu_server.params.table import UNIT, read
 
 FLUSH_S = 1.0 / 60.0

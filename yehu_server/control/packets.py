@@ -16,7 +16,6 @@ DEEPEST = 32  # bundles in bundles, lists in lists
 BUNDLE = b"#bundle\0"
 IMMEDIATELY = (0, 1)  # as a time tag
 SECONDS_1900_TO_1970 = 2_208_988_800
-PATIENCE = 1000  # characters of an error
 
 
 class PacketError(ValueError):
@@ -161,8 +160,3 @@ def answer(address: str, payload: bytes) -> bytes:
     """A message with type tags and arguments as another brought them."""
     name = address.encode() + b"\0"
     return name + b"\0" * (-len(name) % 4) + payload
-
-
-def shortened(text: str) -> str:
-    """Text of bearable length, for answers to what has none."""
-    return text if len(text) <= PATIENCE else f"{text[:PATIENCE]}..."

@@ -12,6 +12,7 @@ from yehu_server.control.packets import pack
 from yehu_server.control.peers import Peer
 from yehu_server.control.request import Desk, Request
 from yehu_server.errors import PresetError
+from yehu_server.lines import shortened
 from yehu_server.params.preset import Preset, morph
 from yehu_server.playing.live import LivePlayer
 
@@ -91,7 +92,7 @@ class PresetCalls:
     def _list(self, call: Request) -> None:
         presets, errors = self._presets.all()
         for preset in presets:
-            row = (preset.name, preset.program or 0, preset.about)
+            row = (preset.name, preset.program or 0, shortened(preset.about))
             call.peer.send(pack(f"{self._prefix}/preset", *row))
         call.peer.send(pack(f"{self._prefix}/presets", len(presets)))
         for error in errors:

@@ -28,6 +28,7 @@ from yehu_server.control.peers import WebTraffic
 from yehu_server.control.sockets import OscPorts
 from yehu_server.control.web_sockets import WebSockets
 from yehu_server.errors import DeviceError
+from yehu_server.lines import one_line
 
 log = logging.getLogger(__name__)
 
@@ -191,12 +192,12 @@ class WebServer:
             return _json(self._host_info(request))
         for name in asked:
             if name not in query.ATTRIBUTES:
-                raise web.HTTPBadRequest(text=f"unknown attribute {name!r}\n")
+                raise web.HTTPBadRequest(text=one_line(f"unknown attribute {name!r}") + "\n")
         sources = self._sources
         root = query.tree(sources.values(), sources.status(), sources.more_calls())
         node = query.find(root, request.path)
         if node is None:
-            raise web.HTTPNotFound(text=f"nothing at {request.path}\n")
+            raise web.HTTPNotFound(text=one_line(f"nothing at {request.path}") + "\n")
         if not asked:
             return _json(node)
         found = {name: node[name] for name in asked if name in node}

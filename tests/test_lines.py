@@ -1,0 +1,128 @@
+"""What others wrote reaches terminals, logs and answers without steering them."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import logging
+import sys
+
+import pytest
+
+from yehu_server.audio.devices import AudioDevice
+from yehu_server.cli import main, serve
+from yehu_server.lines import FIRST, LAST, one_line, shortened
+from yehu_server.playing.binds import Bind
+from yehu_server.playing.mapping import Mapping
+from yehu_server.report import bindings_table, devices_report, mapping_report, status_line
+
+EVIL = "\x1b]0;owned\x07\x1b[31mred\x9b2J\r\n\u202eevil\udcff[bold]:smile:"
+SPELLED = r"\x1b]0;owned\x07\x1b[31mred\x9b2J\r\n\u202eevil\udcff[bold]:smile:"
+
+
+def test_what_would_steer_a_terminal_is_spelled_out():
+    assert one_line(EVIL) == SPELLED
+
+
+@pytest.mark.parametrize("text", ["", "take 1.wav", "椰胡　〈曲〉.mid", "naïve\xa0ö"])
+def test_ordinary_text_of_any_language_stays(text):
+    assert one_line(text) == text
+
+
+def test_a_long_line_keeps_both_its_ends():
+    cut = shortened("a" * 100_000 + "reason")
+    assert cut.startswith("aaa")
+    assert cut.endswith("reason")
+    assert len(cut) == FIRST + LAST + len(" ... ")
+    assert shortened("a" * (FIRST + LAST)) == "a" * (FIRST + LAST)
+
+
+def is_plain(text: str) -> bool:
+    return all(line.isprintable() for line in text.split("\n"))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("render", EVIL, "-o", "x.wav"),
+        ("render", "x" * 5000, "-o", "x.wav"),
+        ("presets", "show", EVIL),
+        ("mappings", "check", EVIL),
+        ("serve", "--osc-allow", EVIL),
+        ("serve", "--set", EVIL),
+        ("serve", "--rate", EVIL),
+        (EVIL,),
+        ("render", "a.mid", "-o", "b.wav", "--config", "{folder}/evil.toml"),
+    ],
+)
+def test_errors_are_bounded_lines_without_control_codes(tmp_path, capsys, words):
+    (tmp_path / "evil.toml").write_text(f"set = [{json.dumps(EVIL[:-20] * 200)}]\n")
+    try:
+        code = main([word.format(folder=tmp_path) for word in words])
+    except SystemExit as end:
+        code = end.code
+    out, err = capsys.readouterr()
+    assert code == 2
+    assert is_plain(out)
+    assert is_plain(err)
+    assert err.count("\n") == 1
+    assert len(err) < 6 * (FIRST + LAST)  # a control code takes some characters to spell
+
+
+def test_text_of_a_preset_is_shown_and_steers_nothing(tmp_path, capsys):
+    about = "soft\x9b2J\u202e" + "x" * 5000
+    (tmp_path / "mine.toml").write_text(f'version = 1\nabout = "{about}"\n', encoding="utf-8")
+    for words in (("list",), ("show", "mine")):
+        assert main(["presets", *words, "--presets", str(tmp_path)]) == 0
+        out, _ = capsys.readouterr()
+        assert r"soft\x9b2J\u202ex" in out
+        assert is_plain(out)
+        assert max(map(len, out.split("\n"))) < 1100
+
+
+def test_names_of_devices_are_no_markup_and_steer_nothing(capsys):
+    device = AudioDevice(0, EVIL, "[red]api", 2, 48000.0, 1.0, is_default=False)
+    devices_report([device], "", "[red]", [EVIL], "")
+    devices_report([], EVIL, "alsa", [], EVIL)
+    out, _ = capsys.readouterr()
+    assert is_plain(out)
+    assert "[red]api" in out
+    assert ":smile:" in out
+
+
+def test_text_of_a_mapping_is_no_markup_and_steers_nothing(capsys):
+    mapping_report(Mapping("[red]" + EVIL, (Bind("/a[bold]", "/playing/speed"),), about=EVIL))
+    out, _ = capsys.readouterr()
+    assert is_plain(out)
+    assert "[red]" in out
+    assert "/a[bold]" in out
+    table = bindings_table([[EVIL, "/yehu/playing/speed", 0.0, 1.0, "linear", EVIL, 0.5, 0.2]])
+    assert is_plain("".join(cell for column in table.columns for cell in column.cells))
+
+
+def test_the_line_of_status_has_names_without_control_codes():
+    status = dict.fromkeys(
+        ("note", "bow_speed", "peak_db", "load", "missed_deadlines", "underruns"), 0.0
+    )
+    line = status_line(status | {"device": EVIL, "midi_ports": EVIL, "recording": EVIL})
+    assert is_plain(line)
+
+
+@pytest.mark.parametrize("is_json", [False, True])
+def test_log_lines_are_bounded_and_steer_nothing(monkeypatch, is_json):
+    before = logging.getLogger().handlers[:]
+    stderr = io.StringIO()
+    try:
+        serve._set_up_log(argparse.Namespace(json_log=is_json, log_level="info"))
+        monkeypatch.setattr(sys, "stderr", stderr)
+        logging.getLogger("yehu_server").info("MIDI: %s", EVIL + "x" * 100_000)
+        logging.getLogger("yehu_server").error("a defect", exc_info=ValueError(EVIL))
+    finally:
+        logging.basicConfig(handlers=before, force=True)
+        logging.getLogger("yehu_server").setLevel(logging.NOTSET)
+    said = stderr.getvalue()
+    assert is_plain(said)
+    assert r"\x1b[31mred" in said.replace("\\\\", "\\")
+    assert "ValueError" in said
+    assert len(said) < 5000

@@ -21,6 +21,7 @@ import pytest
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control import clients, osc, schedule
+from yehu_server.control.status import STATUS
 from yehu_server.control.web import WebOptions
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
@@ -237,7 +238,8 @@ class Desk:
         self.said: list[str] = []
 
     def status(self) -> dict[str, float | str]:
-        return {"load": 0.5, "recording": "".join(self.names[-1:])}
+        told = dict.fromkeys((value.name for value in STATUS), 0.0)
+        return told | {"load": 0.5, "recording": "".join(self.names[-1:])}
 
     def soon(self, action: Callable[[], None]) -> None:
         action()

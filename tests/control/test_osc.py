@@ -17,6 +17,7 @@ import pytest
 from yehu_server.control import clients, osc
 from yehu_server.control.addresses import Allowed
 from yehu_server.control.calls import CALLS
+from yehu_server.control.status import STATUS
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 
@@ -201,6 +202,68 @@ def test_an_address_of_any_length_is_answered(house):
     client = house.client()
     client.tell("/" + "x" * 40_000)
     assert client.next(0.5)
+
+
+def test_the_status_is_asked_for_like_any_value(stage):
+    assert values(stage.ask("/get", "/yehu/status/load")) == {"/yehu/status/load": 0.5}
+    assert values(stage.ask("/get", "/status/recordin[g]")) == {"/yehu/status/recording": ""}
+    heard = values(stage.ask("/get", "/status/*"))
+    assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
+
+
+@pytest.mark.parametrize(
+    ("asked", "reason"),
+    [
+        ("/status/zither", "unknown status value '/status/zither'"),
+        ("/status/nota", "unknown status value '/status/nota'; did you mean /status/note?"),
+    ],
+)
+def test_an_unknown_status_value_is_told_without_nonsense(stage, asked, reason):
+    assert stage.ask("/get", asked)[0].arguments[1] == reason
+    assert stage.ask(asked, 1.0)[0].arguments[1] == reason
+
+
+def test_the_status_cannot_be_set(stage):
+    (refused,) = stage.ask("/status/note", 60.0)
+    assert refused.arguments == [
+        "/yehu/status/note",
+        "the status cannot be set; ask for it by /yehu/get",
+    ]
+
+
+def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(stage):
+    heard = values(stage.ask("/subscribe/status", 2.0))
+    assert heard.pop("/yehu/subscribed") == 2.0
+    assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
+    stage.pass_time(0.5)
+    assert stage.ear.heard() == []
+    stage.desk.names.append("take")
+    stage.tell("/playing/vibrato", 5.0)  # of which it did not ask
+    stage.pass_time(0.3)
+    heard = values(stage.ear.heard())
+    assert heard.pop("/yehu/playing/vibrato") == 5.0  # but is told what it sets
+    assert heard == {"/yehu/status/recording": "take"}
+    assert stage.handler.clients.subscribers == 1
+    stage.pass_time(2.0)
+    stage.desk.names.append("another")
+    stage.pass_time(0.5)
+    assert stage.ear.heard() == []
+    assert stage.handler.clients.subscribers == 0
+
+
+def test_who_subscribes_to_both_is_told_of_both_until_it_unsubscribes(stage):
+    stage.ask("/subscribe", 60.0)
+    stage.ask("/subscribe/status", 60.0)
+    stage.player.write("/playing/attack", 50.0, frame=0)
+    stage.desk.names.append("take")
+    stage.pass_time(0.3)
+    heard = values(stage.ear.heard())
+    assert heard == {"/yehu/playing/attack": 50.0, "/yehu/status/recording": "take"}
+    stage.ask("/unsubscribe")
+    stage.player.write("/playing/attack", 60.0, frame=0)
+    stage.desk.names.append("another")
+    stage.pass_time(0.5)
+    assert stage.ear.heard() == []
 
 
 @pytest.mark.parametrize(

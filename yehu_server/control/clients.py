@@ -32,11 +32,16 @@ class Client:
     peer: Peer
     until: float = 0.0  # when its subscription ends (monotonic s)
     form: str = ""  # of the addresses it is told: plain, or UNIT
+    status_until: float = 0.0  # when its subscription to the status ends (monotonic s)
     listens: set[str] = field(default_factory=set)  # addresses it is told of without an end
     hushed_until: float = 0.0  # when it may be answered again (monotonic s)
     to_tell: dict[str, None] = field(default_factory=dict)  # addresses, in order
     patience: float = ERRORS_AT_ONCE  # errors it may still be sent
     complained: float = field(default_factory=time.monotonic)
+
+    def subscribes(self, now: float) -> bool:
+        """Whether it is told of every change of something."""
+        return max(self.until, self.status_until) > now
 
 
 class Clients:
@@ -75,7 +80,7 @@ class Clients:
     def subscribers(self) -> int:
         """How many hear of changes."""
         now = time.monotonic()
-        return sum(client.until > now for client in list(self._clients.values()))  # any thread
+        return sum(client.subscribes(now) for client in list(self._clients.values()))  # any thread
 
     def _client(self, peer: Peer) -> Client:
         client = self._clients.get(peer)
@@ -91,7 +96,13 @@ class Clients:
         self._clients = {
             peer: client
             for peer, client in self._clients.items()
-            if max(client.until, client.hushed_until, client.complained + forgiven_s) > now
+            if max(
+                client.until,
+                client.status_until,
+                client.hushed_until,
+                client.complained + forgiven_s,
+            )
+            > now
             or client.to_tell
             or client.listens
         }
@@ -115,20 +126,25 @@ class Clients:
     def subscribe(self, peer: Peer, seconds: float, form: str = "") -> bool:
         """Tell a peer of every change for some time; return whether there was room.
 
-        `form` is nothing for plain values, or UNIT for 0 to 1.
+        `form` is nothing for plain values, UNIT for 0 to 1, or PLACE for the status.
         """
-        if self._client(peer).until <= time.monotonic() and self.subscribers >= MOST_SUBSCRIBERS:
+        client, now = self._client(peer), time.monotonic()
+        if not client.subscribes(now) and self.subscribers >= MOST_SUBSCRIBERS:
             return False
-        client = self._client(peer)
-        client.until = time.monotonic() + seconds
+        self._is_waiting = True
+        if form == PLACE:
+            client.status_until = now + seconds
+            client.to_tell.update(dict.fromkeys(PLACE + name for name in self._status()))
+            return True
+        client.until = now + seconds
         client.form = form
         client.to_tell.update(dict.fromkeys(address + form for address in self._values()))
-        self._is_waiting = True
         return True
 
     def unsubscribe(self, peer: Peer) -> None:
         """Tell a peer no more."""
-        self._client(peer).until = 0.0
+        client = self._client(peer)
+        client.until = client.status_until = 0.0
 
     def listen(self, peer: Peer, address: str) -> None:
         """Tell a peer of an address (without the prefix): now, and when it changes."""
@@ -169,7 +185,7 @@ class Clients:
     @property
     def _is_watched(self) -> bool:
         now = time.monotonic()
-        return any(client.until > now or client.listens for client in self._clients.values())
+        return any(client.subscribes(now) or client.listens for client in self._clients.values())
 
     def wait_s(self) -> float | None:
         """Seconds until there is something to tell."""
@@ -191,11 +207,14 @@ class Clients:
         changed = {address: None for address, v in values.items() if self._told.get(address) != v}
         self._told = values
         heard = {address + form for address in changed for form in ("", UNIT)}
-        heard |= self._changed_status(now)
+        changed_status = self._changed_status(now)
+        heard |= changed_status
         packets: dict[str, bytes] = {}
         for client in list(self._clients.values()):  # sending may end one
             if client.until > now:
                 client.to_tell.update({address + client.form: None for address in changed})
+            if client.status_until > now:
+                client.to_tell.update(dict.fromkeys(changed_status))
             client.to_tell.update(dict.fromkeys(client.listens & heard))
             for address in client.to_tell:
                 if address not in packets:
@@ -213,11 +232,12 @@ class Clients:
         asked = {
             address
             for client in self._clients.values()
-            for address in client.listens
+            for address in (*client.listens, *client.to_tell)
             if address.startswith(PLACE)
         }
         is_new = not asked <= self._told_status.keys()
-        if not asked or (now - self._looked < STATUS_S and not is_new):
+        is_asked = asked or any(client.status_until > now for client in self._clients.values())
+        if not is_asked or (now - self._looked < STATUS_S and not is_new):
             return set()
         self._looked = now
         told = self._told_status

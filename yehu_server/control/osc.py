@@ -5,6 +5,7 @@ The protocol is described in docs/osc.md.
 
 from __future__ import annotations
 
+import difflib
 import logging
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -19,8 +20,8 @@ from yehu_server.control.peers import Peer
 from yehu_server.control.preset_calls import PresetCalls
 from yehu_server.control.request import Desk, RefusedError, Request
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
-from yehu_server.control.status import PLACE, as_argument
-from yehu_server.errors import YehuError
+from yehu_server.control.status import PLACE, STATUS, STATUS_ADDRESSES, as_argument
+from yehu_server.errors import ParameterError, YehuError
 from yehu_server.params.spec import Param
 from yehu_server.params.table import BY_ADDRESS, TABLE, UNIT, find, read
 from yehu_server.playing.live import Arrivals, LivePlayer
@@ -75,6 +76,7 @@ class OscHandler:
             "/status": self._status,
             "/subscribe": self._subscribe,
             "/subscribe/unit": lambda call: self._subscribe(call, UNIT),
+            "/subscribe/status": lambda call: self._subscribe(call, PLACE),
             "/unsubscribe": self._unsubscribe,
             "/record/start": self._record_start,
             "/record/stop": self._record_stop,
@@ -211,12 +213,20 @@ class OscHandler:
         wanted = call.word().removeprefix(PREFIX)
         if is_pattern(wanted):
             known = (*BY_ADDRESS, *(address + UNIT for address in BY_ADDRESS))
-            addresses = fitting(wanted, known)
+            addresses = fitting(wanted, (*known, *STATUS_ADDRESSES))
+        elif wanted in STATUS_ADDRESSES:
+            addresses = [wanted]
         else:
-            addresses = [find(wanted.removesuffix(UNIT)).address + _form(wanted)]
+            addresses = [_parameter(wanted.removesuffix(UNIT)).address + _form(wanted)]
         values = self._player.values()
+        asks_status = any(address in STATUS_ADDRESSES for address in addresses)
+        status = self._desk.status() if asks_status else {}
         for address in addresses:
-            call.peer.send(pack(PREFIX + address, read(values, address)))
+            if address in STATUS_ADDRESSES:
+                value = as_argument(status[address.removeprefix(PLACE)])
+            else:
+                value = read(values, address)
+            call.peer.send(pack(PREFIX + address, value))
 
     def _params(self, call: Request) -> None:
         values = self._player.values()
@@ -296,12 +306,24 @@ def _form(address: str) -> str:
     return UNIT if address.endswith(UNIT) else ""
 
 
+def _parameter(address: str) -> Param:
+    """The parameter of an address. Errors: ParameterError, with a near name if there is one."""
+    if address in STATUS_ADDRESSES:
+        raise ParameterError(f"the status cannot be set; ask for it by {PREFIX}/get")
+    if address.startswith(PLACE):
+        names = [status.name for status in STATUS]
+        near = difflib.get_close_matches(address.removeprefix(PLACE), names, n=1)
+        hint = f"; did you mean {PLACE}{near[0]}?" if near else ""
+        raise ParameterError(f"unknown status value {address!r}{hint}")
+    return find(address)
+
+
 def _near(address: str) -> str:
     """Why an address is unknown, and one that is near."""
     if not address.startswith(PREFIX + "/"):
         return f"unknown address (all begin with {PREFIX}/)"
     try:
-        find(address.removeprefix(PREFIX)[:LONGEST_PATTERN].removesuffix(UNIT))
+        _parameter(address.removeprefix(PREFIX)[:LONGEST_PATTERN].removesuffix(UNIT))
     except YehuError as error:
         return str(error)
     return "unknown address"

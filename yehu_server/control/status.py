@@ -44,7 +44,12 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue("frame", COUNTER, "Frames played since the start."),
     StatusValue("peak_db", GAUGE, "Peak of the last sixtieth of a second, dBFS.", "dB"),
     StatusValue("rms_db", GAUGE, "Level of the last sixtieth of a second, dBFS.", "dB"),
-    StatusValue("note", GAUGE, "The pitch that sounds; -1 where none does.", "MIDI note"),
+    StatusValue(
+        "note",
+        GAUGE,
+        "The pitch that sounds, of a note or drawn by hand; -1 where none does.",
+        "MIDI note",
+    ),
     StatusValue("bow_speed", GAUGE, "Speed of the bow; the sign is its direction.", "m/s"),
     StatusValue("bow_side", GAUGE, "Which string the bow lies on; 0 lifted."),
     StatusValue("load", GAUGE, "CPU time of the callback over its deadline, mean of a second."),
@@ -86,6 +91,9 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue("web_sockets", GAUGE, "WebSockets that are open."),
     StatusValue("recording", TEXT, "The file being written."),
 )
+
+
+STATUS_ADDRESSES = frozenset(PLACE + value.name for value in STATUS)
 
 
 def as_argument(value: float | str) -> float | str:

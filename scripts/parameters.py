@@ -22,6 +22,11 @@ def page() -> str:
         "",
         "`--set ADDRESS=VALUE` of `render` and `serve` holds any of them; OSC sets them at `/yehu`",
         "and their address; mappings move those under `/playing`.",
+        "",
+        "*Press* is always a finger on the string, in newtons. *Pressure* is the bow on the",
+        "string, for its speed; its *force* is the same in newtons. What MIDI calls pressure is",
+        "*aftertouch* here, but for the names of its sources in mappings. `/playing/release` is a",
+        "time; the call `/yehu/release` gives back what you took over.",
     ]
     for place, title in (
         (Place.PLAYER, "What the player goes by"),

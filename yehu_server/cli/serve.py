@@ -202,6 +202,13 @@ def _add_running(group: Any) -> None:
         help="a TOML file of any of these options, such as rate = 48000; the command line wins",
     )
     group.add_argument("--log-level", choices=LEVELS, default="info", help="default: info")
+    group.add_argument(
+        "--verbose",
+        dest="log_level",
+        action="store_const",
+        const="debug",
+        help="also tell what is no news to a player; the same as --log-level debug",
+    )
     group.add_argument("--json-log", action="store_true", help="log lines of JSON")
 
 
@@ -253,7 +260,8 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     from yehu_server.report import connect_lines, query_line
     from yehu_server.server import Server
 
-    say = logging.getLogger("yehu_server").info
+    log = logging.getLogger("yehu_server")
+    say = log.info
     options = _options(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress:
         server = Server(options, say, progress)
@@ -271,7 +279,8 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         if server.web is not None:
             say(query_line(server.web.host, server.web.port, lan_address()))
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
-        say(f"the system grants OSC a buffer of {buffer_kb} kB; Ctrl-C ends")
+        log.debug("the system keeps up to %d kB of OSC that waits to be read", buffer_kb)
+        log.info("Ctrl-C ends")
         with _status_line(server):
             _wait(ending.asked, arguments.duration)
     finally:

@@ -65,7 +65,7 @@ CALLS: tuple[Call, ...] = (
     ),
     Call(
         "/press",
-        "How hard the finger presses a stopped note.",
+        "How hard the finger presses the string.",
         (_of("/playing/press", "newtons"),),
     ),
     Call(
@@ -73,7 +73,10 @@ CALLS: tuple[Call, ...] = (
         "Draws the bow by hand; no speed and no force lifts it.",
         (_of("/bow/speed", "speed"), _of("/bow/force", "force")),
     ),
-    Call("/release", "Gives back to the player what direct writes took over."),
+    Call(
+        "/release",
+        "Gives the bow and fingers that you moved directly back to the player (no time).",
+    ),
     Call("/panic", "Ends all notes and all sound, and forgets what waits for its time."),
     Call("/reset", "The same, and puts every parameter back."),
     Call("/get", "Tells the value of a parameter, or of the status.", (Argument("address", "s"),)),

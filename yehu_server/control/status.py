@@ -81,7 +81,7 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue("scheduled", GAUGE, "Messages that wait for their time."),
     StatusValue("late_bundles", COUNTER, "Bundles that came after their time."),
     StatusValue("midi_ports", TEXT, "The MIDI inputs that are connected."),
-    StatusValue("midi_connected", GAUGE, "How many they are."),
+    StatusValue("midi_connected", GAUGE, "Number of connected MIDI inputs."),
     StatusValue("midi_messages", COUNTER, "MIDI messages that came in."),
     StatusValue("midi_malformed", COUNTER, "Damaged MIDI messages."),
     StatusValue("http_requests", COUNTER, "HTTP requests that came in, and WebSockets."),

@@ -19,7 +19,7 @@ def _finger(number: int) -> tuple[Param, Param]:
         ),
         Param(
             f"/finger/{number}/press", "-f_ext", "N", 0.0, 10.0, 0.0,
-            f"How hard finger {number} presses; 0 lifts it.",
+            f"How hard finger {number} presses the strings; 0 lifts it.",
             place=Place.ENGINE, smooth_ms=10.0, owned=True,
         ),
     )  # fmt: skip
@@ -53,17 +53,18 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/bow/force", "|F_N|", "N", 0.0, 5.0, 0.5,
-        "Normal force of the hair on the bowed string, as far as assist leaves it raw.",
+        "How hard the bow leans on the string, in newtons; heard as far as /bow/assist is below 1.",
         place=Place.ENGINE, owned=True,
     ),
     Param(
         "/bow/pressure", "F_N / F_max", "1", 0.0, 12.0, 0.4,
-        "Bow force as a share of Schelleng's upper limit; fast strokes get up to 0.6 more.",
+        "How hard the bow leans for its speed, as a share of Schelleng's upper limit; fast strokes "
+        "get up to 0.6 more.",
         place=Place.ENGINE, smooth_ms=10.0, owned=True,
     ),
     Param(
         "/bow/assist", "", "1", 0.0, 1.0, 1.0,
-        "1: bow force follows speed (pressure), so the string speaks; 0: raw newtons (force).",
+        "1: the bow leans by /bow/pressure, so that the string speaks; 0: by /bow/force, newtons.",
         place=Place.ENGINE, owned=True,
     ),
     Param(
@@ -89,7 +90,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/vibrato/press", "", "1", 0.0, 1.0, 0.0,
-        "How much harder and softer they press in turn, as a share of the press.",
+        "How much harder and softer they press in turn, as a share of how hard they press.",
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
@@ -158,7 +159,8 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/pressure", "", "1", 0.05, 2.0, 0.4,
-        "Bow force for its speed: flautando up to 0.2, ordinary to 0.6, scratching from 1.",
+        "How hard the bow leans for its speed: flautando up to 0.2, ordinary to 0.6, scratching "
+        "from 1.",
     ),
     Param(
         "/playing/bow_position", "", "1", 0.05, 0.3, 0.13,
@@ -170,7 +172,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
-        "From 0.5 up notes are plucked, harder with more pressure.", is_choice=True,
+        "From 0.5 up notes are plucked, harder with more /playing/pressure.", is_choice=True,
     ),
     Param(
         "/playing/string", "", "1", 0.0, 2.0, 0.0,
@@ -183,7 +185,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/press", "", "N", 0.3, 6.0, 1.5,
-        "How hard the finger presses a stopped note.",
+        "How hard the finger presses the string (the bow has /playing/pressure).",
     ),
     Param(
         "/playing/vibrato", "", "cents", 0.0, 100.0, 0.0,
@@ -191,7 +193,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/vibrato_press", "", "1", 0.0, 1.0, 0.0,
-        "How much harder and softer it presses in turn, as a share of the press.",
+        "How much harder and softer the finger presses in turn, as a share of how hard it presses.",
     ),
     Param(
         "/playing/vibrato_rate", "", "Hz", 2.0, 10.0, 5.5,
@@ -231,7 +233,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/release", "", "ms", 5.0, 2000.0, 60.0,
-        "Time in which the bow leaves the string at the end of a note.",
+        "Time in which the bow leaves the string at the end of a note (no kin of /yehu/release).",
     ),
     Param(
         "/playing/portamento", "", "1", 0.0, 1.0, 0.0,

@@ -66,10 +66,11 @@ def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
     path.write_text(
         '[[bind]]\nsource = "nrpn 2/44"\ntarget = "/playing/attack"\nspan = [200, 10]\n'
         "curve = [[0, 0], [1, 0.5]]\ninvert = true\nsmoothing = 50\nchannel = [3, 2]\nsoft = true\n"
+        "global = true\n"
         '[[bind]]\nsource = "/f"\ntarget = "/playing/volume"\ninput = [0, 127]\n'
     )
     table = mappings("show", path)[1]
-    for part in ("nrpn 300", "10 ms", "table", "channel 2", "50 ms", "soft", "/f", "0 to 127"):
+    for part in ("nrpn 300", "10 ms", "table", "channel 2", "50 ms", "soft", "global", "/f"):
         assert part in table.replace("\n", " ")
     first, second = json.loads(mappings("show", path, "--json")[1])["bind"]
     assert first == {
@@ -84,6 +85,7 @@ def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
         "channel": [2, 3],
         "soft": True,
         "alone": False,
+        "global": True,
         "input": None,
     }
     assert second["input"] == [0.0, 127.0]

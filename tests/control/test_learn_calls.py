@@ -45,6 +45,25 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(stage, address):
     assert not stage.player.mapping.of("cc 21")
 
 
+def test_a_knob_of_another_box_moves_the_note_that_sounds(stage):
+    for port in (0, 1):  # keyboards, both of them
+        stage.player.receive(mido.Message("note_on", note=70), frame=0, port=port)
+    stage.ask("/learn", "/playing/vibrato")
+    turn(stage, 20, 10, 20, 64)
+    assert told(stage.ear.heard(), "/learned")[0][1] == "cc 20"
+    turn(stage, 20, 127)
+    assert stage.player.value("/playing/vibrato") == 100.0
+
+
+def test_a_knob_on_the_drums_channel_is_learned_and_heard(stage):
+    stage.player.receive(mido.Message("note_on", note=70), frame=0, port=1)
+    stage.ask("/learn", "/playing/vibrato")
+    turn(stage, 20, 10, 20, 64, channel=9)
+    assert told(stage.ear.heard(), "/learned")[0][1] == "cc 20"
+    turn(stage, 20, 127, channel=9)
+    assert stage.player.value("/playing/vibrato") == 100.0
+
+
 def test_an_address_of_the_users_own_is_learned_as_a_knob_is(stage, wire):
     stage.ask("/learn", "/output/gain")
     for value in (0.0, 0.5):

@@ -53,6 +53,17 @@ def test_every_parameter_that_the_player_does_not_move_can_be_learned(param):
     assert load("mine/keyboard") == mapping
 
 
+@pytest.mark.parametrize(
+    ("source", "is_global"),
+    [("cc 20", True), ("bend", True), ("pressure", True), ("poly-pressure", False), ("/x", False)],
+)
+def test_what_is_learned_moves_the_notes_of_every_box(source, is_global):
+    mapping, _ = learn(load("keyboard"), "/playing/vibrato", Found(source), soft=False)
+    (bind,) = mapping.of(source)
+    assert bind.is_global is is_global
+    assert load("keyboard") == mapping
+
+
 def test_what_the_player_moves_cannot_be_learned(settings):
     with pytest.raises(ParameterError, match="/bow/speed is moved by the player"):
         learn(load("keyboard"), "/bow/speed", KNOB, soft=False)

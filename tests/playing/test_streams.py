@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Iterator
 
 import mido
 import pytest
@@ -115,6 +116,9 @@ def few_keys(seed: int) -> list[mido.Message]:
     return messages
 
 
+BOX = 2  # a port without keys
+
+
 class Keyboard:
     """What should sound, reckoned apart: the key last struck of those held by hand or pedal."""
 
@@ -123,20 +127,25 @@ class Keyboard:
         self.down: set[Key] = set()
         self.pedals: set[int] = set()
 
-    def hear(self, message: mido.Message) -> None:
+    def hear(self, message: mido.Message, port: int = 0) -> None:
         if message.channel == 9:
             return
+        channel = 16 * port + message.channel
         if message.type == "control_change":
-            {0: self.pedals.discard, 127: self.pedals.add}[message.value](message.channel)
+            {0: self.pedals.discard, 127: self.pedals.add}[message.value](channel)
         else:
-            key = Key(message.channel, message.note)
+            key = Key(channel, message.note)
             self.down.discard(key)
             if message.type == "note_on" and message.velocity > 0:
                 self.down.add(key)
                 if key in self.order:
                     self.order.remove(key)
                 self.order.append(key)
-        self.order = [k for k in self.order if k in self.down or k.channel in self.pedals]
+        self.order = [key for key in self.order if self.is_held(key)]
+
+    def is_held(self, key: Key) -> bool:
+        box = any(channel // 16 == BOX for channel in self.pedals)
+        return key in self.down or key.channel in self.pedals or box
 
     @property
     def sounding(self) -> Key | None:
@@ -152,3 +161,43 @@ def test_the_last_key_struck_of_those_hand_or_pedal_hold_is_the_one_that_sounds(
             midi.receive(message)
             expected.hear(message)
             assert player.sounding == expected.sounding, (seed, number, message)
+
+
+def boxes(seed: int) -> Iterator[tuple[int, mido.Message | None]]:
+    """Two keyboards, a box with pedals, and ports that go (None) and come back."""
+    chance = random.Random(seed)
+    for port in (0, 1):
+        for velocity in (64, 0):
+            yield port, mido.Message("note_on", note=70, velocity=velocity)
+    for message in few_keys(seed):
+        port = chance.randrange(3)
+        if chance.random() < 0.05:
+            yield port, None
+        elif port != BOX or message.type == "control_change":
+            yield port, message
+
+
+class Boxes(Keyboard):
+    """The same, of several ports; the box's pedals hold the notes of both keyboards."""
+
+    def take(self, port: int, message: mido.Message | None) -> None:
+        if message is not None:
+            self.hear(message, port)
+            return
+        self.down = {key for key in self.down if key.channel // 16 != port}
+        self.pedals = {channel for channel in self.pedals if channel // 16 != port}
+        self.order = [k for k in self.order if k.channel // 16 != port and self.is_held(k)]
+
+
+def test_the_pedals_of_a_box_hold_the_notes_of_all_keyboards_until_they_are_up(listener_type):
+    for seed in range(60):
+        player = Performer(listener_type())
+        midi = MidiPlayer(player, load("keyboard"))
+        expected = Boxes()
+        for number, (port, message) in enumerate(boxes(seed)):
+            if message is None:
+                midi.let_go_of(port)
+            else:
+                midi.receive(message, port=port)
+            expected.take(port, message)
+            assert player.sounding == expected.sounding, (seed, number, port, message)

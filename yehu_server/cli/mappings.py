@@ -215,5 +215,6 @@ def _bind_fields(bind: Bind) -> dict[str, Any]:
         "channel": bind.channels or None,
         "soft": bind.is_soft,
         "alone": bind.is_alone,
+        "global": bind.is_global,
         "input": bind.reach if is_address(bind.source) else None,
     }

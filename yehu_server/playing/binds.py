@@ -74,6 +74,8 @@ class Bind:
         The values that an OSC address sends at the two ends of its way.
     is_alone : bool
         Whether nothing of a base moves the target.
+    is_global : bool
+        Whether it moves every note, wherever the source is moved; see ``scope``.
     """
 
     source: str
@@ -86,6 +88,7 @@ class Bind:
     is_soft: bool = False
     reach: tuple[float, float] = (0.0, 1.0)
     is_alone: bool = False
+    is_global: bool = False
 
     @property
     def is_by_range(self) -> bool:
@@ -122,11 +125,15 @@ class Bind:
             terms.append("soft")
         if self.is_alone:
             terms.append("alone")
+        if self.is_global:
+            terms.append("global")
         return tuple(terms)
 
     def hears(self, channel: int) -> bool:
         """Whether it is for a channel, counted from 0 over all ports; below 0 is no channel."""
-        return not self.channels or (channel >= 0 and channel % 16 + 1 in self.channels)
+        return not self.channels or (
+            channel >= 0 and channel % sources.CHANNELS + 1 in self.channels
+        )
 
     def place(self, argument: float) -> float:
         """Where an OSC argument is on the way, 0 to 1."""

@@ -1,8 +1,8 @@
 """What was moved, on which channel, and what that asks of the player's parameters.
 
 Of several sources of one target the one moved last counts, a direct write among them. What
-is moved on a channel belongs to its notes: it is heard while one of them sounds, and after
-it until another channel's note begins.
+is moved on a channel belongs to its notes, unless it is for all (``scope``): it is heard while
+one of them sounds, and after it until another channel's note begins.
 """
 
 from __future__ import annotations
@@ -10,32 +10,33 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
-from yehu_server.playing.sources import BEND, FINEST, NOTE, POLY_PRESSURE, STEPS, VELOCITY
+from yehu_server.playing.scope import Channels, Scope
+from yehu_server.playing.sources import (
+    BEND,
+    FINEST,
+    NOTE,
+    OF_ONE_NOTE,
+    POLY_PRESSURE,
+    PRESSURE,
+    STEPS,
+    VELOCITY,
+)
 
 # Put back by "reset all controllers"; volume stays, as the recommended practice RP-015 asks.
 KEPT_ON_RESET = {"/playing/volume"}
+# These go back by themselves when the hand is gone; faders and pedals stay where they are.
+SPRUNG = (BEND, PRESSURE)
 FINE_BITS = 7
 
 # When something was moved, as a running number, and to where: 0 to 1.
 Moved = tuple[int, float]
 # What a note had that `Controllers.strike` changed: its velocity and its pressure.
 Struck = tuple[Moved | None, Moved | None]
-
-
-class Channels(Protocol):
-    """What MIDI has told of channels beside moves."""
-
-    def master(self, channel: int) -> int | None:
-        """The master of a virtual channel in an MPE zone."""
-
-    def bend_range(self, channel: int) -> float:
-        """How far its wheel bends (semitones)."""
 
 
 @dataclass
@@ -64,12 +65,14 @@ class Controllers:
         performer: Performer,
         mapping: Mapping,
         channels: Channels,
+        scope: Scope,
         start: Iterable[tuple[str, float]] = (),
     ) -> None:
         self._performer = performer
         performer.expression = self._expression
         self.mapping = mapping
         self._rules = channels
+        self._scope = scope
         self._start = dict(start)
         self._channels: defaultdict[int, Moves] = defaultdict(Moves)
         self._faders: defaultdict[Bind, Fader] = defaultdict(Fader)
@@ -81,7 +84,7 @@ class Controllers:
 
     def move(self, source: str, channel: int, place: float, frame: int | None) -> None:
         """Move a source of a channel to a place, 0 to 1."""
-        binds = [bind for bind in self.mapping.of(source) if bind.hears(channel)]
+        binds = self._hearing(source, channel)
         if not binds:
             return
         self._remember(source)
@@ -107,11 +110,17 @@ class Controllers:
     def step(self, source: str, channel: int, steps: int, frame: int | None) -> None:
         """Move a source by 127ths of its way, from where it is, or where its target is."""
         moved = self._channels[channel].moved.get(source)
-        binds = [bind for bind in self.mapping.of(source) if bind.hears(channel)]
+        binds = self._hearing(source, channel)
         if binds:
             at = binds[0].place_of(self._performer.value(binds[0].target))
             place = (at if moved is None else moved[1]) + steps / STEPS
             self.move(source, channel, min(max(place, 0.0), 1.0), frame)
+
+    def _hearing(self, source: str, channel: int) -> list[Bind]:
+        """The binds of a source that hear it on a channel: of one without notes, global ones."""
+        plays = self._rules.plays(channel)
+        binds = self.mapping.of(source)
+        return [b for b in binds if b.hears(channel) and (plays or b.is_global)]
 
     def touch(self, key: Key, place: float, frame: int | None) -> None:
         """Press one key of a channel."""
@@ -177,6 +186,28 @@ class Controllers:
     def forget(self, channel: int) -> None:
         """Forget what was moved on a channel."""
         self._channels.pop(channel, None)
+
+    def leave(self, channel: int, frame: int | None) -> None:
+        """Forget what was moved on a channel that is gone, but for what is for all notes.
+
+        So a loose cable changes nothing; only what springs back does so.
+        """
+        state = self._channels.pop(channel, Moves())
+        for_all = [
+            bind
+            for bind in self.mapping.binds
+            if bind.source in state.moved
+            and self._scope.is_for_all(channel, is_global=bind.is_global)
+        ]
+        stays = [bind for bind in for_all if bind.source not in SPRUNG]
+        if stays:
+            self._channels[channel] = Moves(
+                moved={bind.source: state.moved[bind.source] for bind in stays},
+                picked={bind: state.picked[bind] for bind in stays if bind in state.picked},
+            )
+        for source in SPRUNG:
+            if any(bind.source == source for bind in for_all):
+                self.follow(source, channel, frame)
 
     def start_anew(self, frame: int | None) -> None:
         """Forget what was moved on all of them; targets are where they were before."""
@@ -261,16 +292,20 @@ class Controllers:
         """Let the sounding note follow what its channel just did; `glides` are in ms, by target."""
         self._remember(source)
         heard = self._performer.sounding or self._heard
-        if heard is None or self._is_for(channel, heard):
+        binds = self.mapping.of(source)
+        if heard is not None:
+            binds = tuple(bind for bind in binds if self._is_for(bind, channel, heard))
+        if binds:
             asked = self._asked(heard.channel if heard else channel, heard.note if heard else -1)
-            for bind in self.mapping.of(source):
-                glide_ms = (glides or {}).get(bind.target, 0.0)
-                value = asked[bind.target]
-                self._performer.write(bind.target, value, frame=frame, glide_ms=glide_ms)
+        for bind in binds:
+            glide_ms = (glides or {}).get(bind.target, 0.0)
+            value = asked[bind.target]
+            self._performer.write(bind.target, value, frame=frame, glide_ms=glide_ms)
 
-    def _is_for(self, channel: int, key: Key) -> bool:
-        """Whether what is moved on a channel is heard in a note."""
-        return channel in (key.channel, self._rules.master(key.channel))
+    def _is_for(self, bind: Bind, channel: int, key: Key) -> bool:
+        """Whether what a bind moves on a channel is heard in a note."""
+        own = channel in (key.channel, self._rules.master(key.channel))
+        return own or self._scope.is_for_all(channel, is_global=bind.is_global)
 
     def _expression(self, key: Key) -> dict[str, float]:
         """What a note that begins, or comes back, is to have of its channel."""
@@ -282,14 +317,19 @@ class Controllers:
 
         Where this channel moved none, the target is as it was before any channel did. A note
         in an MPE zone has its master's bend besides its own, and its master's other moves
-        where it has none of its own.
+        where it has none of its own. Of what was moved for all notes and what is its own it
+        has the later, but bends add up.
         """
         asked = dict(self._set)
         master = self._rules.master(channel)
+        for_all = self._for_all(channel)
         for bind in self.mapping.binds:
             moved = self._moved(bind, channel, note)
             if moved is None and master is not None:
                 moved = self._moved(bind, master, note)
+            elsewhere, elsewhere_on = self._latest(bind, for_all[bind.is_global])
+            if elsewhere is not None and (moved is None or moved < elsewhere):
+                moved = elsewhere
             if moved is None or moved[0] < asked.get(bind.target, (0, 0.0))[0]:
                 continue
             when, place = moved
@@ -298,9 +338,27 @@ class Controllers:
                 value *= self._share(bind.target)
             elif bind.is_by_range:
                 value = self._bend(bind, channel)
-                value += 0.0 if master is None else self._bend(bind, master)
+                for other in {master, elsewhere_on}:
+                    value += 0.0 if other is None else self._bend(bind, other)
             asked[bind.target] = (when, value)
         return {address: value for address, (_, value) in asked.items()}
+
+    def _for_all(self, channel: int) -> dict[bool, list[int]]:
+        """Other channels whose moves are for all notes, by whether the bind is global."""
+        if self._heard is None:  # each is heard as it comes, and the first note asks for all
+            return {False: [], True: []}
+        others = [other for other in self._channels if other != channel]
+        return {
+            is_global: [c for c in others if self._scope.is_for_all(c, is_global=is_global)]
+            for is_global in ((False, True) if self.mapping.has_global else (False,))
+        }
+
+    def _latest(self, bind: Bind, channels: list[int]) -> tuple[Moved, int] | tuple[None, None]:
+        """What a bind last made of some channels' moves, and on which of them."""
+        if not channels or bind.source in OF_ONE_NOTE:
+            return None, None
+        moved = [(moved, c) for c in channels if (moved := self._moved(bind, c, -1)) is not None]
+        return max(moved, default=(None, None))
 
     def _share(self, target: str) -> float:
         """How far a target was put from where its mapping begins, as a factor.
@@ -335,7 +393,7 @@ class Controllers:
         """Whether a soft bind has its target: it put it where it is, or comes to it now."""
         state = self._channels[channel]
         heard = self._performer.sounding or self._heard
-        own = Key(channel, -1) if heard is None or not self._is_for(channel, heard) else heard
+        own = Key(channel, -1) if heard is None or not self._is_for(bind, channel, heard) else heard
         present = self._asked(own.channel, own.note)[bind.target]
         picked, moved = state.picked.get(bind), state.moved.get(bind.source)
         if picked is not None and bind.apply(picked[1]) == present:

@@ -14,7 +14,7 @@ from yehu_server.playing.mapping import Mapping, mapping_folder, own_folder, wit
 from yehu_server.playing.mapping_entries import free
 from yehu_server.playing.mapping_file import Sheet, read_sheet, text_of
 from yehu_server.playing.mapping_writer import as_toml, rebound
-from yehu_server.playing.sources import OF_ONE_NOTE
+from yehu_server.playing.sources import OF_ONE_NOTE, is_address
 
 
 def own_file(mapping: Mapping) -> Path:
@@ -32,6 +32,8 @@ def own_file(mapping: Mapping) -> Path:
 def learn(mapping: Mapping, target: str, found: Found, *, soft: bool) -> tuple[Mapping, Path]:
     """Let a source move a target, over its whole range, and keep that; nothing else moves it then.
 
+    It moves it for all notes, whichever box they are played on.
+
     Returns the mapping as it now is, and the file that keeps it.
     Errors: MappingError where the file is wrong or cannot be written; all is as it was then.
     """
@@ -43,6 +45,7 @@ def learn(mapping: Mapping, target: str, found: Found, *, soft: bool) -> tuple[M
         reach=found.reach,
         is_soft=soft and found.source not in OF_ONE_NOTE,
         is_alone=True,
+        is_global=not (found.source in OF_ONE_NOTE or is_address(found.source)),
     )
     if bind.is_by_range:  # the wheel keeps its meaning, which its bend range has a say in
         bind = replace(bind, is_soft=False)

@@ -43,7 +43,7 @@ class Learner:
         """Take in a MIDI message; return the source that is meant, once it is clear."""
         if not hasattr(message, "channel"):
             return None
-        channel = 16 * port + message.channel
+        channel = sources.CHANNELS * port + message.channel
         if message.type == "pitchwheel":
             return self._moved(channel, sources.BEND, (message.pitch + 8192) / 16383.0)
         if message.type == "aftertouch":

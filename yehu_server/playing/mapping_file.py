@@ -24,6 +24,7 @@ from yehu_server.playing.toml_lines import Way, line_at, lines_of
 ENTRIES = ("name", "about", "base", "mpe", "start", "bind")
 BIND_ENTRIES = (
     "source", "target", "input", "span", "curve", "invert", "smoothing", "channel", "soft", "alone",
+    "global",
 )  # fmt: skip
 _LINE = re.compile(r"\(at line ([0-9]+)")
 
@@ -201,6 +202,7 @@ def _bind(entry: Any, wrong: Callable[[str, str], None]) -> Bind | None:
         is_soft=read("soft", entries.flag("soft"), False),
         reach=read("input", entries.reach, (0.0, 1.0)),
         is_alone=read("alone", entries.flag("alone"), False),
+        is_global=read("global", entries.flag("global"), False),
     )
     if source is None or param is None:
         return None
@@ -217,11 +219,15 @@ def _disagreements(bind: Bind, entry: dict[str, Any]) -> list[tuple[str, str]]:
     if sources.is_address(bind.source):
         if "channel" in entry:
             found.append(("channel", "channel: an OSC address has none"))
+        if bind.is_global:
+            found.append(("global", "global: an OSC address always is"))
     elif "input" in entry:
         found.append(("input", "input: only what an OSC address sends has a range of its own"))
     if bind.is_soft and (bind.source in sources.OF_ONE_NOTE or bind.is_by_range):
         what = "the bend by its range" if bind.is_by_range else bind.source
         found.append(("soft", f"soft: {what} cannot wait for the target"))
+    if bind.is_global and bind.source in sources.OF_ONE_NOTE:
+        found.append(("global", f"global: {bind.source} is of one note"))
     return found
 
 

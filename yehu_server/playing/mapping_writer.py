@@ -31,6 +31,7 @@ def entries_of(bind: Bind) -> dict[str, Any]:
         "channel": _channels(bind),
         "soft": bind.is_soft or None,
         "alone": bind.is_alone or None,
+        "global": bind.is_global or None,
     }
     return {name: value for name, value in entries.items() if value is not None}
 

@@ -18,6 +18,8 @@ from yehu_server.playing.binds import Bind
 from yehu_server.playing.controllers import Controllers
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key, Performer
+from yehu_server.playing.scope import Scope
+from yehu_server.playing.sources import CHANNELS
 from yehu_server.playing.zones import Zones
 
 log = logging.getLogger(__name__)
@@ -29,8 +31,9 @@ NRPN_FINE, NRPN, RPN_FINE, RPN = 98, 99, 100, 101
 ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
 SUSTAIN_SOURCE = sources.control(SUSTAIN)
 BEND_RANGE, MPE_CONFIGURATION = (0, 0), (0, 6)
-CHANNELS = 16  # of a port
 PERCUSSION = 9  # channel 10, counted from 0
+# What is heard on channels whose notes are not played, as far as it is global.
+MOVES = ("control_change", "pitchwheel", "aftertouch")
 
 
 @dataclass
@@ -71,8 +74,8 @@ class MidiPlayer:
     Parameters
     ----------
     channels : set of int, optional
-        Channels that play, counted from 0; all by default but the percussion channel, unless
-        it is a member of an MPE zone.
+        Channels that are heard, counted from 0. By default all are, but the percussion channel
+        plays no notes unless it is a member of an MPE zone.
     start : iterable of (address, value)
         Where parameters begin, besides what the mapping says.
     programs : callable, optional
@@ -90,8 +93,9 @@ class MidiPlayer:
         programs: Callable[[int], Preset | None] | None = None,
     ) -> None:
         self._performer = performer
-        self._controllers = Controllers(performer, mapping, self, start)
-        self._plays = channels
+        self._scope = Scope(self)
+        self._controllers = Controllers(performer, mapping, self, self._scope, start)
+        self._chosen = channels
         self._programs = programs
         self._zones: defaultdict[int, Zones] = defaultdict(lambda: Zones(whole=self.mapping.mpe))
         self._channels: defaultdict[int, Channel] = defaultdict(Channel)
@@ -112,9 +116,11 @@ class MidiPlayer:
         if message.type == "reset":
             self._start_anew(frame)
             return
-        if not hasattr(message, "channel") or not self._listens_to(message.channel, port):
+        if not hasattr(message, "channel"):
             return
         channel, kind = CHANNELS * port + message.channel, message.type
+        if not self.plays(channel) and not self._hears(kind):
+            return
         if kind == "note_on" and message.velocity > 0:
             self.note_on(Key(channel, message.note), message.velocity / 127.0, frame)
         elif kind in ("note_on", "note_off"):
@@ -147,6 +153,8 @@ class MidiPlayer:
             self._start_anew(frame)
         if mapping.of(SUSTAIN_SOURCE):  # it is no pedal any more, and shall hold nothing
             for state in self._channels.values():
+                state.sustain = False
+            for state in list(self._channels.values()):
                 self._lift_pedal(state, frame)
 
     def load(self, values: Values[str, float], *, frame: int | None = None) -> None:
@@ -164,10 +172,10 @@ class MidiPlayer:
         return self._controllers.sound()
 
     def let_go_of(self, port: int, *, frame: int | None = None) -> None:
-        """End the notes of a port that is gone, and forget what was moved on it."""
+        """End the notes of a port that is gone; see also `Controllers.leave`."""
         for channel in range(CHANNELS * port, CHANNELS * (port + 1)):
-            self._performer.all_notes_off(frame=frame, channel=channel)
-            self._forget(channel)
+            self._end(channel, frame)
+            self._controllers.leave(channel, frame)
         self._zones.pop(port, None)
 
     def begin_again(self, *, frame: int | None = None) -> None:
@@ -176,19 +184,25 @@ class MidiPlayer:
             self.write(param.address, param.default, frame=frame)
         self._controllers.begin(frame)
 
-    def _listens_to(self, channel: int, port: int) -> bool:
-        if self._plays is not None:
-            return channel in self._plays
-        return channel != PERCUSSION or self._zones[port].master(channel) is not None
+    def plays(self, channel: int) -> bool:
+        """See `scope.Channels`."""
+        own = channel % CHANNELS
+        if self._chosen is not None:
+            return own in self._chosen
+        return own != PERCUSSION or self.master(channel) is not None
+
+    def _hears(self, kind: str) -> bool:
+        """Whether a message may move something on a channel whose notes are not played."""
+        return self._chosen is None and kind in MOVES and self.mapping.has_global
 
     def master(self, channel: int) -> int | None:
-        """See `controllers.Channels`."""
+        """See `scope.Channels`."""
         port, own = divmod(channel, CHANNELS)
         master = self._zones[port].master(own)
         return None if master is None else CHANNELS * port + master
 
     def bend_range(self, channel: int) -> float:
-        """See `controllers.Channels`."""
+        """See `scope.Channels`."""
         if self._performer.keeps("/playing/bend_range"):
             return self._performer.value("/playing/bend_range")
         port, own = divmod(channel, CHANNELS)
@@ -209,37 +223,59 @@ class MidiPlayer:
         self._zones.clear()
         self._controllers.start_anew(frame)
 
-    def _forget(self, channel: int) -> None:
-        self._channels.pop(channel, None)
-        self._controllers.forget(channel)
+    def _end(self, channel: int, frame: int | None) -> None:
+        """End the notes of a channel and those its pedal holds, and forget what it was told."""
+        self._performer.all_notes_off(frame=frame, channel=channel)
+        self._lift_pedal(self._channels[channel], frame)
+        self._channels.pop(channel)
 
     def note_on(self, key: Key, velocity: float, frame: int | None) -> None:
         """Begin a note, struck with a velocity of 0 to 1."""
         state = self._channels[key.channel]
-        if self._performer.holds(key) and key not in state.let_go and frame is not None:
+        pedals = [each for each in self._channels.values() if key in each.let_go]
+        if self._performer.holds(key) and not pedals and frame is not None:
             state.struck_again[key.note] = frame
-        self._forget_let_go(key)
+        for pedal in pedals:
+            pedal.let_go.discard(key)
+        is_first = self._scope.add(key.channel)
         struck = self._controllers.strike(key, velocity)
         if self._performer.note_on(key, frame=frame):
             self.notes_by_channel[key.channel] += 1
-        else:
-            self._controllers.unstrike(key, struck)
+            return
+        self._controllers.unstrike(key, struck)
+        if is_first:
+            self._scope.remove(key.channel)
 
     def note_off(self, key: Key, frame: int | None) -> None:
-        """End a note, unless the channel's pedal keeps it."""
+        """End a note, unless a pedal keeps it."""
         state = self._channels[key.channel]
         if frame is not None and state.struck_again.pop(key.note, None) == frame:
             return  # the end of the stroke before, which some files write after the new one
-        master = self.master(key.channel)
-        if state.sustain:
-            state.let_go.add(key)
-        elif master is not None and self._channels[master].sustain:
-            self._channels[master].let_go.add(key)
-        else:
-            self._performer.notes_off([key], frame=frame)
+        self._let_up([key], frame)
+
+    def _let_up(self, keys: Iterable[Key], frame: int | None) -> None:
+        """End notes that no hand holds any more, but for those that a pedal does."""
+        ended = []
+        for key in keys:
+            pedal = self._pedal(key.channel)
+            if pedal is None:
+                ended.append(key)
+            else:
+                pedal.let_go.add(key)
+        self._performer.notes_off(ended, frame=frame)
+
+    def _pedal(self, channel: int) -> Channel | None:
+        """A channel whose pedal is down and holds the notes of this one."""
+        own = (channel, self.master(channel))
+        for each, state in self._channels.items():
+            if state.sustain and (each in own or self._scope.is_for_all(each)):
+                return state
+        return None
 
     def _control(self, channel: int, control: int, value: int, frame: int | None) -> None:
         state = self._channels[channel]
+        if control >= ALL_SOUND_OFF and not self.plays(channel):
+            return
         if control in (BANK, BANK_FINE):
             state.bank = (value, state.bank[1]) if control == BANK else (state.bank[0], value)
         if control == SUSTAIN and not self.mapping.of(SUSTAIN_SOURCE):
@@ -247,8 +283,11 @@ class MidiPlayer:
             if not state.sustain:
                 self._lift_pedal(state, frame)
         elif control == ALL_SOUND_OFF:
+            zone = self._zone(channel)
+            elsewhere = [key for key in state.let_go if key.channel not in zone]
+            self._performer.notes_off(elsewhere, frame=frame)
             state.let_go.clear()
-            for each in self._zone(channel):
+            for each in zone:
                 self._performer.all_sound_off(frame=frame, channel=each)
         elif control >= ALL_NOTES_OFF:  # the mode messages 124-127 include it
             for each in self._zone(channel):
@@ -275,8 +314,8 @@ class MidiPlayer:
 
     def _lift_pedal(self, state: Channel, frame: int | None) -> None:
         state.sustain = False
-        self._performer.notes_off(state.let_go, frame=frame)
-        state.let_go.clear()
+        let_go, state.let_go = state.let_go, set()
+        self._let_up(let_go, frame)
 
     def _change_program(self, channel: int, program: int, frame: int | None) -> None:
         if self._programs is None or self._channels[channel].bank != (0, 0):
@@ -338,14 +377,9 @@ class MidiPlayer:
         if not self._zones[port].configure(own, members):
             return
         for each in {*affected, *self._zone(channel)}:
-            self._performer.all_notes_off(frame=frame, channel=each)
-            self._forget(each)
+            self._end(each, frame)
+            self._controllers.forget(each)
         self._channels[channel].selected = Selected(True, *MPE_CONFIGURATION)
-
-    def _forget_let_go(self, key: Key) -> None:
-        master = self.master(key.channel)
-        for channel in (key.channel, *(() if master is None else (master,))):
-            self._channels[channel].let_go.discard(key)
 
 
 def _select(state: Channel, control: int, value: int) -> None:

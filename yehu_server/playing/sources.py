@@ -20,6 +20,7 @@ COARSE = range(32)  # these have a fine half, FINE_ABOVE higher
 FINE_ABOVE = 32
 STEPS, FINEST = 127, 16383  # of 7 and of 14 bits
 NO_NRPN = FINEST  # 127/127 means that none is selected
+CHANNELS = 16  # of a port
 OUR_OSC = "/yehu"
 
 _CC = re.compile(r"cc (0|[1-9][0-9]{0,2})(?:/(0|[1-9][0-9]{0,2}))?")

@@ -1,0 +1,363 @@
+"""Whose notes follow a controller: those of its channel, or all of them."""
+
+from __future__ import annotations
+
+import mido
+import pytest
+
+from yehu_server.playing.binds import Bind
+from yehu_server.playing.live import ELSEWHERE
+from yehu_server.playing.mapping import Mapping, load
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.performer import Key
+
+VOLUME, PRESS, BEND = "/playing/volume", "/playing/press", "/playing/bend"
+KEYS, BREATH = 0, 1  # ports
+
+
+class Studio:
+    """Several boxes at one instrument; channels are counted from 1."""
+
+    def __init__(self, player: MidiPlayer) -> None:
+        self.player = player
+
+    def send(self, kind: str, port: int, channel: int = 1, **fields: int) -> None:
+        self.player.receive(mido.Message(kind, channel=channel - 1, **fields), port=port)
+
+    def on(self, note: int, port: int = KEYS, channel: int = 1) -> None:
+        self.send("note_on", port, channel, note=note, velocity=64)
+
+    def off(self, note: int, port: int = KEYS, channel: int = 1) -> None:
+        self.send("note_off", port, channel, note=note)
+
+    def cc(self, control: int, value: int, port: int = BREATH, channel: int = 1) -> None:
+        self.send("control_change", port, channel, control=control, value=value)
+
+    def bend(self, share: float, port: int = BREATH, channel: int = 1) -> None:
+        self.send("pitchwheel", port, channel, pitch=round(8191 * share))
+
+    def zone(self, port: int) -> None:
+        """Let a port be one MPE zone."""
+        for control, value in ((101, 0), (100, 6), (6, 15)):
+            self.cc(control, value, port)
+
+
+@pytest.fixture
+def make(player):
+    return lambda *binds, **options: Studio(MidiPlayer(player, Mapping("test", binds, **options)))
+
+
+@pytest.fixture
+def studio(make) -> Studio:
+    """What a volume pedal, aftertouch and a wheel are bound to, each for the notes of its own."""
+    return make(Bind("cc 7", VOLUME), Bind("pressure", PRESS), Bind("bend", BEND))
+
+
+@pytest.fixture
+def learned(make) -> Studio:
+    """One knob that moves the volume of all notes."""
+    return make(Bind("cc 7", VOLUME, is_global=True))
+
+
+# ---------------------------------------------------------------- a port that plays no notes
+
+
+def test_a_breath_controller_at_a_port_of_its_own_plays_the_keyboards_note(player, listener):
+    studio = Studio(MidiPlayer(player, load("wind")))
+    studio.on(75)
+    studio.cc(2, 0)
+    assert listener["/bow/side"] == 0.0
+    studio.cc(2, 127)
+    assert listener["/bow/side"] != 0.0
+    studio.cc(2, 40)
+    quiet = listener["/output/level"]
+    studio.on(77)  # the next note is as quiet
+    assert listener["/output/level"] == quiet
+
+
+def test_a_box_without_keys_moves_the_notes_of_every_port(studio, player):
+    for port, channel in ((KEYS, 1), (KEYS, 5), (7, 16)):
+        studio.on(75, port, channel)
+        studio.cc(7, 7 * channel)
+        assert player.value(VOLUME) == 7 * channel / 127
+        studio.on(76, KEYS)
+        assert player.value(VOLUME) == 7 * channel / 127
+
+
+def test_a_box_without_keys_moves_the_notes_that_come_by_osc(studio, player):
+    studio.player.note_on(Key(ELSEWHERE, 75.0), 0.5, None)
+    studio.cc(7, 30)
+    assert player.value(VOLUME) == 30 / 127
+
+
+def test_of_a_keyboards_own_controller_and_a_box_the_one_moved_last_counts(studio, player):
+    studio.on(75)
+    studio.cc(7, 30)
+    studio.cc(7, 90, KEYS)
+    assert player.value(VOLUME) == 90 / 127
+    studio.on(77)
+    assert player.value(VOLUME) == 90 / 127
+    studio.cc(7, 20)
+    assert player.value(VOLUME) == 20 / 127
+    studio.on(75)
+    assert player.value(VOLUME) == 20 / 127
+
+
+def test_what_was_moved_before_the_first_note_of_all_is_heard_in_it(studio, player):
+    studio.cc(7, 30)
+    studio.on(75)
+    assert player.value(VOLUME) == 30 / 127
+
+
+def test_from_its_first_note_on_a_port_has_its_controllers_to_itself(studio, player):
+    studio.on(75)
+    studio.cc(7, 30)
+    studio.on(80, BREATH)  # it is a keyboard after all
+    assert player.value(VOLUME) == 30 / 127
+    studio.on(77)
+    assert player.value(VOLUME) == 1.0
+    studio.cc(7, 60)
+    assert player.value(VOLUME) == 1.0
+
+
+def test_a_note_that_cannot_be_played_makes_no_keyboard(make, player):
+    studio = make(Bind("cc 7", VOLUME))
+    studio.on(75)
+    studio.on(36, BREATH, channel=10)  # a drum pad
+    studio.cc(7, 30)
+    assert player.value(VOLUME) == 30 / 127
+
+
+def test_a_wheel_without_keys_bends_beside_the_keyboards_own(studio, player):
+    studio.on(75)
+    studio.bend(0.5)
+    assert player.pitch == pytest.approx(76.0, abs=1e-3)
+    studio.bend(-1.0, KEYS)
+    assert player.pitch == pytest.approx(74.0, abs=1e-3)
+    studio.bend(0.0)
+    assert player.pitch == pytest.approx(73.0, abs=1e-3)
+    studio.on(77)
+    assert player.pitch == pytest.approx(75.0, abs=1e-3)
+
+
+def test_a_wheel_without_keys_bends_by_its_own_range(studio, player):
+    for control, value in ((101, 0), (100, 0), (6, 12)):
+        studio.cc(control, value)
+    studio.on(75)
+    studio.bend(0.5)
+    assert player.pitch == pytest.approx(81.0, abs=1e-3)
+
+
+def test_a_pedal_without_keys_holds_the_keyboards_notes(studio, player):
+    studio.cc(64, 127)
+    studio.on(75)
+    studio.off(75)
+    assert player.sounding == Key(0, 75)
+    studio.on(75)  # held by hand again
+    studio.cc(64, 0)
+    assert player.sounding == Key(0, 75)
+    studio.off(75)
+    assert player.sounding is None
+
+
+def test_two_pedals_hold_a_note_until_the_second_is_up(studio, player):
+    studio.cc(64, 127, KEYS)
+    studio.cc(64, 127)
+    studio.on(75)
+    studio.off(75)
+    studio.cc(64, 0, KEYS)
+    assert player.sounding == Key(0, 75)
+    studio.cc(64, 0)
+    assert player.sounding is None
+
+
+@pytest.mark.parametrize("control", [120, 121])
+def test_a_pedal_that_is_told_to_end_its_sound_lets_go_of_the_keyboards_notes(
+    studio, player, control
+):
+    studio.cc(64, 127)
+    studio.on(75)
+    studio.off(75)
+    studio.cc(control, 0)
+    assert player.sounding is None
+
+
+def test_reset_all_controllers_of_a_box_is_heard_in_the_keyboards_note(make, player):
+    studio = make(Bind("cc 11", "/playing/expression"))
+    studio.on(75)
+    studio.cc(11, 20)
+    studio.cc(121, 0)
+    assert player.value("/playing/expression") == 1.0
+
+
+def test_a_soft_knob_of_a_box_waits_for_where_the_keyboards_note_has_it(make, player):
+    studio = make(Bind("cc 7", VOLUME, is_soft=True))
+    studio.on(75)
+    studio.player.write(VOLUME, 0.5)
+    studio.cc(7, 10)
+    assert player.value(VOLUME) == 0.5
+    studio.cc(7, 64)
+    studio.cc(7, 40)
+    assert player.value(VOLUME) == 40 / 127
+
+
+# ---------------------------------------------------------------- boxes that come and go
+
+
+def test_a_box_that_is_gone_leaves_its_faders_where_they_were(studio, player):
+    studio.on(75)
+    studio.cc(7, 30)
+    studio.player.let_go_of(BREATH)
+    assert player.value(VOLUME) == 30 / 127
+    studio.on(77)
+    assert player.value(VOLUME) == 30 / 127
+    studio.cc(7, 50)  # and is heard when it is back
+    assert player.value(VOLUME) == 50 / 127
+
+
+def test_a_box_that_is_gone_bends_presses_and_holds_no_more(studio, player):
+    studio.cc(64, 127)
+    studio.on(75)
+    studio.bend(1.0)
+    studio.send("aftertouch", BREATH, value=127)
+    assert player.value(PRESS) > 2.0
+    studio.off(75)
+    studio.player.let_go_of(BREATH)
+    assert player.sounding is None
+    studio.on(75)
+    assert player.pitch == 75.0
+    assert player.value(PRESS) == 1.5
+
+
+def test_a_wheel_that_is_gone_while_a_note_sounds_lets_go_at_once(studio, player):
+    studio.on(75)
+    studio.bend(1.0)
+    studio.player.let_go_of(BREATH)
+    assert player.pitch == 75.0
+
+
+def test_a_keyboard_that_is_gone_leaves_nothing_to_others_but_what_is_global(learned, player):
+    learned.on(75, BREATH)
+    learned.on(75)
+    learned.cc(7, 30)
+    learned.player.let_go_of(BREATH)
+    learned.on(76)
+    assert player.value(VOLUME) == 30 / 127
+
+
+# ---------------------------------------------------------------- what is global
+
+
+def test_a_global_controller_of_another_keyboard_moves_the_note(learned, player):
+    learned.on(80, BREATH)
+    learned.on(75)
+    learned.cc(7, 30)
+    assert player.value(VOLUME) == 30 / 127
+    learned.on(76)
+    assert player.value(VOLUME) == 30 / 127
+
+
+def test_a_global_controller_of_another_channel_moves_the_note(learned, player):
+    learned.on(75)
+    learned.cc(7, 30, KEYS, channel=2)
+    assert player.value(VOLUME) == 30 / 127
+    learned.on(75, KEYS, channel=3)
+    assert player.value(VOLUME) == 30 / 127
+
+
+def test_of_two_global_controllers_with_one_number_the_one_moved_last_counts(learned, player):
+    learned.on(80, BREATH)
+    learned.on(75)
+    learned.cc(7, 30)
+    learned.cc(7, 60, KEYS)
+    assert player.value(VOLUME) == 60 / 127
+    learned.cc(7, 90)
+    learned.on(76)
+    assert player.value(VOLUME) == 90 / 127
+
+
+def test_a_global_knob_on_the_drums_channel_is_heard_and_others_there_are_not(make, player):
+    studio = make(Bind("cc 7", VOLUME, is_global=True), Bind("cc 11", "/playing/expression"))
+    studio.on(75)
+    studio.cc(7, 30, BREATH, channel=10)
+    studio.cc(11, 30, BREATH, channel=10)
+    studio.cc(64, 127, BREATH, channel=10)
+    assert player.value(VOLUME) == 30 / 127
+    assert player.value("/playing/expression") == 1.0
+    studio.off(75)
+    assert player.sounding is None
+
+
+def test_a_global_bind_of_one_channel_hears_no_other(make, player):
+    studio = make(Bind("cc 7", VOLUME, is_global=True, channels=(2,)))
+    studio.on(75)
+    studio.cc(7, 30, channel=1)
+    assert player.value(VOLUME) == 1.0
+    studio.cc(7, 30, channel=2)
+    assert player.value(VOLUME) == 30 / 127
+
+
+def test_a_mapping_that_becomes_global_is_so_at_once(studio, player):
+    studio.on(80, BREATH)
+    studio.on(75)
+    studio.cc(7, 30)
+    assert player.value(VOLUME) == 1.0
+    studio.player.remap(Mapping("other", (Bind("cc 7", VOLUME, is_global=True),)))
+    assert player.value(VOLUME) == 30 / 127
+
+
+# ---------------------------------------------------------------- what stays with its channel
+
+
+def test_channels_of_a_port_with_notes_keep_their_own(studio, player):
+    studio.on(75, KEYS, channel=1)
+    studio.cc(7, 30, KEYS, channel=2)  # which plays none
+    assert player.value(VOLUME) == 1.0
+    studio.on(75, KEYS, channel=3)
+    assert player.value(VOLUME) == 1.0
+
+
+def test_files_keep_what_each_channel_is_told_before_the_first_note(studio, player):
+    for channel in range(1, 5):
+        studio.cc(7, 10 * channel, KEYS, channel)
+    for channel in (3, 1, 2, 4):
+        studio.on(75, KEYS, channel)
+        assert player.value(VOLUME) == 10 * channel / 127
+
+
+@pytest.mark.parametrize("is_global", [False, True])
+def test_what_a_member_of_an_mpe_zone_moves_is_its_notes_alone(make, player, is_global):
+    studio = make(Bind("pressure", PRESS, is_global=is_global), Bind("bend", BEND))
+    studio.zone(BREATH)
+    studio.on(75)
+    studio.send("aftertouch", BREATH, 4, value=127)
+    studio.bend(0.5, BREATH, 4)
+    assert (player.value(PRESS), player.pitch) == (1.5, 75.0)
+    studio.on(70, BREATH, 5)
+    assert (player.value(PRESS), player.pitch) == (1.5, 70.0)
+    studio.on(70, BREATH, 4)
+    assert player.value(PRESS) == 6.0
+    assert player.pitch == pytest.approx(94.0, abs=0.01)
+
+
+def test_a_global_knob_moves_mpe_notes_until_they_move_it_themselves(make, player):
+    studio = make(Bind("cc 74", VOLUME, is_global=True))
+    studio.zone(KEYS)
+    studio.on(70, KEYS, 4)
+    studio.cc(74, 30)
+    assert player.value(VOLUME) == 30 / 127
+    studio.cc(74, 60, KEYS, 4)
+    assert player.value(VOLUME) == 60 / 127
+    studio.on(72, KEYS, 5)
+    assert player.value(VOLUME) == 30 / 127
+
+
+def test_the_master_of_a_zone_speaks_for_its_zone_alone_unless_it_is_global(make, player):
+    studio = make(Bind("cc 7", VOLUME), Bind("cc 11", "/playing/expression", is_global=True))
+    studio.zone(BREATH)
+    studio.on(70, BREATH, 2)
+    studio.on(75)
+    studio.cc(7, 30, BREATH, 1)
+    studio.cc(11, 30, BREATH, 1)
+    assert player.value(VOLUME) == 1.0
+    assert player.value("/playing/expression") == 30 / 127

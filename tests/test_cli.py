@@ -502,6 +502,37 @@ def test_an_output_that_cannot_be_written_is_found_before_anything_is_compiled(
     assert is_one_line(err)
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("render", "tune.mid", "-o"),
+        ("replay", "take.jsonl", "-o"),
+        ("simulate", "gesture.json", "-o"),
+        ("sweep", "gesture.json", "--vary", "bow_force=1", "-o"),
+        ("mappings", "convert", "keyboard", "-o"),
+        ("surfaces", "-o"),
+        ("serve", "--record"),
+        ("serve", "--capture"),
+    ],
+    ids=" ".join,
+)
+def test_a_dash_is_no_file_to_write(command, out, monkeypatch, words):
+    monkeypatch.chdir(out)
+    code, stdout, err = command(*words, "-")
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert "standard output" in err
+    assert not list(out.iterdir())
+
+
+def test_a_simulation_writes_no_sound(command, gesture, out):
+    code, stdout, err = command("simulate", gesture, "-o", out / "x.wav")
+    assert (code, stdout) == (2, "")
+    assert is_one_line(err)
+    assert "name an .npz file" in err
+    assert not list(out.iterdir())
+
+
 # ---------------------------------------------------------------- full disks and interrupts
 
 

@@ -71,7 +71,7 @@ def add_reporting(parser: argparse.ArgumentParser) -> None:
 def add_output(parser: argparse.ArgumentParser) -> None:
     """Add the sound file to write."""
     parser.add_argument(
-        "-o", "--output", required=True, type=Path, metavar="OUT", help="the sound file to write"
+        "-o", "--output", required=True, type=target, metavar="OUT", help="the sound file to write"
     )
     parser.add_argument(
         "--overwrite",
@@ -283,6 +283,15 @@ def progress_bar(arguments: argparse.Namespace, what: str, unit: str = "s") -> I
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=0.0)
         yield lambda done, total: bar.update(task, completed=min(done, total), total=total)
+
+
+def target(text: str) -> Path:
+    """A file or folder to write."""
+    if text == "-":
+        raise argparse.ArgumentTypeError(
+            "nothing is written to standard output; name a file (./- is one of that name)"
+        )
+    return Path(text)
 
 
 def a4(text: str) -> float:

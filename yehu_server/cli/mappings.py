@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_action, add_command, add_server, server_of
+from yehu_server.cli.arguments import add_action, add_command, add_server, server_of, target
 from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import MappingError, ParameterError
 
@@ -63,7 +63,7 @@ def add_to(commands: Any) -> None:
         help="a file, also of what show --json prints, or a mapping's name",
     )
     convert.add_argument(
-        "-o", "--output", type=Path, metavar="OUT", help="the file to write (default: print it)"
+        "-o", "--output", type=target, metavar="OUT", help="the file to write (default: print it)"
     )
     convert.add_argument(
         "--overwrite", action="store_true", help="replace OUT where it is there, also the FILE"

@@ -158,5 +158,4 @@ def _tell_of_own(arguments: argparse.Namespace, style: Style) -> None:
 
     own = style.mapping.files[0].stem
     if (arguments.mapping or own) == own and own in own_mappings() and not arguments.quiet:
-        line = f"mapping {own}: the one that comes along; --mapping {MINE}{own} takes yours"
-        print(f"yehu-server: {line}", file=sys.stderr)
+        warn(f"mapping {own}: the one that comes along; --mapping {MINE}{own} takes yours")

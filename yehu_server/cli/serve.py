@@ -23,6 +23,7 @@ from yehu_server.cli.arguments import (
     positive,
     progress_bar,
     style_of,
+    target,
     whole,
     within,
 )
@@ -175,11 +176,11 @@ def _add_playing(group: Any) -> None:
 
 def _add_running(group: Any) -> None:
     group.add_argument(
-        "--record", type=Path, metavar="OUT", help="record everything to a new WAV or FLAC file"
+        "--record", type=target, metavar="OUT", help="record everything to a new WAV or FLAC file"
     )
     group.add_argument(
         "--capture",
-        type=Path,
+        type=target,
         metavar="FILE",
         help="write every event to a new file, for yehu-server replay",
     )

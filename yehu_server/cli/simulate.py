@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import (
@@ -13,6 +12,7 @@ from yehu_server.cli.arguments import (
     add_reporting,
     compiling,
     progress_bar,
+    target,
 )
 from yehu_server.cli.terminal import tell
 
@@ -37,7 +37,7 @@ def add_to(commands: Any) -> None:
     )
     add_gesture(parser)
     parser.add_argument(
-        "-o", "--output", required=True, type=Path, metavar="OUT.npz", help="the arrays to write"
+        "-o", "--output", required=True, type=target, metavar="OUT.npz", help="the arrays to write"
     )
     add_reporting(parser)
 
@@ -46,6 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     import time
 
+    from yehu_server.errors import OutputError
     from yehu_server.files import check_apart, check_target
     from yehu_server.score.gesture import read_gesture
     from yehu_server.simulate import simulate
@@ -53,6 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
     gesture = read_gesture(arguments.gesture)
     check_target(arguments.output)
     check_apart({"-o": arguments.output}, [arguments.gesture])
+    if arguments.output.suffix.lower() not in ("", ".npz"):
+        raise OutputError(f"{arguments.output}: arrays are written, not sound; name an .npz file")
     start = time.perf_counter()
     with compiling(arguments), progress_bar(arguments, "simulating") as progress:
         result = simulate(

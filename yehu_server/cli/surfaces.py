@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command
+from yehu_server.cli.arguments import add_command, target
 from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
@@ -32,7 +32,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        type=Path,
+        type=target,
         required=True,
         metavar="FOLDER",
         help="where to write; made if it is not there",

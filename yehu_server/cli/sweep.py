@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import (
@@ -14,6 +13,7 @@ from yehu_server.cli.arguments import (
     compiling,
     positive,
     progress_bar,
+    target,
 )
 from yehu_server.cli.terminal import tell
 
@@ -38,7 +38,7 @@ def add_to(commands: Any) -> None:
     )
     add_gesture(parser)
     parser.add_argument(
-        "-o", "--output", required=True, type=Path, metavar="FOLDER", help="where results go"
+        "-o", "--output", required=True, type=target, metavar="FOLDER", help="where results go"
     )
     parser.add_argument(
         "--vary",

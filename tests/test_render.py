@@ -326,6 +326,19 @@ def test_all_channels_but_the_tenth_play_unless_some_are_chosen(play, duet, word
     assert sound.any() == bool(channels)
 
 
+def test_what_the_tenth_channel_leaves_out_is_told(play, duet, midi, tmp_path, capsys):
+    assert play(duet)[0]["percussion_notes"] == 3
+    assert play(duet, "--channel", 10)[0]["percussion_notes"] == 0
+    assert play(duet, "--channel", 3)[0]["percussion_notes"] == 0
+    drums = midi(*notes((0.0, 0.1, 70, 64), channel=10), name="drums.mid")
+    assert main(["render", str(drums), "-o", str(tmp_path / "x.wav"), "--tail", "0"]) == 0
+    lines = capsys.readouterr().out.splitlines()[1:]
+    assert lines == [
+        "no notes to play",
+        "channel 10 is percussion: 1 note not played; --channel 10 plays them",
+    ]
+
+
 def test_the_other_channels_are_not_heard_at_all(play, duet, midi):
     _, chosen = play(duet, "--channel", 3, "--tail", 0.5)
     alone = midi(*notes((0.2, 0.2, 77, 64), channel=3), cc(0.6, 20, 0), name="alone.mid")

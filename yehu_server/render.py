@@ -63,6 +63,7 @@ class Summary:
     lost_states: int
     friction_bound: float
     notes_by_channel: dict[int, int]
+    percussion_notes: int  # of channel 10, not played
     unknown_programs: tuple[int, ...]  # 1 to 128
 
 
@@ -166,6 +167,7 @@ def render(
         lost_states=performance.instrument.lost_states,
         friction_bound=performance.instrument.friction_bound,
         notes_by_channel=dict(sorted(performance.midi.notes_by_channel.items())),
+        percussion_notes=performance.midi.percussion_notes,
         unknown_programs=tuple(sorted(performance.midi.unknown_programs)),
     )
 

@@ -52,6 +52,9 @@ def render_report(target: Path, summary: Summary) -> str:
         for channel, notes in summary.notes_by_channel.items()
     )
     lines.append(f"channels: {heard}" if heard else "no notes to play")
+    if summary.percussion_notes:
+        notes = counted(summary.percussion_notes, "note")
+        lines.append(f"channel 10 is percussion: {notes} not played; --channel 10 plays them")
     if summary.notes_out_of_range:
         notes = counted(summary.notes_out_of_range, "note")
         lines.append(f"{notes} outside F4 to F6, {FATE[summary.policy]}")

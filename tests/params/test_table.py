@@ -118,6 +118,8 @@ def test_the_engine_holds_its_rows_in_the_order_of_the_table():
         ("bow/force", "/bow/force"),
         ("/playing/pres", "/playing/press"),
         ("/finger/2/positon", "/finger/2/position"),
+        ("bow_position", "/playing/bow_position"),
+        ("/bow_position", "/playing/bow_position"),
     ],
 )
 def test_a_near_miss_is_told_what_was_meant(wrong, meant):

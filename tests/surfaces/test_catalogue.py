@@ -60,11 +60,20 @@ def test_the_server_is_in_what_speaks_to_it(tmp_path):
     assert main(["surfaces", "-o", str(tmp_path), "--check"]) == 1
 
 
+@pytest.mark.parametrize("server", ["10.0.0.7", "localhost", "studio.local", "studio:9000", "::1"])
+def test_a_host_may_be_a_name_or_a_number(tmp_path, server):
+    words = ["surfaces", "-o", str(tmp_path), "--only", "yehu.pd", "--server", server]
+    assert main(words) == 0
+
+
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
         (["--only", "yehu.amxd"], "no surface 'yehu.amxd'; there are yehu.tosc"),
         (["--server", "here:there"], "expected HOST:PORT"),
+        (["--server", "foo"], "expected HOST:PORT"),
+        (["--server", "http://10.0.0.7:9000"], "expected HOST:PORT"),
+        (["--server", "a b:9000"], "expected HOST:PORT"),
     ],
 )
 def test_a_wrong_word_is_refused_and_nothing_written(tmp_path, capsys, words, reason):

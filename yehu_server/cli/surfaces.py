@@ -61,11 +61,14 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.control.addresses import parse_address
-    from yehu_server.errors import OutputError
+    from yehu_server.errors import OutputError, ParameterError
     from yehu_server.surfaces.catalogue import DEFAULT_SERVER, chosen, is_fresh, write
 
     folder: Path = arguments.output
     server = parse_address(arguments.server, *DEFAULT_SERVER)
+    # Nobody looks whether the host is there: a word alone is more likely a slip than its name.
+    if arguments.server.isidentifier() and arguments.server != "localhost":
+        raise ParameterError(f"{arguments.server!r}: expected HOST:PORT, such as 127.0.0.1:9000")
     surfaces = chosen(arguments.only)
     if arguments.check:
         stale = [surface for surface in surfaces if not is_fresh(surface, folder, server)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import ipaddress
 import os
+import re
 import socket
 from collections.abc import Iterable
 from functools import lru_cache
@@ -15,6 +16,8 @@ Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = tuple[str, int]
 
 MOST_KNOWN = 1 << 16
+# The name of a host, or its number in IPv4.
+_NAME = re.compile(r"[A-Za-z0-9_]([A-Za-z0-9_.-]*[A-Za-z0-9_.])?")
 ANYWHERE = "0.0.0.0"  # noqa: S104 - names it only
 
 
@@ -96,6 +99,17 @@ def parse_address(text: str, default_host: str, default_port: int) -> Address:
         number = int(port) if port else default_port
     except ValueError:
         number = -1
-    if not 0 <= number <= 65535:
+    host = host.removeprefix("[").removesuffix("]") or default_host
+    if not 0 <= number <= 65535 or not is_host(host):
         raise ParameterError(f"{text!r}: expected HOST:PORT, such as 127.0.0.1:9000")
-    return host.strip("[]") or default_host, number
+    return host, number
+
+
+def is_host(text: str) -> bool:
+    """Whether this may be the name or number of a host."""
+    if _NAME.fullmatch(text):
+        return True
+    try:
+        return isinstance(ipaddress.ip_address(text), ipaddress.IPv6Address)
+    except ValueError:
+        return False

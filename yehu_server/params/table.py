@@ -267,7 +267,9 @@ def find(address: str) -> Param:
     except KeyError:
         import difflib
 
-        near = difflib.get_close_matches(address, BY_ADDRESS, n=1, cutoff=0.4)
+        # The whole of a last name is nearer than any likeness, such as that of /bow/position.
+        near = [known for known in BY_ADDRESS if known.endswith(f"/{address.lstrip('/')}")]
+        near = near or difflib.get_close_matches(address, BY_ADDRESS, n=1, cutoff=0.4)
         hint = f"; did you mean {near[0]}?" if near else ""
         raise ParameterError(f"unknown parameter {address!r}{hint}") from None
 
@@ -283,7 +285,7 @@ def assignment(text: str) -> tuple[str, float]:
     """Read ``ADDRESS=VALUE``. Errors: ParameterError, also for a value out of range."""
     address, equals, value = text.partition("=")
     if not equals:
-        raise ParameterError(f"{text!r}: expected ADDRESS=VALUE, such as /bow/position=0.1")
+        raise ParameterError(f"{text!r}: expected ADDRESS=VALUE, such as /playing/bow_position=0.1")
     param = find(address.strip())
     try:
         number = float(value)

@@ -100,6 +100,7 @@ class MidiPlayer:
         self._zones: defaultdict[int, Zones] = defaultdict(lambda: Zones(whole=self.mapping.mpe))
         self._channels: defaultdict[int, Channel] = defaultdict(Channel)
         self.notes_by_channel: Counter[int] = Counter()
+        self.percussion_notes = 0  # which are not played
         self.unknown_programs: Counter[int] = Counter()
         self._controllers.begin(None)
 
@@ -120,6 +121,8 @@ class MidiPlayer:
             return
         channel, kind = CHANNELS * port + message.channel, message.type
         if not self.plays(channel) and not self._hears(kind):
+            is_note = kind == "note_on" and message.velocity > 0
+            self.percussion_notes += is_note and self._chosen is None
             return
         if kind == "note_on" and message.velocity > 0:
             self.note_on(Key(channel, message.note), message.velocity / 127.0, frame)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,9 @@ from yehu_server.analysis.pitch import note_name
 from yehu_server.cli.config import expand
 from yehu_server.cli.serve import _options
 from yehu_server.report import connect_lines, query_line
+
+# MIDI systems of other machines, which RtMidi was not compiled for.
+ELSEWHERE = "core" if sys.platform != "darwin" else "windows"
 
 
 def options(*words: str):
@@ -87,6 +91,7 @@ def test_an_error_in_the_file_names_it(file, text, reason, capsys):
         (["--osc", "127.0.0.1:99999"], "expected HOST:PORT"),
         (["--osc-allow", "everyone"], "is not a network"),
         (["--set", "/no/such=1"], "unknown parameter"),
+        (["--midi-api", ELSEWHERE], f"--midi-api {ELSEWHERE}: is not of this system; there are: "),
         (["--mapping", "none"], "no mapping 'none'"),
         (["--config", "/no/such/file.toml"], "No such file"),
         (["--latency", "soon"], "'soon' is not a number"),

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 
 import pytest
 import rtmidi
@@ -515,6 +516,86 @@ def test_a_port_that_cannot_be_opened_is_told_of_once():
     for _ in range(5):
         inputs.look()
     assert told == ["refused"]
+
+
+class Studio(Fresh):
+    """A MIDI system with a keyboard and a synthesizer."""
+
+    def __init__(self) -> None:
+        super().__init__([])
+        self.ports = ["keys", "synth"]
+        self.told: list[tuple[str, dict]] = []
+
+    def get_ports(self) -> list[str]:
+        return self.ports
+
+    def tell(self, event: str, **details: object) -> None:
+        self.told.append((event, details))
+
+    def cancel_callback(self) -> None:
+        pass
+
+    def close_port(self) -> None:
+        pass
+
+
+def test_a_name_that_no_port_has_is_told_once_and_heard_when_it_comes():
+    studio = Studio()
+    order = {"patterns": ["KEY", "breath"], "virtual": None, "api": None}
+    inputs = Inputs(studio, order)
+    inputs._finder, inputs._client = studio, lambda: studio
+    for _ in range(3):
+        inputs.look()
+    assert studio.told == [
+        ("appeared", {"port": "keys"}),
+        ("missing", {"pattern": "breath", "present": ["keys", "synth"]}),
+    ]
+    studio.ports = ["keys", "breath"]
+    inputs.look()
+    assert studio.told[2:] == [("appeared", {"port": "breath"})]
+    studio.ports = ["keys"]
+    inputs.look()
+    assert studio.told[3:] == [("vanished", {"port": "breath"})]
+
+
+def test_a_missing_name_is_said_once_however_often_the_midi_system_begins_anew():
+    said = []
+    ports = MidiPorts(SimpleNamespace(), MidiOptions(), said.append)
+    for _ in range(2):
+        ports._heard({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
+    assert said == ["MIDI: no input is like 'breath' yet (there are: keys, synth)"]
+
+
+def test_a_breath_controller_on_a_port_of_its_own_plays_the_keyboards_note(
+    jack, serve, sender, until
+):
+    server = serve(
+        *("--midi-api", "jack", "--midi-in", "keystep", "--midi-in", "breath"),
+        *("--mapping", "wind", "--audio-device", "null"),
+    )
+    osc = server.osc()
+    server.said("no input is like 'breath' yet")
+    for box in ("keystep", "breath"):
+        sender.tell(f"open {box} out")
+        server.said(f"MIDI: {box}:out is connected", SOON_S)
+    time.sleep(LISTENS_AFTER_S)
+
+    def bows(order: str, *, bowed: bool) -> None:
+        """Send until the bow is drawn, or lifted: on a busy machine JACK loses some."""
+
+        def is_so() -> bool:
+            sender.tell(order)
+            time.sleep(0.1)
+            status = osc.status()
+            return abs(status["note"] - 69.0) < 0.5 and (status["bow_speed"] != 0.0) is bowed
+
+        until(is_so, 5.0, order)
+
+    bows("send keystep 90 45 60", bowed=True)
+    bows("send breath b0 02 00", bowed=False)
+    bows("send breath b0 02 50", bowed=True)
+    assert jack.pid
+    assert server.end() == 0
 
 
 # ---------------------------------------------------------------- without a MIDI system

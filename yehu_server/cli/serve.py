@@ -300,6 +300,7 @@ def _wait(ended: threading.Event, duration_s: float | None) -> None:
 def _options(arguments: argparse.Namespace) -> Any:
     from yehu_server.audio.output import OutputOptions
     from yehu_server.control.addresses import Allowed, parse_address
+    from yehu_server.control.midi_process import check_api
     from yehu_server.control.ports import MidiOptions
     from yehu_server.control.web import WebOptions
     from yehu_server.files import check_apart
@@ -315,6 +316,9 @@ def _options(arguments: argparse.Namespace) -> Any:
         {name: path for name, path in outputs.items() if path is not None},
         [*style.files, *config],
     )
+    midi = arguments.midi_api != "none"
+    if midi:
+        check_api(arguments.midi_api)
     options = ServeOptions(
         output=OutputOptions(
             device=arguments.audio_device,
@@ -324,7 +328,7 @@ def _options(arguments: argparse.Namespace) -> Any:
             channels=arguments.channels,
         ),
         midi=MidiOptions(arguments.midi_in, arguments.virtual_midi, arguments.midi_api)
-        if arguments.midi_api != "none"
+        if midi
         else None,
         osc=parse_address(arguments.osc, "127.0.0.1", 9000),
         allowed=Allowed(arguments.osc_allow),

@@ -9,12 +9,13 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from yehu_server.child import Message, Parent
 from yehu_server.control.jack_watch import JackWatch
 from yehu_server.control.midi_names import StableNames, is_wanted, stable_names
+from yehu_server.errors import ParameterError
 
 LOOK_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # look for a MIDI system, where there is none
@@ -79,6 +80,7 @@ class Inputs:
         self._finder: Any = None  # the one client that asks for names
         self._problem = ""
         self._refused: set[str] = set()
+        self._sought: set[str] = set(self._patterns)  # those that nothing has matched yet
         self._watch: JackWatch | None = None
         self._sensed = time.monotonic()
 
@@ -106,6 +108,15 @@ class Inputs:
                 name, self._patterns
             ):
                 self._add(name, full_name)
+        self._seek(stable)
+
+    def _seek(self, names: Iterable[str]) -> None:
+        """Tell of patterns that no port matches, at the first look."""
+        present = list(names)
+        for pattern in self._sought:
+            if not any(is_wanted(name, [pattern]) for name in present):
+                self._parent.tell("missing", pattern=pattern, present=present)
+        self._sought.clear()
 
     def sense(self) -> None:
         """See `Input.sense`. What came while we were stopped is still to be heard."""
@@ -153,6 +164,19 @@ class Inputs:
         import rtmidi
 
         return rtmidi.MidiIn(self._api, name=CLIENT)
+
+
+def check_api(api: str | None) -> None:
+    """Refuse a MIDI system that is not of this machine: RtMidi would take another unasked.
+
+    Errors: ParameterError.
+    """
+    import rtmidi
+
+    compiled = rtmidi.get_compiled_api()
+    if api is not None and _number(api) not in compiled:
+        there = ", ".join(name for name in APIS if _number(name) in compiled) or "none"
+        raise ParameterError(f"--midi-api {api}: is not of this system; there are: {there}")
 
 
 def open_client(api: str | int | None) -> tuple[Any, str]:

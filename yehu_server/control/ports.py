@@ -51,6 +51,7 @@ class MidiPorts:
         self._gone = threading.Event()
         self._backoff = Backoff()
         self._thread = threading.Thread(target=self._supervise, name="MIDI", daemon=True)
+        self._missing: set[str] = set()  # patterns that nothing matched at the start
         self.received = 0
         self.malformed = 0
         self.problem = ""
@@ -107,6 +108,8 @@ class MidiPorts:
                 self._changed(f"MIDI: {event['port']} is gone; its notes are ended")
             else:
                 log.info("MIDI: %s fell silent (active sensing)", event["port"])
+        elif kind == "missing":
+            self._tell_missing(event["pattern"], event["present"])
         elif kind == "refused":
             self._changed(f"MIDI: {event['port']} cannot be opened: {event['reason']}")
         elif kind == "none":
@@ -117,6 +120,12 @@ class MidiPorts:
             log.info("MIDI: through %s", event["api"])
         elif kind == "gone":
             self._gone.set()
+
+    def _tell_missing(self, pattern: str, present: Sequence[str]) -> None:
+        if pattern not in self._missing:  # once, however often the MIDI system begins anew
+            self._missing.add(pattern)
+            there = ", ".join(present) or "none"
+            self._changed(f"MIDI: no input is like {pattern!r} yet (there are: {there})")
 
     def _receive(self, event: Message) -> None:
         self.received += 1

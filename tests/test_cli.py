@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import os
 import pty
+import re
 import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import mido
@@ -129,6 +131,34 @@ def test_each_command_has_help_with_examples(command, name, expected):
     assert f"yehu-server {name} " in out
     for word in expected.split():
         assert word in out
+
+
+COMMANDS = (
+    *("serve", "devices", "learn", "mappings", "presets", "render", "replay", "simulate"),
+    *("surfaces", "sweep", "mappings show", "mappings convert", "presets check"),
+)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_pages_that_help_names_come_along(command, name, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "1000")  # no path is broken over two lines
+    code, out, _ = command(*name.split(), "--help")
+    assert code == 0
+    pages = re.findall(r"\S*\w\.md\b", out)
+    assert pages or name not in ("serve", "replay", "simulate", "surfaces", "sweep")
+    wheel = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]
+    wheel = wheel["targets"]["wheel"]
+    for page in pages:
+        assert Path(page).is_file()
+        inside = Path(page).relative_to(ROOT)
+        assert inside.parts[0] in wheel["only-include"]
+        assert wheel["sources"][inside.parts[0]] == f"yehu_server/{inside.parts[0]}"
+        assert not any(inside.is_relative_to(left_out) for left_out in wheel["exclude"])
+
+
+def test_all_commands_have_their_help_read(command):
+    listed = re.findall(r"^    ?([a-z]+)  ", command("--help")[1], re.MULTILINE)
+    assert set(listed) == {name for name in COMMANDS if " " not in name}
 
 
 def test_the_version_is_told(command):
@@ -281,6 +311,8 @@ def test_one_bad_file_among_good_ones_is_named(command, tune, tmp_path, out):
         (("--set", "/bow/position=nan"), "/bow/position"),
         (("--set", "/bow/position=inf"), "/bow/position"),
         (("--set", "/bow/position=0.9"), "0.04 to 0.5"),
+        (("--a4", 389), "390 to 480 Hz"),
+        (("--a4", 481), "390 to 480 Hz"),
         (("--set", "/bow/position=1" + "0" * 400), "/bow/position"),
         (("--set", "bow\nposition=0.1"), "position"),
         (("--mapping", "none"), "none"),

@@ -77,6 +77,19 @@ def test_files_are_checked(told, tmp_path):
     assert [str(path) in err, "missing.toml: No such file" in err] == [True, True]
 
 
+def test_all_that_is_wrong_with_each_file_is_told(told, tmp_path):
+    first, second = tmp_path / "first.toml", tmp_path / "second.toml"
+    values = '"/playing/vibrato" = 500\n"/bow/speed" = 1\n"/playing/volume" = "loud"\n'
+    first.write_text(f"{HEAD}program = 0\nabout = 3\nwho = 1\n[values]\n{values}")
+    second.write_text(HEAD + "values = 3\nprogram = 129\n")
+    code, out, err = told("presets", "check", first, second)
+    assert (code, out) == (2, "")
+    lines = err.splitlines()
+    assert [line.split(": ")[1] for line in lines] == [str(first)] * 6 + [str(second)] * 2
+    for what in ("'who'", "about", "program", "500 is not", "/bow/speed is moved", "volume"):
+        assert any(what in line for line in lines[:6]), what
+
+
 # ---------------------------------------------------------------- rendering
 
 

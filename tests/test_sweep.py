@@ -127,6 +127,68 @@ def test_what_cannot_be_varied_is_told_before_anything_runs(gesture, tmp_path, c
     assert not (tmp_path / "runs").exists()
 
 
+@pytest.fixture
+def swept(gesture, tmp_path):
+    """Sweep into one folder; the names of what is then in it."""
+
+    def run(values: str, *words: str, code: int = 0) -> set[str]:
+        vary = ("--vary", f"bow_force={values}", "--quiet")
+        assert main(["sweep", str(gesture), "-o", str(tmp_path / "runs"), *vary, *words]) == code
+        return {path.name for path in (tmp_path / "runs").iterdir()}
+
+    return run
+
+
+def test_a_sweep_before_is_kept_unless_it_may_be_overwritten(swept, tmp_path, capsys):
+    first = swept("0.4,0.5,0.6")
+    (tmp_path / "runs" / "mine.npz").write_text("mine")
+    (tmp_path / "runs" / "notes.txt").write_text("mine")
+    index = (tmp_path / "runs" / "index.json").read_text()
+    assert swept("0.7", code=2) == first | {"mine.npz", "notes.txt"}
+    assert "--overwrite" in capsys.readouterr().err
+    assert (tmp_path / "runs" / "index.json").read_text() == index
+    assert swept("0.7", "--overwrite") == {"0.npz", "index.json", "mine.npz", "notes.txt"}
+    assert swept("0.7", "--overwrite", "--index-only") == {"index.json", "mine.npz", "notes.txt"}
+
+
+def test_what_no_index_tells_of_is_never_removed(swept, tmp_path, capsys):
+    (tmp_path / "runs").mkdir()
+    (tmp_path / "runs" / "07.npz").write_text("of a sweep that was killed")
+    assert swept("0.7", "--overwrite", code=2) == {"07.npz"}
+    assert "07.npz: is of no sweep" in capsys.readouterr().err
+    (tmp_path / "runs" / "07.npz").unlink()
+    (tmp_path / "runs" / "index.json").write_text("<html>")
+    assert swept("0.7", "--overwrite", code=2) == {"index.json"}
+    assert "is not the index of a sweep" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("rows", [[3], [{"file": "../mine.npz"}], [{"file": 3}], []])
+def test_an_index_removes_nothing_but_results(swept, tmp_path, rows):
+    (tmp_path / "runs").mkdir()
+    (tmp_path / "mine.npz").write_text("mine")
+    (tmp_path / "runs" / "index.json").write_text(json.dumps(rows))
+    assert swept("0.7", "--overwrite") == {"0.npz", "index.json"}
+    assert (tmp_path / "mine.npz").exists()
+
+
+def test_what_is_done_when_a_sweep_is_interrupted_stays_and_is_indexed(gesture, tmp_path):
+    source = json.loads(gesture.read_text())
+    runs = variations(source, [axis_of("bow_force=0.4,0.5,0.6,0.7")])
+
+    def interrupt(done: float, _total: float) -> None:
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt, match="of 4 runs are in"):
+        sweep(runs, tmp_path / "runs", workers=1, progress=interrupt)
+    rows = json.loads((tmp_path / "runs" / "index.json").read_text())
+    files = {path.name for path in (tmp_path / "runs").glob("*.npz")}
+    assert {row["file"] for row in rows} == files
+    assert len(rows) >= 2
+    assert len(sweep(runs[:1], tmp_path / "runs", overwrite=True)) == 1
+    assert {path.name for path in (tmp_path / "runs").glob("*.npz")} == {"0.npz"}
+
+
 def test_a_folder_that_cannot_be_made_is_told(gesture, tmp_path, capsys):
     (tmp_path / "file").write_text("")
     words = ["sweep", str(gesture), "-o", str(tmp_path / "file"), "--vary", "bow_force=1"]

@@ -15,8 +15,8 @@ class ParameterError(YehuError):
     """An unknown parameter, a wrong type, a value out of bounds or not finite."""
 
 
-class MappingError(YehuError):
-    """A mapping file that cannot be read or does not make sense.
+class SettingsError(YehuError):
+    """A file of the user's that cannot be read or does not make sense.
 
     `more` has a line for everything else that is wrong with it.
     """
@@ -26,7 +26,11 @@ class MappingError(YehuError):
         self.more = more
 
 
-class PresetError(YehuError):
+class MappingError(SettingsError):
+    """A mapping that is not there, cannot be read or written, or does not make sense."""
+
+
+class PresetError(SettingsError):
     """A preset that is not there, cannot be read or written, or does not make sense."""
 
 

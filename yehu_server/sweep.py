@@ -10,6 +10,7 @@ import itertools
 import json
 import math
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -20,12 +21,13 @@ import numpy as np
 
 from yehu_server.analysis.pitch import pitch_hz
 from yehu_server.errors import OutputError, ParameterError
-from yehu_server.files import write_text
+from yehu_server.files import read_text, write_text
 from yehu_server.score.gesture import CONTROLS, Gesture, gesture_from
 from yehu_server.simulate import Simulation, simulate
 
 MOST_RUNS = 100_000
 INDEX = "index.json"
+_RESULT = re.compile(r"[0-9]+\.npz")
 
 
 @dataclass(frozen=True)
@@ -106,9 +108,13 @@ def sweep(
     strings_every: int = 0,
     keep: bool = True,
     workers: int | None = None,
+    overwrite: bool = False,
     progress: Callable[[float, float], None] | None = None,
 ) -> list[dict[str, Any]]:
     """Run gestures on several cores; write their arrays and an index into a folder.
+
+    Where one fails, or all are interrupted, those that are done stay, with an index of them;
+    the KeyboardInterrupt then tells so.
 
     Parameters
     ----------
@@ -118,6 +124,8 @@ def sweep(
         Whether the arrays are written, beside the index.
     workers : int
         How many run at a time; as many as there are cores by default.
+    overwrite : bool
+        Whether the results of a sweep before may be in the folder; they are removed then.
     progress : callable
         Told runs done, and all runs.
 
@@ -128,7 +136,9 @@ def sweep(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: {error.strerror}") from error
+    make_room(folder, overwrite=overwrite)
     width = len(str(len(runs) - 1))
+    rows: dict[int, dict[str, Any]] = {}
 
     def run(number: int) -> dict[str, Any]:
         varied, gesture = runs[number]
@@ -137,17 +147,58 @@ def sweep(
         if keep:
             row["file"] = f"{number:0{width}}.npz"
             result.save(folder / row["file"])
+        rows[number] = row
         return row
 
-    rows = []
-    # The model runs without the GIL, so threads are enough.
-    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        for row in _in_order(pool, run, len(runs)):
-            rows.append(row)
-            if progress is not None:
-                progress(len(rows), len(runs))
-    write_text(folder / INDEX, json.dumps(rows, indent=1) + "\n")
-    return rows
+    try:
+        # The model runs without the GIL, so threads are enough.
+        with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
+            for done, _ in enumerate(_in_order(pool, run, len(runs)), start=1):
+                if progress is not None:
+                    progress(done, len(runs))
+    except KeyboardInterrupt:
+        kept = f"{len(rows)} of {len(runs)} runs are in {folder}" if rows else ""
+        raise KeyboardInterrupt(kept) from None
+    finally:
+        index = [rows[number] for number in sorted(rows)]
+        if index:
+            write_text(folder / INDEX, json.dumps(index, indent=1) + "\n")
+    return index
+
+
+def make_room(folder: Path, *, overwrite: bool = False) -> None:
+    """Let a folder hold no results of another sweep: its index, and the files that names.
+
+    Errors: OutputError where there are some, unless they may be overwritten; where there is a
+    file like a result that no index names, as a killed sweep leaves it; where one stays.
+    """
+    index = folder / INDEX
+    try:
+        files = [folder / name for name in _indexed(index)]
+        strays = sorted({*folder.glob("*.npz")} - {*files})
+        strays = [file for file in strays if _RESULT.fullmatch(file.name)]
+        if strays:
+            raise OutputError(f"{strays[0]}: is of no sweep that an index tells of; remove it")
+        if not index.exists():
+            return
+        if not overwrite:
+            raise OutputError(f"{index}: there are results of another sweep; --overwrite them")
+        for file in (*files, index):
+            file.unlink(missing_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror}") from error
+
+
+def _indexed(index: Path) -> list[str]:
+    """Names of the files that an index tells of."""
+    try:
+        rows = json.loads(read_text(index))
+    except FileNotFoundError:
+        return []
+    except (ValueError, RecursionError):
+        raise OutputError(f"{index}: is not the index of a sweep; remove it") from None
+    names = [row.get("file") for row in rows if isinstance(row, dict)]
+    return [name for name in names if isinstance(name, str) and _RESULT.fullmatch(name)]
 
 
 def findings(result: Simulation) -> dict[str, Any]:

@@ -44,8 +44,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except MemoryError:
         warn("not enough memory")
         return 2
-    except KeyboardInterrupt:
-        warn("interrupted, nothing written")
+    except KeyboardInterrupt as interrupt:
+        warn(f"interrupted, {str(interrupt) or 'nothing written'}")
         return 130
     return code
 

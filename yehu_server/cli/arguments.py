@@ -14,6 +14,7 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
+from yehu_server.files import shipped_folder
 from yehu_server.lines import one_line
 
 if TYPE_CHECKING:
@@ -48,7 +49,12 @@ def add_command(
     run: Callable[[argparse.Namespace], int] | None = None,
     **words: str,
 ) -> Any:
-    """Add a command, or an action of one, with the words that argparse takes; return its parser."""
+    """Add a command, or an action of one, with the words that argparse takes; return its parser.
+
+    A page that the epilog names, such as docs/osc.md, is shown with where it is.
+    """
+    if "epilog" in words:
+        words["epilog"] = words["epilog"].replace("docs/", f"{shipped_folder('docs')}/")
     parser = commands.add_parser(
         name, formatter_class=RawDescriptionRichHelpFormatter, allow_abbrev=False, **words
     )
@@ -156,7 +162,11 @@ def add_playing(group: Any) -> None:
         help="hold a parameter at a value, such as /playing/bow_position=0.1; may be repeated",
     )
     group.add_argument(
-        "--a4", type=a4, default=440.0, metavar="HZ", help="reference pitch (default: 440)"
+        "--a4",
+        type=a4,
+        default=440.0,
+        metavar="HZ",
+        help="reference pitch, 390 to 480 (default: 440)",
     )
     group.add_argument(
         "--tuning",
@@ -296,7 +306,7 @@ def target(text: str) -> Path:
 
 def a4(text: str) -> float:
     """The frequency of A4 in Hz."""
-    return within(text, 400.0, 480.0, "Hz")
+    return within(text, 390.0, 480.0, "Hz")
 
 
 def whole(text: str) -> int:

@@ -93,7 +93,7 @@ def _check(arguments: argparse.Namespace) -> int:
             preset = read_preset(file)
         except PresetError as error:
             code = 2
-            _warn([str(error)])
+            _warn([str(error), *error.more])
         else:
             _warn(preset.remarks())
             tell(f"{file}: right, {len(preset.values)} values")

@@ -38,7 +38,8 @@ examples:
   yehu-server serve --http 192.168.1.5:9001 --http-allow 192.168.1.0/24
   yehu-server serve --record take.wav --capture take.jsonl
 
-The OSC messages are described in docs/osc.md, OSCQuery in docs/oscquery.md. Ctrl-C ends it.
+The OSC messages are described in docs/osc.md,
+OSCQuery in docs/oscquery.md. Ctrl-C ends it.
 """
 
 HTTP = ("127.0.0.1", 9001)

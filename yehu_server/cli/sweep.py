@@ -22,7 +22,7 @@ examples:
   yehu-server sweep gesture.json -o runs --vary bow_force=0.1:2:20 --vary bow_velocity=0.1,0.2
   yehu-server sweep gesture.json -o runs --vary instrument.bow.epsilon_0=2e4,3e4,4e4 --index-only
 
-Names are those of a gesture file (docs/simulate.md); all combinations are run.
+Names are those of a gesture file; all combinations are run. It is described in docs/simulate.md
 """
 
 
@@ -53,6 +53,11 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--workers", type=positive, metavar="N", help="how many at a time (default: all cores)"
     )
+    parser.add_argument(
+        "--overwrite",
+        action="store_true",
+        help="remove the results of the sweep before from the folder, if there are any",
+    )
     add_reporting(parser)
 
 
@@ -75,6 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
             strings_every=arguments.strings,
             keep=not arguments.index_only,
             workers=arguments.workers,
+            overwrite=arguments.overwrite,
             progress=progress,
         )
     elapsed = time.perf_counter() - start

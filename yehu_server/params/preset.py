@@ -55,27 +55,37 @@ class Preset:
 def parse(text: str, name: str) -> Preset:
     """Read the text of a preset's file.
 
-    Errors: PresetError for what is no preset, one of a newer version, or a wrong value; the
-    whole is refused then.
+    Errors: PresetError for what is no preset, one of a newer version, or wrong values, all of
+    which it names; the whole is refused then.
     """
     try:
         data = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise PresetError(f"not a preset file ({error})") from error
     _check_version(data)
-    for entry in data:
-        if entry not in ENTRIES:
-            raise PresetError(f"unknown entry {entry!r} (known: {', '.join(ENTRIES)})")
+    wrong = [
+        f"unknown entry {entry!r} (known: {', '.join(ENTRIES)})"
+        for entry in data
+        if entry not in ENTRIES
+    ]
     about = data.get("about", "")
     if not isinstance(about, str):
-        raise PresetError(f"about: expected a line of text, got {about!r}")
+        wrong.append(f"about: expected a line of text, got {about!r}")
     program = data.get("program")
     if program is not None and (type(program) is not int or program not in PROGRAMS):
-        raise PresetError(f"program: expected a MIDI program, 1 to 128, got {program!r}")
+        wrong.append(f"program: expected a MIDI program, 1 to 128, got {program!r}")
     entries = data.get("values", {})
     if not isinstance(entries, dict):
-        raise PresetError("values: expected a table of addresses and values")
-    values = {address: _value(address, entries[address]) for address in entries if _has(address)}
+        wrong.append("values: expected a table of addresses and values")
+        entries = {}
+    values = {}
+    for address in filter(_has, entries):
+        try:
+            values[address] = _value(address, entries[address])
+        except PresetError as error:
+            wrong.append(str(error))
+    if wrong:
+        raise PresetError(*wrong)
     unknown = tuple(address for address in entries if not _has(address))
     return Preset(name, values, " ".join(about.split()), program, unknown)
 

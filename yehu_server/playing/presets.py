@@ -34,7 +34,7 @@ def read_preset(path: Path, name: str | None = None) -> Preset:
         reason = error.strerror if isinstance(error, OSError) else None
         raise PresetError(f"{name or path}: {reason or error}") from error
     except PresetError as error:
-        raise PresetError(f"{name or path}: {error}") from error
+        raise PresetError(*(f"{name or path}: {what}" for what in (error, *error.more))) from error
 
 
 def is_name(name_or_path: str) -> bool:

@@ -1,0 +1,241 @@
+"""Writes the seeds that are no text: MIDI files and messages, OSC packets and streams, frames.
+
+    .venv/bin/python tests/fuzz/make_seeds.py
+
+Seeds that are text, and those that once broke something, are files of their own.
+"""
+
+from __future__ import annotations
+
+import struct
+import sys
+from pathlib import Path
+
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
+
+from fuzz.target import SEEDS
+
+
+def chunk(tag: bytes, body: bytes) -> bytes:
+    return tag + struct.pack(">I", len(body)) + body
+
+
+def midi_file(*tracks: bytes, form: int = 0, division: int = 96) -> bytes:
+    head = chunk(b"MThd", struct.pack(">HHH", form, len(tracks), division))
+    return head + b"".join(chunk(b"MTrk", track) for track in tracks)
+
+
+NOTE = b"\x00\x90\x43\x5a\x60\x80\x43\x00"
+END = b"\x00\xff\x2f\x00"
+TEMPO = b"\x00\xff\x51\x03\x07\xa1\x20"
+
+MIDI_FILES = {
+    "one-note": midi_file(NOTE + END),
+    "running-status": midi_file(b"\x00\x90\x43\x5a\x30\x43\x00\x00\x45\x5a\x30\x45\x00" + END),
+    "two-tracks": midi_file(TEMPO + END, NOTE + b"\x00\xb0\x01\x40" + END, form=1),
+    "one-after-another": midi_file(NOTE + END, TEMPO + NOTE + END, form=2),
+    "smpte-time": midi_file(NOTE + END, division=0xE728),
+    "sysex-and-escape": midi_file(b"\x00\xf0\x03\x7e\x00\xf7\x00\xf7\x01\xf8" + NOTE + END),
+    "all-kinds-of-messages": midi_file(
+        NOTE + b"\x00\xe0\x00\x40\x00\xd0\x30\x00\xa0\x43\x30\x00\xc0\x05\x00\xb0\x40\x7f" + END
+    ),
+    "in-riff": b"RIFF"
+    + struct.pack("<I", 100)
+    + b"RMIDdata"
+    + struct.pack("<I", len(midi_file(NOTE + END)))
+    + midi_file(NOTE + END),
+    "cut-short": midi_file(NOTE + NOTE)[:-3],
+    "velocity-above-127": midi_file(b"\x00\x90\x43\xff" + NOTE + END),
+    "a-very-long-rest": midi_file(b"\xff\xff\xff\x7f\x90\x43\x5a" + NOTE + END, division=1),
+}
+
+
+def heard(*messages: bytes, port: int = 0, mapping: int = 1) -> bytes:
+    """Messages at a port, each 10 ms after the one before; see the target."""
+    heads = (bytes([0xA0 | port << 2 | len(message) - 1]) for message in messages)
+    return bytes([mapping]) + b"".join(map(bytes.__add__, heads, messages))
+
+
+ON, OFF = b"\x90\x43\x5a", b"\x80\x43\x00"
+MIDI_MESSAGES = {
+    "a-note": heard(ON, OFF),
+    "a-chord-and-the-pedal": heard(b"\xb0\x40\x7f", ON, b"\x90\x48\x5a", OFF, b"\xb0\x40\x00"),
+    "bend-and-pressure": heard(ON, b"\xe0\x00\x60", b"\xd0\x40", b"\xa0\x43\x40", OFF),
+    "bend-range": heard(b"\xb0\x65\x00", b"\xb0\x64\x00", b"\xb0\x06\x30", ON, b"\xe0\x7f\x7f"),
+    "an-mpe-zone": heard(
+        b"\xb0\x65\x00", b"\xb0\x64\x06", b"\xb0\x06\x04", b"\x91\x43\x5a", b"\xe1\x00\x50"
+    ),
+    "mpe": heard(b"\x92\x43\x5a", b"\xe2\x00\x50", b"\xb2\x4a\x40", b"\x82\x43\x00", mapping=2),
+    "a-wind-controller": heard(b"\xb0\x02\x40", ON, b"\xb0\x02\x00", OFF, mapping=4),
+    "an-nrpn": heard(b"\xb0\x63\x01", b"\xb0\x62\x05", b"\xb0\x06\x40", b"\xb0\x60\x00"),
+    "programs": heard(b"\xc0\x00", ON, b"\xc0\x05", OFF),
+    "mode-messages": heard(ON, b"\xb0\x7b\x00", ON, b"\xb0\x78\x00", b"\xb0\x79\x00"),
+    "damaged": heard(b"\x90", b"\x90\x43", b"\x43\x5a", b"\xf0\x7e\xf7", b"\xff", b"\xfe"),
+}
+
+
+def text(words: str) -> bytes:
+    data = words.encode()
+    return data + b"\0" * (4 - len(data) % 4)
+
+
+def message(address: str, tags: str, data: bytes = b"") -> bytes:
+    return text(address) + text("," + tags) + data
+
+
+def bundle(*elements: bytes, tag: int = 1) -> bytes:
+    sized = (struct.pack(">I", len(element)) + element for element in elements)
+    return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(sized)
+
+
+OSC_NOTE = message("/yehu/note", "ff", struct.pack(">ff", 67.0, 90.0))
+BLOB = message("/a", "b", b"\0\0\0\3abc\0")
+DEEP = OSC_NOTE
+for _ in range(40):
+    DEEP = bundle(DEEP)
+
+OSC_PACKETS = {
+    "a-note": OSC_NOTE,
+    "no-tags": b"/yehu/panic\0",
+    "all-types": message(
+        "/all",
+        "ifsSbhdtcrmTFNI",
+        struct.pack(">if", -5, 0.5)
+        + text("word")
+        + text("symbol")
+        + b"\0\0\0\1x\0\0\0"
+        + struct.pack(">qdQ", -1, 2.5, 1)
+        + b"\0\0\0c\1\2\3\4\0\x90\x43\x5a",
+    ),
+    "lists-in-lists": message("/lists", "[f[i]s]", struct.pack(">fi", 1.0, 2) + text("x")),
+    "a-bundle-for-now": bundle(OSC_NOTE, OSC_NOTE),
+    "a-bundle-for-later": bundle(OSC_NOTE, bundle(BLOB, tag=1 << 63), tag=0xE0000000 << 32),
+    "bundles-too-deep": DEEP,
+    "an-element-of-no-length": b"#bundle\0" + struct.pack(">QI", 1, 0),
+    "a-blob-longer-than-the-packet": message("/a", "b", b"\x7f\xff\xff\xff"),
+    "a-blob-of-negative-length": message("/a", "b", b"\xff\xff\xff\xff"),
+    "a-list-never-closed": message("/a", "[[[["),
+    "text-that-is-none": b"/\xff\xfe\0,\0\0\0",
+    "not-a-number": message("/a", "fd", struct.pack(">fd", float("nan"), float("inf"))),
+}
+
+
+def prefixed(*packets: bytes) -> bytes:
+    return b"".join(struct.pack(">I", len(packet)) + packet for packet in packets)
+
+
+def slip(*packets: bytes) -> bytes:
+    escaped = (
+        packet.replace(b"\xdb", b"\xdb\xdd").replace(b"\xc0", b"\xdb\xdc") for packet in packets
+    )
+    return b"".join(b"\xc0" + packet + b"\xc0" for packet in escaped)
+
+
+# The first byte is the number of bytes that come at once; the target puts the framing's first byte.
+OSC_PREFIXED = {
+    "two-packets": b"\x06" + prefixed(OSC_NOTE, BLOB),
+    "byte-by-byte": b"\x00" + prefixed(OSC_NOTE),
+    "too-long": b"\x04" + b"\0\x10\0\1",
+    "empty-packets": b"\x04" + b"\0" * 32,
+}
+OSC_PREFIXED = {name: data[:1] + data[2:] for name, data in OSC_PREFIXED.items()}
+OSC_SLIP = {
+    "two-packets": b"\x06" + slip(OSC_NOTE, BLOB)[1:],
+    "byte-by-byte": b"\x00" + slip(OSC_NOTE)[1:],
+    "escapes": b"\x03" + slip(b"/\xc0\xdb\0", b"/\xdb\xdc\xdb\xdd\0")[1:],
+    "wrong-escapes": b"\x05" + b"/\xdb\xdb\xdb\x00\xc0/\xdb\xc0\xc0\xc0",
+    "never-ending": b"\xff" + b"/" * 1000,
+}
+
+
+# Programs of the target's: each message is a kind (48 and the number of arguments), an address by
+# its number in two bytes, arguments, and a pause.
+def said(number: int, *arguments: bytes, pause_ms: int = 10) -> bytes:
+    kind = 48 + len(arguments)
+    return bytes([kind]) + struct.pack("<H", number) + b"".join(arguments) + bytes([pause_ms])
+
+
+OSC_CALLS = {
+    "calls-with-a-number": b"".join(said(number, b"\x01\0") for number in range(8, 40)),
+    "calls-without": b"".join(said(number) for number in range(8, 40)),
+    "calls-with-a-word": b"".join(said(number, b"\xbf\x01") for number in range(8, 40)),
+    "calls-with-two-numbers": b"".join(said(n, b"\x43\0", b"\x5a\0") for n in range(8, 40)),
+    "patterns-and-the-own-fader": b"".join(said(number, b"\x43\0") for number in range(8)),
+    "parameters": b"".join(said(number, b"\x01\0") for number in range(40, 70)),
+    "bundles-ahead-of-their-time": b"\x21\x60" + said(0, b"\x43\0", b"\x5a\0") + b"\x05",
+    "no-packets": b"\x00\x08/yehu/no\x00\x01\x04\xff\xff\xff\xff\x01",
+}
+
+
+def frame(opcode: int, data: bytes, *, mask: bytes = b"\1\2\3\4", final: bool = True) -> bytes:
+    length = bytes([0x80 | len(data)])
+    if len(data) > 125:
+        length = b"\xfe" + struct.pack(">H", len(data))
+    masked = bytes(byte ^ mask[place % 4] for place, byte in enumerate(data))
+    return bytes([0x80 * final | opcode]) + length + mask + masked
+
+
+LISTEN = b'{"COMMAND": "LISTEN", "DATA": "/yehu/bow/force"}'
+WEB_SOCKETS = {
+    "listening": frame(1, LISTEN),
+    "an-osc-packet": frame(2, OSC_NOTE),
+    "a-command-in-parts": frame(1, LISTEN[:9], final=False) + frame(0, LISTEN[9:]),
+    "ping-and-close": frame(9, b"hello") + frame(8, b"\x03\xe8bye"),
+    "no-text": frame(1, b"\xff\xfe"),
+    "unknown-opcode": frame(5, b""),
+    "a-control-frame-too-long": frame(9, b"x" * 126),
+    "a-frame-of-2^63-bytes": b"\x82\xff" + b"\xff" * 8 + b"\1\2\3\4",
+    "unmasked": b"\x81\x02{}",
+    "cut-short": frame(1, LISTEN)[:-5],
+}
+
+
+def request(*lines: str, body: bytes = b"") -> bytes:
+    return "".join(f"{line}\r\n" for line in (*lines, "")).encode("latin-1") + body
+
+
+HOST = "Host: 127.0.0.1:9001"
+REQUESTS = {
+    "the-tree": request("GET / HTTP/1.1", HOST),
+    "a-page": request("GET / HTTP/1.1", HOST, "Accept: text/html"),
+    "a-value": request("GET /yehu/bow/force?VALUE HTTP/1.1", HOST),
+    "host-info": request("GET /?HOST_INFO HTTP/1.1", HOST),
+    "metrics": request("GET /metrics HTTP/1.1", HOST, "Accept: application/openmetrics-text"),
+    "two-in-a-row": request("HEAD /yehu HTTP/1.1", HOST) + request("GET /x HTTP/1.1", HOST),
+    "from-another-page": request("GET / HTTP/1.1", HOST, "Origin: http://evil.example"),
+    "another-host": request("GET / HTTP/1.1", "Host: evil.example"),
+    "no-host": request("GET / HTTP/1.0"),
+    "a-post": request("POST / HTTP/1.1", HOST, "Content-Length: 3", body=b"abc"),
+    "chunks": request(
+        "GET / HTTP/1.1", HOST, "Transfer-Encoding: chunked", body=b"3\r\nabc\r\n0\r\n\r\n"
+    ),
+    "a-body-too-long": request("GET / HTTP/1.1", HOST, "Content-Length: 99999999999"),
+    "a-web-socket-of-no-key": request(
+        "GET / HTTP/1.1", HOST, "Upgrade: websocket", "Connection: Upgrade"
+    ),
+    "no-http": b"\xc0/yehu/panic\0,\0\0\0\xc0",
+    "a-host-that-is-an-odd-address": request("GET / HTTP/1.1", "Host: [::1%25x]:99999"),
+    "an-origin-without-end": request("GET / HTTP/1.1", HOST, "Origin: " + "http://[" * 30),
+}
+
+MADE = {
+    "midi-file": MIDI_FILES,
+    "midi-messages": MIDI_MESSAGES,
+    "osc-packet": OSC_PACKETS,
+    "osc-prefixed": OSC_PREFIXED,
+    "osc-slip": OSC_SLIP,
+    "osc-calls": OSC_CALLS,
+    "websocket": WEB_SOCKETS,
+    "http-request": REQUESTS,
+}
+
+
+def main() -> None:
+    for target, seeds in MADE.items():
+        (SEEDS / target).mkdir(parents=True, exist_ok=True)
+        for name, data in seeds.items():
+            (SEEDS / target / name).write_bytes(data)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+"""Captured sessions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fuzz.target import scratch, target, written
+from yehu_server.engine.gesture import SILENCE
+from yehu_server.errors import YehuError
+from yehu_server.params.table import ENGINE
+from yehu_server.physics.grid import check_rate
+from yehu_server.score.capture import CaptureWriter, read_capture
+
+LONGEST_S = 24 * 3600.0
+WORDS = (
+    b'{"end": ',
+    b'{"rest": ',
+    b', "since": ',
+    b'{"lost": 1, "events": 1}',
+    b"\n[0, ",
+    b", 0]\n",
+    b'"/bow/speed"',
+    b'"/finger/1/position"',
+    b'"silence"',
+    b"1e308",
+    b"NaN",
+    b"Infinity",
+)
+
+
+@target("capture", YehuError, words=WORDS)
+def capture(data: bytes) -> None:
+    """A capture holds events in order, in range and of bearable length, and can be written again."""
+    path = written(data, "file.jsonl")
+    taken = read_capture(path)
+    try:
+        check_rate(taken.rate)
+    except YehuError:
+        return  # replay refuses it
+    most_frames = LONGEST_S * taken.rate
+    assert 0 <= taken.frames <= most_frames
+    assert all(0 <= since <= rest <= most_frames for rest, since in taken.rests.items())
+    assert all(0.0 < tension < math.inf for tension in taken.tensions)
+    events = taken.events
+    for frame, index, value, ramp in events.tolist():
+        assert 0 <= frame <= taken.frames
+        assert 0 <= ramp <= most_frames
+        if index != SILENCE:
+            assert ENGINE[index].lo <= value <= ENGINE[index].hi
+    again = scratch() / "again.jsonl"
+    again.unlink(missing_ok=True)
+    writer = CaptureWriter(again, rate=taken.rate, seed=0, tensions=taken.tensions)
+    writer.events(events)
+    for rest, since in taken.rests.items():
+        writer.note("rest", rest, since=since)
+    writer.close(taken.frames)
+    read = read_capture(again)
+    assert np.array_equal(read.events, events)
+    assert (read.rate, read.tensions, read.rests) == (taken.rate, taken.tensions, taken.rests)
+    assert read.end == taken.frames

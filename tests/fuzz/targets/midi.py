@@ -1,0 +1,89 @@
+"""MIDI files, and what comes in at MIDI ports."""
+
+from __future__ import annotations
+
+import functools
+import math
+from types import SimpleNamespace
+
+import mido
+
+from fuzz.instrument import Instrument, check_values
+from fuzz.target import Program, target, written
+from yehu_server.control.midi_process import Input
+from yehu_server.control.ports import MidiOptions, MidiPorts
+from yehu_server.errors import ScoreError
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import load, shipped_mappings
+from yehu_server.playing.style import Style
+from yehu_server.score.smf import MAX_DURATION_H, read_score
+
+PORTS = 4
+MOST_MESSAGES = 1000
+
+
+@target(
+    "midi-file",
+    ScoreError,
+    words=(b"MThd\0\0\0\6", b"MTrk", b"RIFF", b"RMIDdata", b"\xff\x51\3", b"\xff\x2f\0", b"\xf0\4"),
+)
+def midi_file(data: bytes) -> None:
+    """A file is a score of valid messages in order within a day, or a ScoreError."""
+    score = read_score(written(data, "file.mid"))
+    assert score.events
+    times = [event.time_s for event in score.events]
+    assert times == sorted(times)
+    assert 0.0 <= times[0] <= times[-1] <= score.duration_s <= MAX_DURATION_H * 3600
+    assert math.isfinite(score.duration_s)
+    for event in score.events:
+        message = event.message
+        assert message.type == "reset" or hasattr(message, "channel")
+        assert mido.Message.from_bytes(message.bytes()) == message
+
+
+@functools.cache
+def styles() -> list[Style]:
+    return [Style(mapping=load(name), programs=True) for name in shipped_mappings()]
+
+
+class MidiIn:
+    """Stands in for RtMidi."""
+
+    def ignore_types(self, **_kinds: bool) -> None:
+        pass
+
+    def set_callback(self, callback) -> None:
+        self.receive = callback
+
+
+@target("midi-messages", words=(b"\x33\x90\x43\x5a", b"\x33\xb0\x01\x7f", b"\x32\xd0\x40"))
+def midi_messages(data: bytes) -> None:
+    """Whatever ports send, the instrument hears finite values within range, and can be silenced.
+
+    The first byte chooses the mapping. Each message begins with a byte: its length in two bits,
+    the port in two, and milliseconds since the one before.
+    """
+    program = Program(data)
+    every = styles()
+    instrument = Instrument()
+    player = LivePlayer(instrument, every[program.byte() % len(every)], delay_ms=3.0)
+    ports = MidiPorts(player, MidiOptions(), lambda _line: None)
+
+    def tell(kind: str, **fields: object) -> None:
+        ports._heard({"event": kind, **fields})
+
+    midi_ins = [MidiIn() for _ in range(PORTS)]
+    for number, midi_in in enumerate(midi_ins):
+        Input(midi_in, f"port {number}", None, SimpleNamespace(tell=tell))
+    for _ in range(MOST_MESSAGES):
+        if not program:
+            break
+        head = program.byte()
+        message = program.take(1 + head % 4)
+        instrument.now_s += 1e-3 * (head >> 4)
+        if message:
+            midi_ins[head // 4 % PORTS].receive((list(message), 0.0))
+    check_values(player)
+    player.panic(frame=player.frame_of())
+    assert player.pitch is None
+    assert instrument.values["/bow/speed"] == 0.0

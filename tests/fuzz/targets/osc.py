@@ -1,0 +1,93 @@
+"""OSC packets, and the two framings of packets in a stream."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+
+from fuzz.target import target
+from yehu_server.control.framing import Framing, FramingError
+from yehu_server.control.packets import Message, PacketError, answer, pack, unpack
+
+WORDS = (
+    b"#bundle\0",
+    b"/yehu/note\0\0",
+    b",ff\0",
+    b",[f]",
+    b",b\0\0",
+    b"\0\0\0\1",
+    b"\xff\xff\xff",
+)
+
+
+def messages(packet: bytes) -> list[Message]:
+    return list(unpack(packet))
+
+
+@target("osc-packet", PacketError, words=WORDS)
+def osc_packet(data: bytes) -> None:
+    """A packet is messages that read the same when they are written again, or a PacketError."""
+    for message in messages(data):
+        assert message.address.startswith("/")
+        assert message.due_s is None or math.isfinite(message.due_s)
+        written = [answer(message.address, message.payload)]
+        if all(type(argument) in (str, float, bool) for argument in message.arguments):
+            written.append(pack(message.address, *message.arguments))
+        for packet in written:
+            (again,) = messages(packet)
+            assert again.address == message.address
+            assert len(again.arguments) == len(message.arguments)
+        assert repr(messages(written[0])[0].arguments) == repr(message.arguments)
+
+
+def received(framing: Framing, pieces: Iterable[bytes]) -> tuple[list[bytes], bool]:
+    """The packets of a stream, and whether it was refused."""
+    packets: list[bytes] = []
+    try:
+        for piece in pieces:
+            packets += framing.packets(piece)
+    except FramingError:
+        return packets, True
+    return packets, False
+
+
+def check_stream(stream: bytes, piece_bytes: int) -> None:
+    pieces = (stream[at : at + piece_bytes] for at in range(0, len(stream), piece_bytes))
+    packets, is_refused = received(Framing(), pieces)
+    whole, whole_is_refused = received(Framing(), [stream])
+    assert is_refused == whole_is_refused
+    assert packets[: len(whole)] == whole  # of one that is refused, what came before may be lost
+    for packet in packets:
+        try:
+            messages(packet)
+        except PacketError:
+            continue
+
+
+def check_wrapping(begin: bytes, packets: Iterable[bytes]) -> None:
+    """What one end wraps, the other unwraps."""
+    here, there = Framing(), Framing()
+    list(here.packets(begin))
+    for packet in packets:
+        assert list(there.packets(here.wrap(packet))) == [packet]
+
+
+def streams(begin: bytes) -> Callable[[bytes], None]:
+    def read(data: bytes) -> None:
+        check_stream(begin + data[1:], 1 + int.from_bytes(data[:1], "big"))
+        if data[1:]:
+            check_wrapping(begin, [b"/" + data[1:], b"#bundle\0" + data[1:]])
+
+    return read
+
+
+@target("osc-slip", words=(*WORDS, b"\xc0", b"\xdb\xdc", b"\xdb\xdd", b"\xc0\xc0"))
+def osc_slip(data: bytes) -> None:
+    """A stream of SLIP gives the same packets however it is cut, or is refused."""
+    streams(b"\xc0")(data)
+
+
+@target("osc-prefixed", words=(*WORDS, b"\0\0\0\4", b"\0\0\0\x0c", b"\0\x10\0\0"))
+def osc_prefixed(data: bytes) -> None:
+    """A stream of lengths and packets gives the same ones however it is cut, or is refused."""
+    streams(b"\0")(data)

@@ -1,0 +1,196 @@
+"""What OSC messages do: the whole handler, on an instrument that only listens."""
+
+from __future__ import annotations
+
+import functools
+import math
+import os
+import shutil
+import struct
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from unittest.mock import patch
+
+from fuzz.instrument import Instrument, check_values
+from fuzz.target import Program, scratch, target
+from yehu_server.control import clients, osc, schedule
+from yehu_server.control.calls import CALLS, PREFIX
+from yehu_server.control.osc import OscHandler
+from yehu_server.control.packets import pack, unpack
+from yehu_server.params.table import TABLE, UNIT
+from yehu_server.playing import live
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import load
+from yehu_server.playing.presets import Presets
+from yehu_server.playing.style import Style
+
+MOST_PACKETS = 200
+SINCE_1900_S = 2_208_988_800
+ADDRESSES = [
+    *("/yehu/*", "/yehu/*/*", "/yehu/bow/[a-z", "/*/note", "/", "/yehu/{,}", "/my/fader"),
+    "/yehu/subscribed",  # as another server says
+    *(PREFIX + call.address for call in CALLS),
+    *(PREFIX + param.address + form for param in TABLE for form in ("", UNIT)),
+]
+NAMES = ["", "/bow/force", "/playing/dynamics", "/*/*", "/[", "../x", "mine", "vibrato", "é" * 9]
+
+
+class Clock:
+    """Stands in for the module ``time``."""
+
+    def __init__(self) -> None:
+        self.now = 1000.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+    def monotonic_ns(self) -> int:
+        return round(1e9 * self.now)
+
+    def time(self) -> float:
+        return 1.7e9 + self.now
+
+
+class Ear:
+    """A peer who only listens."""
+
+    def __init__(self, port: int = 1) -> None:
+        self.name = f"ear:{port}"
+        self.packets: list[bytes] = []
+        self.others: dict[int, Ear] = {}
+
+    def send(self, packet: bytes) -> None:
+        self.packets.append(packet)
+
+    def at(self, port: int) -> Ear:
+        return self.others.setdefault(port, Ear(port))
+
+
+class Desk:
+    """What the server does beside playing."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def status(self) -> dict[str, float | str]:
+        return {"load": 0.5, "recording": ""}
+
+    def soon(self, action: Callable[[], None]) -> None:
+        action()
+
+    def tree_changed(self, path: str) -> None:
+        assert path.startswith("/")
+
+    def say(self, line: str) -> None:
+        self.lines.append(line)
+
+    def start_recording(self, name: str) -> str:
+        return f"{name}.wav"
+
+    def stop_recording(self) -> str:
+        return "take.wav"
+
+
+@contextmanager
+def still_time() -> Iterator[Clock]:
+    """A clock that moves when told to, and nobody's settings."""
+    clock = Clock()
+    home = scratch() / "config"
+    shutil.rmtree(home, ignore_errors=True)
+    with (
+        patch.object(clients, "time", clock),
+        patch.object(schedule, "time", clock),
+        patch.object(osc, "time", clock),
+        patch.object(live, "time", clock),
+        patch.dict(os.environ, XDG_CONFIG_HOME=str(home)),
+    ):
+        yield clock
+
+
+@functools.cache
+def mapping():
+    return load("keyboard-expressive")
+
+
+def argument(program: Program) -> tuple[str, bytes]:
+    """A type tag, and the argument's bytes."""
+    kind = program.byte()
+    if kind < 128:  # mostly a number that means something
+        return "f", struct.pack(">f", kind + program.byte() / 256.0)
+    tag = "fidhTFNItrbsSc[]m"[kind % 17]
+    if tag in "fitcrm":
+        return tag, program.full(4 if tag != "t" else 8)
+    if tag in "dh":
+        return tag, program.full(8)
+    if tag == "b":
+        blob = program.take(program.byte())
+        return tag, struct.pack(">i", len(blob)) + blob + b"\0" * (-len(blob) % 4)
+    if tag in "sS":
+        choice = program.byte()
+        name = NAMES[choice].encode() if choice < len(NAMES) else program.take(choice % 16)
+        name = name.replace(b"\0", b"")
+        return tag, name + b"\0" * (4 - len(name) % 4)
+    return tag, b""
+
+
+def packet(program: Program, now_s: float, depth: int = 3) -> bytes:
+    """The next packet of a program."""
+    kind = program.byte()
+    if kind < 16:
+        return program.take(program.byte())
+    if kind < 48 and depth:
+        due_s = now_s + (program.byte() - 64) * 1e-3
+        tag = round((due_s + SINCE_1900_S) * 2**32) if kind < 40 else 1
+        inner = [packet(program, now_s, depth - 1) for _ in range(kind % 4)]
+        sized = (struct.pack(">i", len(one)) + one for one in inner)
+        return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(sized)
+    number = program.byte() | program.byte() << 8
+    address = ADDRESSES[number % len(ADDRESSES)].encode()
+    tagged = [argument(program) for _ in range(kind % 4)]
+    tags = "," + "".join(tag for tag, _ in tagged)
+    head = address + b"\0" * (4 - len(address) % 4) + tags.encode() + b"\0" * (4 - len(tags) % 4)
+    return head + b"".join(data for _, data in tagged)
+
+
+@target("osc-calls")
+def osc_calls(data: bytes) -> None:
+    """Any messages are acted on or answered, no value leaves its range, and a panic ends all.
+
+    The bytes are a program: packets of addresses and arguments, and pauses between them.
+    """
+    with still_time() as clock:
+        instrument, desk, ear = Instrument(), Desk(), Ear()
+        style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
+        player = LivePlayer(instrument, style, delay_ms=3.0)
+        handler = OscHandler(player, desk)
+
+        def take(what: bytes) -> None:
+            for _ in handler.handle(what, ear, clock.monotonic_ns()):
+                pass
+            handler.tick()
+
+        program = Program(data)
+        for _ in range(MOST_PACKETS):
+            if not program:
+                break
+            take(packet(program, clock.time()))
+            pause_s = 1e-3 * (program.byte() % 64)
+            clock.now += pause_s
+            instrument.now_s += pause_s
+            handler.tick()
+        check_values(player)
+        take(pack("/yehu/panic"))
+        clock.now += 1.0
+        instrument.now_s += 1.0
+        handler.tick()
+        assert player.pitch is None
+        assert handler.waiting == 0
+        assert instrument.values.get("/bow/speed", 0.0) == 0.0
+    for answer in (*ear.packets, *(one for other in ear.others.values() for one in other.packets)):
+        for message in unpack(answer):
+            assert message.address.startswith(PREFIX)
+            numbers = (value for value in message.arguments if isinstance(value, float))
+            assert all(math.isfinite(value) for value in numbers) or message.address.endswith(
+                "/pong"
+            )
+    assert not any("\n" in line for line in desk.lines)

@@ -1,0 +1,124 @@
+"""Files in physical units: gestures, instruments, bodies."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from typing import Any
+
+import numpy as np
+
+from fuzz.target import target, written
+from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.physics.quantities import Quantities, read_body, read_quantities
+from yehu_server.score.gesture import Gesture, gesture_from, read_gesture
+
+MOST_FRAMES = 50_000  # whose controls are worked out
+
+
+def figures(thing: Any) -> list[float]:
+    """All numbers in nested data classes and tuples."""
+    if dataclasses.is_dataclass(thing):
+        return [n for item in dataclasses.fields(thing) for n in figures(getattr(thing, item.name))]
+    if isinstance(thing, tuple):
+        return [number for part in thing for number in figures(part)]
+    return [thing]
+
+
+def check_quantities(quantities: Quantities) -> None:
+    assert all(math.isfinite(number) for number in figures(quantities))
+    for section in dataclasses.fields(quantities):
+        part = getattr(quantities, section.name)
+        for owner, items in (
+            (quantities, [section]),
+            (part, dataclasses.fields(part) if dataclasses.is_dataclass(part) else []),
+        ):
+            for item in items:
+                if "lo" in item.metadata:
+                    for number in figures(getattr(owner, item.name)):
+                        assert item.metadata["lo"] <= number <= item.metadata["hi"], item.name
+
+
+@target(
+    "gesture",
+    ScoreError,
+    ParameterError,
+    words=(
+        b'"sample_rate": ',
+        b'"duration": ',
+        b'"instrument": {',
+        b'"controls": {',
+        b'"bow_force": [[0, 1]]',
+        b'"pluck": {"string": 1, "position": 0.1}',
+        b'"hammer": [[0, 1]]',
+        b"1e308",
+        b"NaN",
+        b"-1",
+    ),
+    also=("examples/gesture.json",),
+)
+def gesture(data: bytes) -> None:
+    """A gesture has finite controls within their bounds and reads the same again, or is refused."""
+    read = read_gesture(written(data, "file.json"))
+    check_quantities(read.quantities)
+    assert read.frames >= 1
+    if read.frames <= MOST_FRAMES:
+        assert np.isfinite(read.control_rows()).all()
+    again = gesture_from(json.loads(json.dumps(read.source)), written(data, "file.json").parent)
+    assert without_source(again) == without_source(read)
+
+
+def without_source(read: Gesture) -> Gesture:
+    return dataclasses.replace(read, source={})
+
+
+@target(
+    "instrument",
+    ParameterError,
+    words=(
+        b"[bow]\n",
+        b"[string_1]\n",
+        b"[finger]\n",
+        b"T = ",
+        b"bridge_x = 0.3",
+        b"epsilon_0 = 3e4",
+        b"body = ",
+        b"1e999",
+        b"nan",
+    ),
+)
+def instrument(data: bytes) -> None:
+    """An instrument file (TOML, or JSON where it begins with {) gives quantities in range."""
+    ending = "json" if data[:1] == b"{" else "toml"
+    check_quantities(read_quantities(written(data, f"instrument.{ending}")))
+
+
+@target(
+    "body",
+    ParameterError,
+    words=(
+        b'"bridge_modes": [',
+        b'"frequency_hz": ',
+        b'"mass_kg": ',
+        b'"damping_kg_per_s": ',
+        b'"radiation": {',
+        b'"sections": [',
+        b'"direct_gain": ',
+        b'"sample_rate_hz": ',
+        b"1e308",
+        b"NaN",
+        b"Infinity",
+    ),
+    also=("yehu_server/physics/body.json",),
+)
+def body(data: bytes) -> None:
+    """A body is passive and stable, of finite figures, or a ParameterError."""
+    read = read_body(written(data, "body.json"))
+    assert all(math.isfinite(number) for number in figures(read))
+    assert min(*read.mass, *read.frequency_hz, read.radiation_rate) > 0.0
+    assert min(read.damping) >= 0.0
+    assert all(math.isfinite(omega) for omega in read.omega)
+    for _, _, a1, a2 in read.sections:
+        roots = np.roots([1.0, a1, a2])
+        assert np.all(np.abs(roots) < 1.0)

@@ -1,0 +1,170 @@
+"""Files of settings: config, presets, mappings."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import io
+import math
+from pathlib import Path
+
+from fuzz.target import scratch, target, written
+from yehu_server import cli
+from yehu_server.cli.config import expand
+from yehu_server.errors import MappingError, ParameterError, PresetError
+from yehu_server.params.preset import SAVED
+from yehu_server.params.table import BY_ADDRESS, TABLE, find
+from yehu_server.playing.mapping import with_bases
+from yehu_server.playing.mapping_file import Sheet, json_of, read_sheet, sheet_of, text_of, toml_of
+from yehu_server.playing.mapping_writer import as_toml, rebound, tidied
+from yehu_server.playing.presets import Presets, read_preset
+
+ADDRESSES = tuple(f'"{address}"'.encode() for address in list(BY_ADDRESS)[::4])
+TOML = (
+    b"1e999",
+    b"nan",
+    b"true",
+    b'"""',
+    b"'''",
+    b"[[",
+    b"]]",
+    b"{ a = 1 }",
+    b"\\u0000",
+    b"1979-05-27",
+)
+
+
+@functools.cache
+def parser():
+    return cli._parser()
+
+
+@target(
+    "config",
+    ParameterError,
+    words=(
+        b"midi-in = [",
+        b"audio-device = ",
+        b"osc = ",
+        b"blocksize = ",
+        b"set = { ",
+        b"\n[set]\n",
+        b"rate = ",
+        b"http = false",
+        b"config = ",
+        b"help = true",
+        *ADDRESSES,
+        *TOML,
+    ),
+)
+def config(data: bytes) -> None:
+    """A config file is options that serve takes, a ParameterError, or a line and exit code 2."""
+    words = ["serve", "--config", str(written(data, "config.toml"))]
+    out, err = io.StringIO(), io.StringIO()
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            expanded = expand(words, parser())
+            parser().parse_args(expanded)
+    except SystemExit as end:
+        assert end.code == 2
+        assert err.getvalue().count("\n") == 1
+    assert not out.getvalue()
+
+
+@target(
+    "preset",
+    PresetError,
+    words=(
+        b"version = 1\n",
+        b"about = ",
+        b"program = 5\n",
+        b"[values]\n",
+        b"values = {",
+        *ADDRESSES,
+        *TOML,
+    ),
+    also=("presets/tremolo.toml",),
+)
+def preset(data: bytes) -> None:
+    """A preset has values in range, and keeps what is saved into it; or is a PresetError."""
+    own = scratch() / "presets"
+    own.mkdir(exist_ok=True)
+    path = own / "fuzzed.toml"
+    path.write_bytes(data)
+    read = read_preset(path)
+    for address, value in read.values.items():
+        assert find(address).lo <= value <= find(address).hi
+    assert read.program is None or 1 <= read.program <= 128
+    assert read.about.count("\n") == 0
+    read.remarks()
+    presets = Presets(own)
+    assert presets.load("fuzzed") == Presets(own).load("fuzzed")
+    values = {param.address: param.lo for param in TABLE}
+    presets.save("fuzzed", values)
+    again = Presets(own).load("fuzzed")
+    for address in SAVED:
+        assert again.values[address] == float(f"{values[address]:.7g}"), address
+    assert {**read.values, **again.values} == dict(again.values)
+    assert (again.about, again.program, again.unknown) == (read.about, read.program, read.unknown)
+
+
+MAPPING_WORDS = (
+    b"name = ", b"about = ", b"base = ", b"mpe = true\n", b"[start]\n", b"\n[[bind]]\n", b"source = ", b"target = ",
+    b"input = [", b"span = [", b'curve = "exp"', b"curve = [[0, 0], [1, 1]]", b"invert = true", b"smoothing = ",
+    b"channel = ", b"soft = true", b"alone = true", b'"cc 1"', b'"cc 1/33"', b'"bend"', b'"nrpn 5"', b'"/a/b"',
+    *ADDRESSES, *TOML,
+)  # fmt: skip
+
+
+def check(sheet: Sheet, path: Path, text: str) -> None:
+    """Its binds move their targets within range, and it reads the same when written."""
+    for address, value in sheet.start:
+        assert find(address).lo <= value <= find(address).hi
+    for bind in sheet.binds:
+        lo, hi = find(bind.target).lo, find(bind.target).hi
+        room = 1e-9 * (hi - lo)
+        for place in (0.0, 0.3, 1.0):
+            value = bind.apply(place)
+            assert lo - room <= value <= hi + room, (bind, value)
+            assert 0.0 <= bind.place_of(value) <= 1.0, (bind, value)
+        for argument in (0.0, 0.5, 1e30, -1e30):
+            assert 0.0 <= bind.place(argument) <= 1.0, bind
+        bind.terms, bind.curve_name  # noqa: B018 - are worked out as they are read
+    for again in (as_toml(sheet), tidied(sheet, text), rebound(sheet, text, [], [])):
+        assert sheet_of(path, toml_of(path, again)) == sheet
+    less = rebound(sheet, text, sheet.binds[:1], sheet.binds[:1])
+    assert set(sheet_of(path, toml_of(path, less)).binds) == set(sheet.binds)
+    with contextlib.suppress(MappingError):  # of its base
+        mapping = with_bases(path, sheet)
+        assert all(math.isfinite(value) for _, value in mapping.start)
+
+
+@target("mapping", MappingError, words=MAPPING_WORDS, also=("mappings/wind.toml",))
+def mapping(data: bytes) -> None:
+    """A mapping has binds within range and reads the same when written, or is a MappingError."""
+    path = written(data, "mapping.toml")
+    check(read_sheet(path), path, text_of(path))
+
+
+@target(
+    "mapping-json",
+    MappingError,
+    words=(
+        b'{"bind": [',
+        b'"source": ',
+        b'"target": ',
+        b'"from": ',
+        b'"to": ',
+        b'"span": ',
+        b'"curve": ',
+        b"null",
+        b"1e999",
+        b'"cc 1"',
+        *ADDRESSES,
+    ),
+)
+def mapping_json(data: bytes) -> None:
+    """The same of the JSON that ``mappings show`` prints."""
+    path = written(data, "mapping.json")
+    text = text_of(path)
+    check(sheet_of(path, json_of(path, text)), path, "")

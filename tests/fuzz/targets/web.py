@@ -1,0 +1,262 @@
+"""OSCQuery's HTTP and WebSockets, on a connection that is none."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import json
+import logging
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from aiohttp import web as aiohttp_web
+from aiohttp.test_utils import make_mocked_request
+
+from fuzz.target import ROOT, target
+from yehu_server.control import web_sockets
+from yehu_server.control.calls import PREFIX
+from yehu_server.control.clients import Clients
+from yehu_server.control.packets import PacketError, unpack
+from yehu_server.control.query import LISTENABLE
+from yehu_server.control.status import STATUS, Kind
+from yehu_server.control.web import Sources, WebOptions, WebServer
+from yehu_server.control.web_sockets import CommandError
+from yehu_server.params.table import TABLE
+
+HOST = "127.0.0.1"
+VALUES = {param.address: param.default for param in TABLE}
+STATES: dict[str, float | str] = {row.name: "" if row.kind is Kind.TEXT else 0 for row in STATUS}
+TICKS = 3
+ENDS_WITHIN_S = 5.0
+HANDSHAKE = (
+    b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+    b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+)
+
+
+class Osc:
+    """Stands in for the OSC thread."""
+
+    host, port, is_full = HOST, 9000, False
+
+    def receive(self, packet: bytes, peer: Any) -> None:
+        assert peer.name
+        try:
+            list(unpack(packet))
+        except PacketError:
+            return
+
+    def call_soon(self, action: Callable[[], None]) -> None:
+        action()
+
+    def leave(self, peer: Any) -> None:
+        assert peer.name
+
+
+class Connection(asyncio.Transport):
+    """Keeps what is written."""
+
+    def __init__(self) -> None:
+        super().__init__({"peername": (HOST, 40_000), "sockname": (HOST, 9001)})
+        self.written = bytearray()
+        self._is_closing = False
+
+    def write(self, data: bytes) -> None:
+        self.written += data
+
+    def writelines(self, pieces: Iterable[bytes]) -> None:
+        self.written += b"".join(pieces)
+
+    def is_closing(self) -> bool:
+        return self._is_closing
+
+    def close(self) -> None:
+        self._is_closing = True
+
+    abort = close
+
+    def pause_reading(self) -> None:
+        pass
+
+    def resume_reading(self) -> None:
+        pass
+
+
+class Defects(logging.Handler):
+    """Keeps the exceptions that a server logs to live on."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[BaseException] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if record.exc_info and record.exc_info[1]:
+            self.found.append(record.exc_info[1])
+
+    def check(self) -> None:
+        """Raise the first."""
+        found, self.found = self.found, []
+        if found:
+            raise found[0]
+
+
+class House:
+    """A web server and its loop, which never listens."""
+
+    def __init__(self) -> None:
+        self.loop = asyncio.new_event_loop()
+        self.defects = Defects()
+        logger = logging.getLogger("yehu_server.control.web")
+        logger.addHandler(self.defects)
+        logger.propagate = False
+        self.loop.set_exception_handler(lambda _loop, said: self._defect(said))
+        clients = Clients(lambda: VALUES, PREFIX, lambda: STATES)
+        sources = Sources(lambda: VALUES, lambda: STATES, ROOT / "mappings")
+        self.web = WebServer(WebOptions((HOST, 0)), Osc(), clients, sources)
+        self._clients = clients
+        self._server = self.loop.run_until_complete(self._set_up())
+
+    def _defect(self, said: dict[str, Any]) -> None:
+        self.defects.found.append(said.get("exception") or AssertionError(said["message"]))
+
+    async def _set_up(self) -> aiohttp_web.Server:
+        app = aiohttp_web.Application(logger=logging.getLogger("yehu_server.control.web"))
+        app.router.add_route("*", "/{path:.*}", self.web._answer)
+        quiet = logging.getLogger("fuzz.quiet")
+        quiet.disabled = True
+        runner = aiohttp_web.AppRunner(app, access_log=None, logger=quiet, lingering_time=0.0)
+        await runner.setup()
+        assert runner.server is not None
+        return runner.server
+
+    def talk(self, *pieces: bytes) -> bytes:
+        """Let a client say this and hang up; what it was answered. Errors: of the server."""
+        answered = self.loop.run_until_complete(self._talk(pieces))
+        self._clients.flush()
+        self.defects.check()
+        assert self.web.traffic.failures == 0
+        return answered
+
+    async def _talk(self, pieces: Iterable[bytes]) -> bytes:
+        before = asyncio.all_tasks()
+        connection, protocol = Connection(), self._server()
+        protocol.connection_made(connection)
+        for piece in pieces:
+            if not connection.is_closing():
+                protocol.data_received(piece)
+                for _ in range(TICKS):
+                    await asyncio.sleep(0)
+        protocol.connection_lost(None)
+        if left := asyncio.all_tasks() - before:
+            _, stuck = await asyncio.wait(left, timeout=ENDS_WITHIN_S)
+            assert not stuck, "a connection that has ended is not forgotten"
+        return bytes(connection.written)
+
+
+@functools.cache
+def house() -> House:
+    return House()
+
+
+def no_constant(name: str) -> None:
+    raise AssertionError(f"{name} is no JSON")
+
+
+WORDS = (
+    b"GET ",
+    b"HEAD ",
+    b"POST ",
+    b" HTTP/1.1\r\n",
+    b"Host: 127.0.0.1\r\n",
+    b"Origin: http://127.0.0.1\r\n",
+    b"Upgrade: websocket\r\n",
+    b"Content-Length: ",
+    b"Transfer-Encoding: chunked\r\n",
+    b"\r\n\r\n",
+    b"?VALUE",
+    b"/yehu/bow/force",
+    b"?HOST_INFO",
+    b"/metrics",
+    b"Accept: text/html\r\n",
+)
+
+
+@target("http-request", words=WORDS)
+def http_request(data: bytes) -> None:
+    """Whatever a connection sends, it is answered without a failure, or waited for."""
+    half = len(data) // 2
+    answered = house().talk(data[:half], data[half:])
+    assert not answered or answered.startswith(b"HTTP/1.")
+    assert b"HTTP/1.1 500" not in answered
+
+
+@target(
+    "http-path",
+    words=(
+        b"/yehu/",
+        b"?VALUE",
+        b"?HOST_INFO",
+        b"&",
+        b"%2f",
+        b"%00",
+        b"..",
+        b"/parameters.html",
+        b"/bow/force",
+    ),
+)
+def http_path(data: bytes) -> None:
+    """Any path and query is answered with JSON, a page, or a client's error."""
+    try:
+        request = make_mocked_request("GET", "/" + data.decode("latin-1"), {"Host": HOST})
+    except ValueError:  # no path; aiohttp refuses it
+        return
+    request = request.clone(remote=HOST)
+    server = house()
+    try:
+        response = server.loop.run_until_complete(server.web._answer(request))
+    except aiohttp_web.HTTPException as error:
+        server.defects.check()
+        assert 400 <= error.status < 500
+        assert (error.text or "").count("\n") == 1
+        return
+    assert response.status in {200, 204}
+    if response.content_type == "application/json":
+        json.loads(response.body, parse_constant=no_constant)
+
+
+@target(
+    "websocket",
+    words=(
+        b"\x81\x85",
+        b"\x82\x7e",
+        b"\x88\x80",
+        b"\x89\x00",
+        b"\x7f\xff\xff",
+        b'{"COMMAND":"LISTEN","DATA":"',
+    ),
+)
+def websocket(data: bytes) -> None:
+    """Whatever frames come, a WebSocket goes on or is closed, and ends with its connection."""
+    half = len(data) // 2
+    answered = house().talk(HANDSHAKE, data[:half], data[half:])
+    assert answered.startswith(b"HTTP/1.1 101")
+    assert house().web.traffic.web_sockets == 0
+
+
+@target(
+    "websocket-command",
+    CommandError,
+    words=(
+        b'{"COMMAND": ',
+        b'"LISTEN"',
+        b'"IGNORE"',
+        b', "DATA": ',
+        b'"/yehu/bow/force"',
+        b'"/yehu/status/load"',
+    ),
+)
+def websocket_command(data: bytes) -> None:
+    """A text frame is a command for an address that there is, or a CommandError."""
+    command, address = web_sockets._read(data.decode(errors="replace"))
+    assert command in {"LISTEN", "IGNORE"}
+    assert address in LISTENABLE

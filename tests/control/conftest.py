@@ -622,13 +622,3 @@ def _quiet() -> Iterator[None]:
 def kit() -> SimpleNamespace:
     """What tests without a hall need to make connections of their own."""
     return SimpleNamespace(Client=Client, Stream=Stream)
-
-
-@pytest.fixture(scope="module")
-def fuzz_stage() -> Iterator[Stage]:
-    """A stage for many examples, on a still clock of its own."""
-    with pytest.MonkeyPatch.context() as patch:
-        clock = StillTime()
-        for module in (clients, schedule, osc, live):
-            patch.setattr(module, "time", clock)
-        yield Stage(clock)

@@ -1,4 +1,7 @@
-"""Whatever comes in, the server goes on, leaves no note behind, and does not grow."""
+"""Whatever comes in over the wire, the server goes on, leaves no note behind, does not grow.
+
+What single packets do is fuzzed: see tests/fuzz.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,6 @@ import time
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from yehu_server.params.table import TABLE
 
@@ -29,76 +30,6 @@ ASKING = [
     for call in ("/reset", "/get", "/params", "/status", "/subscribe", "/unsubscribe", "/ping")
 ]
 ODD = ["/yehu/*", "/yehu/*/*", "/yehu/bow/[a-z", "/*/note", "/", "/yehu/record/start", "/yehu/{,}"]
-
-floats = st.floats(width=32) | st.sampled_from([0.0, -0.0, 1.0, 67.0, 90.0, 127.0, math.nan])
-arguments = st.one_of(
-    floats.map(lambda v: ("f", v)),
-    st.floats().map(lambda v: ("d", v)),
-    st.integers(-(2**31), 2**31 - 1).map(lambda v: ("i", v)),
-    st.integers(-(2**63), 2**63 - 1).map(lambda v: ("h", v)),
-    st.sampled_from([("T", True), ("F", False), ("N", None), ("I", None)]),
-    st.integers(0, 2**64 - 1).map(lambda v: ("t", v)),
-    st.integers(0, 2**32 - 1).map(lambda v: ("r", v)),
-    st.binary(max_size=20).map(lambda v: ("b", v)),
-    st.sampled_from(["", "/bow/force", "/*/*", "/[", "../x", "é" * 9]).map(lambda v: ("s", v)),
-)
-messages = st.tuples(
-    st.sampled_from(PARAMS + PLAYING * 3 + ASKING + ODD), st.lists(arguments, max_size=3)
-)
-bundles = st.recursive(
-    messages.map(lambda message: ("message", *message)),
-    lambda inner: st.tuples(st.just("bundle"), st.floats(-1.0, 0.05), st.lists(inner, max_size=4)),
-    max_leaves=8,
-)
-patient = settings(
-    max_examples=150, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
-
-
-def encoded(wire, thing, now_s: float) -> bytes:
-    if thing[0] == "bundle":
-        _, in_s, inner = thing
-        return wire.bundle(now_s + in_s, *(encoded(wire, each, now_s) for each in inner))
-    _, address, tagged = thing
-    values = [value for tag, value in tagged if tag != "I"]
-    return wire.message(address, *values, tags="".join(tag for tag, _ in tagged))
-
-
-# ---------------------------------------------------------------- on the stage: any exception shows
-
-
-@patient
-@given(things=st.lists(bundles, max_size=12))
-def test_any_messages_are_acted_on_or_answered_and_a_panic_ends_all(wire, fuzz_stage, things):
-    stage = fuzz_stage
-    for thing in things:
-        stage.take(encoded(wire, thing, stage.clock.time()))
-        stage.pass_time(0.003)
-    stage.tell("/panic")
-    stage.pass_time(0.05)
-    assert stage.player.pitch is None
-    assert stage.handler.waiting == 0
-    stage.ear.packets.clear()
-    stage.ear.others.clear()
-
-
-@patient
-@given(values=st.lists(st.tuples(st.sampled_from(PARAMS), arguments), max_size=30))
-def test_every_value_stays_a_finite_number_within_its_bounds(wire, fuzz_stage, values):
-    stage = fuzz_stage
-    for address, (tag, value) in values:
-        stage.take(wire.message(address, *([value] if tag != "I" else []), tags=tag))
-    for param in TABLE:
-        assert param.lo <= stage.player.value(param.address) <= param.hi
-    stage.pass_time(0.01)
-    for _, _, target in stage.events:
-        assert math.isfinite(target)
-    stage.events.clear()
-    stage.tell("/reset")
-    stage.pass_time(0.01)
-
-
-# ---------------------------------------------------------------- over the wire
 
 
 def garbage(wire, chance: random.Random, now_s: float) -> bytes:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from fuzz.findings import Findings
 from fuzz.target import MOST_BYTES, Target
 
-AT_ONCE = 200  # examples, between two looks at the clock
+AT_ONCE = 50  # examples, between two looks at the clock
 
 
 def inputs(target: Target) -> st.SearchStrategy[bytes]:
@@ -44,10 +44,9 @@ def fuzz(target: Target, seconds: float, seed: int, folder: Path) -> None:
     def one(data: bytes) -> None:
         nonlocal executions
         executions += 1
-        if time.monotonic() < until:
-            findings.take(data)
+        findings.take(data)
 
-    while time.monotonic() < until:
+    while not executions or time.monotonic() < until:
         seed += 1
         options = hypothesis.settings(
             max_examples=AT_ONCE,

@@ -24,6 +24,13 @@ def messages(packet: bytes) -> list[Message]:
     return list(unpack(packet))
 
 
+def can_be_sent(argument: object) -> bool:
+    """Whether we might send it: floats go out in 32 bits."""
+    if isinstance(argument, float):
+        return not 3e38 < abs(argument) < math.inf
+    return isinstance(argument, str | bool)
+
+
 @target("osc-packet", PacketError, words=WORDS)
 def osc_packet(data: bytes) -> None:
     """A packet is messages that read the same when they are written again, or a PacketError."""
@@ -31,7 +38,7 @@ def osc_packet(data: bytes) -> None:
         assert message.address.startswith("/")
         assert message.due_s is None or math.isfinite(message.due_s)
         written = [answer(message.address, message.payload)]
-        if all(type(argument) in (str, float, bool) for argument in message.arguments):
+        if all(map(can_be_sent, message.arguments)):
             written.append(pack(message.address, *message.arguments))
         for packet in written:
             (again,) = messages(packet)
@@ -75,8 +82,8 @@ def check_wrapping(begin: bytes, packets: Iterable[bytes]) -> None:
 def streams(begin: bytes) -> Callable[[bytes], None]:
     def read(data: bytes) -> None:
         check_stream(begin + data[1:], 1 + int.from_bytes(data[:1], "big"))
-        if data[1:]:
-            check_wrapping(begin, [b"/" + data[1:], b"#bundle\0" + data[1:]])
+        content = data[1:MOST_WRAPPED_BYTES]
+        check_wrapping(begin, [b"/" + content, b"#bundle\0" + content])
 
     return read
 

@@ -54,8 +54,10 @@ class Clock:
 class Ear:
     """A peer who only listens."""
 
+    takes_more = True
+
     def __init__(self, port: int = 1) -> None:
-        self.name = f"ear:{port}"
+        self.host, self.name = "ear", f"ear:{port}"
         self.packets: list[bytes] = []
         self.others: dict[int, Ear] = {}
 

@@ -39,6 +39,9 @@ class Osc:
 
     host, port, is_full = HOST, 9000, False
 
+    def is_behind(self, _peer: Any) -> bool:
+        return False
+
     def receive(self, packet: bytes, peer: Any) -> None:
         assert peer.name
         try:
@@ -131,10 +134,11 @@ class House:
 
     def talk(self, *pieces: bytes) -> bytes:
         """Let a client say this and hang up; what it was answered. Errors: of the server."""
+        before = self.web.traffic.failures
         answered = self.loop.run_until_complete(self._talk(pieces))
         self._clients.flush()
         self.defects.check()
-        assert self.web.traffic.failures == 0
+        assert self.web.traffic.failures == before
         return answered
 
     async def _talk(self, pieces: Iterable[bytes]) -> bytes:
@@ -206,18 +210,19 @@ def http_request(data: bytes) -> None:
 )
 def http_path(data: bytes) -> None:
     """Any path and query is answered with JSON, a page, or a client's error."""
+    path = "/" + data.decode("latin-1")
     try:
-        request = make_mocked_request("GET", "/" + data.decode("latin-1"), {"Host": HOST})
-    except ValueError:  # no path; aiohttp refuses it
+        request = make_mocked_request("GET", path, {"Host": HOST}, transport=Connection())
+    except ValueError:  # no path: aiohttp's own parser refuses it
         return
-    request = request.clone(remote=HOST)
     server = house()
     try:
         response = server.loop.run_until_complete(server.web._answer(request))
     except aiohttp_web.HTTPException as error:
-        server.defects.check()
-        assert 400 <= error.status < 500
-        assert (error.text or "").count("\n") == 1
+        response = error
+    server.defects.check()
+    if isinstance(response, aiohttp_web.HTTPException):
+        assert 400 <= response.status < 500
         return
     assert response.status in {200, 204}
     if response.content_type == "application/json":

@@ -7,10 +7,9 @@ import time
 from pathlib import Path
 
 import hypothesis
-from hypothesis import strategies as st
-
 from fuzz.findings import Findings
 from fuzz.target import MOST_BYTES, Target
+from hypothesis import strategies as st
 
 AT_ONCE = 50  # examples, between two looks at the clock
 

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import atheris
-
 from fuzz.findings import Findings
 from fuzz.target import MOST_BYTES, ROOT, Target
 

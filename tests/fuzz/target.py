@@ -54,8 +54,11 @@ class Target:
         with bounded():
             try:
                 self.read(data)
-            except self.refusals as error:
-                assert str(error).strip(), "a refusal without a reason"
+            except self.refusals as refusal:
+                reason = str(refusal)
+            else:
+                return
+        assert reason.strip(), "a refusal without a reason"
 
     def seeds(self) -> dict[str, bytes]:
         """Inputs to begin with, by name."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 from fuzz.target import scratch, target
+
 from yehu_server.playing import calibration
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration, calibration_for
 

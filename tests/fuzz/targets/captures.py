@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-
 from fuzz.target import scratch, target, written
+
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.errors import YehuError
 from yehu_server.params.table import ENGINE
@@ -32,7 +32,7 @@ WORDS = (
 
 @target("capture", YehuError, words=WORDS)
 def capture(data: bytes) -> None:
-    """A capture holds events in order, in range and of bearable length, and can be written again."""
+    """A capture is of bearable length, its events are in range, and it can be written again."""
     path = written(data, "file.jsonl")
     taken = read_capture(path)
     try:

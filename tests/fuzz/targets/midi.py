@@ -7,9 +7,9 @@ import math
 from types import SimpleNamespace
 
 import mido
-
 from fuzz.instrument import Instrument, check_values
 from fuzz.target import Program, target, written
+
 from yehu_server.control.midi_process import Input
 from yehu_server.control.ports import MidiOptions, MidiPorts
 from yehu_server.errors import ScoreError

@@ -13,6 +13,7 @@ from unittest.mock import patch
 
 from fuzz.instrument import Instrument, check_values
 from fuzz.target import Program, scratch, target
+
 from yehu_server.control import clients, osc, schedule
 from yehu_server.control.calls import CALLS, PREFIX
 from yehu_server.control.osc import OscHandler

@@ -8,10 +8,10 @@ import math
 from typing import Any
 
 import numpy as np
-
 from fuzz.target import target, written
+
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.physics.quantities import Quantities, read_body, read_quantities
+from yehu_server.physics.quantities import read_body, read_quantities
 from yehu_server.score.gesture import Gesture, gesture_from, read_gesture
 
 MOST_FRAMES = 50_000  # whose controls are worked out
@@ -26,18 +26,16 @@ def figures(thing: Any) -> list[float]:
     return [thing]
 
 
-def check_quantities(quantities: Quantities) -> None:
+def check_quantities(quantities: Any) -> None:
+    """Every quantity is within its bounds, and all is finite."""
     assert all(math.isfinite(number) for number in figures(quantities))
-    for section in dataclasses.fields(quantities):
-        part = getattr(quantities, section.name)
-        for owner, items in (
-            (quantities, [section]),
-            (part, dataclasses.fields(part) if dataclasses.is_dataclass(part) else []),
-        ):
-            for item in items:
-                if "lo" in item.metadata:
-                    for number in figures(getattr(owner, item.name)):
-                        assert item.metadata["lo"] <= number <= item.metadata["hi"], item.name
+    for item in dataclasses.fields(quantities):
+        value = getattr(quantities, item.name)
+        if "lo" in item.metadata:
+            lo, hi = item.metadata["lo"], item.metadata["hi"]
+            assert all(lo <= number <= hi for number in figures(value)), item.name
+        elif dataclasses.is_dataclass(value):
+            check_quantities(value)
 
 
 @target(

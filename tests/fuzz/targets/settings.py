@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fuzz.target import scratch, target, written
+
 from yehu_server import cli
 from yehu_server.cli.config import expand
 from yehu_server.errors import MappingError, ParameterError, PresetError
@@ -67,7 +68,11 @@ def config(data: bytes) -> None:
             expanded = expand(words, parser())
             parser().parse_args(expanded)
     except SystemExit as end:
-        assert end.code == 2
+        code = end.code
+    else:
+        code = None
+    if code is not None:
+        assert code == 2
         assert err.getvalue().count("\n") == 1
     assert not out.getvalue()
 
@@ -110,11 +115,31 @@ def preset(data: bytes) -> None:
 
 
 MAPPING_WORDS = (
-    b"name = ", b"about = ", b"base = ", b"mpe = true\n", b"[start]\n", b"\n[[bind]]\n", b"source = ", b"target = ",
-    b"input = [", b"span = [", b'curve = "exp"', b"curve = [[0, 0], [1, 1]]", b"invert = true", b"smoothing = ",
-    b"channel = ", b"soft = true", b"alone = true", b'"cc 1"', b'"cc 1/33"', b'"bend"', b'"nrpn 5"', b'"/a/b"',
-    *ADDRESSES, *TOML,
-)  # fmt: skip
+    b"name = ",
+    b"about = ",
+    b"base = ",
+    b"mpe = true\n",
+    b"[start]\n",
+    b"\n[[bind]]\n",
+    b"source = ",
+    b"target = ",
+    b"input = [",
+    b"span = [",
+    b'curve = "exp"',
+    b"curve = [[0, 0], [1, 1]]",
+    b"invert = true",
+    b"smoothing = ",
+    b"channel = ",
+    b"soft = true",
+    b"alone = true",
+    b'"cc 1"',
+    b'"cc 1/33"',
+    b'"bend"',
+    b'"nrpn 5"',
+    b'"/a/b"',
+    *ADDRESSES,
+    *TOML,
+)
 
 
 def meant(sheet: Sheet) -> Sheet:

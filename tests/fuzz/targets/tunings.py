@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 from fuzz.target import ROOT, target, written
+
 from yehu_server.errors import ParameterError
 from yehu_server.playing.tuning import KEYS, MOST_SEMITONES, Tuning, read_tuning
 

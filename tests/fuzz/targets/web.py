@@ -11,8 +11,8 @@ from typing import Any
 
 from aiohttp import web as aiohttp_web
 from aiohttp.test_utils import make_mocked_request
-
 from fuzz.target import ROOT, target
+
 from yehu_server.control import web_sockets
 from yehu_server.control.calls import PREFIX
 from yehu_server.control.clients import Clients

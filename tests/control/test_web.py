@@ -319,6 +319,15 @@ def test_those_who_connect_and_say_nothing_are_bounded(port, patience):
     patience(lambda: ask(port, "/yehu/bow/force?TYPE").status == 200, "there is room again")
 
 
+@pytest.mark.parametrize(
+    "line", [b"Connection: \x98", b"Upgrade: \xff", b"Accept: \xed\xa0\x80", b"X: \xc0"]
+)
+def test_a_header_that_is_no_text_is_refused_and_counts_as_no_defect(web_house, port, line):
+    head = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\n" + line + b"\r\n\r\n"
+    assert raw(port, head).startswith(b"HTTP/1.1 400")
+    assert web_house.server.status()["http_failures"] == 0
+
+
 # ---------------------------------------------------------------- begin and end
 
 

@@ -177,6 +177,10 @@ class WebServer:
         if request.remote is None or request.remote not in self._allowed:
             raise web.HTTPForbidden(text="not for this address\n")
         headers = request.headers
+        if not all(map(_is_text, (request.path, *headers.values()))):
+            refused = web.HTTPBadRequest(text="no UTF-8\n")
+            refused.force_close()
+            raise refused
         reason = refusal(headers.getall("Host", []), headers.getall("Origin", []), self._names)
         if reason:
             raise web.HTTPForbidden(text=f"{reason}\n")
@@ -226,6 +230,15 @@ def _listen(host: str, port: int) -> socket.socket:
     except OSError as error:
         where = shown(host, port)
         raise DeviceError(f"OSCQuery: cannot listen at {where}: {why(error)}") from error
+
+
+def _is_text(received: str) -> bool:
+    """Whether it was UTF-8; what was not holds stray bytes that no answer could repeat."""
+    try:
+        received.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _reads_html(request: web.Request) -> bool:

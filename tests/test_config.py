@@ -11,6 +11,7 @@ from yehu_server import cli
 from yehu_server.analysis.pitch import note_name
 from yehu_server.cli.config import expand
 from yehu_server.cli.serve import _options
+from yehu_server.errors import ParameterError
 from yehu_server.report import connect_lines, query_line
 
 # MIDI systems of other machines, which RtMidi was not compiled for.
@@ -25,6 +26,25 @@ def options(*words: str):
 @pytest.fixture
 def file(tmp_path) -> Path:
     return tmp_path / "serve.toml"
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("help = true", "cannot ask for help"),
+        (f"rate = {'9' * 5000}", "digits"),
+        (f"rate = 0x{'f' * 5000}", "digits"),
+        (f"a{'.a' * 30_000} = 1", "parts"),
+        (f"a = {'[' * 3000}{']' * 3000}", "too deep"),
+        (f"midi-in = [{'1,' * 30_000}]", "more than 1000 options"),
+    ],
+    ids=["help", "digits", "hex digits", "parts", "brackets", "options"],
+)
+def test_a_file_that_is_odd_gets_one_line(file, text, reason):
+    file.write_text(text)
+    with pytest.raises(ParameterError, match=reason) as caught:
+        options("--config", str(file))
+    assert "\n" not in str(caught.value)
 
 
 def test_without_options_this_machine_alone_is_heard():

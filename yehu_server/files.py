@@ -10,8 +10,10 @@ import os
 import re
 import secrets
 import stat
+import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from yehu_server.errors import OutputError
 
@@ -228,6 +230,25 @@ def write_text(target: Path, text: str) -> None:
         file.write(text)
         file.flush()
         os.fsync(file.fileno())
+
+
+# tomllib takes time by the square of a key's parts: 20 s for one of 64 kB.
+MOST_KEY_PARTS = 16
+_LONG_KEY = re.compile(
+    r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
+    f"{{{MOST_KEY_PARTS}}}",
+    re.ASCII,
+)
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """The entries of a TOML text. Errors: ValueError."""
+    if _LONG_KEY.search(text):
+        raise ValueError(f"a key has more than {MOST_KEY_PARTS} parts")
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise ValueError("nested too deep") from None
 
 
 def shipped_folder(name: str) -> Path:

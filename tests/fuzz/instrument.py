@@ -1,4 +1,4 @@
-"""An instrument that only listens, and minds what it is told."""
+"""An instrument that only listens, and minds what it is told; and a calibration for it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,16 @@ import math
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.playing.live import LivePlayer
+
+# Near what is measured, which takes seconds.
+CALIBRATION = Calibration(
+    440.0,
+    (51.0, 64.0),
+    tuple(tuple((20.0,) * len(SPEEDS) for _ in pitches) for pitches in PITCHES),
+    tuple(tuple((-30.0,) * len(SPEEDS) for _ in (None, *pitches)) for pitches in PITCHES),
+)
 
 
 class Instrument:

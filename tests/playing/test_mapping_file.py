@@ -16,7 +16,7 @@ from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
 from yehu_server.playing.binds import Bind, Table
 from yehu_server.playing.mapping import load, mapping_folder, own_mappings, shipped_mappings
-from yehu_server.playing.mapping_file import read_sheet, sheet_of, toml_of
+from yehu_server.playing.mapping_file import MOST_COMPLAINTS, read_sheet, sheet_of, toml_of
 from yehu_server.playing.mapping_writer import as_toml, tidied
 from yehu_server.playing.toml_lines import lines_of
 
@@ -166,6 +166,12 @@ def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines(read):
         read(wrong.replace('name = "mine"', "mpe = 2"))
     lines = [line.partition("mine.toml:")[2] for line in (str(caught.value), *caught.value.more)]
     assert [line.split(":")[0] for line in lines] == ["2", "8", "10", "22"]
+
+
+def test_of_very_many_errors_the_first_are_told(read):
+    with pytest.raises(MappingError) as caught:
+        read(BIND.replace("pressure", "presure") * 500)
+    assert len(caught.value.more) == MOST_COMPLAINTS - 1
 
 
 def test_an_error_in_a_list_of_inline_tables_has_the_line_of_the_list(read):

@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import Parser
 from yehu_server.errors import ParameterError
-from yehu_server.files import read_text
+from yehu_server.files import parse_toml, read_text
 
-OPTION = "--config"
+OPTION, HELP = "--config", "--help"
+MOST_WORDS = 1000  # argparse takes time by the square of their number
 
 
 def as_words(path: Path) -> list[str]:
     """The file's options as they would be on the command line. Errors: ParameterError."""
     try:
-        data = tomllib.loads(read_text(path))
+        data = parse_toml(read_text(path))
     except OSError as error:
         raise ParameterError(f"{path}: {error.strerror}") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+    except ValueError as error:
         raise ParameterError(f"{path}: not a TOML file ({error})") from error
     words: list[str] = []
     for name, value in data.items():
         option = f"--{name.replace('_', '-')}"
         if option == OPTION:
             raise ParameterError(f"{path}: a config file cannot name another")
+        if option == HELP:
+            raise ParameterError(f"{path}: a config file cannot ask for help")
         if value is True:
             words.append(option)
         elif isinstance(value, dict):  # such as [set]
@@ -34,12 +36,17 @@ def as_words(path: Path) -> list[str]:
         elif value is not False:
             values = value if isinstance(value, list) else [value]
             words += [f"{option}={_text(path, name, entry)}" for entry in values]
+    if len(words) > MOST_WORDS:
+        raise ParameterError(f"{path}: more than {MOST_WORDS} options")
     return words
 
 
 def _text(path: Path, name: str, value: Any) -> str:
     if isinstance(value, str | int | float) and not isinstance(value, bool):
-        return str(value)
+        try:
+            return str(value)
+        except ValueError as error:  # an int of thousands of digits
+            raise ParameterError(f"{path}: {name}: {error}") from error
     raise ParameterError(f"{path}: {name}: expected a word or a number, got {value!r}")
 
 

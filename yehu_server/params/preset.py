@@ -6,12 +6,12 @@ The format is described in presets/README.md.
 from __future__ import annotations
 
 import difflib
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from yehu_server.errors import ParameterError, PresetError
+from yehu_server.files import parse_toml
 from yehu_server.params.table import BY_ADDRESS, TABLE
 
 VERSION = 1
@@ -59,8 +59,8 @@ def parse(text: str, name: str) -> Preset:
     which it names; the whole is refused then.
     """
     try:
-        data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        data = parse_toml(text)
+    except ValueError as error:
         raise PresetError(f"not a preset file ({error})") from error
     _check_version(data)
     wrong = [

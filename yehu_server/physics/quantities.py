@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import lru_cache
@@ -16,7 +15,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from yehu_server.errors import ParameterError
-from yehu_server.files import read_text
+from yehu_server.files import parse_toml, read_text
 
 BODY_FILE = Path(__file__).with_name("body.json")
 
@@ -135,7 +134,7 @@ def read_body(path: Path = BODY_FILE) -> Body:
     except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         raise ParameterError(f"body file {path}: not a body file ({error!r})") from error
     figures = (
-        *body.frequency_hz,
+        *body.omega,
         *body.mass,
         *body.damping,
         body.radiation_rate,
@@ -267,7 +266,7 @@ def read_quantities(path: Path) -> Quantities:
     """
     try:
         text = read_text(path)
-        data = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
+        data = json.loads(text) if path.suffix == ".json" else parse_toml(text)
         return override(Quantities(), data, path.parent)
     except OSError as error:
         raise ParameterError(f"{path}: {error.strerror}") from error

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 from yehu_server.errors import MappingError, ParameterError
-from yehu_server.files import MAX_SETTINGS_BYTES, read_text
+from yehu_server.files import MAX_SETTINGS_BYTES, parse_toml, read_text
 from yehu_server.params.spec import Curve
 from yehu_server.playing import mapping_entries as entries
 from yehu_server.playing import sources
@@ -27,6 +26,8 @@ BIND_ENTRIES = (
     "global",
 )  # fmt: skip
 _LINE = re.compile(r"\(at line ([0-9]+)")
+
+MOST_COMPLAINTS = 50
 
 T = TypeVar("T")
 
@@ -53,12 +54,14 @@ class Complaints:
         self._said: list[tuple[int, str]] = []
 
     def add(self, way: Way, what: str) -> None:
-        """Keep what is wrong with an entry."""
+        """Keep what is wrong with an entry. Errors: as of `end`, where it is too much to go on."""
         if self._lines is None:
             self._lines = lines_of(self._text)
         line = line_at(self._lines, way)
         where = f"{self._path}: " if line is None else f"{self._path}:{line}: "
         self._said.append((line or 0, where + what))
+        if len(self._said) == MOST_COMPLAINTS:  # each takes milliseconds to find a near name for
+            self.end()
 
     def end(self) -> None:
         """Errors: MappingError, where something was wrong; its `more` are the others."""
@@ -85,8 +88,8 @@ def text_of(path: Path) -> str:
 def toml_of(path: Path, text: str) -> dict[str, Any]:
     """The entries of a TOML text. Errors: MappingError."""
     try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # ValueError: also a number of many digits
+        return parse_toml(text)
+    except ValueError as error:
         found = _LINE.search(str(error))
         line = f":{found[1]}" if found else ""
         raise MappingError(f"{path}{line}: not a mapping file ({error})") from error

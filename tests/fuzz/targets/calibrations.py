@@ -7,18 +7,13 @@ import math
 from pathlib import Path
 from unittest.mock import patch
 
+from fuzz.instrument import CALIBRATION
 from fuzz.target import scratch, target
 
 from yehu_server.playing import calibration
-from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration, calibration_for
+from yehu_server.playing.calibration import PITCHES, Calibration, calibration_for
 
 RATE = 31_000.0  # not one that comes along
-MEASURED = Calibration(
-    440.0,
-    (51.0, 64.0),
-    tuple(tuple((20.0,) * len(SPEEDS) for _ in pitches) for pitches in PITCHES),
-    tuple(tuple((-30.0,) * len(SPEEDS) for _ in (None, *pitches)) for pitches in PITCHES),
-)
 
 
 def asked() -> Calibration:
@@ -26,7 +21,7 @@ def asked() -> Calibration:
     with (
         patch.object(calibration, "data_folder", lambda: scratch() / "cache"),
         patch.object(calibration, "calibration_key", lambda *_: "fuzzed"),
-        patch.object(calibration, "calibrate", lambda *_, **__: MEASURED),
+        patch.object(calibration, "calibrate", lambda *_, **__: CALIBRATION),
     ):
         return calibration_for(RATE)
 
@@ -67,11 +62,14 @@ def calibration_cache(data: bytes) -> None:
         data = bytes(changed)
     file.write_bytes(data)
     found = asked()
-    assert found.a4 == MEASURED.a4
+    assert found.a4 == CALIBRATION.a4
     assert all(0.0 < tension < math.inf for tension in found.tensions)
     for tables in (found.sharpening, found.levels):
         assert len(tables) == len(PITCHES)
-    for has, needs in ((found.sharpening, MEASURED.sharpening), (found.levels, MEASURED.levels)):
+    for has, needs in (
+        (found.sharpening, CALIBRATION.sharpening),
+        (found.levels, CALIBRATION.levels),
+    ):
         for table, like in zip(has, needs, strict=True):
             assert [len(row) for row in table] == [len(row) for row in like]
             assert all(math.isfinite(value) for row in table for value in row)

@@ -7,7 +7,7 @@ import math
 from types import SimpleNamespace
 
 import mido
-from fuzz.instrument import Instrument, check_values
+from fuzz.instrument import CALIBRATION, Instrument, check_values
 from fuzz.target import Program, target, written
 
 from yehu_server.control.midi_process import Input
@@ -66,7 +66,8 @@ def midi_messages(data: bytes) -> None:
     program = Program(data)
     every = styles()
     instrument = Instrument()
-    player = LivePlayer(instrument, every[program.byte() % len(every)], delay_ms=3.0)
+    style = every[program.byte() % len(every)]
+    player = LivePlayer(instrument, style, calibration=CALIBRATION, delay_ms=3.0)
     ports = MidiPorts(player, MidiOptions(), lambda _line: None)
 
     def tell(kind: str, **fields: object) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from unittest.mock import patch
 
-from fuzz.instrument import Instrument, check_values
+from fuzz.instrument import CALIBRATION, Instrument, check_values
 from fuzz.target import Program, scratch, target
 
 from yehu_server.control import clients, osc, schedule
@@ -164,7 +164,7 @@ def osc_calls(data: bytes) -> None:
     with still_time() as clock:
         instrument, desk, ear = Instrument(), Desk(), Ear()
         style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
-        player = LivePlayer(instrument, style, delay_ms=3.0)
+        player = LivePlayer(instrument, style, calibration=CALIBRATION, delay_ms=3.0)
         handler = OscHandler(player, desk)
 
         def take(what: bytes) -> None:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import logging
 import os
 import shutil
 import sys
@@ -138,6 +139,7 @@ def main() -> int:
     parser.add_argument("--list", action="store_true", help="tell the targets and their contracts")
     options = parser.parse_args()
 
+    logging.disable(logging.WARNING)  # what readers say of bad input
     engine = engine_named(options.engine)
     load_targets(engine)
     for name in options.target:

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import functools
 import math
+import sys
 from pathlib import Path
 from unittest.mock import patch
 
 from fuzz.instrument import CALIBRATION
 from fuzz.target import scratch, target
-
-from yehu_server.playing import calibration
-from yehu_server.playing.calibration import PITCHES, Calibration, calibration_for
+from yehu_server.playing.calibration import Calibration
+from yehu_server.playing.intonation import calibration_for
 
 RATE = 31_000.0  # not one that comes along
+HOME = sys.modules[calibration_for.__module__]
 
 
 def asked() -> Calibration:
     """The calibration of the cache, or what stands for one that is measured."""
     with (
-        patch.object(calibration, "data_folder", lambda: scratch() / "cache"),
-        patch.object(calibration, "calibration_key", lambda *_: "fuzzed"),
-        patch.object(calibration, "calibrate", lambda *_, **__: CALIBRATION),
+        patch.object(HOME, "data_folder", lambda: scratch() / "cache"),
+        patch.object(HOME, "calibration_key", lambda *_: "fuzzed"),
+        patch.object(HOME, "calibrate", lambda *_, **__: CALIBRATION),
     ):
         return calibration_for(RATE)
 
@@ -36,20 +37,12 @@ def kept() -> tuple[Path, bytes]:
     return file, file.read_bytes()
 
 
-@target(
-    "calibration",
-    words=(
-        b'"tensions": [',
-        b'"a4": 440.0',
-        b'"sharpening": [',
-        b'"levels": [',
-        b"NaN",
-        b"1e308",
-        b"null",
-    ),
-)
-def calibration_cache(data: bytes) -> None:
-    """A file of the cache is a whole calibration of this instrument, or it is measured again.
+WORDS = (b'"tensions": [', b'"a4": 440.0', b'"sharpening": [', b'"levels": [', b"NaN", b"1e308")
+
+
+@target("calibration", words=WORDS)
+def calibration(data: bytes) -> None:
+    """A file of the cache that holds anything but what was written into it is not believed.
 
     Where the first byte is 0, the rest is changes to what is kept: three bytes for the place and
     one that is put there.
@@ -61,16 +54,20 @@ def calibration_cache(data: bytes) -> None:
             changed[int.from_bytes(data[at : at + 3], "big") % len(changed)] = data[at + 3]
         data = bytes(changed)
     file.write_bytes(data)
-    found = asked()
+    assert asked() == CALIBRATION
+    assert file.read_bytes() == whole  # it is mended
+
+
+@target("calibration-data", words=WORDS)
+def calibration_data(data: bytes) -> None:
+    """What a file holds by its checksum is a whole calibration, or it is measured again."""
+    file, _ = kept()
+    file.write_bytes(data)
+    with patch.object(HOME, "read_sealed", lambda _path: data, create=True):
+        found = asked()
     assert found.a4 == CALIBRATION.a4
     assert all(0.0 < tension < math.inf for tension in found.tensions)
-    for tables in (found.sharpening, found.levels):
-        assert len(tables) == len(PITCHES)
-    for has, needs in (
-        (found.sharpening, CALIBRATION.sharpening),
-        (found.levels, CALIBRATION.levels),
-    ):
-        for table, like in zip(has, needs, strict=True):
-            assert [len(row) for row in table] == [len(row) for row in like]
-            assert all(math.isfinite(value) for row in table for value in row)
-    assert asked() == found
+    like = (*CALIBRATION.sharpening, *CALIBRATION.levels)
+    for table, usual in zip((*found.sharpening, *found.levels), like, strict=True):
+        assert [len(row) for row in table] == [len(row) for row in usual]
+        assert all(math.isfinite(value) for row in table for value in row)

@@ -10,6 +10,7 @@ from unittest.mock import patch
 
 from fuzz.instrument import CALIBRATION
 from fuzz.target import scratch, target
+
 from yehu_server.playing.calibration import Calibration
 from yehu_server.playing.intonation import calibration_for
 

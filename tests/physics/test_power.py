@@ -37,7 +37,7 @@ def test_a_power_has_no_steps_where_tables_change_hands(exponent):
         border = 2.0**twos * (1.0 + np.arange(INTERVALS) / INTERVALS)
         before = np.array([power(model, np.nextafter(x, 0.0)) for x in border])
         after = np.array([power(model, x) for x in border])
-        assert np.abs(after / before - 1.0).max() <= 1e-15
+        assert np.abs(after / before - 1.0).max() <= 2.0 * ROUNDING
 
 
 def test_a_deeper_penetration_has_a_higher_power():

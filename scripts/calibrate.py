@@ -9,7 +9,8 @@ import json
 import time
 
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import SHIPPED, _as_data, calibrate, calibration_key
+from yehu_server.playing.calibration import calibrate, calibration_key
+from yehu_server.playing.calibrations import SHIPPED, as_data
 
 RATES = (44100.0, 48000.0, 96000.0)
 
@@ -20,7 +21,7 @@ def main() -> None:
     shipped = {}
     for rate in RATES:
         start = time.perf_counter()
-        data = _as_data(calibrate(rate, quantities))
+        data = as_data(calibrate(rate, quantities))
         shipped[calibration_key(rate, quantities, 440.0)] = {"rate": rate, **data}
         print(f"{rate:g} Hz: {time.perf_counter() - start:.1f} s", flush=True)
     SHIPPED.write_text(json.dumps(shipped, indent=1) + "\n", encoding="utf-8")

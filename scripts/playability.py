@@ -33,7 +33,8 @@ from yehu_server.analysis.level import a_weighted_db
 from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import OPEN_NOTES, Calibration, calibration_for, frequency_hz
+from yehu_server.playing.calibration import OPEN_NOTES, Calibration, frequency_hz
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.performer import Performer
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.style import Style

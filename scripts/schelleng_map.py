@@ -32,7 +32,8 @@ from yehu_server.errors import ParameterError, YehuError
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Body, Quantities, StringQuantities
 from yehu_server.playing.bowing import FIRM, LIGHT, Manner, manner
-from yehu_server.playing.calibration import OPEN_NOTES, PITCHES, calibration_for, frequency_hz
+from yehu_server.playing.calibration import OPEN_NOTES, PITCHES, frequency_hz
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.intonation import Intonation
 
 Array = Any

@@ -24,13 +24,28 @@ PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 MOST_SHOWN = 40  # characters of what is none
 
 
+def _open_at_once(path: str, flags: int) -> int:
+    """Open without waiting, as a pipe would for who writes to it."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
+    """Read a regular file of reasonable size. Errors: OSError."""
+    with open(path, "rb", opener=_open_at_once) as file:
+        kind = os.fstat(file.fileno())
+        if stat.S_ISDIR(kind.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if not stat.S_ISREG(kind.st_mode):
+            raise OSError(errno.EINVAL, "Not a regular file")
+        data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:
+        raise OSError(errno.EFBIG, f"Larger than {most_bytes // 2**20} MiB")
+    return data
+
+
 def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
     """Read a text file of reasonable size. Errors: OSError, UnicodeDecodeError."""
-    with path.open("rb") as file:
-        data = file.read(most_bytes + 1)  # bounded, as some devices never end
-    if len(data) > most_bytes:
-        raise OSError(errno.EFBIG, os.strerror(errno.EFBIG))
-    return data.decode("utf-8")
+    return read_bytes(path, most_bytes).decode("utf-8")
 
 
 def why(error: OSError) -> str:

@@ -6,18 +6,23 @@ so the cache folder is keyed by a hash of all sources that may be compiled.
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import shutil
 import time
 from collections.abc import Callable
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
+from numba.core import sigutils
+from numba.core.ccallback import CFunc
 from numba.core.compiler import Compiler
 from platformdirs import user_cache_dir
+
+from yehu_server.code_cache import CodeCache
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -27,6 +32,7 @@ R = TypeVar("R")
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
 
 
+@cache
 def source_hash() -> str:
     """Hash of every source that compiled code comes from or reads constants of (16 hex digits)."""
     digest = hashlib.sha256(numba.__version__.encode())
@@ -34,7 +40,8 @@ def source_hash() -> str:
     for folder in ("physics", "params", "engine"):
         for source in sorted((package / folder).glob("*.py")):
             digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
-    digest.update(Path(__file__).read_bytes())
+    for name in ("jit", "code_cache"):
+        digest.update((package / f"{name}.py").read_bytes())
     return digest.hexdigest()[:16]
 
 
@@ -49,11 +56,8 @@ def data_folder() -> Path:
     return cache_folder().parent
 
 
-def _open_cache() -> bool:
-    """Make the cache folder and drop what older sources left; return whether it is writable.
-
-    numba would otherwise fall back on folders beside the sources, which no hash guards.
-    """
+def _open_cache() -> str:
+    """Make the cache folder and drop what older sources left; return why nothing can be kept."""
     folder = cache_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -61,15 +65,22 @@ def _open_cache() -> bool:
         for other in folder.parent.glob(f"{FOLDER}*"):
             if time.time() - other.stat().st_mtime > UNUSED_AFTER_S:
                 shutil.rmtree(other, ignore_errors=True)
-    except OSError:
-        return False
-    return os.access(folder, os.W_OK)
+    except OSError as error:
+        return error.strerror or repr(error)
+    return "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
 
 
 FOLDER = "compiled-"
 UNUSED_AFTER_S = 14 * 24 * 3600.0
-numba.config.CACHE_DIR = str(cache_folder())
-IS_CACHED = _open_cache()  # else everything is compiled anew at each start
+WHY_NOT_CACHED = _open_cache()
+IS_CACHED = not WHY_NOT_CACHED  # else everything is compiled anew at each start
+
+
+def _cached(made: Any, function: Callable[..., Any]) -> Any:
+    """Give numba's object for a function our cache, before anything is compiled."""
+    if IS_CACHED:
+        made._cache = CodeCache(cache_folder(), function)  # noqa: SLF001 - there is no other way
+    return made
 
 
 class Restricted(Compiler):  # type: ignore[misc]
@@ -89,7 +100,6 @@ def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
     # for callbacks in C, which `Native` makes where it is wanted, would be compiled with all of
     # what it calls: a third of the time that a first start takes.
     jit = numba.njit(
-        cache=IS_CACHED,
         nogil=True,
         error_model="numpy",
         fastmath=FASTMATH,
@@ -97,7 +107,7 @@ def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
         no_cfunc_wrapper=True,
         **options,
     )
-    return cast("Callable[P, R]", jit(function))
+    return cast("Callable[P, R]", _cached(jit(function), function))
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -124,11 +134,21 @@ class Native:
         self._function = function
 
     @cached_property
+    def _made(self) -> Any:
+        signature = sigutils.normalize_signature(self._signature)
+        options = {"nopython": True, "error_model": "numpy", "fastmath": FASTMATH}
+        return _cached(CFunc(self._function, signature, {}, options), self._function)
+
+    @cached_property
     def compiled(self) -> Any:
         """numba's object for it, with ``inspect_llvm()``."""
-        return numba.cfunc(
-            self._signature, nopython=True, cache=IS_CACHED, error_model="numpy", fastmath=FASTMATH
-        )(self._function)
+        self._made.compile()
+        return self._made
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether its code is in the cache, so that its first use takes no time."""
+        return IS_CACHED and self._made._cache.holds(self._made._sig)  # noqa: SLF001
 
     @cached_property
     def call(self) -> Callable[..., Any]:

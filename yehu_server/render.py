@@ -17,7 +17,8 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.files import anything, why
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import Calibration, calibration_for
+from yehu_server.playing.calibration import Calibration
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.style import Style
 from yehu_server.score.smf import Score

@@ -43,7 +43,8 @@ from yehu_server.files import (
 )
 from yehu_server.lasting import keep_on
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import Progress, calibration_for
+from yehu_server.playing.calibration import Progress
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.delay import Delay
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping

@@ -12,16 +12,15 @@ from pitch import cents, hertz, pitch_of
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing import calibration
+from yehu_server.playing import calibrations
 from yehu_server.playing.calibration import (
     OPEN_NOTES,
     PITCHES,
-    SHIPPED,
     SPEEDS,
     Calibration,
-    calibration_for,
     calibration_key,
 )
+from yehu_server.playing.calibrations import SHIPPED, calibration_for
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer
@@ -44,32 +43,6 @@ def test_a_calibration_is_of_its_rate_its_instrument_and_its_pitch():
         for a4 in (440.0, 442.0)
     }
     assert len(keys) == 12
-
-
-def test_what_was_measured_once_is_kept(monkeypatch, tmp_path):
-    measured = []
-    shipped = calibration_for(44100.0)
-
-    def measure(rate, _quantities, *, a4, **_):
-        measured.append(rate)
-        return replace(shipped, a4=a4)
-
-    monkeypatch.setattr(calibration, "calibrate", measure)
-    monkeypatch.setattr(calibration, "data_folder", lambda: tmp_path)
-    first = calibration_for(50000.0, a4=441.0)
-    assert calibration_for(50000.0, a4=441.0) == first
-    assert measured == [50000.0]
-    (kept,) = tmp_path.iterdir()
-    kept.write_text("{damaged")
-    assert calibration_for(50000.0, a4=441.0) == first
-    assert measured == [50000.0, 50000.0]
-
-
-def test_without_a_place_to_keep_it_it_is_measured_all_the_same(monkeypatch, tmp_path):
-    shipped = calibration_for(44100.0)
-    monkeypatch.setattr(calibration, "calibrate", lambda *_args, **_options: shipped)
-    monkeypatch.setattr(calibration, "data_folder", lambda: tmp_path / "none")
-    assert calibration_for(50000.0) == shipped
 
 
 def test_positions_go_up_with_the_pitch_and_are_even_between_the_notes():
@@ -150,7 +123,7 @@ def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None
 
 
 def test_another_reference_pitch_is_calibrated_for(monkeypatch, tmp_path):
-    monkeypatch.setattr(calibration, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(calibrations, "data_folder", lambda: tmp_path)
     told = []
     calibration_for(44100.0, a4=430.0, progress=lambda done, total: told.append((done, total)))
     assert told[-1] == (36, 36)

@@ -8,7 +8,7 @@ import pytest
 
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.bowing import MANNERS
-from yehu_server.playing.calibration import calibration_for
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.performer import Key, Performer
 

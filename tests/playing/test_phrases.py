@@ -12,7 +12,7 @@ from pitch import cents, hertz, pitch_of
 from yehu_server.analysis.pitch import pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import calibration_for
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.performer import Key, Performer
 from yehu_server.playing.style import Style
 

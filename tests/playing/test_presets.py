@@ -18,7 +18,7 @@ from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing import presets as folders
-from yehu_server.playing.calibration import calibration_for
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer

@@ -105,9 +105,9 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
     order = orders.get()
     if order is None:
         return None
-    from yehu_server.jit import IS_CACHED
+    from yehu_server.engine.native import is_warm
 
-    if not IS_CACHED:
+    if not is_warm():
         parent.tell("compiling")
     try:
         stream = Stream(sounddevice, device, order)

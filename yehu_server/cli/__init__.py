@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import signal
 import sys
 from collections.abc import Sequence
@@ -33,6 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), _interrupt)
+    logging.basicConfig(format="yehu-server: %(message)s", level=logging.WARNING)
     try:
         parser = _parser()
         words = expand(sys.argv[1:] if argv is None else argv, parser)

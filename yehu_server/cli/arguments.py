@@ -264,13 +264,14 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
 @contextlib.contextmanager
 def compiling(arguments: argparse.Namespace) -> Iterator[None]:
     """Say why the first use takes a while."""
-    from yehu_server.jit import IS_CACHED, cache_folder
+    from yehu_server.engine.native import is_warm
+    from yehu_server.jit import WHY_NOT_CACHED, cache_folder
 
     if arguments.quiet:
         pass
-    elif not IS_CACHED:
-        warn(f"compiling; {cache_folder()} is not writable")
-    elif not any(cache_folder().rglob("*.nbi")):
+    elif WHY_NOT_CACHED:
+        warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
+    elif not is_warm():
         warn("compiling for this machine, once ...")
     yield
 

@@ -102,7 +102,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.files import check_apart
     from yehu_server.physics.grid import check_rate
     from yehu_server.physics.quantities import Quantities, read_quantities
-    from yehu_server.playing.calibration import calibration_for
+    from yehu_server.playing.calibrations import calibration_for
     from yehu_server.render import Options, render
     from yehu_server.score.smf import concatenate, read_score
 

@@ -328,7 +328,15 @@ def taped(rig: Any) -> int:
     return int(load_acquire(rig, TAPED_AT))
 
 
+PLAYED_BY = (callback, read_meters, frame_at, post, read_reports, taped)
+
+
 def warm_up() -> None:
     """Compile, or load from the cache, all that playing needs."""
-    for function in (callback, read_meters, frame_at, post, read_reports, taped):
+    for function in PLAYED_BY:
         _ = function.address
+
+
+def is_warm() -> bool:
+    """Whether all that playing needs is compiled, or kept from an earlier start."""
+    return all(function.is_kept for function in PLAYED_BY)

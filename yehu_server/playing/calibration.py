@@ -1,20 +1,18 @@
 """Where to stop a string for a pitch, and how tight it is: measured by bowing the model itself.
 
 Each open string is tuned by its tension; each stopped note is bowed at several speeds, and the
-finger moved until it is in tune. What comes of it is kept on disk, under a key made from
-everything it depends on; the usual sample rates come with the package.
+finger moved until it is in tune. What comes of it is kept by `playing.calibrations`, under a
+key made from everything it depends on.
 """
 
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +21,6 @@ import numpy as np
 from yehu_server.analysis.level import SILENCE_DB, a_weighted_db
 from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.instrument import Instrument
-from yehu_server.jit import data_folder
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities, override
 from yehu_server.playing.bowing import FIRM, LIGHT, manner
@@ -46,7 +43,6 @@ PLAUSIBLE_CENTS = 90.0  # further off, the note is not in its register
 IN_TUNE_CENTS, ENOUGH_CENTS = 15.0, 0.7  # within which a place is found, and good
 STEP_CENTS = 1.5  # a bracket as narrow as this holds a step of the pitch
 USUAL_CENTS = (50.0, 25.0)  # sharpening where nothing could be measured
-SHIPPED = Path(__file__).parent / "calibrations.json"
 
 
 @dataclass(frozen=True)
@@ -79,26 +75,6 @@ def frequency_hz(pitch: float, a4: float) -> float:
     return a4 * math.exp2((pitch - 69.0) / 12.0)
 
 
-def calibration_for(
-    rate: float,
-    quantities: Quantities | None = None,
-    *,
-    a4: float = 440.0,
-    progress: Progress | None = None,
-) -> Calibration:
-    """The calibration of an instrument: as shipped, as kept on disk, or measured now.
-
-    Takes some seconds where it is measured; `progress` is told notes done and notes in all.
-    """
-    quantities = quantities or Quantities()
-    key = calibration_key(rate, quantities, a4)
-    found = _shipped().get(key) or _kept(key)
-    if found is None:
-        found = _as_data(calibrate(rate, quantities, a4=a4, progress=progress))
-        _keep(key, found)
-    return _from_data(found)
-
-
 def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     """What a calibration depends on, in 16 hex digits."""
     package = Path(__file__).parent.parent
@@ -109,9 +85,6 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     for source in sources:
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
-
-
-# ---------------------------------------------------------------- measuring
 
 
 def calibrate(
@@ -167,11 +140,16 @@ def _bow(
     return pitch_hz(steady, rate), a_weighted_db(steady, rate)
 
 
+def starting_tension(quantities: Quantities, a4: float, string: int) -> float:
+    """Tension (N) that tuning an open string begins with."""
+    return quantities.strings[string].T * (a4 / 440.0) ** 2
+
+
 def _tension(rate: float, quantities: Quantities, a4: float, string: int) -> float:
     """Tension (N) that tunes an open string."""
     note = OPEN_NOTES[string]
     target = frequency_hz(note, a4)
-    tension = quantities.strings[string].T * (a4 / 440.0) ** 2
+    tension = starting_tension(quantities, a4, string)
     for _ in range(ROUNDS):
         tried = override(quantities, {f"string_{string + 1}": {"T": tension}})
         heard = [_bow(rate, tried, string, note, speed, None)[0] for speed in SPEEDS[:3]]
@@ -254,52 +232,3 @@ def _completed(table: Any, usual: float) -> tuple[tuple[float, ...], ...]:
             others = table[row][~np.isnan(table[row])]
             table[row, column] = others[-1] if len(others) else between[row]
     return tuple(tuple(round(float(value), 2) for value in row) for row in table)
-
-
-# ---------------------------------------------------------------- keeping
-
-
-def _as_data(calibration: Calibration) -> dict[str, Any]:
-    return {
-        "a4": calibration.a4,
-        "tensions": list(calibration.tensions),
-        "sharpening": calibration.sharpening,
-        "levels": calibration.levels,
-    }
-
-
-def _from_data(data: dict[str, Any]) -> Calibration:
-    first, second = data["tensions"]
-    sharpening, levels = (
-        tuple(tuple(tuple(row) for row in table) for table in data[name])
-        for name in ("sharpening", "levels")
-    )
-    return Calibration(float(data["a4"]), (float(first), float(second)), sharpening, levels)
-
-
-@lru_cache(maxsize=1)
-def _shipped() -> dict[str, Any]:
-    return _read(SHIPPED) or {}
-
-
-def _kept(key: str) -> dict[str, Any] | None:
-    return _read(data_folder() / f"calibration-{key}.json")
-
-
-def _keep(key: str, data: dict[str, Any]) -> None:
-    """Write it for the next time; without a place to write, it is measured again then."""
-    target = data_folder() / f"calibration-{key}.json"
-    partial = target.with_suffix(f".{os.getpid()}.part")
-    try:
-        partial.write_text(json.dumps(data), encoding="utf-8")
-        partial.replace(target)
-    except OSError:
-        partial.unlink(missing_ok=True)
-
-
-def _read(path: Path) -> dict[str, Any] | None:
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return data if isinstance(data, dict) else None

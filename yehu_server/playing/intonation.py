@@ -11,10 +11,10 @@ from yehu_server.playing.calibration import (
     PITCHES,
     SPEEDS,
     Calibration,
-    calibration_for,
     frequency_hz,
     ideal_position,
 )
+from yehu_server.playing.calibrations import calibration_for
 
 DEFAULT_RATE = 44100.0
 LOG_SPEEDS = [math.log(speed) for speed in SPEEDS]

@@ -1,0 +1,172 @@
+"""Compiled code is kept on disk, and what has become of it there never keeps us from playing."""
+
+import errno
+import os
+import random
+from concurrent.futures import ThreadPoolExecutor
+
+import numba
+import pytest
+
+from yehu_server import code_cache, jit, sealed
+from yehu_server.sealed import SealError, read_sealed, write_sealed
+
+
+def third_of(number: int) -> int:
+    return number // 3
+
+
+class Kept:
+    """A small function that is compiled, kept in a folder, and loaded again."""
+
+    def __init__(self, folder, monkeypatch) -> None:
+        self.folder = folder
+        monkeypatch.setattr(jit, "cache_folder", lambda: folder)
+        monkeypatch.setattr(jit, "IS_CACHED", True)
+        monkeypatch.setattr(code_cache, "_troubles", set())
+
+    def start(self, function=third_of) -> tuple[int, bool]:
+        """What the function says of 12, and whether its code was there, as at a new start."""
+        native = jit.Native("int64(int64)", function)
+        return native.call(12), native.compiled.cache_hits == 1
+
+    @property
+    def file(self):
+        (file,) = self.folder.iterdir()
+        return file
+
+
+@pytest.fixture
+def kept(tmp_path, monkeypatch) -> Kept:
+    return Kept(tmp_path, monkeypatch)
+
+
+def test_what_was_compiled_once_is_there_at_the_next_start(kept):
+    assert kept.start() == (4, False)
+    assert kept.start() == (4, True)
+
+
+def damage_by_truncating(data):
+    return data[: len(data) // 2]
+
+
+def damage_by_emptying(_data):
+    return b""
+
+
+def damage_by_zeros(data):
+    return bytes(len(data))
+
+
+def damage_by_more(data):
+    return data + b"\0"
+
+
+@pytest.mark.parametrize(
+    "damage", [damage_by_truncating, damage_by_emptying, damage_by_zeros, damage_by_more]
+)
+def test_damaged_code_is_compiled_anew_and_told_in_one_line(kept, caplog, damage):
+    kept.start()
+    kept.file.write_bytes(damage(kept.file.read_bytes()))
+    assert kept.start() == (4, False)
+    (line,) = caplog.messages
+    assert "damaged; compiling anew" in line
+    assert "\n" not in line
+    assert kept.start() == (4, True)  # healed
+    assert len(caplog.messages) == 1
+
+
+def test_no_flipped_bit_passes_unseen(kept):
+    kept.start()
+    whole = kept.file.read_bytes()
+    chance = random.Random(1)
+    for bit in [*range(8 * 40), *(chance.randrange(8 * len(whole)) for _ in range(300))]:
+        flipped = bytearray(whole)
+        flipped[bit // 8] ^= 1 << bit % 8
+        kept.file.write_bytes(flipped)
+        with pytest.raises(SealError):
+            read_sealed(kept.file)
+
+
+def test_one_functions_code_does_not_pass_for_anothers(kept):
+    kept.start()
+    file = kept.file
+    other = file.with_name("native.other-cpython-311-0123456789abcdef.code")
+    other.write_bytes(file.read_bytes())
+    with pytest.raises(SealError):
+        read_sealed(other)
+
+
+def test_sound_bytes_that_are_no_code_are_compiled_anew(kept, caplog):
+    kept.start()
+    write_sealed(kept.file, b"not of numba")
+    assert kept.start() == (4, False)
+    assert len(caplog.messages) == 1
+
+
+def test_a_folder_in_the_place_of_the_code_is_no_reason_not_to_play(kept, caplog):
+    kept.start()
+    file = kept.file
+    file.unlink()
+    file.mkdir()
+    assert kept.start() == (4, False)
+    assert len(caplog.messages) == 2  # that it is damaged, and that it cannot be kept
+
+
+def test_code_of_another_processor_is_left_alone(kept, monkeypatch):
+    kept.start()
+    codegen = type(code_cache.cpu_target.target_context.codegen())
+    with monkeypatch.context() as patch:
+        patch.setattr(codegen, "magic_tuple", lambda _: ("here", "another", "+none"))
+        assert kept.start() == (4, False)
+    assert len(list(kept.folder.iterdir())) == 2
+    assert kept.start() == (4, True)
+
+
+def test_functions_of_one_name_have_code_of_their_own(kept):
+    def made(factor):
+        def scaled(number: int) -> int:
+            return number * factor
+
+        return scaled
+
+    assert kept.start(made(2)) == (24, False)
+    assert kept.start(made(3)) == (36, False)
+    assert kept.start(made(2)) == (24, True)
+
+
+def test_a_full_disk_is_told_once_and_it_plays(kept, caplog, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(sealed.Path, "write_bytes", full)
+    assert kept.start() == (4, False)
+    assert kept.start() == (4, False)
+    (line,) = caplog.messages
+    assert "No space left on device" in line
+    assert not list(kept.folder.iterdir())
+
+
+def test_who_writes_at_once_leaves_a_file_that_is_whole(tmp_path):
+    file = tmp_path / "x.code"
+    payloads = [bytes([which]) * 100_000 for which in range(4)]
+    with ThreadPoolExecutor() as workers:
+        for _ in range(10):
+            writing = [workers.submit(write_sealed, file, payload) for payload in payloads]
+            while not all(job.done() for job in writing):
+                assert read_sealed(file) in (None, *payloads)
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.usefixtures("kept")
+def test_numba_calls_what_we_put_in_the_place_of_its_cache():
+    """Where this fails, numba has changed, and code is compiled at each start."""
+
+    def double(number: int) -> int:
+        return number * 2
+
+    jit.compiled(double)(3)
+    again = jit.compiled(double)
+    assert again(3) == 6
+    assert sum(again.stats.cache_hits.values()) == 1
+    assert isinstance(again, numba.core.registry.CPUDispatcher)

@@ -1,0 +1,87 @@
+"""Compiled code on disk, in the place of numba's own cache, which believes whatever it finds.
+
+One file for each function, signature, processor and Python, sealed: so no index can name the
+wrong one, and processes that compile at once leave each other's files whole. What fails is
+told in one line and compiled anew; what cannot be kept is played all the same.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import pickle
+import sys
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import NullCache
+from numba.core.compiler import CompileResult
+from numba.core.registry import cpu_target
+from numba.core.serialize import dumps
+
+from yehu_server.sealed import SealError, read_sealed, write_sealed
+
+log = logging.getLogger(__name__)
+
+DAMAGED, FULL = "is damaged", "cannot be kept"
+_troubles: set[str] = set()  # of this process: each is told once
+
+
+def _tell(trouble: str, line: str) -> None:
+    if trouble not in _troubles:
+        _troubles.add(trouble)
+        log.warning("%s", line)
+
+
+class CodeCache(NullCache):  # type: ignore[misc]
+    """The cache of one function, with the methods that numba calls."""
+
+    def __init__(self, folder: Path, function: Any) -> None:
+        self._folder = folder
+        module = function.__module__.rpartition(".")[2]
+        tag = sys.implementation.cache_tag
+        self._stem = f"{module}.{function.__qualname__}-{tag}".translate({60: None, 62: None})
+        # What tells functions of one name apart: the code, and what it closes over.
+        code = function.__code__
+        cells = [cell.cell_contents for cell in function.__closure__ or ()]
+        self._own = (code.co_firstlineno, code.co_code, dumps(cells) if cells else b"")
+
+    @property
+    def cache_path(self) -> str:
+        """The folder, which numba tells of."""
+        return str(self._folder)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the code for a signature; None where it has to be compiled."""
+        target_context.refresh()
+        path = self._path(sig, target_context.codegen())
+        try:
+            payload = read_sealed(path)
+            if payload is None:
+                return None
+            return CompileResult._rebuild(target_context, *pickle.loads(payload))  # noqa: S301, SLF001 - it is sealed
+        except Exception as error:  # noqa: BLE001 - nothing in a cache is worth not playing
+            reason = error if isinstance(error, SealError) else repr(error)
+            _tell(DAMAGED, f"{path}: {reason}; compiling anew")
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep what was compiled for a signature, where there is room for it."""
+        if FULL in _troubles or data.library.has_dynamic_globals or data.lifted:
+            return
+        try:
+            write_sealed(self._path(sig, data.codegen), dumps(data._reduce()))  # noqa: SLF001
+        except OSError as error:
+            reason = error.strerror or error
+            _tell(FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start")
+
+    def holds(self, sig: Any) -> bool:
+        """Whether the code for a signature is there and sound."""
+        try:
+            return read_sealed(self._path(sig, cpu_target.target_context.codegen())) is not None
+        except SealError:
+            return False
+
+    def _path(self, sig: Any, codegen: Any) -> Path:
+        key = repr((sig, codegen.magic_tuple(), self._own))
+        return self._folder / f"{self._stem}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.code"

@@ -1,0 +1,140 @@
+"""The calibration of an instrument: as shipped, as kept on disk, or measured now.
+
+The usual sample rates come with the package; another is measured once, and kept sealed.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import math
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.analysis.pitch import cents
+from yehu_server.errors import ParameterError
+from yehu_server.files import read_text
+from yehu_server.jit import data_folder
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibration import (
+    PITCHES,
+    PLAUSIBLE_CENTS,
+    ROUNDS,
+    SPEEDS,
+    USUAL_CENTS,
+    Calibration,
+    Progress,
+    Tables,
+    calibrate,
+    calibration_key,
+    starting_tension,
+)
+from yehu_server.sealed import SealError, read_sealed, write_sealed
+
+log = logging.getLogger(__name__)
+
+SHIPPED = Path(__file__).parent / "calibrations.json"
+# A calibration moves no tension, and no finger, further than its rounds can take it.
+MOST_CENTS = ROUNDS * PLAUSIBLE_CENTS
+MOST_SHARPENING_CENTS = max(USUAL_CENTS) + len(SPEEDS) * MOST_CENTS
+MOST_LEVEL_DB = 200.0
+
+
+def calibration_for(
+    rate: float,
+    quantities: Quantities | None = None,
+    *,
+    a4: float = 440.0,
+    progress: Progress | None = None,
+) -> Calibration:
+    """The calibration of an instrument.
+
+    Takes some seconds where it is measured; `progress` is told notes done and notes in all.
+    """
+    quantities = quantities or Quantities()
+    key = calibration_key(rate, quantities, a4)
+    if key in _shipped():
+        return read_calibration(_shipped()[key], quantities, a4)
+    found = _kept(key, quantities, a4)
+    if found is None:
+        found = calibrate(rate, quantities, a4=a4, progress=progress)
+        _keep(key, found)
+    return found
+
+
+def as_data(calibration: Calibration) -> dict[str, Any]:
+    """What JSON can hold of a calibration."""
+    return {
+        "a4": calibration.a4,
+        "tensions": list(calibration.tensions),
+        "sharpening": calibration.sharpening,
+        "levels": calibration.levels,
+    }
+
+
+def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibration:
+    """The calibration of an instrument out of what `as_data` gave.
+
+    Errors: ParameterError for what no measuring of this instrument could have found.
+    """
+    try:
+        first, second = map(float, data["tensions"])
+        found = float(data["a4"])
+        sharpening = _tables(data["sharpening"], 0, -MOST_SHARPENING_CENTS, MOST_SHARPENING_CENTS)
+        levels = _tables(data["levels"], 1, -MOST_LEVEL_DB, MOST_LEVEL_DB)
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise ParameterError("is no calibration") from error
+    if found != a4:
+        raise ParameterError(f"is for another A4, {found:g} Hz")
+    for i, tension in enumerate((first, second)):
+        usual = starting_tension(quantities, a4, i)
+        off = cents(tension, usual) / 2.0 if tension > 0.0 else math.inf
+        if not abs(off) <= MOST_CENTS:
+            raise ParameterError(f"has a tension of {tension:g} N where {usual:.3g} is usual")
+    return Calibration(a4, (first, second), sharpening, levels)
+
+
+def _tables(data: Any, more_rows: int, lo: float, hi: float) -> Tables:
+    """A table of notes and speeds for each string. Errors: TypeError, ValueError."""
+    tables = []
+    for rows, pitches in zip(data, PITCHES, strict=True):
+        table = np.array(rows, np.float64)
+        if table.shape != (len(pitches) + more_rows, len(SPEEDS)):
+            raise ValueError("shape")
+        if not np.all((table >= lo) & (table <= hi)):  # also refuses NaN
+            raise ValueError("range")
+        tables.append(tuple(tuple(row) for row in table.tolist()))
+    return tuple(tables)
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(read_text(SHIPPED))
+    return found
+
+
+def _file(key: str) -> Path:
+    return data_folder() / f"calibration-{key}.json"
+
+
+def _kept(key: str, quantities: Quantities, a4: float) -> Calibration | None:
+    """What was measured before; None where it was not, or cannot be believed."""
+    path = _file(key)
+    try:
+        payload = read_sealed(path)
+        return None if payload is None else read_calibration(json.loads(payload), quantities, a4)
+    except (SealError, ParameterError, ValueError, RecursionError) as error:
+        log.warning("%s: %s; measuring anew", path, error)
+        return None
+
+
+def _keep(key: str, calibration: Calibration) -> None:
+    path = _file(key)
+    try:
+        write_sealed(path, json.dumps(as_data(calibration)).encode())
+    except OSError as error:
+        reason = error.strerror or error
+        log.warning("%s: %s; what was measured is not kept for the next start", path, reason)

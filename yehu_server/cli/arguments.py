@@ -264,14 +264,13 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
 @contextlib.contextmanager
 def compiling(arguments: argparse.Namespace) -> Iterator[None]:
     """Say why the first use takes a while."""
-    from yehu_server.engine.native import is_warm
     from yehu_server.jit import WHY_NOT_CACHED, cache_folder
 
     if arguments.quiet:
         pass
     elif WHY_NOT_CACHED:
         warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
-    elif not is_warm():
+    elif not any(cache_folder().glob("*.code")):
         warn("compiling for this machine, once ...")
     yield
 

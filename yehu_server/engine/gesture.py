@@ -46,6 +46,8 @@ BODY, LIMITER = SLOT["/body/gain"], SLOT["/output/limiter"]
 SILKS = SLOT["/string/inner/tuning"]
 NOISE = SLOT["/bow/noise"]
 SLOTS = len(ENGINE)
+LOWEST = np.array([param.lo for param in ENGINE])
+HIGHEST = np.array([param.hi for param in ENGINE])
 SILENCE = SLOTS  # an event at this index fades the sound out and puts the model to rest
 
 # While a finger is up it waits near the loop, where the strings hardly move: at its
@@ -147,13 +149,17 @@ def settle(gesture: Any) -> None:
 
 @compiled
 def take(g: Any, index: int, target: float, ramp: int, silence_frames: int) -> None:
-    """Apply one event: set a parameter going towards its target. Real time: safe."""
+    """Apply one event: set a parameter going towards its target, within its range.
+
+    What is not a number is passed over. Real time: safe.
+    """
     if index == SILENCE:
         if g.silence_in == 0:
             g.silence_in = silence_frames
         return
-    if index < 0 or index >= SLOTS:
+    if index < 0 or index >= SLOTS or math.isnan(target):
         return
+    target = min(max(target, LOWEST[index]), HIGHEST[index])
     g.target[index] = target
     g.moving -= 1 if g.remaining[index] > 0 else 0
     if ramp <= 0:

@@ -118,8 +118,11 @@ class Instrument:
 
     @property
     def lost_states(self) -> int:
-        """How often the state was lost and put back to rest, since the start."""
-        return int(self._rig["state"]["lost"][0])
+        """How often the state was lost and put back to rest, since the start.
+
+        Each sample of output that was not a number counts too.
+        """
+        return int(self._rig["state"]["lost"][0] + self._rig["output"]["unsound"][0])
 
     @property
     def dropped_events(self) -> int:

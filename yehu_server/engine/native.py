@@ -236,13 +236,13 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     state = carray(at(rig, STATE_AT), (1,), STATE)[0]
     g = carray(at(rig, GESTURE_AT), (1,), GESTURE)[0]
-    channels = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0].channels
+    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     t.running = 1
     block: Any = np.int64(frames)
     tell_time(t, g.frame, started_ns, block)
     publish(rig)  # at once, so that what comes in now is stamped by this block
-    play(rig, carray(output, (block, channels), np.float32))
-    t.unconverged, t.lost = state.unconverged, state.lost
+    play(rig, carray(output, (block, o.channels), np.float32))
+    t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
     t.late_events, t.applied = mail.late, mail.applied
     t.waiting, t.unreported = mail.waiting, mail.unreported
     restore_denormals(mode)

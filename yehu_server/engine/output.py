@@ -24,12 +24,14 @@ FADE_S = 0.005
 BLOCKED_HZ = 10.0  # what is slower than this is no sound
 # Pa that count for a newton at the bridge, so that a blend is about as loud at both ends.
 BRIDGE_PRESSURE = 0.1
+LARGEST = 2.0  # of what the limiter lets out: rounding takes no sample further than full scale
 
 OUTPUT = np.dtype(
     [
         ("channels", np.int64),  # of the device; all get the same signal
         ("fade", np.int64),  # frames of a fade to silence
         ("last", np.float64),  # the last sample
+        ("unsound", np.int64),  # samples that were not numbers, written as silence
         ("ghost", np.float64),  # what is left of the one before a lost state
         ("decay", np.float64),
         ("pressure", np.float64),  # input and output of the DC blocker (Pa)
@@ -49,6 +51,7 @@ OUTPUT = np.dtype(
 def prepare_output(output: Any, rate: float, channels: int) -> None:
     """Set the coefficients of a record of dtype OUTPUT [shape=(1,)], in place."""
     output["channels"] = channels
+    output["unsound"] = 0
     output["fade"] = max(1, round(FADE_S * rate))
     output["decay"] = math.exp(-1.0 / (FADE_S * rate))
     output["blocker"] = math.exp(-2.0 * math.pi * BLOCKED_HZ / rate)
@@ -76,8 +79,17 @@ def limit(x: float, soft: float) -> float:
 
 
 @compiled
+def fall_silent(o: Any) -> None:
+    """Forget what the filters hold, as the model is put to rest. Real time: safe."""
+    o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
+
+
+@compiled
 def play_out(o: Any, n: int) -> float:
-    """Make one sample of output of row `n` of the probes; a lost state is faded, not cut."""
+    """Make one sample of output of row `n` of the probes; a lost state is faded, not cut.
+
+    Whatever comes in, what goes out is finite.
+    """
     probe = o.probes[n]
     if probe[ITERATIONS] < 0:
         o.ghost = o.last
@@ -88,11 +100,11 @@ def play_out(o: Any, n: int) -> float:
     source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
     o.swing = source - o.pressure + o.blocker * o.swing
     o.pressure = source
-    o.last = limit(o.swing * o.gain[n] + o.ghost, o.soft[n])
-    return float(o.last)
-
-
-@compiled
-def fall_silent(o: Any) -> None:
-    """Forget what the filters hold, as the model is put to rest. Real time: safe."""
-    o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
+    loud = o.swing * o.gain[n] + o.ghost
+    sample = limit(loud, o.soft[n])
+    if not (abs(loud) < math.inf and abs(sample) <= LARGEST):  # so that NaN is caught too
+        sample = 0.0
+        o.unsound += 1
+        fall_silent(o)
+    o.last = sample
+    return float(sample)

@@ -10,14 +10,14 @@ import os
 import re
 import secrets
 import stat
-import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import BinaryIO
 
 from yehu_server.errors import OutputError
 
 MAX_TEXT_BYTES = 64 * 2**20
+MAX_LINE_BYTES = 64 * 1024
 MAX_SETTINGS_BYTES = 2**20  # of files that are read while the instrument plays
 # What a name that comes over the network must look like: no path, nothing hidden.
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
@@ -29,18 +29,34 @@ def _open_at_once(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
+def _open_regular(path: Path, most_bytes: int) -> BinaryIO:
+    """Open a regular file of reasonable size: devices and pipes may never end. Errors: OSError."""
+    file = open(path, "rb", opener=_open_at_once)  # noqa: SIM115 - for who asks to close
+    status = os.fstat(file.fileno())
+    if stat.S_ISREG(status.st_mode) and status.st_size <= most_bytes:
+        return file
+    file.close()
+    if stat.S_ISREG(status.st_mode):
+        raise OSError(errno.EFBIG, f"Larger than {most_bytes // 2**20} MiB")
+    raise OSError(errno.EINVAL, "Not a regular file")
+
+
 def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     """Read a regular file of reasonable size. Errors: OSError."""
-    with open(path, "rb", opener=_open_at_once) as file:
-        kind = os.fstat(file.fileno())
-        if stat.S_ISDIR(kind.st_mode):
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        if not stat.S_ISREG(kind.st_mode):
-            raise OSError(errno.EINVAL, "Not a regular file")
+    with _open_regular(path, most_bytes) as file:
         data = file.read(most_bytes + 1)
-    if len(data) > most_bytes:
+    if len(data) > most_bytes:  # it has grown, or its file system tells no sizes
         raise OSError(errno.EFBIG, f"Larger than {most_bytes // 2**20} MiB")
     return data
+
+
+def read_lines(path: Path, most_bytes: int) -> Iterator[str]:
+    """Read a text file line by line, each with its end. Errors: OSError, UnicodeDecodeError."""
+    with _open_regular(path, most_bytes) as file:
+        while line := file.readline(MAX_LINE_BYTES + 1):
+            if len(line) > MAX_LINE_BYTES:
+                raise OSError(errno.EFBIG, f"A line is longer than {MAX_LINE_BYTES // 1024} KiB")
+            yield line.decode("utf-8")
 
 
 def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
@@ -245,25 +261,6 @@ def write_text(target: Path, text: str) -> None:
         file.write(text)
         file.flush()
         os.fsync(file.fileno())
-
-
-# tomllib takes time by the square of a key's parts: 20 s for one of 64 kB.
-MOST_KEY_PARTS = 16
-_LONG_KEY = re.compile(
-    r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
-    f"{{{MOST_KEY_PARTS}}}",
-    re.ASCII,
-)
-
-
-def parse_toml(text: str) -> dict[str, Any]:
-    """The entries of a TOML text. Errors: ValueError."""
-    if _LONG_KEY.search(text):
-        raise ValueError(f"a key has more than {MOST_KEY_PARTS} parts")
-    try:
-        return tomllib.loads(text)
-    except RecursionError:
-        raise ValueError("nested too deep") from None
 
 
 def shipped_folder(name: str) -> Path:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
+from heapq import merge
+from itertools import groupby, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +15,8 @@ import numpy as np
 
 from yehu_server.audio.file import sound_file
 from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import ScoreError
 from yehu_server.files import anything
-from yehu_server.physics.grid import check_rate
 from yehu_server.physics.quantities import Quantities, override
 from yehu_server.score.capture import Capture
 
@@ -37,8 +39,8 @@ class Replayed:
 def blocks(capture: Capture, instrument: Instrument) -> Iterator[Any]:
     """The samples of a capture, block by block [shape=(frames,), float32]."""
     frames = capture.events["frame"]
-    stops = sorted({*range(0, capture.frames, BLOCK), *capture.rests, capture.frames})
-    for start, stop in pairwise(stops):
+    places = merge(range(0, capture.frames, BLOCK), sorted(capture.rests), [capture.frames])
+    for start, stop in pairwise(place for place, _ in groupby(places)):
         if start in capture.rests:
             instrument.come_to_rest()
         for event in capture.events[np.searchsorted(frames, start) : np.searchsorted(frames, stop)]:
@@ -46,7 +48,8 @@ def blocks(capture: Capture, instrument: Instrument) -> Iterator[Any]:
         samples = np.zeros(stop - start, np.float32)
         instrument.process(samples)
         for rest, since in capture.rests.items():
-            samples[max(since - start, 0) : max(rest - start, 0)] = 0.0
+            if since < stop and rest > start:
+                samples[max(since - start, 0) : max(rest - start, 0)] = 0.0
         yield samples
 
 
@@ -56,11 +59,16 @@ def replay(
     *,
     format_name: str,
     subtype: str,
+    max_duration_h: float = math.inf,
     progress: Callable[[float, float], None] | None = None,
     may_replace: Callable[[Path], bool] = anything,
 ) -> Replayed:
     """Render a capture to a sound file. Errors: YehuError; nothing is left behind."""
-    check_rate(capture.rate)
+    hours = capture.frames / capture.rate / 3600.0
+    if hours > max_duration_h:
+        raise ScoreError(
+            f"the capture lasts {hours:.3g} hours, more than {max_duration_h:g}: see --max-duration"
+        )
     first, second = capture.tensions
     changes = {"string_1": {"T": first}, "string_2": {"T": second}}
     instrument = Instrument(capture.rate, override(Quantities(), changes))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import resource
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -191,3 +193,91 @@ def test_an_older_capture_is_replaced_only_where_that_is_asked_for(tmp_path):
 def test_a_capture_of_nothing_can_be_taken_back(tmp_path):
     CaptureWriter(tmp_path / "c", rate=RATE, seed=0, tensions=TENSIONS).discard()
     assert list(tmp_path.iterdir()) == []
+
+
+# ---------------------------------------------------------------- hostile files
+
+HUGE = "9" * 400
+DEEP = "[" * 20_000
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f'[{2**63 - 1}, "/bow/speed", 0.1, 0]',
+        f'[{2**80}, "/bow/speed", 0.1, 0]',
+        '[1e3, "/bow/speed", 0.1, 0]',
+        '[-1, "/bow/speed", 0.1, 0]',
+        '[0, "/bow/speed", 9e18, 441]',
+        '[0, "/bow/speed", NaN, 0]',
+        '[0, "/bow/speed", -Infinity, 0]',
+        f'[0, "/bow/speed", {HUGE}, 0]',
+        '[0, "/bow/speed", {}, 0]',
+        f'[0, "/bow/speed", 0.1, {2**63}]',
+        '[0, "/bow/speed", 0.1, -5]',
+        '[0, "silence", 1.0, 0]',
+        '[0, ["/bow/speed"], 0.1, 0]',
+        f'{{"end": {HUGE}}}',
+        f'{{"end": {"9" * 5000}}}',
+        '{"end": true}',
+        '{"rest": 5, "since": 9}',
+        '{"rest": 5}',
+        '{"lost": 5, "events": -1}',
+        '"end"',
+        "17",
+        DEEP,
+        '{"a":' * 10_000,
+        "\x00",
+    ],
+    ids=lambda line: line[:40],
+)
+def test_a_line_that_no_instrument_wrote_is_named_and_refused(tmp_path, line):
+    path = write(tmp_path / "c", EVENTS[:1])
+    path.write_text(path.read_text() + line + "\n" + '{"end": 100}\n')
+    with pytest.raises(ScoreError, match="line 3: not of a capture") as error:
+        read_capture(path)
+    assert len(str(error.value)) < 300
+
+
+@pytest.mark.parametrize("rate", [HUGE, "9" * 5000, "0", "-48000", "NaN", "1e999", "null", DEEP])
+def test_a_rate_that_is_none_is_refused(tmp_path, rate):
+    path = write(tmp_path / "c", EVENTS, end=9001)
+    path.write_text(path.read_text().replace(f'"rate": {RATE}', f'"rate": {rate}'))
+    with pytest.raises(ScoreError):
+        read_capture(path)
+
+
+@pytest.mark.parametrize("end", [10**12, 2**53])
+def test_a_capture_of_years_is_refused_unless_it_is_asked_for(tmp_path, end):
+    capture = read_capture(write(tmp_path / "c", EVENTS, end=end))
+    with pytest.raises(ScoreError, match="--max-duration"):
+        replay(capture, tmp_path / "x.wav", format_name="wav", subtype="16", max_duration_h=12.0)
+    assert not (tmp_path / "x.wav").exists()
+
+
+def test_a_late_rest_is_as_long_as_an_end(tmp_path):
+    capture = read_capture(write(tmp_path / "c", EVENTS, end=100, rests=[10**12]))
+    assert capture.frames == 10**12
+
+
+def test_many_rests_are_no_capture(tmp_path):
+    with pytest.raises(ScoreError, match="too many"):
+        read_capture(write(tmp_path / "c", EVENTS, rests=range(9000, 11000)))
+
+
+def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "long").write_bytes(b"[" * 10**6)
+    for path in (Path("/dev/zero"), tmp_path / "fifo", tmp_path, tmp_path / "long"):
+        with pytest.raises(ScoreError) as error:
+            read_capture(path)
+        assert str(error.value).startswith(f"{path}: ")
+
+
+def test_a_long_session_is_read_whole(tmp_path, monkeypatch):
+    monkeypatch.setattr("yehu_server.score.capture.CHUNK", 3)
+    events = [(frame, SPEED, 0.1, 0) for frame in range(10)]
+    assert [tuple(e) for e in read_capture(write(tmp_path / "c", events)).events.tolist()] == events
+    monkeypatch.setattr("yehu_server.score.capture.MOST_EVENTS", 8)
+    with pytest.raises(ScoreError, match="more than 8 events"):
+        read_capture(tmp_path / "c")

@@ -357,6 +357,11 @@ def seconds(text: str) -> float:
     return within(text, 0.0, 600.0, "s")
 
 
+def hours(text: str) -> float:
+    """Hours, up to 1000."""
+    return within(text, 0.0, 1000.0, "hours")
+
+
 def decibels(text: str) -> float:
     """Decibels, -60 to 24."""
     return within(text, -60.0, 24.0, "dB")

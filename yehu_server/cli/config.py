@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import Parser
+from yehu_server.documents import parse_toml
 from yehu_server.errors import ParameterError
-from yehu_server.files import parse_toml, read_text
+from yehu_server.files import MAX_SETTINGS_BYTES, read_text
 
 OPTION, HELP = "--config", "--help"
 MOST_WORDS = 1000  # argparse takes time by the square of their number
@@ -17,7 +18,7 @@ MOST_WORDS = 1000  # argparse takes time by the square of their number
 def as_words(path: Path) -> list[str]:
     """The file's options as they would be on the command line. Errors: ParameterError."""
     try:
-        data = parse_toml(read_text(path))
+        data = parse_toml(read_text(path, MAX_SETTINGS_BYTES))
     except OSError as error:
         raise ParameterError(f"{path}: {error.strerror}") from error
     except ValueError as error:

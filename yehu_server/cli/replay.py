@@ -13,10 +13,12 @@ from yehu_server.cli.arguments import (
     add_reporting,
     check_output,
     compiling,
+    hours,
     progress_bar,
 )
 from yehu_server.cli.terminal import tell, warn
 
+MAX_DURATION_H = 12.0
 EXAMPLES = """\
 examples:
   yehu-server serve --capture session.jsonl --record session.wav
@@ -44,6 +46,13 @@ def add_to(commands: Any) -> None:
         choices=("16", "24", "float"),
         help="how samples are stored (default: float in WAV, as recorded; 24 in FLAC)",
     )
+    parser.add_argument(
+        "--max-duration",
+        type=hours,
+        default=MAX_DURATION_H,
+        metavar="HOURS",
+        help=f"refuse a capture that lasts longer (default: {MAX_DURATION_H:g})",
+    )
     add_reporting(parser)
 
 
@@ -70,6 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
             arguments.output,
             format_name=format_name,
             subtype=arguments.subtype or SUBTYPES[format_name],
+            max_duration_h=arguments.max_duration,
             progress=progress,
             may_replace=may_replace,
         )

@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from yehu_server.documents import parse_toml
 from yehu_server.errors import ParameterError, PresetError
-from yehu_server.files import parse_toml
 from yehu_server.params.table import BY_ADDRESS, TABLE
 
 VERSION = 1

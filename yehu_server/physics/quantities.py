@@ -6,7 +6,6 @@ Nothing here is computed: derived coefficients live where they are used
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
@@ -14,8 +13,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, cast
 
+from yehu_server.documents import parse_json, parse_toml
 from yehu_server.errors import ParameterError
-from yehu_server.files import parse_toml, read_text
+from yehu_server.files import MAX_SETTINGS_BYTES, read_text
 
 BODY_FILE = Path(__file__).with_name("body.json")
 
@@ -115,7 +115,7 @@ def read_body(path: Path = BODY_FILE) -> Body:
     Source: the format is described in docs/physics.md; figures [YehuData].
     """
     try:
-        data = json.loads(read_text(path))
+        data = parse_json(read_text(path, MAX_SETTINGS_BYTES))
         modes = data["bridge_modes"]
         radiation = data["radiation"]
         body = Body(
@@ -131,7 +131,7 @@ def read_body(path: Path = BODY_FILE) -> Body:
         )
     except OSError as error:
         raise ParameterError(f"body file {path}: {error.strerror}") from error
-    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError, OverflowError) as error:
         raise ParameterError(f"body file {path}: not a body file ({error!r})") from error
     figures = (
         *body.omega,
@@ -265,12 +265,12 @@ def read_quantities(path: Path) -> Quantities:
     Errors: ParameterError, naming the file.
     """
     try:
-        text = read_text(path)
-        data = json.loads(text) if path.suffix == ".json" else parse_toml(text)
+        text = read_text(path, MAX_SETTINGS_BYTES)
+        data = parse_json(text) if path.suffix == ".json" else parse_toml(text)
         return override(Quantities(), data, path.parent)
     except OSError as error:
         raise ParameterError(f"{path}: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise ParameterError(f"{path}: not an instrument file ({error})") from error
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error

@@ -5,15 +5,15 @@ The format is described in mappings/README.md.
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from yehu_server.documents import parse_json, parse_toml
 from yehu_server.errors import MappingError, ParameterError
-from yehu_server.files import MAX_SETTINGS_BYTES, parse_toml, read_text
+from yehu_server.files import MAX_SETTINGS_BYTES, read_text
 from yehu_server.params.spec import Curve
 from yehu_server.playing import mapping_entries as entries
 from yehu_server.playing import sources
@@ -98,8 +98,8 @@ def toml_of(path: Path, text: str) -> dict[str, Any]:
 def json_of(path: Path, text: str) -> dict[str, Any]:
     """The entries of what ``yehu-server mappings show --json`` prints. Errors: MappingError."""
     try:
-        data = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        data = parse_json(text)
+    except ValueError as error:
         raise MappingError(f"{path}: not a mapping ({error})") from error
     if not isinstance(data, dict):
         raise MappingError(f"{path}: not a mapping")

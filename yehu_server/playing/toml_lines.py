@@ -36,7 +36,7 @@ def lines_of(text: str) -> dict[Way, int]:
     for line, left, has_value in _statements(text):
         try:
             inner = tomllib.loads(f"{left} = 0" if has_value else left)
-        except (tomllib.TOMLDecodeError, RecursionError):
+        except (ValueError, RecursionError):
             return {}  # rather no line than a wrong one
         names, is_array = _names(inner)
         way = _within(names[:-1], counts) if not has_value else ()

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from yehu_server.errors import ParameterError
-from yehu_server.files import read_text, shipped_folder
+from yehu_server.files import MAX_SETTINGS_BYTES, read_text, shipped_folder
 
 KEYS = range(128)
 MIDDLE_C, A4 = 60, 69
@@ -166,7 +166,7 @@ class _Lines:
         self.path = path
         self.number = 0  # of the line taken last
         try:
-            text = read_text(path)
+            text = read_text(path, MAX_SETTINGS_BYTES)
         except UnicodeDecodeError as error:
             text = error.object.decode("latin-1")
         except (OSError, ValueError) as error:  # a name may have a NUL

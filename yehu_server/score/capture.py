@@ -22,14 +22,19 @@ from llvmlite import binding
 from yehu_server import __version__
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.engine.mailbox import EVENT
-from yehu_server.errors import OutputError, ScoreError
-from yehu_server.files import create, discard, why, write_all
+from yehu_server.errors import OutputError, ParameterError, ScoreError
+from yehu_server.files import create, discard, read_lines, why, write_all
 from yehu_server.jit import source_hash
 from yehu_server.params.table import ENGINE, SLOT
+from yehu_server.physics.grid import check_rate
 
 FORMAT, VERSION = "yehu-server capture", 1
 MOST_BYTES = 1 << 30
 ROOM_BYTES = 1 << 16  # what must fit on the disk for a capture to begin
+MOST_EVENTS = 20_000_000  # each takes 32 bytes
+MOST_RESTS = 1000
+MOST_FRAMES = 1 << 53
+CHUNK = 1 << 16  # events
 SILENCED = "silence"
 ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: SILENCED}
 INDICES = {address: slot for slot, address in ADDRESSES.items()}
@@ -126,40 +131,42 @@ class Capture:
     def frames(self) -> int:
         """How long it is: where its end is missing, a second after the last event."""
         last = int(self.events["frame"][-1]) + 1 if len(self.events) else 0
+        last = max([last, *self.rests])
         return max(last, last + round(self.rate) if self.end is None else self.end)
 
 
 def read_capture(path: Path) -> Capture:
     """Read a capture, also one that a crash has cut short. Errors: ScoreError."""
+    lines = read_lines(path, MOST_BYTES)
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise ScoreError(f"{path}: too large for a capture")
-        lines = path.read_text(encoding="utf-8").split("\n")
+        capture = _header(path, next(lines, ""))
+        chunks: list[Any] = []
+        events: list[tuple[int, int, float, int]] = []
+        for number, line in enumerate(lines, start=2):
+            try:
+                if line.strip():
+                    _take(json.loads(line), capture, events)
+            except _WRONG as error:
+                if not line.endswith("\n"):  # the line that was being written
+                    break
+                raise ScoreError(f"{path}: line {number}: not of a capture ({error})") from error
+            if len(events) == CHUNK:
+                chunks.append(np.array(events, EVENT))
+                events.clear()
+                if len(chunks) * CHUNK >= MOST_EVENTS:
+                    raise ScoreError(f"{path}: has more than {MOST_EVENTS} events")
     except OSError as error:
         raise ScoreError(f"{path}: {error.strerror}") from error
-    except UnicodeDecodeError as error:
+    except ValueError as error:  # no UTF-8, or a NUL in the name
         raise ScoreError(f"{path}: not a capture ({error})") from error
-    capture = _header(path, lines[0])
-    events: list[tuple[int, int, float, int]] = []
-    for number, line in enumerate(lines[1:], start=2):
-        try:
-            if line.strip():
-                _take(json.loads(line), capture, events)
-        except (ValueError, TypeError, KeyError, OverflowError) as error:
-            if number == len(lines):  # the line that was being written
-                break
-            raise ScoreError(f"{path}: line {number}: not of a capture ({error})") from error
-    try:
-        capture.events = np.array(events, EVENT)
-    except OverflowError as error:
-        raise ScoreError(f"{path}: a number is too large ({error})") from error
-    frames = capture.events["frame"]
-    if np.any(np.diff(frames) < 0) or np.any(frames < 0):
+    capture.events = np.concatenate([*chunks, np.array(events, EVENT)])
+    if np.any(np.diff(capture.events["frame"]) < 0):
         raise ScoreError(f"{path}: events are not in order of frames")
-    if not np.isfinite(capture.events["target"]).all():
-        raise ScoreError(f"{path}: a value is not finite")
     _warn(capture)
     return capture
+
+
+_WRONG = (ValueError, TypeError, KeyError, OverflowError, RecursionError)
 
 
 def _header(path: Path, line: str) -> Capture:
@@ -168,25 +175,49 @@ def _header(path: Path, line: str) -> Capture:
         if header["format"] != FORMAT:
             raise ScoreError(f"{path}: not a capture")
         if header["version"] != VERSION:
-            raise ScoreError(f"{path}: version {header['version']} of the format is not known")
+            raise ScoreError(f"{path}: version {header['version']!r} of the format is not known")
         if dict(header["values"]) != {param.address: param.default for param in ENGINE}:
             raise ScoreError(f"{path}: begins with other values than this version has")
         first, second = map(float, header["tensions"])
-        return Capture(float(header["rate"]), (first, second), dict(header["build"]))
-    except (ValueError, TypeError, KeyError) as error:
+        rate = float(header["rate"])
+        check_rate(rate)
+        return Capture(rate, (first, second), dict(header["build"]))
+    except ParameterError as error:
+        raise ScoreError(f"{path}: {error}") from error
+    except _WRONG as error:
         raise ScoreError(f"{path}: not a capture") from error
 
 
 def _take(entry: Any, capture: Capture, events: list[tuple[int, int, float, int]]) -> None:
     if isinstance(entry, list):
         frame, address, target, ramp = entry
-        events.append((int(frame), INDICES[address], float(target), int(ramp)))
+        index = INDICES[address]
+        events.append((_frames(frame), index, _target(index, target), _frames(ramp)))
     elif "end" in entry:
-        capture.end = int(entry["end"])
+        capture.end = _frames(entry["end"])
     elif "rest" in entry:
-        capture.rests[int(entry["rest"])] = int(entry["since"])
+        rest, since = _frames(entry["rest"]), _frames(entry["since"])
+        capture.rests[rest] = since
+        if since > rest or len(capture.rests) > MOST_RESTS:
+            raise ValueError("a rest before its beginning, or too many of them")
     elif "lost" in entry:
-        capture.lost += int(entry["events"])
+        capture.lost += _frames(entry["events"])
+
+
+def _frames(value: Any) -> int:
+    """A number of frames, or another count. Errors: ValueError."""
+    if type(value) is not int or not 0 <= value <= MOST_FRAMES:
+        raise ValueError("expected a whole number of frames")
+    return value
+
+
+def _target(index: int, value: Any) -> float:
+    """What a parameter was told to go to. Errors: ValueError, TypeError."""
+    target = float(value)
+    lo, hi = (0.0, 0.0) if index == SILENCE else (ENGINE[index].lo, ENGINE[index].hi)
+    if not lo <= target <= hi:  # also refuses NaN
+        raise ValueError(f"{target} is not within {lo:g} to {hi:g}")
+    return target
 
 
 def _warn(capture: Capture) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.documents import parse_json
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.files import read_text
 from yehu_server.physics import layout
@@ -21,6 +21,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 Curve = tuple[tuple[float, float], ...]
 
 MAX_DURATION_S = 3600.0
+MOST_BYTES = 16 * 2**20
 
 
 @dataclass(frozen=True)
@@ -92,14 +93,14 @@ def read_gesture(path: Path) -> Gesture:
     Errors: ScoreError or ParameterError, naming the file and what is wrong in it.
     """
     try:
-        text = read_text(path)
+        text = read_text(path, MOST_BYTES)
     except OSError as error:
         raise ScoreError(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise ScoreError(f"{path}: not a gesture file (not text)") from error
     try:
-        data = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        data = parse_json(text)
+    except ValueError as error:
         raise ScoreError(f"{path}: not a gesture file ({error})") from error
     try:
         return gesture_from(data, path.parent)

@@ -1,0 +1,116 @@
+"""Whatever is given for a file of one's own, there is one line of error, and soon."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from yehu_server.cli import main
+from yehu_server.cli.arguments import MOST_LETTERS
+from yehu_server.cli.config import as_words
+from yehu_server.documents import MOST_DEPTH, parse_json, parse_toml
+from yehu_server.errors import YehuError
+from yehu_server.physics.quantities import read_body, read_quantities
+from yehu_server.playing.mapping import load
+from yehu_server.playing.presets import read_preset
+from yehu_server.playing.tuning import read_tuning
+from yehu_server.score.capture import read_capture
+from yehu_server.score.gesture import read_gesture
+from yehu_server.score.smf import read_score
+
+READERS = {
+    "c.toml": as_words,
+    "i.toml": read_quantities,
+    "i.json": read_quantities,
+    "b.json": read_body,
+    "g.json": read_gesture,
+    "m.toml": lambda path: load(str(path)),
+    "p.toml": read_preset,
+    "s.scl": lambda path: read_tuning(path, None),
+    "c.jsonl": read_capture,
+    "s.mid": read_score,
+}
+CONTENTS = {
+    "nothing": b"\0",
+    "no text": b"\xff\xfe\x00",
+    "many digits": b"a = " + b"9" * 5000,
+    "many digits of JSON": b'{"duration": ' + b"9" * 5000 + b"}",
+    "many hexadecimal digits": b"about = 0x" + b"f" * 5000 + b"\nprogram = 0x" + b"f" * 5000,
+    "many hexadecimal digits in a list": b"about = [0x" + b"f" * 5000 + b"]",
+    "a huge fraction": b"a = 1e999",
+    "deep lists": b"a = " + b"[" * 20_000,
+    "deep lists of JSON": b"[" * 900 + b"]" * 900,
+    "deep names": b"about." + b"a." * 5000 + b"a = 1",
+    "deep tables": b"[about." + b"a." * 5000 + b"a]",
+    "deep names of JSON": b'{"controls": ' + b'{"a":' * 900 + b"1" + b"}" * 901,
+    "a long line": b"about = [" + b'"' + b"a" * 10**6 + b'"]',
+    "a long name": b"a" * 10**6 + b" = 1",
+}
+OPTIONS = ("a huge fraction", "a long line", "a long name")  # what may be, as options go
+
+
+@pytest.mark.parametrize("content", CONTENTS)
+@pytest.mark.parametrize("name", READERS)
+def test_a_hostile_text_is_refused(tmp_path, name, content):
+    path = tmp_path / name
+    path.write_bytes(CONTENTS[content])
+    if name == "c.toml" and content in OPTIONS:
+        READERS[name](path)
+        return
+    with pytest.raises(YehuError) as error:
+        READERS[name](path)
+    assert str(error.value).startswith((str(path), f"body file {path}"))
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_what_never_ends_or_never_begins_is_refused_at_once(tmp_path, name):
+    os.mkfifo(tmp_path / f"fifo-{name}")
+    (tmp_path / f"folder-{name}").mkdir()
+    (tmp_path / f"zero-{name}").symlink_to("/dev/zero")
+    with (tmp_path / f"large-{name}").open("wb") as large:
+        large.truncate(2**40)
+    for path in tmp_path.iterdir():
+        with pytest.raises(YehuError) as error:
+            READERS[name](path)
+        assert str(path) in str(error.value)
+        assert len(str(error.value)) < 200 + len(str(path))
+
+
+def test_a_line_of_error_is_never_long(tmp_path, capsys):
+    path = tmp_path / "c.toml"
+    path.write_text("rate = '" + "a" * 100_000 + "'")
+    with pytest.raises(SystemExit) as ended:
+        main(["render", "x.mid", "-o", "x.wav", "--config", str(path)])
+    assert ended.value.code == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert len(err) < MOST_LETTERS + 200
+    path.write_text("a = ['" + "a" * 100_000 + "', {}]")
+    assert main(["render", "x.mid", "-o", "x.wav", "--config", str(path)]) == 2
+    assert len(capsys.readouterr().err) < MOST_LETTERS + 200
+
+
+def nested(depth: int) -> str:
+    return "[" * depth + "]" * depth
+
+
+def test_as_deep_as_anybody_nests_is_read():
+    assert parse_json(nested(MOST_DEPTH - 1))[0]
+    assert parse_toml(f"a = {nested(MOST_DEPTH - 2)}")["a"]
+    for deep in (nested(MOST_DEPTH + 1), nested(100_000)):
+        with pytest.raises(ValueError, match="nested too deeply"):
+            parse_json(deep)
+        with pytest.raises(ValueError, match="nested too deeply"):
+            parse_toml(f"a = {deep}")
+
+
+def test_what_is_refused_by_the_reader_is_one_line_of_the_command(tmp_path, capsys):
+    for name, words in {
+        "c.jsonl": ["replay", "FILE", "-o", str(tmp_path / "x.wav")],
+        "g.json": ["simulate", "FILE", "-o", str(tmp_path / "x.npz")],
+        "s.mid": ["render", "FILE", "-o", str(tmp_path / "x.wav")],
+    }.items():
+        for path in (tmp_path / name, Path("/dev/zero"), tmp_path):
+            (tmp_path / name).write_bytes(b"[" * 100_000)
+            assert main([str(path) if word == "FILE" else word for word in words]) == 2
+            assert capsys.readouterr().err.count("\n") == 1

@@ -422,6 +422,8 @@ class Server:
             "osc_errors": counts.errors,
             "osc_refused": traffic.refused,
             "osc_dropped": traffic.kernel_drops,
+            "osc_excess": traffic.excess,
+            "osc_unsent": traffic.unsent,
             "osc_failures": traffic.failures,
             "osc_buffer_bytes": traffic.buffer_bytes,
             "osc_connections": traffic.connections,

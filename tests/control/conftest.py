@@ -175,6 +175,12 @@ class Ear:
     def name(self) -> str:
         return f"ear:{self.port}"
 
+    @property
+    def host(self) -> str:
+        return self.name
+
+    takes_more = True
+
     def send(self, packet: bytes) -> None:
         self.packets.append(packet)
 

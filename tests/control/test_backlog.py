@@ -9,7 +9,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yehu_server.control.backlog import OLD_NS, TURN_NS, Backlog
+from yehu_server.control import backlog
+from yehu_server.control.backlog import (
+    FEW,
+    LITTLE_BYTES,
+    MOST_BYTES,
+    MOST_KNOWN,
+    MOST_SENDERS,
+    OWED_BYTES,
+    STRANGE_NS,
+    TURN_NS,
+    Backlog,
+)
 
 LONG_S = 1.5e-9 * TURN_NS
 
@@ -32,9 +43,9 @@ class Done:
             self.steps.append(peer + letter)
             yield
 
-    def add(self, peer: str, letters: str | None, age_ns: int = 0) -> None:
+    def add(self, peer: str, letters: str | None, size: int = 0) -> bool:
         packet = None if letters is None else letters.encode()
-        self.backlog.add(packet, peer, time.monotonic_ns() - age_ns)
+        return self.backlog.add(packet, peer, 0, size)
 
     def work(self) -> str:
         """Handle all of it; what was handled, in order."""
@@ -43,6 +54,26 @@ class Done:
                 break
             self.backlog.work()
         return " ".join(self.steps)
+
+
+class Hours:
+    """A clock that goes as ever, and leaps; stands in for the module ``time``."""
+
+    def __init__(self) -> None:
+        self._leapt_ns = 0
+
+    def pass_ns(self, ns: int) -> None:
+        self._leapt_ns += ns
+
+    def monotonic_ns(self) -> int:
+        return time.monotonic_ns() + self._leapt_ns
+
+
+@pytest.fixture
+def hours(monkeypatch) -> Hours:
+    clock = Hours()
+    monkeypatch.setattr(backlog, "time", clock)
+    return clock
 
 
 @pytest.fixture
@@ -79,13 +110,117 @@ def test_of_many_with_much_to_do_each_gets_its_turn(done):
     assert steps.index("1B") < steps.index("2D")
 
 
-def test_who_has_just_come_need_not_wait_for_one_who_keeps_all_waiting(done):
-    for _ in range(100):
-        done.add("1", "A", age_ns=2 * OLD_NS)
+def test_who_has_just_come_need_not_wait_for_one_who_says_much_at_once(done):
+    for _ in range(FEW + 1):
+        done.add("1", "A")
     done.add("2", "b")
     done.backlog.work()
-    assert "2b" in done.steps[:3]
-    assert len(done.work().split()) == 101
+    assert done.steps[0] == "2b"
+    assert len(done.work().split()) == FEW + 2
+
+
+def test_who_takes_long_again_and_again_waits_for_it_alone(done):
+    for _ in range(20):
+        done.add("1", "A")
+        done.backlog.work()
+    done.add("1", "A")
+    done.add("2", "b")
+    done.work()
+    assert done.steps[-2:] == ["2b", "1A"]
+
+
+def test_what_is_large_waits_for_what_is_little(done):
+    done.add("1", "a", LITTLE_BYTES + 1)
+    done.add("2", "b", LITTLE_BYTES)
+    assert done.work() == "2b 1a"
+
+
+def test_who_has_been_here_goes_before_strangers(done, hours):
+    done.add("1", "a")
+    hours.pass_ns(STRANGE_NS + 1)
+    done.add("1", "b")
+    done.work()
+    for number in range(100):
+        done.add(f"stranger {number} ", "x")
+    done.add("1", "c")
+    assert done.work().split()[:3] == ["1a", "1b", "1c"]
+
+
+def test_one_gets_no_more_room_than_is_left_for_others_and_some_is_always_left(done):
+    size = MOST_BYTES // 64
+    taken = dict.fromkeys("1234", 0)
+    for peer in taken:
+        while done.add(peer, "", size):
+            taken[peer] += 1
+    assert taken["1"] in (31, 32)
+    assert taken["2"] in (15, 16)
+    assert taken["4"] > 0
+    assert done.backlog.bytes <= MOST_BYTES
+    done.work()
+    assert done.backlog.bytes == 0
+    assert done.add("4", "", size)
+
+
+def test_who_has_been_here_finds_room_for_a_little_however_many_strangers_take_it(done, hours):
+    done.add("player", "")
+    hours.pass_ns(STRANGE_NS + 1)
+    done.add("player", "")
+    done.work()
+    for number in range(4000):
+        done.add(f"stranger {number}", "", OWED_BYTES)
+    assert not done.add("another", "", OWED_BYTES)
+    assert done.add("player", "n")
+    assert done.backlog.bytes <= MOST_BYTES + OWED_BYTES
+
+
+def test_of_strangers_who_are_done_nothing_is_kept(done, hours):
+    done.add("player", "")
+    hours.pass_ns(STRANGE_NS + 1)
+    done.add("player", "")
+    for number in range(5 * MOST_SENDERS):
+        done.add(f"stranger {number}", "")
+        done.work()
+        assert len(done.backlog._senders) <= MOST_SENDERS
+    assert "player" in done.backlog._senders
+
+
+def test_there_are_places_for_so_many_who_are_known_and_they_are_given_on(done, hours):
+    crowds = []
+    for crowd in "ab":
+        for _ in range(2):
+            for number in range(MOST_KNOWN + 1):
+                done.add(f"{crowd}{number}", "")
+                done.work()
+            hours.pass_ns(STRANGE_NS + 1)
+        crowds.append(len(done.backlog._known))
+        hours.pass_ns(backlog.FORGOTTEN_NS)
+    assert crowds == [MOST_KNOWN, MOST_KNOWN]
+
+
+def test_what_is_forgotten_is_not_done_and_leaves_its_room(done):
+    done.add("1", "ABC")
+    done.add("1", "d")
+    done.add("2", "e", LITTLE_BYTES + 1)
+    done.backlog.work()
+    done.backlog.clear()
+    assert (len(done.backlog), done.backlog.bytes) == (0, 0)
+    before = len(done.steps)
+    done.add("1", "f")
+    assert done.work().split()[before:] == ["1f"]
+
+
+def test_one_may_forget_all_that_waits_while_it_is_done(done):
+    def clear(packet: bytes, peer: str, _when: int) -> Iterator[None]:
+        done.steps.append(peer)
+        done.backlog.clear()
+        done.steps.append(packet.decode())
+        yield
+
+    done.backlog._handle = clear
+    for peer in "112":
+        done.add(peer, "a")
+    assert done.work() == "1 a"
+    assert (len(done.backlog), done.backlog.bytes) == (0, 0)
 
 
 def test_what_goes_wrong_is_not_tried_again_and_loses_nothing_else(done):
@@ -105,8 +240,8 @@ def test_what_goes_wrong_is_not_tried_again_and_loses_nothing_else(done):
 @given(st.lists(st.tuples(st.sampled_from("123"), st.text("ab", max_size=3), st.booleans())))
 def test_what_one_peer_says_keeps_its_order_whoever_else_speaks(said):
     done = Done()
-    for peer, letters, is_old in said:
-        done.add(peer, letters, age_ns=2 * OLD_NS if is_old else 0)
+    for peer, letters, is_large in said:
+        done.add(peer, letters, 2 * LITTLE_BYTES if is_large else 0)
     done.work()
     for peer in "123":
         letters = "".join(step[1] for step in done.steps if step[0] == peer)

@@ -6,7 +6,13 @@ from collections import Counter
 
 import pytest
 
-from yehu_server.control.clients import MOST_KNOWN, MOST_SUBSCRIBERS, Clients
+from yehu_server.control.clients import (
+    MOST_KNOWN,
+    MOST_OF_A_HOST,
+    MOST_SUBSCRIBERS,
+    MOST_TOLD,
+    Clients,
+)
 
 
 class Values:
@@ -105,8 +111,44 @@ def test_many_who_set_something_at_once_are_all_told(clients, play, ear_type):
     ears = [ear_type(port) for port in range(MOST_KNOWN + 100)]
     for ear in ears:
         clients.echo(ear, ["/a"])
+    play(17)
+    assert sum(len(ear.packets) for ear in ears) in (MOST_TOLD, 2 * MOST_TOLD)
+    play(60)
+    assert {len(ear.packets) for ear in ears} == {1}
+
+
+def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(
+    clients, values, play, ear_type
+):
+    ears = [ear_type(port) for port in range(40)]
+    values.now = {f"/{number}": 0.0 for number in range(MOST_TOLD // 10)}
+    for ear in ears:
+        assert clients.subscribe(ear, 60.0)
+    play(1000)
+    for ear in ears:
+        ear.packets.clear()
+
+    def turn() -> None:
+        values.now = {address: value + 1.0 for address, value in values.now.items()}
+
+    play(1000, turn)
+    counts = [len(ear.packets) for ear in ears]
+    assert sum(counts) <= 61 * MOST_TOLD
+    assert min(counts) > 0.8 * max(counts)
+
+
+def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, ear):
+    clients.subscribe(ear, 60.0)
     play(20)
-    assert sum(len(ear.packets) for ear in ears) == len(ears)
+    ear.heard()
+    ear.takes_more = False
+    for number in range(50):
+        values.now["/a"] = float(number)
+        play(20)
+    assert told(ear) == []
+    ear.takes_more = True
+    play(20)
+    assert told(ear) == [("/yehu/a", [49.0])]
 
 
 def test_only_so_many_are_remembered(clients, ear_type):
@@ -178,6 +220,17 @@ def test_a_subscription_is_renewed_and_not_doubled(clients, values, play, ear):
     values.now["/a"] = 1.0
     play(50)
     assert told(ear) == [("/yehu/a", [1.0])]
+
+
+def test_one_host_leaves_places_for_others(clients, ear_type):
+    class Tenant(ear_type):
+        host = "192.0.2.1"
+
+    tenants = [Tenant(port) for port in range(MOST_OF_A_HOST + 1)]
+    assert [clients.subscribe(ear, 60.0) for ear in tenants].count(True) == MOST_OF_A_HOST
+    assert clients.subscribe(ear_type(7), 60.0)
+    clients.unsubscribe(tenants[0])
+    assert clients.subscribe(tenants[-1], 60.0)
 
 
 @pytest.mark.parametrize("end", [Clients.unsubscribe, Clients.forget])

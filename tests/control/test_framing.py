@@ -95,16 +95,75 @@ def test_what_came_before_a_length_that_is_too_long_still_counts(size):
     assert got == [b"/a\0\0"]
 
 
-@pytest.mark.parametrize("start", [END, b"/", b"\xff"])
+@pytest.mark.parametrize("start", [END + b"/", b"/", b"#"])
 def test_a_stream_that_never_ends_a_packet_is_given_up(start):
     framing = Framing()
-    with pytest.raises(FramingError):
+    with pytest.raises(FramingError, match="too long"):
         read(framing, start, *([b"x" * 65536] * 64))
     assert len(framing._received) <= 3 * MOST_BYTES
 
 
+STUN = bytes.fromhex("0003 0000 2112a442") + b"0123456789ab"  # what asks a TURN server for a place
+SAID_BY_OTHERS = [
+    b"GET / HTTP/1.1\r\n\r\n",
+    b"POST / HTTP/1.1\r\nContent-Length: 8\r\n\r\n\xc0/a\0\0\xc0",
+    b"OPTIONS * HTTP/1.1\r\n\r\n",
+    b"\x16\x03\x01\x02\x00\x01\x00",  # TLS
+    STUN,
+    b"\x00\x01\x00\x00" + STUN[4:],
+    b"\x00\x14" + STUN,  # between browsers
+    b"\xff",
+    ESC + b"\xdc",
+    b"\r\n/a\0\0\xc0",
+    b"\0\0\0\x04P",
+    b"\0\0\0\x04\0",
+    END + b"P",
+    END * 3 + b"\0",
+]
+
+
+@pytest.mark.parametrize("said", SAID_BY_OTHERS)
+def test_what_is_no_osc_ends_a_stream_however_it_begins(said):
+    with pytest.raises(FramingError):
+        read(Framing(), said + b"\xc0/a\0\0\xc0")
+
+
+@pytest.mark.parametrize("said", [said for said in SAID_BY_OTHERS if said[0]])
+def test_the_first_byte_that_no_packet_begins_with_ends_a_stream(said):
+    wrong = next(at for at in range(len(said)) if said[at : at + 1] != END)
+    for before in (b"", END, slipped(SOME), slipped_bare(SOME)):
+        got: list[bytes] = []
+        with pytest.raises(FramingError, match="no OSC"):
+            got.extend(Framing().packets(before + said[: wrong + 1]))
+        assert got == (SOME if len(before) > 1 else [])
+
+
+def test_what_is_no_osc_after_a_length_ends_a_stream_with_its_first_byte():
+    with pytest.raises(FramingError, match="no OSC"):
+        read(Framing(), b"\0\0\0\x08G")
+
+
+class Sought(bytearray):
+    """Counts the bytes that are looked at for another."""
+
+    count = 0
+
+    def find(self, what: bytes, start: int = 0) -> int:
+        Sought.count += len(self) - start
+        return super().find(what, start)
+
+
+def test_no_byte_of_a_slip_packet_that_comes_in_pieces_is_looked_at_again():
+    framing = Framing()
+    framing._received, Sought.count = Sought(), 0
+    packet = b"/" + b"x" * 60_000
+    assert read(framing, END, *(packet[at : at + 100] for at in range(0, 60_001, 100))) == []
+    assert Sought.count == len(packet)
+    assert read(framing, END) == [packet]
+
+
 @pytest.mark.parametrize(
-    "damaged", [b"/a" + ESC + b"b", b"/a" + ESC, ESC + ESC, ESC, b"/" + ESC + b"\0\xdc"]
+    "damaged", [b"/a" + ESC + b"b", b"/a" + ESC, b"#" + ESC + ESC, b"/" + ESC + b"\0\xdc"]
 )
 def test_a_damaged_slip_packet_is_told_and_the_next_is_whole(damaged):
     stream = slipped([b"/a\0\0"]) + END + damaged + END + slipped([b"/b\0\0"])

@@ -59,10 +59,13 @@ def test_a_name_that_another_may_have_is_refused(hosts):
     ("host", "origin"),
     [
         ("127.0.0.1:9001", "http://127.0.0.1:9001"),
-        ("127.0.0.1:9001", "http://127.0.0.1:3000"),
         ("localhost:9001", "https://localhost:9001"),
         ("[::1]:9001", "http://[::1]:9001"),
-        ("stage.local:9001", "http://Stage.local"),
+        ("stage.local:9001", "http://Stage.local:9001"),
+        ("stage.local", "http://stage.local"),
+        ("stage.local", "https://stage.local."),
+        ("stage.local:80", "http://stage.local"),
+        ("stage.local:443", "https://stage.local"),
     ],
 )
 def test_a_page_of_this_machine_may_ask(host, origin):
@@ -72,6 +75,11 @@ def test_a_page_of_this_machine_may_ask(host, origin):
 @pytest.mark.parametrize(
     ("host", "origin"),
     [
+        ("127.0.0.1:9001", "http://127.0.0.1:3000"),  # any program may serve pages there
+        ("127.0.0.1:9001", "http://127.0.0.1"),
+        ("127.0.0.1", "http://127.0.0.1:9001"),
+        ("127.0.0.1:80", "https://127.0.0.1"),
+        ("127.0.0.1:9001", "http://127.0.0.1:port"),
         ("127.0.0.1:9001", "http://evil.example"),
         ("127.0.0.1:9001", "http://127.0.0.1.evil.example"),
         ("127.0.0.1:9001", "http://localhost:9001"),

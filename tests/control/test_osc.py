@@ -17,6 +17,7 @@ import pytest
 from yehu_server.control import clients, osc
 from yehu_server.control.addresses import Allowed
 from yehu_server.control.calls import CALLS
+from yehu_server.control.room import OVERHEAD_BYTES, Room
 from yehu_server.control.status import STATUS
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
@@ -742,7 +743,7 @@ def test_messages_of_a_bundle_are_heard_at_one_frame_and_in_order(stage, wire):
 
 
 def test_when_too_much_waits_it_is_told_and_the_rest_plays(stage, wire, monkeypatch):
-    monkeypatch.setattr(stage.handler._schedule, "_most", 10)
+    monkeypatch.setattr(stage.handler._schedule, "_room", Room(20 * (OVERHEAD_BYTES + 28)))
     later = stage.clock.time() + 0.1
     for number in range(12):
         packet = wire.message("/yehu/bow/position", 0.1 + 0.01 * number)

@@ -56,7 +56,9 @@ def test_liblo_plays_a_note_and_ends_it(hall, patience, kind):
     ],
 )
 def test_liblo_sets_a_parameter_with_any_type(house, patience, kind, address, words, value):
+    before = house.handler.counts.messages
     oscsend(house, kind, address, *words)
+    patience(lambda: house.handler.counts.messages > before, "the message")
     patience(lambda: house.player.value("/bow/force") == value, "the value")
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import math
 import signal
 import struct
-import time
+import tracemalloc
 from collections.abc import Iterator
 
 import pytest
@@ -14,7 +15,15 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from yehu_server.control.framing import MOST_BYTES
-from yehu_server.control.packets import DEEPEST, Message, PacketError, pack, unpack
+from yehu_server.control.packets import (
+    DEEPEST,
+    MOST_ARGUMENTS,
+    Message,
+    PacketError,
+    pack,
+    steps,
+    unpack,
+)
 
 LONGEST_S = 2.0
 
@@ -268,17 +277,29 @@ def test_bundles_much_too_deep_are_refused_at_once(depth):
         unpack(packet)
 
 
-def test_a_message_as_long_as_is_allowed_is_read_at_once(wire):
-    count = MOST_BYTES // 5 - 10
-    packet = wire.message("/a", *[1] * count)
-    started = time.thread_time()
-    assert len(unpack(packet)[0].arguments) == count
-    assert time.thread_time() - started < 1.2
+def test_a_message_of_as_many_arguments_as_is_allowed_is_read_and_no_longer_one(wire):
+    (got,) = unpack(wire.message("/a", *[1] * MOST_ARGUMENTS))
+    assert len(got.arguments) == MOST_ARGUMENTS
+    for tags in ("i" * (MOST_ARGUMENTS + 1), "T" * (MOST_BYTES - 100), "[" * 40_000):
+        with pytest.raises(PacketError, match="arguments"):
+            unpack(wire.message("/a", *[1] * len(tags), tags=tags))
 
 
-def test_a_bundle_as_long_as_is_allowed_is_read_at_once(wire):
-    count = MOST_BYTES // 8 - 10
-    packet = wire.bundle(None, *[b"/\0\0\0"] * count)
-    started = time.thread_time()
-    assert len(unpack(packet)) == count
-    assert time.thread_time() - started < 1.2
+def test_a_bundle_is_read_a_step_at_a_time_and_none_of_it_is_kept(wire):
+    inner = wire.bundle(None, *[b"/\0\0\0"] * 10)
+    packet = wire.bundle(None, *[inner] * (MOST_BYTES // 140))
+    taken = steps(packet)
+    tracemalloc.start()
+    try:
+        count = sum(message is not None for message in taken)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert count == 10 * (MOST_BYTES // 140)
+    assert most < 50_000
+    assert all(message is None for message in itertools.islice(steps(packet), count))
+
+
+def test_a_bundle_of_empty_bundles_is_read_in_steps_too(wire):
+    packet = wire.bundle(None, *[wire.bundle(None)] * 1000)
+    assert list(steps(packet)) == [None] * 2002

@@ -11,9 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yehu_server.control import schedule
+from yehu_server.control.room import OVERHEAD_BYTES
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
 
 RATE = 48000
+MANY = 1 << 20
 MS = RATE // 1000
 
 
@@ -22,37 +24,52 @@ MS = RATE // 1000
 
 @given(st.lists(st.floats(0.0, 100.0)))
 def test_things_are_handed_out_once_in_order_of_their_times(due):
-    waiting: Schedule[int] = Schedule()
+    waiting: Schedule[int, str] = Schedule()
     for number, moment in enumerate(due):
-        assert waiting.add(moment, number)
+        assert waiting.add(moment, number, "me")
     assert len(waiting) == len(due)
-    assert waiting.due() == sorted((moment, number) for number, moment in enumerate(due))
+    in_order = sorted((moment, number, "me") for number, moment in enumerate(due))
+    assert waiting.due(3) == in_order[:3]  # and no more at once
+    assert waiting.due(MANY) == in_order[3:]
     assert not waiting
-    assert waiting.due() == []
+    assert waiting.due(MANY) == []
 
 
 def test_nothing_is_handed_out_before_its_time(still_time):
-    waiting: Schedule[str] = Schedule()
+    waiting: Schedule[str, str] = Schedule()
     now = still_time.time()
     assert waiting.wait_s() is None
-    waiting.add(now + 2.0, "second")
-    waiting.add(now + 1.0, "first")
+    waiting.add(now + 2.0, "second", "me")
+    waiting.add(now + 1.0, "first", "me")
     assert waiting.wait_s() == pytest.approx(1.0 - AHEAD_S)
-    assert waiting.due() == []
+    assert waiting.due(MANY) == []
     still_time.now += 1.0 - AHEAD_S + 1e-4
-    assert waiting.due() == [(now + 1.0, "first")]
+    assert waiting.due(MANY) == [(now + 1.0, "first", "me")]
     assert waiting.wait_s() == pytest.approx(1.0, abs=0.01)
     still_time.now += 5.0
     assert waiting.wait_s() == 0.0
-    assert waiting.due() == [(now + 2.0, "second")]
+    assert waiting.due(MANY) == [(now + 2.0, "second", "me")]
 
 
-def test_there_is_room_for_so_many_and_again_when_they_are_gone():
-    waiting: Schedule[int] = Schedule(most=3)
-    assert [waiting.add(0.0, number) for number in range(5)] == [True, True, True, False, False]
+def test_there_is_room_for_so_much_half_of_it_for_one_and_again_when_it_is_gone():
+    waiting: Schedule[int, str] = Schedule(most_bytes=8 * 300)
+    size = 300 - OVERHEAD_BYTES
+    said = [waiting.add(0.0, number, sender, size) for sender in "ab" for number in range(5)]
+    assert said == [True, True, True, True, False, True, True, False, False, False]
+    waiting.due(2)
+    assert waiting.add(0.0, 5, "b", size)
     waiting.clear()
-    assert waiting.add(0.0, 5)
-    assert waiting.due() == [(0.0, 5)]
+    assert waiting.add(0.0, 6, "a", size)
+    assert waiting.due(MANY) == [(0.0, 6, "a")]
+
+
+def test_sixty_thousand_notes_wait_thirty_thousand_of_one_sender(wire):
+    waiting: Schedule[int, int] = Schedule()
+    note = len(wire.message("/yehu/note", 67.0, 90.0))
+    for sender in range(40):
+        count = sum(waiting.add(0.0, number, sender, note) for number in range(40_000))
+        assert sender > 0 or count > 30_000
+    assert 60_000 < len(waiting) < 80_000
 
 
 # ---------------------------------------------------------------- frames of moments

@@ -19,8 +19,9 @@ from yehu_server.params.table import UNIT, read
 FLUSH_S = 1.0 / 60.0
 STATUS_S = 0.25  # between looks at the status
 SWEEP_S = 1.0
-MOST_SUBSCRIBERS = 64
-MOST_KNOWN = 1024
+MOST_SUBSCRIBERS, MOST_OF_A_HOST = 64, 32
+MOST_KNOWN, MOST_CROWDED = 1024, 8192
+MOST_TOLD = 512  # messages at a time
 ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
 FORGIVEN_S = ERRORS_AT_ONCE / ERRORS_A_SECOND
 
@@ -73,6 +74,7 @@ class Clients:
         self._flushed = 0.0
         self._swept = 0.0
         self._is_waiting = False
+        self._crowded = MOST_KNOWN  # when there are so many, who has nothing to hear is forgotten
         self.errors_sent = 0
         self.errors_withheld = 0
 
@@ -85,8 +87,9 @@ class Clients:
     def _client(self, peer: Peer) -> Client:
         client = self._clients.get(peer)
         if client is None:
-            if len(self._clients) >= MOST_KNOWN:
+            if len(self._clients) >= self._crowded:
                 self._forget_idle()
+                self._crowded = max(MOST_KNOWN, 2 * len(self._clients))
             client = self._clients[peer] = Client(peer)
         return client
 
@@ -111,6 +114,8 @@ class Clients:
 
     def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
         """Let a peer know soon what it has set."""
+        if len(self._clients) >= MOST_CROWDED and peer not in self._clients:
+            return
         client = self._client(peer)
         if client.hushed_until <= time.monotonic():
             client.to_tell.update(dict.fromkeys(addresses))
@@ -129,8 +134,10 @@ class Clients:
         `form` is nothing for plain values, UNIT for 0 to 1, or PLACE for the status.
         """
         client, now = self._client(peer), time.monotonic()
-        if not client.subscribes(now) and self.subscribers >= MOST_SUBSCRIBERS:
-            return False
+        if not client.subscribes(now):
+            hosts = [one.peer.host for one in self._clients.values() if one.subscribes(now)]
+            if len(hosts) >= MOST_SUBSCRIBERS or hosts.count(peer.host) >= MOST_OF_A_HOST:
+                return False
         self._is_waiting = True
         if form == PLACE:
             client.status_until = now + seconds
@@ -158,6 +165,11 @@ class Clients:
         client = self._client(peer)
         client.listens.discard(address)
         client.to_tell.pop(address, None)
+
+    def hears(self, peer: Peer) -> bool:
+        """Whether a peer is still to be told of changes."""
+        client = self._clients.get(peer)
+        return client is not None and (client.until > time.monotonic() or bool(client.listens))
 
     def forget(self, peer: Peer) -> None:
         """A peer is gone."""
@@ -209,18 +221,35 @@ class Clients:
         heard = {address + form for address in changed for form in ("", UNIT)}
         changed_status = self._changed_status(now)
         heard |= changed_status
-        packets: dict[str, bytes] = {}
-        for client in list(self._clients.values()):  # sending may end one
+        for client in self._clients.values():
             if client.until > now:
                 client.to_tell.update({address + client.form: None for address in changed})
             if client.status_until > now:
                 client.to_tell.update(dict.fromkeys(changed_status))
             client.to_tell.update(dict.fromkeys(client.listens & heard))
-            for address in client.to_tell:
+        self._tell()
+
+    def _tell(self) -> None:
+        """Tell what is to be told, as far as one flush goes; those who are left come first next."""
+        packets: dict[str, bytes] = {}
+        left = MOST_TOLD
+        for peer, client in list(self._clients.items()):  # sending may end one
+            if not client.to_tell:
+                continue
+            if left <= 0:
+                self._is_waiting = True
+                break
+            while client.to_tell and left > 0 and client.peer.takes_more:
+                address = next(iter(client.to_tell))
+                del client.to_tell[address]
                 if address not in packets:
                     packets[address] = pack(self.prefix + address, self._value(address))
                 client.peer.send(packets[address])
-            client.to_tell.clear()
+                left -= 1
+            if client.to_tell:
+                self._is_waiting = True
+            if peer in self._clients:
+                self._clients[peer] = self._clients.pop(peer)  # behind the others
 
     def _value(self, address: str) -> float | str:
         if address.startswith(PLACE):

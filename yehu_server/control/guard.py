@@ -1,7 +1,8 @@
 """Which web requests are answered: not what a foreign page makes a player's browser ask.
 
 A page from anywhere can open a WebSocket to this machine, and by changing what its name means
-(DNS rebinding) read from it too. Its requests show where it comes from.
+(DNS rebinding) read from it too. Its requests show where it comes from: another port of this
+machine is elsewhere, since any program may serve pages there.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from urllib.parse import urlsplit
 from yehu_server.control.addresses import is_here
 
 LONGEST_NAME = 300
+PORTS = {"http": 80, "https": 443}  # of what names none, by scheme
+NOWHERE = ("", 0)
 
 
 def own_names() -> frozenset[str]:
@@ -25,33 +28,29 @@ def own_names() -> frozenset[str]:
 
 def refusal(hosts: Sequence[str], origins: Sequence[str], names: frozenset[str]) -> str:
     """Why a request is not answered, by its headers Host and Origin; nothing where it is."""
-    host = _host_of(hosts[0]) if len(hosts) == 1 else ""
+    host, _ = _place(hosts[0]) if len(hosts) == 1 else NOWHERE
     if not (_is_address(host) or host in names):
         return "ask for this machine by its address, or as localhost"
     if not origins:
         return ""
-    origin = _host_of_origin(origins[0]) if len(origins) == 1 else ""
-    if origin != host or not (host in names or is_here(host)):
+    scheme, _, origin = origins[0][:LONGEST_NAME].partition("://")
+    port = PORTS.get(scheme.lower()) if len(origins) == 1 else None
+    is_ours = port is not None and _place(origin, port) == _place(hosts[0], port)
+    if not is_ours or not (host in names or is_here(host)):
         return "a page from elsewhere may not ask"
     return ""
 
 
-def _host_of_origin(origin: str) -> str:
-    """The host of an origin such as ``http://127.0.0.1:9001``, or nothing."""
-    scheme, separator, rest = origin[:LONGEST_NAME].partition("://")
-    return _host_of(rest) if separator and scheme.lower() in {"http", "https"} else ""
-
-
-def _host_of(text: str) -> str:
-    """The host of ``HOST`` or ``HOST:PORT``, or nothing."""
+def _place(text: str, port: int = 0) -> tuple[str, int]:
+    """The host and the port of ``HOST:PORT``, or of ``HOST`` and a port; or nowhere."""
     try:
         parts = urlsplit(f"//{text[:LONGEST_NAME]}")
-        parts.port  # noqa: B018 - is checked as it is read
+        port = port if parts.port is None else parts.port
     except ValueError:
-        return ""
+        return NOWHERE
     if parts.username is not None or parts.path or parts.query or parts.fragment:
-        return ""
-    return (parts.hostname or "").removesuffix(".")
+        return NOWHERE
+    return (parts.hostname or "").removesuffix("."), port
 
 
 def _is_address(host: str) -> bool:

@@ -11,10 +11,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
+from yehu_server.control.backlog import Backlog
 from yehu_server.control.calls import PREFIX
 from yehu_server.control.clients import Clients
 from yehu_server.control.learn_calls import LearnCalls
-from yehu_server.control.packets import Message, PacketError, answer, pack, unpack
+from yehu_server.control.packets import Message, PacketError, answer, pack, steps, unpack
 from yehu_server.control.patterns import PatternError, is_pattern, matches
 from yehu_server.control.peers import Peer
 from yehu_server.control.preset_calls import PresetCalls
@@ -32,6 +33,7 @@ log = logging.getLogger(__name__)
 Act = Callable[[Request], None]
 
 LONGEST_PATTERN = 256
+DUE_AT_ONCE = 1024  # messages whose time has come, before others are looked at
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 
 
@@ -58,7 +60,8 @@ class OscHandler:
         self._desk = desk
         self.counts = Counts()
         self.clients = Clients(player.values, PREFIX, desk.status)
-        self._schedule: Schedule[tuple[Message, Peer]] = Schedule()
+        self._schedule: Schedule[bytes, Peer] = Schedule()
+        self._due: Backlog[bytes] = Backlog(self._act_on_due, lambda _peer: None)
         self._tags = TagClock(player)
         self._arrivals = Arrivals(player)
         self._calls: dict[str, Act] = {
@@ -96,52 +99,69 @@ class OscHandler:
     @property
     def waiting(self) -> int:
         """Messages that wait for their time."""
-        return len(self._schedule)
+        return len(self._schedule) + len(self._due)
 
     # -- packets -----------------------------------------------------------------------------
 
     def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
         """See `sockets.Handler`: a message is a step."""
+        now, frame = time.time(), self._arrivals.frame_of(arrived_ns)
+        is_late = False
         try:
-            messages = unpack(packet)
+            for message in steps(packet):
+                if message is not None:
+                    is_past = message.due_s is not None and message.due_s <= now
+                    self.counts.late_bundles += is_past and not is_late
+                    is_late |= is_past
+                    yield from self._take(message, peer, now, frame)
+                yield
         except PacketError as error:
             self.counts.malformed += 1
             self.clients.complain(peer, "", f"malformed packet: {error}")
+
+    def _take(self, message: Message, peer: Peer, now: float, frame: int) -> Iterator[None]:
+        """Act on a message now, or keep it until its time."""
+        self.counts.messages += 1
+        if message.due_s is None or message.due_s <= now:
+            yield from self._act(message, peer, frame)
             return
-        now, frame = time.time(), self._arrivals.frame_of(arrived_ns)
-        is_late = any(message.due_s is not None and message.due_s <= now for message in messages)
-        self.counts.late_bundles += is_late
-        for message in messages:
-            self.counts.messages += 1
-            due_s = message.due_s
-            if due_s is None or due_s <= now:
-                self._act(message, peer, frame)
-            elif self._schedule.add(due_s, (message, peer)):
-                self.counts.scheduled += 1
-            else:
-                self._complain(peer, message.address, "too many messages wait for their time")
-            yield
+        packet = answer(message.address, message.payload)  # unpacked it takes more room
+        if self._schedule.add(message.due_s, packet, peer, len(packet)):
+            self.counts.scheduled += 1
+        else:
+            self._complain(peer, message.address, "too many messages wait for their time")
+
+    def _act_on_due(self, packet: bytes, peer: Peer, frame: int) -> Iterator[None]:
+        (message,) = unpack(packet)
+        return self._act(message, peer, frame)
 
     def tick(self) -> None:
         """See `sockets.Handler`."""
         # Before any message of now that would be heard later is decided on.
         self._schedule.ahead_s = AHEAD_S + self._player.delay / self._player.instrument.rate
-        for due_s, (message, peer) in self._schedule.due():
-            self._act(message, peer, self._tags.frame_at(due_s))
+        for due_s, packet, peer in self._schedule.due(DUE_AT_ONCE):
+            self._due.add(packet, peer, self._tags.frame_at(due_s), len(packet), is_due=True)
+        self._due.work()
         self.clients.flush()
 
     def wait_s(self) -> float | None:
         """See `sockets.Handler`."""
+        if self._due:
+            return 0.0
         waits = [
             wait for wait in (self._schedule.wait_s(), self.clients.wait_s()) if wait is not None
         ]
         return min(waits, default=None)
 
+    def hears(self, peer: Peer) -> bool:
+        """See `sockets.Handler`."""
+        return self.clients.hears(peer)
+
     def gone(self, peer: Peer) -> None:
         """See `sockets.Handler`."""
         self.clients.forget(peer)
 
-    def _act(self, message: Message, peer: Peer, frame: int) -> None:
+    def _act(self, message: Message, peer: Peer, frame: int) -> Iterator[None]:
         call = Request(message.arguments, message.payload, peer, frame)
         try:
             actions = self._actions(message.address)
@@ -156,6 +176,7 @@ class OscHandler:
                 action(call)
             except YehuError as error:
                 self._complain(peer, message.address, str(error))
+            yield
 
     def _actions(self, address: str) -> list[Act]:
         known = address.removeprefix(PREFIX)
@@ -261,11 +282,15 @@ class OscHandler:
         self._player.release()
 
     def _panic(self, call: Request) -> None:
-        self._schedule.clear()
+        self._forget_waiting()
         self._player.panic(frame=call.frame)
 
-    def _reset(self, call: Request) -> None:
+    def _forget_waiting(self) -> None:
         self._schedule.clear()
+        self._due.clear()
+
+    def _reset(self, call: Request) -> None:
+        self._forget_waiting()
         self._player.reset(frame=call.frame)
         self.clients.echo(call.peer, BY_ADDRESS)
 

@@ -16,6 +16,7 @@ DEEPEST = 32  # bundles in bundles, lists in lists
 BUNDLE = b"#bundle\0"
 IMMEDIATELY = (0, 1)  # as a time tag
 SECONDS_1900_TO_1970 = 2_208_988_800
+MOST_ARGUMENTS = 256  # of a message, which is read in one step
 
 
 class PacketError(ValueError):
@@ -38,13 +39,26 @@ class Message:
 
 def unpack(packet: bytes) -> list[Message]:
     """The messages of a packet, in order. Errors: PacketError; nothing of it counts then."""
+    return [message for message in steps(packet) if message is not None]
+
+
+def steps(packet: bytes) -> Iterator[Message | None]:
+    """The messages of a packet, one at a time, in steps of which some give none.
+
+    A bundle is looked through to its end before its first message is given, and is not kept:
+    unpacked it takes fifty times the memory. Errors: PacketError, before the first message.
+    """
+    data = memoryview(packet)
     try:
-        return list(_content(memoryview(packet), None, DEEPEST))
+        if packet.startswith(BUNDLE):
+            for _ in _content(data, None, DEEPEST):
+                yield None
+        yield from _content(data, None, DEEPEST)
     except (struct.error, UnicodeDecodeError) as error:
         raise PacketError("cut short, or no text") from error
 
 
-def _content(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message]:
+def _content(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message | None]:
     if bytes(data[:8]) == BUNDLE:
         yield from _bundle(data, due_s, depth)
     elif bytes(data[:1]) == b"/":
@@ -53,9 +67,10 @@ def _content(data: memoryview, due_s: float | None, depth: int) -> Iterator[Mess
         raise PacketError("neither a message nor a bundle")
 
 
-def _bundle(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message]:
+def _bundle(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message | None]:
     if depth == 0:
         raise PacketError("bundles too deep in bundles")
+    yield None
     tag = struct.unpack_from(">II", data, 8)
     if tag != IMMEDIATELY:
         due_s = tag[0] - SECONDS_1900_TO_1970 + tag[1] / 2.0**32
@@ -77,6 +92,8 @@ def _message(data: memoryview, due_s: float | None) -> Message:
     tags = reader.text()
     if not tags.startswith(","):
         raise PacketError("no type tags")
+    if len(tags) - 1 > MOST_ARGUMENTS:
+        raise PacketError("too many arguments")
     arguments: list[Any] = []
     lists = [arguments]
     for tag in tags[1:]:

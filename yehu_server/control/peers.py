@@ -1,9 +1,14 @@
-"""Who sends us OSC, and how to answer: by datagram, or over a connection."""
+"""Who sends us OSC, and how to answer: by datagram, or over a connection.
+
+None is answered without bound: a sender of datagrams so many bytes a second, since few that ask
+can ask for much, and not even for itself; over a connection, what the other end takes.
+"""
 
 from __future__ import annotations
 
 import selectors
 import socket
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -11,7 +16,8 @@ from typing import Protocol
 from yehu_server.control.addresses import Address
 from yehu_server.control.framing import Framing
 
-MOST_UNSENT_BYTES = 1 << 20
+MOST_UNSENT_BYTES = 1 << 18  # to one peer
+ANSWERED_AT_ONCE_BYTES, ANSWERED_BYTES_A_SECOND = 1 << 18, 1 << 18
 
 
 class Peer(Protocol):
@@ -20,6 +26,14 @@ class Peer(Protocol):
     @property
     def name(self) -> str:
         """Host and port, for reading."""
+
+    @property
+    def host(self) -> str:
+        """The host's address."""
+
+    @property
+    def takes_more(self) -> bool:
+        """Whether there is room to tell it what it need not be told now."""
 
     def send(self, packet: bytes) -> None:
         """Send a packet, or drop it where the peer does not take it."""
@@ -33,7 +47,8 @@ class Traffic:
     """What came and went, since the start."""
 
     packets: int = 0
-    refused: int = 0  # from senders who are not allowed
+    refused: int = 0  # from senders who are not allowed, and connections that are not OSC
+    excess: int = 0  # found no room beside others
     kernel_drops: int = 0  # found the socket's buffer full
     unsent: int = 0
     failures: int = 0  # defects of ours
@@ -52,6 +67,27 @@ class WebTraffic:
     web_sockets: int = 0  # that are open
 
 
+class Allowance:
+    """How many bytes a sender is answered."""
+
+    def __init__(self) -> None:
+        self._left = float(ANSWERED_AT_ONCE_BYTES)
+        self._counted = time.monotonic()
+
+    @property
+    def is_left(self) -> bool:
+        """Whether there is any left."""
+        now = time.monotonic()
+        gained = ANSWERED_BYTES_A_SECOND * (now - self._counted)
+        self._left = min(self._left + gained, ANSWERED_AT_ONCE_BYTES)
+        self._counted = now
+        return self._left > 0.0
+
+    def spend(self, count: int) -> None:
+        """Count what was sent."""
+        self._left -= count
+
+
 @dataclass(frozen=True)
 class UdpPeer:
     """A sender of datagrams."""
@@ -59,22 +95,38 @@ class UdpPeer:
     socket: socket.socket = field(compare=False)
     address: Address
     traffic: Traffic = field(compare=False)
+    allowance: Allowance = field(default_factory=Allowance, compare=False)
 
     @property
     def name(self) -> str:
         """See `Peer`."""
         return f"{self.address[0]}:{self.address[1]}"
 
+    @property
+    def host(self) -> str:
+        """See `Peer`."""
+        return self.address[0]
+
+    @property
+    def takes_more(self) -> bool:
+        """See `Peer`."""
+        return self.allowance.is_left
+
     def send(self, packet: bytes) -> None:
         """See `Peer`."""
+        if not self.allowance.is_left:
+            self.traffic.unsent += 1
+            return
+        self.allowance.spend(len(packet))
         try:
             self.socket.sendto(packet, self.address)
         except OSError:
             self.traffic.unsent += 1
 
     def at(self, port: int) -> UdpPeer:
-        """See `Peer`."""
-        return UdpPeer(self.socket, (self.address[0], port, *self.address[2:]), self.traffic)
+        """See `Peer`; what is sent there counts for who asked for it."""
+        address = (self.address[0], port, *self.address[2:])
+        return UdpPeer(self.socket, address, self.traffic, self.allowance)
 
 
 class TcpPeer:
@@ -93,7 +145,11 @@ class TcpPeer:
     ) -> None:
         self.socket = connection
         self.name = f"{address[0]}:{address[1]} (TCP)"
+        self.host = address[0]
         self.framing = Framing()
+        self.has_spoken = False  # a whole packet
+        self.heard_s = time.monotonic()  # when it last spoke, or came
+        self.is_being_heard = False  # then no more of it is read
         self.reads = True  # until the peer will say no more
         self._unsent = bytearray()
         self._finished = False
@@ -105,6 +161,11 @@ class TcpPeer:
     def is_finished(self) -> bool:
         """Whether nothing more will be sent."""
         return self._finished
+
+    @property
+    def takes_more(self) -> bool:
+        """See `Peer`."""
+        return len(self._unsent) < MOST_UNSENT_BYTES // 4
 
     @property
     def events(self) -> int:

@@ -13,15 +13,17 @@ import itertools
 import time
 from typing import Generic, TypeVar
 
+from yehu_server.control.room import OVERHEAD_BYTES, Room
 from yehu_server.playing.live import LivePlayer
 
 AHEAD_S = 0.01  # how long before a message of now a scheduled one is decided on
 TOGETHER_NS, TRIES = 100_000, 10
 STRAY_S = 0.001
-MOST = 1 << 16
+MOST_BYTES = 20 << 20  # that wait: some 65,000 notes, half as many of one sender
 
 
 T = TypeVar("T")
+Sender = TypeVar("Sender")
 
 
 def both_clocks() -> tuple[float, int]:
@@ -55,38 +57,45 @@ class TagClock:
         return self._tie[1]
 
 
-class Schedule(Generic[T]):
+class Schedule(Generic[T, Sender]):
     """What is to be done when, as far as it has not come.
 
     Parameters
     ----------
     ahead_s : float
         How long before its time a thing is handed out.
+    most_bytes : int
+        Room for all that waits; half of it for one sender's.
     """
 
-    def __init__(self, ahead_s: float = AHEAD_S, most: int = MOST) -> None:
+    def __init__(self, ahead_s: float = AHEAD_S, most_bytes: int = MOST_BYTES) -> None:
         self.ahead_s = ahead_s
-        self._most = most
+        self._room = Room(most_bytes)
         self._order = itertools.count()
-        self._waiting: list[tuple[float, int, T]] = []
+        self._waiting: list[tuple[float, int, T, Sender, int]] = []
 
     def __len__(self) -> int:
         return len(self._waiting)
 
-    def add(self, due_s: float, thing: T) -> bool:
-        """Keep a thing until its time (s since 1970); return whether there was room."""
-        if len(self._waiting) >= self._most:
+    def add(self, due_s: float, thing: T, sender: Sender, size: int = 0) -> bool:
+        """Keep a thing until its time (s since 1970); return whether there was room.
+
+        `size` is what it takes, in bytes.
+        """
+        size += OVERHEAD_BYTES
+        if not self._room.take(sender, size):
             return False
-        heapq.heappush(self._waiting, (due_s, next(self._order), thing))
+        heapq.heappush(self._waiting, (due_s, next(self._order), thing, sender, size))
         return True
 
-    def due(self) -> list[tuple[float, T]]:
-        """What is to be handed out now, with the times it is meant for."""
-        ready = []
+    def due(self, most: int) -> list[tuple[float, T, Sender]]:
+        """What is to be handed out now, with the times it is meant for: so many at most."""
+        ready: list[tuple[float, T, Sender]] = []
         horizon = time.time() + self.ahead_s
-        while self._waiting and self._waiting[0][0] <= horizon:
-            due_s, _, thing = heapq.heappop(self._waiting)
-            ready.append((due_s, thing))
+        while self._waiting and self._waiting[0][0] <= horizon and len(ready) < most:
+            due_s, _, thing, sender, size = heapq.heappop(self._waiting)
+            self._room.give_back(sender, size)
+            ready.append((due_s, thing, sender))
         return ready
 
     def wait_s(self) -> float | None:
@@ -98,3 +107,4 @@ class Schedule(Generic[T]):
     def clear(self) -> None:
         """Forget everything."""
         self._waiting.clear()
+        self._room.clear()

@@ -1,8 +1,10 @@
 """Sockets for OSC: UDP and TCP at one address, read by one thread, fast, and parsed later.
 
-The socket is emptied before anything is parsed, so that a burst is kept by memory and not by
-the kernel's small buffer. On Linux the kernel stamps what arrives, and tells what it dropped:
-a message is as early as it truly was, however busy Python is.
+The UDP socket is emptied before anything is parsed, so that a burst is kept by memory and not by
+the kernel's small buffer; of a sender who finds no room in memory what is over is dropped, and
+counted. A connection is not read again before what it said is handled: its sender waits. On Linux
+the kernel stamps what arrives, and tells what it dropped: a message is as early as it truly was,
+however busy Python is.
 """
 
 from __future__ import annotations
@@ -30,11 +32,18 @@ log = logging.getLogger(__name__)
 
 BUFFER_BYTES = 32 << 20  # asked for; the system grants what it may
 DATAGRAM_BYTES = 1 << 16
-MOST_QUEUED, MOST_QUEUED_BYTES = 1 << 15, 1 << 27
+BEHIND_BYTES = 1 << 16  # of a peer that came another way, before it waits
+MOST_ASKED = 64
 READ_AT_ONCE = 256  # datagrams, before we look for what is due
-READ_FOR_NS = 20_000_000  # before we handle some of it
+READ_FOR_NS = 10_000_000  # before we handle some of it
+MOST_PEERS = 1024  # whose addresses we keep
 ACCEPT_AGAIN_S = 1.0
-MOST_CONNECTIONS = 64
+MOST_CONNECTIONS, MOST_OF_A_HOST = 64, 32
+# A connection that has said nothing for so long: one that never did is closed, another gives its
+# place to who comes, unless it is still told of changes.
+SPEAKS_WITHIN_S, QUIET_S = 10.0, 60.0
+LOOK_AGAIN_S = 1.0
+WARN_AGAIN_S = 1.0
 LONGEST_WAIT_S = 0.5
 TRIES_FOR_A_PORT = 20
 # Linux's numbers for what Python's socket module does not name.
@@ -53,6 +62,9 @@ class Handler(Protocol):
     def wait_s(self) -> float | None:
         """Seconds until `tick` has something to do."""
 
+    def hears(self, peer: Peer) -> bool:
+        """Whether a peer is still to be told of changes."""
+
     def gone(self, peer: Peer) -> None:
         """A peer has hung up."""
 
@@ -67,10 +79,11 @@ class OscPorts:
         self.traffic = Traffic()
         self._allowed = allowed
         self._handler = handler
-        self._backlog = Backlog(self._handle, self._end)
+        self._backlog: Backlog[bytes] = Backlog(self._handle, self._end)
         self._has_more = False  # in the socket, as far as we know
         self._handled_ns = 0
         self._accept_from = math.inf  # monotonic s
+        self._looked = self._warned = 0.0  # monotonic s
         self._peers: dict[Address, UdpPeer] = {}
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
@@ -80,7 +93,7 @@ class OscPorts:
         self.traffic.buffer_bytes = _widen(self._udp)
         self._wake_here, self._wake_there = socket.socketpair()
         self._wake_there.setblocking(False)
-        self._asked: deque[Callable[[], None]] = deque()
+        self._asked: deque[Callable[[], object]] = deque()
         for readable in (self._udp, self._tcp, self._wake_here):
             readable.setblocking(False)
             self._selector.register(readable, selectors.EVENT_READ)
@@ -108,15 +121,23 @@ class OscPorts:
     def receive(self, packet: bytes, peer: Peer) -> None:
         """Take in a packet that came another way; any thread may call."""
         arrived_ns = time.monotonic_ns()
-        self.call_soon(lambda: self._enqueue(packet, peer, arrived_ns))
+
+        def take_in() -> None:
+            self.traffic.packets += 1
+            self._backlog.add(packet, peer, arrived_ns, len(packet), is_due=True)
+
+        self.call_soon(take_in)
 
     def leave(self, peer: Peer) -> None:
         """A peer who came another way is gone, once what it said is done; any thread may call."""
         self.call_soon(lambda: self._backlog.add(None, peer, 0))
 
-    def call_soon(self, action: Callable[[], None]) -> None:
+    def call_soon(self, action: Callable[[], object]) -> None:
         """Let the thread that serves do something; any thread may call."""
         self._asked.append(action)
+        self._wake()
+
+    def _wake(self) -> None:
         with contextlib.suppress(OSError):  # it is full, so that the thread will wake anyway
             self._wake_there.send(b"!")
 
@@ -141,18 +162,50 @@ class OscPorts:
             self._backlog.work()
             self._handled_ns = time.monotonic_ns()
         self._handler.tick()
-        if time.monotonic() > self._accept_from:
+        now = time.monotonic()
+        if now > self._accept_from:
             self._accept_from = math.inf
             self._selector.register(self._tcp, selectors.EVENT_READ)
+        if now > self._looked + LOOK_AGAIN_S:
+            self._looked = now
+            self._close_silent(now)
 
-    @property
-    def is_full(self) -> bool:
-        """Whether senders have to wait, or the kernel to hold what they send."""
-        queued = len(self._backlog) + len(self._asked)
-        return queued >= MOST_QUEUED or self._backlog.bytes >= MOST_QUEUED_BYTES
+    def is_behind(self, peer: Peer) -> bool:
+        """Whether a peer that comes another way has to wait; any thread may ask."""
+        return len(self._asked) >= MOST_ASKED or self._backlog.bytes_of(peer) >= BEHIND_BYTES
 
-    def _handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
-        return self._handler.handle(packet, peer, arrived_ns)
+    def _handle(self, data: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
+        """The steps of a packet, or of a part of a stream."""
+        if isinstance(peer, TcpPeer):
+            return self._handle_stream(data, peer, arrived_ns)
+        return self._handler.handle(data, peer, arrived_ns)
+
+    def _handle_stream(self, data: bytes, peer: TcpPeer, arrived_ns: int) -> Iterator[None]:
+        try:
+            for packet in peer.framing.packets(data):
+                self.traffic.packets += 1
+                peer.has_spoken = True
+                peer.heard_s = time.monotonic()
+                try:
+                    yield from self._handler.handle(packet, peer, arrived_ns)
+                except Exception:  # of ours: what comes after it is heard
+                    self.traffic.failures += 1
+                    log.exception("OSC: a message could not be handled")
+                yield
+        except FramingError as error:
+            self.traffic.refused += 1
+            self._warn(f"{peer.name}: {error}; connection closed")
+            self.hear_out(peer)
+        finally:
+            peer.is_being_heard = False
+
+    def _warn(self, what: str) -> None:
+        """Say what strangers do; those who do it often do not fill the log."""
+        now = time.monotonic()
+        log.log(
+            logging.WARNING if now > self._warned + WARN_AGAIN_S else logging.DEBUG, "OSC: %s", what
+        )
+        self._warned = now
 
     def _end(self, peer: Peer) -> None:
         """A peer has hung up, and all it said is done."""
@@ -176,15 +229,15 @@ class OscPorts:
     def _do_asked(self) -> None:
         with contextlib.suppress(BlockingIOError):
             self._wake_here.recv(DATAGRAM_BYTES)
-        while self._asked:
+        for _ in range(len(self._asked)):  # of what is asked meanwhile the next turn hears
             self._asked.popleft()()
+        if self._asked:
+            self._wake()
 
     def _read_datagrams(self) -> None:
         """Empty the socket, as far as one turn goes."""
         offset_ns = time.time_ns() - time.monotonic_ns()
         for _ in range(READ_AT_ONCE):
-            if self.is_full:
-                return
             try:
                 packet, extras, _, address = self._udp.recvmsg(DATAGRAM_BYTES, 128)
             except BlockingIOError:
@@ -210,14 +263,15 @@ class OscPorts:
     def _peer(self, address: Address) -> UdpPeer:
         peer = self._peers.get(address)
         if peer is None:
-            if len(self._peers) > READ_AT_ONCE:
-                self._peers.clear()
+            if len(self._peers) >= MOST_PEERS:
+                del self._peers[next(iter(self._peers))]
             peer = self._peers[address] = UdpPeer(self._udp, address, self.traffic)
         return peer
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
         self.traffic.packets += 1
-        self._backlog.add(packet, peer, arrived_ns)
+        if not self._backlog.add(packet, peer, arrived_ns, len(packet)):
+            self.traffic.excess += 1
 
     # -- TCP -----------------------------------------------------------------------------------
 
@@ -228,7 +282,7 @@ class OscPorts:
             self._selector.unregister(self._tcp)
             self._accept_from = time.monotonic() + ACCEPT_AGAIN_S
             return
-        if address[0] not in self._allowed or self.traffic.connections >= MOST_CONNECTIONS:
+        if address[0] not in self._allowed or not self._has_place(address[0]):
             self.traffic.refused += 1
             connection.close()
             return
@@ -239,9 +293,37 @@ class OscPorts:
         self._streams.add(peer)
         self._selector.register(connection, selectors.EVENT_READ, peer)
 
+    def _has_place(self, host: str) -> bool:
+        """Whether there is room for one more connection, if need be in place of a silent one."""
+        open_ = [peer for peer in self._streams if not peer.is_finished]
+        of_host = [peer for peer in open_ if peer.host == host]
+        if len(of_host) >= MOST_OF_A_HOST:
+            silent = self._longest_silent(of_host)
+        elif len(open_) >= MOST_CONNECTIONS:
+            silent = self._longest_silent(open_)
+        else:
+            return True
+        if silent is not None:
+            self._warn(f"{silent.name}: silent for long; its place is another's")
+            silent.cut_off()
+        return silent is not None
+
+    def _longest_silent(self, peers: list[TcpPeer]) -> TcpPeer | None:
+        """Who has said nothing for longest, if it was too long."""
+        until = time.monotonic() - QUIET_S
+        silent = [peer for peer in peers if peer.heard_s < until and not self._handler.hears(peer)]
+        return min(silent, key=lambda peer: peer.heard_s, default=None)
+
+    def _close_silent(self, now: float) -> None:
+        """Close connections that have never said a thing."""
+        for peer in list(self._streams):
+            is_waited_for = not (peer.has_spoken or peer.is_being_heard or peer.is_finished)
+            if is_waited_for and now > peer.heard_s + SPEAKS_WITHIN_S:
+                self._warn(f"{peer.name}: has said nothing; connection closed")
+                peer.cut_off()
+
     def _read_stream(self, peer: TcpPeer) -> None:
-        # Not read while we are behind: the sender waits, and nothing is lost.
-        if self.is_full:
+        if peer.is_being_heard:  # the sender waits, and nothing is lost
             return
         try:
             data = peer.socket.recv(DATAGRAM_BYTES)
@@ -249,14 +331,10 @@ class OscPorts:
             return
         except OSError:
             data = b""
-        arrived_ns = time.monotonic_ns()
-        try:
-            for packet in peer.framing.packets(data):
-                self._enqueue(packet, peer, arrived_ns)
-        except FramingError as error:
-            log.warning("OSC: %s: %s; connection closed", peer.name, error)
-            data = b""
-        if not data:
+        if data:
+            peer.is_being_heard = True
+            self._backlog.add(data, peer, time.monotonic_ns(), len(data), is_due=True)
+        else:
             self.hear_out(peer)
 
     def hear_out(self, peer: TcpPeer) -> None:

@@ -68,8 +68,12 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue("osc_messages", COUNTER, "OSC messages that came in."),
     StatusValue("osc_malformed", COUNTER, "Packets that are no OSC."),
     StatusValue("osc_errors", COUNTER, "Messages that could not be done."),
-    StatusValue("osc_refused", COUNTER, "Packets of senders who are not allowed."),
+    StatusValue(
+        "osc_refused", COUNTER, "Packets of senders who are not allowed, and connections refused."
+    ),
     StatusValue("osc_dropped", COUNTER, "Packets the system lost for want of room."),
+    StatusValue("osc_excess", COUNTER, "Packets dropped since their sender has too many waiting."),
+    StatusValue("osc_unsent", COUNTER, "Answers dropped: too many, or nobody takes them."),
     StatusValue(
         "osc_failures",
         COUNTER,

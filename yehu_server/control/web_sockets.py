@@ -35,8 +35,9 @@ class WebPeer:
     does not fit, and holds up nobody.
     """
 
-    def __init__(self, name: str, loop: asyncio.AbstractEventLoop, traffic: WebTraffic) -> None:
-        self.name = name
+    def __init__(self, host: str, loop: asyncio.AbstractEventLoop, traffic: WebTraffic) -> None:
+        self.host = host
+        self.name = f"{host} (WebSocket)"
         self._loop = loop
         self._traffic = traffic
         self._turn = threading.Lock()
@@ -44,6 +45,11 @@ class WebPeer:
         self._unsent_bytes = 0
         self._is_awake = False
         self._woken = asyncio.Event()
+
+    @property
+    def takes_more(self) -> bool:
+        """See `Peer`."""
+        return self._unsent_bytes < MOST_UNSENT_BYTES // 4
 
     def send(self, packet: bytes | str) -> None:
         """See `Peer`; text goes out as text."""
@@ -99,14 +105,14 @@ class WebSockets:
             timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=FRAME_BYTES, compress=False
         )
         await socket.prepare(request)
-        peer = WebPeer(f"{request.remote} (WebSocket)", asyncio.get_running_loop(), self._traffic)
+        peer = WebPeer(str(request.remote), asyncio.get_running_loop(), self._traffic)
         self._open[socket] = peer
         self._traffic.web_sockets += 1
         writing = asyncio.ensure_future(peer.write(socket))
         try:
             async for frame in socket:
-                # While we are behind the sender waits, and nothing is lost.
-                while self._osc.is_full:  # noqa: ASYNC110 - the OSC thread has no event
+                # While we are behind with it the sender waits, and nothing is lost.
+                while self._osc.is_behind(peer):  # noqa: ASYNC110 - the OSC thread has no event
                     await asyncio.sleep(BEHIND_S)
                 if frame.type is WSMsgType.BINARY:
                     self._osc.receive(frame.data, peer)

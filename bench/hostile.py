@@ -3,8 +3,8 @@
     .venv/bin/python bench/hostile.py [--seconds N] [--kind NAME ...] [--save FILE.json]
 
 The server plays to nobody, in a process of its own, new for each kind; senders are in another.
-The player sends a note and a ping in turn, a hundred of each a second, by UDP. Memory is the
-server process's own, sampled; it needs Linux.
+The player begins a note, ends the one before and pings, a hundred times a second, by UDP. Memory
+is the server process's own, sampled; it needs Linux.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from typing import Any
 HOST = "127.0.0.1"
 SPAWN = multiprocessing.get_context("spawn")
 EVERY_S = 0.01  # between a note and the next
-RECOVERS_S = 60.0  # at most, until what was sent is answered
+RECOVERS_S = 20.0  # at most, until what was sent is answered
 PITCHES = 24
 LOWEST = 62  # the player's notes; hostile ones are lower
 HOSTILE = 40.0
@@ -411,8 +411,10 @@ class Playing:
                 return
             steps, pitch = divmod(number, PITCHES)
             note = float(LOWEST + pitch), 1.0 + steps % 127
-            self.notes.append(note)
             self._socket.send(message("/yehu/note", *note))
+            if self.notes:
+                self._socket.send(message("/yehu/note/off", self.notes[-1][0]))
+            self.notes.append(note)
             self._sent[number] = time.monotonic()
             self._socket.send(text("/yehu/ping") + text(",i") + struct.pack(">i", number))
             due += EVERY_S

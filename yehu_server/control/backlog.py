@@ -1,16 +1,19 @@
 """What has come and is still to be done: nobody's long work before others' short.
 
-Senders are served promptly as long as they say little that takes little: all in the order in
-which it came, and those who have been here for a while before strangers. Whoever says more is put
-aside: each of these gets one turn after another, while the others are served. So what many
-strangers send at a time, or one without an end, is late for them alone. What one sender says keeps
-its order.
+Who took least of the processor's time of late is served first, for a turn at most. So as long as
+a sender takes less than its share it is served at once, whatever others send; who sends more than
+can be handled waits for it alone. What is large counts beforehand for what it may take, and a
+stranger for one who took much: neither many long packets nor many new ports go before a player.
+What one sender says keeps its order.
 """
 
 from __future__ import annotations
 
+import heapq
+import itertools
+import math
 import time
-from collections import OrderedDict, deque
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
@@ -19,13 +22,14 @@ from yehu_server.control.peers import Peer
 from yehu_server.control.room import OVERHEAD_BYTES, Room
 
 MOST_BYTES = 16 << 20  # that wait
-TURN_NS = 1_000_000  # for each of those served promptly, strangers, and those put aside
-# What a sender may say promptly: small packets, few at once, a tenth of the time.
-LITTLE_BYTES = 1 << 10
-FEW = 32
-SPENT_AT_ONCE_NS, SHARE = 5_000_000, 0.1
-# Who has been heard for so long is no stranger, until it has been silent for longer.
-STRANGE_NS, FORGOTTEN_NS = 1_000_000_000, 60_000_000_000
+TURN_NS, SLICE_NS = 4_000_000, 1_000_000  # for all, and for one sender
+FORGIVEN_NS = 1_000_000_000  # in which half of what was taken is forgotten
+RESCALE_NS = 500 * FORGIVEN_NS  # before numbers grow too large
+EXPECTED_NS = 1_000.0  # that a byte is expected to take; they seldom take a fifth
+# Who has been heard for so long is no stranger, until it has been silent for longer. Strangers
+# are taken for some who took so much.
+STRANGE_NS, SILENT_NS = 1_000_000_000, 60_000_000_000
+STRANGERS_TOOK_NS = 200_000_000.0
 MOST_KNOWN, MOST_SENDERS = 256, 2048
 OWED_BYTES = 4 << 10  # room that one who is known always finds
 
@@ -49,18 +53,10 @@ class Sender(Generic[T]):
     peer: Peer
     since_ns: int
     heard_ns: int
+    took: float  # of the processor's time, in ns and times the scale of when it did
     works: deque[Work[T]] = field(default_factory=deque)
-    prompts: int = 0  # turns that wait for it among those who are served promptly
-    may_spend_ns: float = SPENT_AT_ONCE_NS
-    spent_ns: int = 0  # when `may_spend_ns` was
     is_known: bool = False
-    is_aside: bool = False
-
-    def spend(self, took_ns: int, now_ns: int) -> None:
-        """Count what serving it took."""
-        gained = SHARE * (now_ns - self.spent_ns)
-        self.may_spend_ns = min(SPENT_AT_ONCE_NS, self.may_spend_ns + gained) - took_ns
-        self.spent_ns = now_ns
+    is_queued: bool = False
 
 
 class Backlog(Generic[T]):
@@ -90,9 +86,10 @@ class Backlog(Generic[T]):
         self._known: list[Sender[T]] = []
         self._sweep_at = MOST_SENDERS
         self._looked_ns = 0  # at who of those who are known is silent
-        # Turns: of who is known, and of strangers.
-        self._prompt: tuple[deque[Sender[T]], deque[Sender[T]]] = (deque(), deque())
-        self._aside: OrderedDict[Peer, Sender[T]] = OrderedDict()  # the next one first
+        # Who has something to be done, by what it took and is expected to take next.
+        self._queue: list[tuple[float, int, Sender[T]]] = []
+        self._order = itertools.count()
+        self._began_ns = time.monotonic_ns()
 
     def __len__(self) -> int:
         return self._count
@@ -104,22 +101,15 @@ class Backlog(Generic[T]):
 
         There always is for the end of a peer, and for what `is_due`: of who is bounded otherwise.
         """
-        now_ns = time.monotonic_ns()
-        sender = self._sender(peer, now_ns)
+        sender = self._sender(peer, time.monotonic_ns())
         size += OVERHEAD_BYTES
         is_owed = sender.is_known and self._room.of(sender) + size <= OWED_BYTES
         if not self._room.take(sender, size, is_due=is_due or is_owed or thing is None):
             return False
         self._count += 1
         sender.works.append(Work(thing, when, size))
-        if not sender.is_aside:
-            sender.spend(0, now_ns)
-            is_little = size <= LITTLE_BYTES + OVERHEAD_BYTES and sender.prompts < FEW
-            if is_little and sender.may_spend_ns >= 0.0:
-                sender.prompts += 1
-                self._prompt[not sender.is_known].append(sender)
-            else:
-                self._put_aside(sender)
+        if not sender.is_queued:
+            self._enqueue(sender)
         return True
 
     @property
@@ -140,65 +130,62 @@ class Backlog(Generic[T]):
         self._room.clear()
 
     def work(self) -> None:
-        """Handle some of it, for a turn of each kind."""
-        for turns in self._prompt:
-            until_ns = time.monotonic_ns() + TURN_NS
-            while turns and time.monotonic_ns() < until_ns:
-                self._serve_promptly(turns.popleft(), until_ns)
+        """Handle some of it, for a turn."""
         until_ns = time.monotonic_ns() + TURN_NS
-        while self._aside and time.monotonic_ns() < until_ns:
-            self._serve_aside(until_ns)
-
-    def _serve_promptly(self, sender: Sender[T], until_ns: int) -> None:
-        """Handle one thing of a sender, unless it was put aside since."""
-        sender.prompts -= 1
-        if sender.works and not sender.is_aside:
-            is_done = True  # also where it goes wrong: it is not tried again
+        while self._queue and time.monotonic_ns() < until_ns:
+            _, _, sender = heapq.heappop(self._queue)
             try:
-                is_done = self._do(sender, until_ns)
+                if sender.works:
+                    self._serve(sender)
             finally:
-                if sender.works and (not is_done or sender.may_spend_ns < 0.0):
-                    self._put_aside(sender)
+                sender.is_queued = False
+                if sender.works:
+                    self._enqueue(sender)
 
-    def _put_aside(self, sender: Sender[T]) -> None:
-        sender.is_aside = True
-        self._aside[sender.peer] = sender
+    def _enqueue(self, sender: Sender[T]) -> None:
+        expected_ns = EXPECTED_NS * sender.works[0].size
+        key = sender.took + expected_ns * self._scale(time.monotonic_ns())
+        heapq.heappush(self._queue, (key, next(self._order), sender))
+        sender.is_queued = True
 
-    def _serve_aside(self, until_ns: int) -> None:
-        """Handle what is next of those who were put aside, for as long as there is time."""
-        peer, sender = self._aside.popitem(last=False)
-        try:
-            while sender.works and time.monotonic_ns() < until_ns:
-                self._do(sender, until_ns)
-        finally:
-            if sender.works:
-                self._aside[peer] = sender  # behind the others
-            else:
-                sender.is_aside = False
-
-    def _do(self, sender: Sender[T], until_ns: int) -> bool:
-        """Handle the next thing of a sender, as far as time goes; return whether it is done."""
+    def _serve(self, sender: Sender[T]) -> None:
+        """Handle the next thing of a sender, for a slice of time."""
         work = sender.works[0]
-        began_ns = time.monotonic_ns()
-        is_done = True
+        began_ns = time.thread_time_ns()
+        is_done = True  # also where it goes wrong: it is not tried again
         try:
-            is_done = self._advance(work, sender.peer, until_ns)
+            is_done = self._advance(work, sender.peer)
         finally:
-            now_ns = time.monotonic_ns()
-            sender.spend(now_ns - began_ns, now_ns)
+            took_ns = time.thread_time_ns() - began_ns
+            sender.took += took_ns * self._scale(time.monotonic_ns())
             if is_done and sender.works and sender.works[0] is work:  # it may have cleared all
                 sender.works.popleft()
                 self._count -= 1
                 self._room.give_back(sender, work.size)
-        return is_done
 
-    def _advance(self, work: Work[T], peer: Peer, until_ns: int) -> bool:
+    def _advance(self, work: Work[T], peer: Peer) -> bool:
         if work.thing is None:
             self._end(peer)
+            self._forget(peer)
             return True
         if work.steps is None:
             work.steps = self._handle(work.thing, peer, work.when)
+        until_ns = time.monotonic_ns() + SLICE_NS
         return all(time.monotonic_ns() <= until_ns for _ in work.steps)
+
+    def _scale(self, now_ns: int) -> float:
+        """What a nanosecond taken now counts, so that what was taken before counts less.
+
+        So the order of those who wait stays as it is while they do.
+        """
+        passed_ns = now_ns - self._began_ns
+        if passed_ns > RESCALE_NS:
+            factor = 0.5 ** (passed_ns / FORGIVEN_NS)
+            for sender in self._senders.values():
+                sender.took *= factor
+            self._queue = [(key * factor, order, sender) for key, order, sender in self._queue]
+            self._began_ns, passed_ns = now_ns, 0
+        return math.pow(2.0, passed_ns / FORGIVEN_NS)
 
     # -- who they are --------------------------------------------------------------------------
 
@@ -207,7 +194,8 @@ class Backlog(Generic[T]):
         if sender is None:
             if len(self._senders) >= self._sweep_at:
                 self._sweep()
-            sender = self._senders[peer] = Sender(peer, now_ns, now_ns, spent_ns=now_ns)
+            took = STRANGERS_TOOK_NS * self._scale(now_ns)
+            sender = self._senders[peer] = Sender(peer, now_ns, now_ns, took)
         elif not sender.is_known and now_ns - sender.since_ns > STRANGE_NS:
             self._know(sender, now_ns)
         sender.heard_ns = now_ns
@@ -218,11 +206,16 @@ class Backlog(Generic[T]):
         if len(self._known) >= MOST_KNOWN and now_ns - self._looked_ns > STRANGE_NS:
             self._looked_ns = now_ns
             for one in self._known:
-                one.is_known = now_ns - one.heard_ns < FORGOTTEN_NS
+                one.is_known = now_ns - one.heard_ns < SILENT_NS
             self._known = [one for one in self._known if one.is_known]
         if len(self._known) < MOST_KNOWN:
             sender.is_known = True
             self._known.append(sender)
+
+    def _forget(self, peer: Peer) -> None:
+        sender = self._senders.pop(peer)
+        if sender.is_known:
+            self._known.remove(sender)
 
     def _sweep(self) -> None:
         """Forget strangers who have nothing to be done."""

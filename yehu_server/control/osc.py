@@ -239,6 +239,7 @@ class OscHandler:
             addresses = [wanted]
         else:
             addresses = [_parameter(wanted.removesuffix(UNIT)).address + _form(wanted)]
+        call.check_peer()
         values = self._player.values()
         asks_status = any(address in STATUS_ADDRESSES for address in addresses)
         status = self._desk.status() if asks_status else {}
@@ -250,6 +251,7 @@ class OscHandler:
             call.peer.send(pack(PREFIX + address, value))
 
     def _params(self, call: Request) -> None:
+        call.check_peer()
         values = self._player.values()
         for param in TABLE:
             value = values[param.address]
@@ -297,6 +299,7 @@ class OscHandler:
     # -- the desk ----------------------------------------------------------------------------
 
     def _status(self, call: Request) -> None:
+        call.check_peer()
         for name, value in self._desk.status().items():
             call.peer.send(pack(PREFIX + PLACE + name, as_argument(value)))
 

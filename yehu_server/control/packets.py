@@ -10,8 +10,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from pythonosc.osc_message_builder import OscMessageBuilder
-
 DEEPEST = 32  # bundles in bundles, lists in lists
 BUNDLE = b"#bundle\0"
 IMMEDIATELY = (0, 1)  # as a time tag
@@ -166,14 +164,27 @@ CONSTANTS = {"T": True, "F": False, "N": None, "I": Bang()}
 
 
 def pack(address: str, *arguments: float | str | bool) -> bytes:
-    """One message as a packet."""
-    builder = OscMessageBuilder(address)
+    """One message as a packet: numbers as f, i or h, and strings."""
+    tags, data = ",", b""
     for argument in arguments:
-        builder.add_arg(argument)
-    return builder.build().dgram
+        if isinstance(argument, str):
+            tags, data = tags + "s", data + _padded(argument)
+        elif isinstance(argument, bool):
+            tags += "T" if argument else "F"
+        elif isinstance(argument, int):
+            tag = "i" if -(1 << 31) <= argument < 1 << 31 else "h"
+            tags, data = tags + tag, data + FIXED[tag].pack(argument)
+        else:
+            tags, data = tags + "f", data + FIXED["f"].pack(argument)
+    return _padded(address) + _padded(tags) + data
+
+
+def _padded(text: str) -> bytes:
+    """A string as OSC has it: with an end, to a multiple of four bytes."""
+    data = text.encode()
+    return data + bytes(4 - len(data) % 4)
 
 
 def answer(address: str, payload: bytes) -> bytes:
     """A message with type tags and arguments as another brought them."""
-    name = address.encode() + b"\0"
-    return name + b"\0" * (-len(name) % 4) + payload
+    return _padded(address) + payload

@@ -17,7 +17,7 @@ from yehu_server.control.addresses import Address
 from yehu_server.control.framing import Framing
 
 MOST_UNSENT_BYTES = 1 << 18  # to one peer
-ANSWERED_AT_ONCE_BYTES, ANSWERED_BYTES_A_SECOND = 1 << 18, 1 << 18
+ANSWERED_AT_ONCE_BYTES, ANSWERED_BYTES_A_SECOND = 1 << 17, 1 << 17
 
 
 class Peer(Protocol):
@@ -165,7 +165,7 @@ class TcpPeer:
     @property
     def takes_more(self) -> bool:
         """See `Peer`."""
-        return len(self._unsent) < MOST_UNSENT_BYTES // 4
+        return len(self._unsent) < MOST_UNSENT_BYTES // 2
 
     @property
     def events(self) -> int:

@@ -46,6 +46,11 @@ class Request:
     peer: Peer
     frame: int
 
+    def check_peer(self) -> None:
+        """Errors: RefusedError where the peer asks for more than it is answered, or takes."""
+        if not self.peer.takes_more:
+            raise RefusedError("there are too many answers on their way to you")
+
     def numbers(self, least: int, most: int | None = None) -> list[float]:
         """The arguments as finite numbers. Errors: RefusedError."""
         most = least if most is None else most

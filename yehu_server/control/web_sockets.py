@@ -49,7 +49,7 @@ class WebPeer:
     @property
     def takes_more(self) -> bool:
         """See `Peer`."""
-        return self._unsent_bytes < MOST_UNSENT_BYTES // 4
+        return self._unsent_bytes < MOST_UNSENT_BYTES // 2
 
     def send(self, packet: bytes | str) -> None:
         """See `Peer`; text goes out as text."""

@@ -37,7 +37,7 @@ HANDSHAKE = (
 class Osc:
     """Stands in for the OSC thread."""
 
-    host, port, is_full = HOST, 9000, False
+    host, port = HOST, 9000
 
     def is_behind(self, _peer: Any) -> bool:
         return False

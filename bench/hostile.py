@@ -19,7 +19,6 @@ import platform
 import socket
 import statistics
 import struct
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -30,6 +29,7 @@ from typing import Any
 HOST = "127.0.0.1"
 SPAWN = multiprocessing.get_context("spawn")
 EVERY_S = 0.01  # between a note and the next
+ACQUAINTED_S = 1.5  # for which the player plays alone
 RECOVERS_S = 20.0  # at most, until what was sent is answered
 PITCHES = 24
 LOWEST = 62  # the player's notes; hostile ones are lower
@@ -395,6 +395,8 @@ class Playing:
 
     def finish(self) -> None:
         """Play no more, and wait for what is still to be answered."""
+        if self._ending.is_set():
+            return
         self._is_playing = False
         self._threads[0].join()
         deadline = time.monotonic() + RECOVERS_S
@@ -444,15 +446,16 @@ class Figures:
     ping_worst_ms: float
     growth_mb: float
     kept_mb: float  # of the growth, in the end
+    system_dropped: int  # packets, of anyone
 
 
-def measured(name: str, seconds: float) -> Figures:
+def measured(name: str, seconds: float, served: Served) -> Figures:
     """Play beside one kind of sender."""
-    served = Served()
+    before, status = served.told()
     playing = Playing(served.port)
     attacker = SPAWN.Process(target=KINDS[name], args=(served.port, seconds))
     try:
-        time.sleep(1.5)
+        time.sleep(ACQUAINTED_S)
         idle_bytes = most_bytes = served.bytes()
         playing.pings_s.clear()
         attacker.start()
@@ -462,27 +465,27 @@ def measured(name: str, seconds: float) -> Figures:
             time.sleep(0.005)
         playing.finish()
         most_bytes = max(most_bytes, served.bytes())
-        notes, status = served.told()
-        kept_bytes = served.bytes() - idle_bytes
+        notes, after = served.told()
     finally:
         attacker.kill()
         attacker.join()
         playing.finish()
-        served.stop()
-    if os.environ.get("HOSTILE_STATUS"):
-        sys.stderr.write(json.dumps(status) + "\n")
+    notes = notes[len(before) :]
     own = [note for note in notes if note[0] != HOSTILE]
+    left = iter(playing.notes)
+    in_order = sum(note in left for note in own)
     pings = sorted(playing.pings_s) + [RECOVERS_S] * playing.unanswered
     return Figures(
         notes=len(playing.notes),
-        lost=len(playing.notes) - len(own) if own != playing.notes else 0,
+        lost=len(playing.notes) - in_order,
         hostile_notes=len(notes) - len(own),
         unanswered=playing.unanswered,
         ping_median_ms=1e3 * statistics.median(pings),
         ping_99_ms=1e3 * pings[int(0.99 * len(pings))],
         ping_worst_ms=1e3 * pings[-1],
         growth_mb=1e-6 * (most_bytes - idle_bytes),
-        kept_mb=1e-6 * kept_bytes,
+        kept_mb=1e-6 * (served.bytes() - idle_bytes),
+        system_dropped=after["osc_dropped"] - status["osc_dropped"],
     )
 
 
@@ -500,11 +503,23 @@ def main() -> None:
     console = Console(width=150)
     table = Table()
     columns = ("notes", "lost", "hostile notes", "pings unanswered", "ping ms, median")
-    for column in ("", *columns, "99 %", "worst", "memory +MB", "kept +MB"):
+    for column in (
+        "",
+        *columns,
+        "99 %",
+        "worst",
+        "memory +MB",
+        "kept +MB",
+        "dropped by the system",
+    ):
         table.add_column(column)
     figures = {}
     for name in arguments.kind or KINDS:
-        got = figures[name] = measured(name, arguments.seconds)
+        served = Served()
+        try:
+            got = figures[name] = measured(name, arguments.seconds, served)
+        finally:
+            served.stop()
         cells = [
             f"{cell:.1f}" if isinstance(cell, float) else str(cell) for cell in vars(got).values()
         ]

@@ -235,6 +235,8 @@ def test_only_reading_is_allowed(port, method):
     "headers",
     [
         {"Origin": "http://evil.example"},
+        {"Origin": f"http://{HOST}:1"},  # any program may serve pages there
+        {"Origin": f"http://{HOST}"},
         {"Origin": "null"},
         {"Host": "evil.example"},
         {"Host": "evil.example", "Origin": "http://evil.example"},

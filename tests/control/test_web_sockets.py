@@ -230,6 +230,8 @@ def test_all_are_told_that_the_tree_changed(connect, web_house):
     "headers",
     [
         {"Origin": "http://evil.example"},
+        {"Origin": f"http://{HOST}:1"},  # any program may serve pages there
+        {"Origin": f"http://{HOST}"},
         {"Origin": "null"},
         {"Origin": "http://localhost"},
         {"Host": "evil.example"},

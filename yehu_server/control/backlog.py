@@ -22,14 +22,14 @@ from yehu_server.control.peers import Peer
 from yehu_server.control.room import OVERHEAD_BYTES, Room
 
 MOST_BYTES = 16 << 20  # that wait
-TURN_NS, SLICE_NS = 4_000_000, 1_000_000  # for all, and for one sender
+TURN_NS, SLICE_NS = 2_000_000, 500_000  # for all, and for one sender
 FORGIVEN_NS = 1_000_000_000  # in which half of what was taken is forgotten
 RESCALE_NS = 500 * FORGIVEN_NS  # before numbers grow too large
 EXPECTED_NS = 1_000.0  # that a byte is expected to take; they seldom take a fifth
 # Who has been heard for so long is no stranger, until it has been silent for longer. Strangers
 # are taken for some who took so much.
 STRANGE_NS, SILENT_NS = 1_000_000_000, 60_000_000_000
-STRANGERS_TOOK_NS = 200_000_000.0
+STRANGERS_TOOK_NS = 50_000_000.0  # less than a long packet is expected to take
 MOST_KNOWN, MOST_SENDERS = 256, 2048
 OWED_BYTES = 4 << 10  # room that one who is known always finds
 

@@ -12,6 +12,7 @@ HANDLING_MS = 1.0
 # The device's callbacks begin this much early or late as a matter of course.
 LEEWAY_MS = 0.5
 HELD_WINDOWS = 50  # of telemetry.AHEAD_WINDOW_S, before the delay becomes shorter
+TOLD_WINDOWS = 10  # since a system that is held up may tear a request in two
 
 
 class Delay:
@@ -36,7 +37,12 @@ class Delay:
         self._window = 0
         self._last = (1, block)
         self._blocks = deque([1], HELD_WINDOWS)
-        self.period = block
+        self._periods = deque([block], TOLD_WINDOWS)
+
+    @property
+    def period(self) -> int:
+        """Frames that the device asks for at once, at most."""
+        return max(self._periods)
 
     @property
     def frames(self) -> int:
@@ -57,5 +63,5 @@ class Delay:
         ahead = float(meters["ahead"]) - self._instrument.frames(LEEWAY_MS)
         now = max(1, math.ceil(ahead / self._block)), int(meters["longest"])
         self._blocks.append(min(now[0], self._last[0]))
-        self.period = max(self._block, min(now[1], self._last[1]))
+        self._periods.append(max(self._block, min(now[1], self._last[1])))
         self._last = now

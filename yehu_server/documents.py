@@ -8,7 +8,7 @@ import tomllib
 from typing import Any
 
 MOST_DEPTH = 32
-MOST_INTEGER_BITS = 64  # as TOML has it
+MOST_INTEGER_BITS = 8192  # of more than 4,300 digits, Python prints none
 # tomllib takes time by the square of a key's parts: 20 s for one of 64 kB.
 MOST_KEY_PARTS = 16
 _LONG_KEY = re.compile(

@@ -37,7 +37,7 @@ def _open_regular(path: Path, most_bytes: int) -> BinaryIO:
         return file
     file.close()
     if stat.S_ISREG(status.st_mode):
-        raise OSError(errno.EFBIG, f"Larger than {most_bytes // 2**20} MiB")
+        raise OSError(errno.EFBIG, f"File too large, above {most_bytes // 2**20} MiB")
     raise OSError(errno.EINVAL, "Not a regular file")
 
 
@@ -46,7 +46,7 @@ def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     with _open_regular(path, most_bytes) as file:
         data = file.read(most_bytes + 1)
     if len(data) > most_bytes:  # it has grown, or its file system tells no sizes
-        raise OSError(errno.EFBIG, f"Larger than {most_bytes // 2**20} MiB")
+        raise OSError(errno.EFBIG, f"File too large, above {most_bytes // 2**20} MiB")
     return data
 
 

@@ -458,3 +458,42 @@ def test_scores_in_a_row_may_not_last_longer_than_a_day():
     half = Score((), 50_000.0)
     with pytest.raises(ScoreError, match=r"lasts 27\.8 hours"):
         concatenate([half, half])
+
+
+HEAD = b"MThd" + bytes((0, 0, 0, 6, 0, 0, 0, 1, 1, 224))
+NOTE = bytes((0, 0x90, 67, 90))
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        bytes((0, 0x90, 0xFF, 0xFF)),
+        bytes((0, 0xFF, 0x01, 0)),
+        bytes((0, 0xF0, 0)),
+        bytes((0, 0xF8)),
+        bytes((0, 0xFF, 0x51, 3, 0, 0, 1)),
+        NOTE,
+    ],
+    ids=["damaged", "text", "sysex", "system", "tempo", "note"],
+)
+def test_events_of_any_kind_are_bounded(tmp_path, monkeypatch, event):
+    monkeypatch.setattr(smf, "MAX_EVENTS", 100)
+    path = tmp_path / "x.mid"
+    for count, is_read in ((99, True), (100, False)):
+        track = NOTE + event * count
+        path.write_bytes(HEAD + b"MTrk" + len(track).to_bytes(4, "big") + track)
+        if is_read:
+            assert read_score(path).events
+        else:
+            with pytest.raises(ScoreError, match="more than 100 events"):
+                read_score(path)
+
+
+def test_chunks_are_bounded(tmp_path, monkeypatch):
+    monkeypatch.setattr(smf, "MAX_CHUNKS", 10)
+    path = tmp_path / "x.mid"
+    path.write_bytes(HEAD + b"MTrk\0\0\0\4" + NOTE + b"XXXX\0\0\0\0" * 9)
+    assert read_score(path).events
+    path.write_bytes(HEAD + b"MTrk\0\0\0\4" + NOTE + b"XXXX\0\0\0\0" * 10)
+    with pytest.raises(ScoreError, match="more than 10 chunks"):
+        read_score(path)

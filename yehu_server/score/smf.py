@@ -7,11 +7,14 @@ write velocities above 127. This reader keeps what makes sense, says in
 
 from __future__ import annotations
 
+import errno
 import os
+import re
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from operator import itemgetter
 from pathlib import Path
 from typing import Literal
@@ -19,10 +22,12 @@ from typing import Literal
 import mido
 
 from yehu_server.errors import ScoreError
+from yehu_server.files import read_bytes
 
 MAX_BYTES = 64 * 2**20
-MAX_EVENTS = 1_000_000  # messages and tempo changes; each takes some 0.5 kB in memory
+MAX_EVENTS = 1_000_000  # of any kind; a message takes some 0.5 kB in memory
 MAX_TRACKS = 65_535  # as many as a header can announce
+MAX_CHUNKS = 2 * MAX_TRACKS
 MAX_DURATION_H = 24
 MAX_REST_S = 30  # between the last message and the end of a track
 
@@ -31,6 +36,7 @@ TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop
 
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
 END_OF_TRACK, SET_TEMPO = 0x2F, 0x51
+STATUS = re.compile(rb"[\x80-\xff]")
 SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
 
 
@@ -121,15 +127,14 @@ def concatenate(scores: Sequence[Score]) -> Score:
 
 def _load(path: str | os.PathLike[str]) -> bytes:
     try:
-        with Path(path).open("rb") as file:
-            data = file.read(MAX_BYTES + 1)  # bounded, as /dev/zero has no size
+        data = read_bytes(Path(path), MAX_BYTES)
     except OSError as error:
+        if error.errno == errno.EFBIG:
+            raise ScoreError(f"larger than {MAX_BYTES // 2**20} MiB") from None
         reason = error.strerror or type(error).__name__
         raise ScoreError(f"cannot be read ({reason.lower()})") from None
     except ValueError:  # a NUL in the name
         raise ScoreError("cannot be read (no such file name)") from None
-    if len(data) > MAX_BYTES:
-        raise ScoreError(f"larger than {MAX_BYTES // 2**20} MiB")
     if not data:
         raise ScoreError("is empty")
     return data
@@ -152,7 +157,9 @@ def _parse(data: bytes) -> Score:
 
     tracks: list[_Track] = []
     room = MAX_EVENTS
-    for tag, body in chunks:
+    for number, (tag, body) in enumerate(chunks):
+        if number == MAX_CHUNKS:
+            raise ScoreError(f"has more than {MAX_CHUNKS} chunks")
         if tag == b"MTrk":
             tracks.append(_decode(body, room, found))
             room -= tracks[-1].events
@@ -203,10 +210,7 @@ class _Track:
     messages: list[tuple[int, mido.Message]] = field(default_factory=list)  # at ticks
     tempos: list[tuple[int, int]] = field(default_factory=list)  # at ticks, in us a quarter
     end: int = 0  # ticks
-
-    @property
-    def events(self) -> int:
-        return len(self.messages) + len(self.tempos)
+    events: int = 0  # of any kind, those that were dropped too
 
 
 @dataclass
@@ -224,12 +228,21 @@ class _Cursor:
         return taken
 
     def byte(self) -> int:
-        return self.take(1)[0]
+        if self.pos >= len(self.data):
+            raise EOFError
+        self.pos += 1
+        return self.data[self.pos - 1]
 
     def at_status(self) -> bool:
-        status = self.byte() >= 0x80
-        self.pos -= 1
-        return status
+        if self.pos >= len(self.data):
+            raise EOFError
+        return self.data[self.pos] >= 0x80
+
+    def skip_to_status(self) -> None:
+        found = STATUS.search(self.data, self.pos)
+        if found is None:
+            raise EOFError
+        self.pos = found.start()
 
     def number(self) -> int:
         """A variable-length number; four bytes at most, as the format has it."""
@@ -242,8 +255,14 @@ class _Cursor:
         return value
 
 
+@lru_cache(maxsize=1 << 16)
+def _message(status: int, body: bytes) -> mido.Message:
+    """A message, which nobody changes: making one takes longer than all else of its reading."""
+    return mido.Message.from_bytes([status, *body])
+
+
 def _decode(data: bytes, room: int, found: Counter[str]) -> _Track:
-    """Read one track as far as it goes, with at most `room` events to keep."""
+    """Read one track as far as it goes. Errors: ScoreError for more than `room` events."""
     track = _Track()
     cursor = _Cursor(data)
     tick = 0
@@ -253,8 +272,7 @@ def _decode(data: bytes, room: int, found: Counter[str]) -> _Track:
             tick += cursor.number()
             if not running and not cursor.at_status():
                 found["data without a status byte skipped"] += 1
-                while not cursor.at_status():
-                    cursor.pos += 1
+                cursor.skip_to_status()
             status = cursor.byte() if cursor.at_status() else running
             if status == META:
                 kind = cursor.byte()
@@ -274,17 +292,17 @@ def _decode(data: bytes, room: int, found: Counter[str]) -> _Track:
                 running = status
                 body = cursor.take(1 if status & 0xE0 == 0xC0 else 2)
                 if max(body) < 0x80:
-                    message = mido.Message.from_bytes([status, *body])
-                    track.messages.append((tick, message))
+                    track.messages.append((tick, _message(status, body)))
                 else:
                     # Dropped at its full length: mostly this is a velocity above 127,
                     # and what follows is in step again.
                     found["a damaged message dropped"] += 1
-            if track.events > room:
-                raise ScoreError(f"has more than {MAX_EVENTS} events")
             track.end = tick
             if status == META and kind == END_OF_TRACK:
                 break
+            track.events += 1
+            if track.events > room:
+                raise ScoreError(f"has more than {MAX_EVENTS} events")
     except EOFError:
         found["a track ends in the middle of an event"] += 1
     return track

@@ -34,6 +34,7 @@ RECOVERS_S = 20.0  # at most, until what was sent is answered
 PITCHES = 24
 LOWEST = 62  # the player's notes; hostile ones are lower
 HOSTILE = 40.0
+ATTACKER_HOST = HOST  # where datagrams come from
 
 
 # ---------------------------------------------------------------- bytes
@@ -90,6 +91,8 @@ def senders(port: int, count: int) -> list[socket.socket]:
     """UDP sockets, each with a port of its own, that wait for nobody."""
     made = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
     for each in made:
+        with contextlib.suppress(OSError):  # elsewhere than on Linux there is one such address
+            each.bind((ATTACKER_HOST, 0))
         each.connect((HOST, port))
         each.setblocking(False)
     return made
@@ -274,6 +277,18 @@ def small_of_many(port: int, seconds: float) -> None:
         time.sleep(0.01)
 
 
+def small_of_another_host(port: int, seconds: float) -> None:
+    """Small datagrams from two hundred ports of another host, some 20,000 a second."""
+    globals()["ATTACKER_HOST"] = "127.0.0.2"
+    small_of_many(port, seconds)
+
+
+def tables_of_another_host(port: int, seconds: float) -> None:
+    """16 bytes that ask for 10 kB, from another host."""
+    globals()["ATTACKER_HOST"] = "127.0.0.2"
+    tables(port, seconds)
+
+
 def small_of_one(port: int, seconds: float) -> None:
     """Small datagrams from one port, as many as it can."""
     flood(port, seconds, [message("/yehu/bow/force", 0.5)])
@@ -305,6 +320,8 @@ KINDS: dict[str, Attack] = {
         due_together,
         due_never,
         small_of_many,
+        small_of_another_host,
+        tables_of_another_host,
         small_of_one,
     )
 }

@@ -38,6 +38,16 @@ class Clock:
     thread_time_ns = monotonic_ns
 
 
+class Named(str):
+    """A peer: a host, and after an @ which of its senders."""
+
+    __slots__ = ()
+
+    @property
+    def host(self) -> str:
+        return self.partition("@")[0]
+
+
 class Done:
     """Keeps what was handled: a packet is as many steps as it has letters."""
 
@@ -58,7 +68,7 @@ class Done:
 
     def add(self, peer: str, letters: str | None, size: int = 0) -> bool:
         packet = None if letters is None else letters.encode()
-        return self.backlog.add(packet, peer, 0, size)
+        return self.backlog.add(packet, Named(peer), 0, size)
 
     def work(self) -> str:
         """Handle all of it; what was handled, in order."""
@@ -159,6 +169,25 @@ def test_who_has_been_here_goes_before_strangers(done, clock):
     assert done.work().split()[:3] == ["1a", "1b", "1c"]
 
 
+def test_many_senders_of_one_host_are_no_better_than_one(done, clock):
+    crowd = [f"crowd@{number} " for number in range(50)]
+    for _ in range(2):
+        for peer in (*crowd, "player"):
+            done.add(peer, "a")
+        done.work()
+        clock.now_ns += STRANGE_NS + 1
+    for _ in range(20):
+        for peer in crowd:
+            done.add(peer, "aaaaa")
+        for _ in range(10):  # more than each of them takes
+            done.add("player", "a")
+        done.backlog.work()
+    done.steps.clear()
+    done.add("player", "b")
+    done.backlog.work()
+    assert "playerb" in done.steps[:20]
+
+
 def test_years_do_not_change_who_goes_first(done, clock):
     done.add("1", "a")
     done.add("1", "A" * 5)
@@ -169,6 +198,7 @@ def test_years_do_not_change_who_goes_first(done, clock):
         done.backlog.work()
     for sender in done.backlog._senders.values():
         assert 0.0 <= sender.took < 1e200
+        assert 0.0 <= sender.host.took < 1e200
     assert done.work().count("2a") == 5
 
 
@@ -208,6 +238,7 @@ def test_of_strangers_who_are_done_nothing_is_kept(done, clock):
         done.work()
         assert len(done.backlog._senders) <= MOST_SENDERS
     assert "player" in done.backlog._senders
+    assert len(done.backlog._hosts) <= MOST_SENDERS + 1
 
 
 def test_there_are_places_for_so_many_who_are_known_and_they_are_given_on(done, clock):

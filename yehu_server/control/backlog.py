@@ -4,7 +4,8 @@ Who took least of the processor's time of late is served first, for a turn at mo
 a sender takes less than its share it is served at once, whatever others send; who sends more than
 can be handled waits for it alone. What is large counts beforehand for what it may take, and a
 stranger for one who took much: neither many long packets nor many new ports go before a player.
-What one sender says keeps its order.
+What all senders of a host took counts for each of them, so that many ports are no better than one
+against another host's. What one sender says keeps its order.
 """
 
 from __future__ import annotations
@@ -25,11 +26,11 @@ MOST_BYTES = 16 << 20  # that wait
 TURN_NS, SLICE_NS = 2_000_000, 500_000  # for all, and for one sender
 FORGIVEN_NS = 1_000_000_000  # in which half of what was taken is forgotten
 RESCALE_NS = 500 * FORGIVEN_NS  # before numbers grow too large
-EXPECTED_NS = 1_000.0  # that a byte is expected to take; they seldom take a fifth
+EXPECTED_NS = 5_000.0  # that a byte takes at worst
 # Who has been heard for so long is no stranger, until it has been silent for longer. Strangers
 # are taken for some who took so much.
 STRANGE_NS, SILENT_NS = 1_000_000_000, 60_000_000_000
-STRANGERS_TOOK_NS = 50_000_000.0  # less than a long packet is expected to take
+STRANGERS_TOOK_NS = 100_000_000.0  # less than a long packet is expected to take
 MOST_KNOWN, MOST_SENDERS = 256, 2048
 OWED_BYTES = 4 << 10  # room that one who is known always finds
 
@@ -47,13 +48,21 @@ class Work(Generic[T]):
 
 
 @dataclass(slots=True, eq=False)
+class Host:
+    """What all senders of one host took, in ns and times the scale of when they did."""
+
+    took: float = 0.0
+
+
+@dataclass(slots=True, eq=False)
 class Sender(Generic[T]):
     """One peer, and what it is still to be served; times in ns."""
 
     peer: Peer
+    host: Host
     since_ns: int
     heard_ns: int
-    took: float  # of the processor's time, in ns and times the scale of when it did
+    took: float  # as in `Host`
     works: deque[Work[T]] = field(default_factory=deque)
     is_known: bool = False
     is_queued: bool = False
@@ -83,6 +92,7 @@ class Backlog(Generic[T]):
         self._room = Room(most_bytes)
         self._count = 0
         self._senders: dict[Peer, Sender[T]] = {}
+        self._hosts: dict[str, Host] = {}
         self._known: list[Sender[T]] = []
         self._sweep_at = MOST_SENDERS
         self._looked_ns = 0  # at who of those who are known is silent
@@ -144,7 +154,7 @@ class Backlog(Generic[T]):
 
     def _enqueue(self, sender: Sender[T]) -> None:
         expected_ns = EXPECTED_NS * sender.works[0].size
-        key = sender.took + expected_ns * self._scale(time.monotonic_ns())
+        key = sender.host.took + sender.took + expected_ns * self._scale(time.monotonic_ns())
         heapq.heappush(self._queue, (key, next(self._order), sender))
         sender.is_queued = True
 
@@ -157,7 +167,9 @@ class Backlog(Generic[T]):
             is_done = self._advance(work, sender.peer)
         finally:
             took_ns = time.thread_time_ns() - began_ns
-            sender.took += took_ns * self._scale(time.monotonic_ns())
+            took = took_ns * self._scale(time.monotonic_ns())
+            sender.took += took
+            sender.host.took += took
             if is_done and sender.works and sender.works[0] is work:  # it may have cleared all
                 sender.works.popleft()
                 self._count -= 1
@@ -183,6 +195,8 @@ class Backlog(Generic[T]):
             factor = 0.5 ** (passed_ns / FORGIVEN_NS)
             for sender in self._senders.values():
                 sender.took *= factor
+            for host in self._hosts.values():
+                host.took *= factor
             self._queue = [(key * factor, order, sender) for key, order, sender in self._queue]
             self._began_ns, passed_ns = now_ns, 0
         return math.pow(2.0, passed_ns / FORGIVEN_NS)
@@ -195,7 +209,8 @@ class Backlog(Generic[T]):
             if len(self._senders) >= self._sweep_at:
                 self._sweep()
             took = STRANGERS_TOOK_NS * self._scale(now_ns)
-            sender = self._senders[peer] = Sender(peer, now_ns, now_ns, took)
+            host = self._hosts.setdefault(peer.host, Host())
+            sender = self._senders[peer] = Sender(peer, host, now_ns, now_ns, took)
         elif not sender.is_known and now_ns - sender.since_ns > STRANGE_NS:
             self._know(sender, now_ns)
         sender.heard_ns = now_ns
@@ -224,4 +239,6 @@ class Backlog(Generic[T]):
             for peer, sender in self._senders.items()
             if sender.works or sender.is_known
         }
+        hosts = {peer.host for peer in self._senders}
+        self._hosts = {name: host for name, host in self._hosts.items() if name in hosts}
         self._sweep_at = max(MOST_SENDERS, 2 * len(self._senders))

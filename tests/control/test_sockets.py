@@ -441,21 +441,25 @@ def test_there_is_room_for_so_many_connections(listen, client, keeper, patience,
     patience(lambda: b"/late\0\0\0" in keeper.bodies, "the late one")
 
 
-def test_a_connection_that_never_says_a_thing_is_closed_and_others_stay(
+def test_connections_that_never_say_a_thing_shut_nobody_out(
     listen, client, keeper, patience, monkeypatch
 ):
+    monkeypatch.setattr(sockets, "MOST_CONNECTIONS", 3)
     monkeypatch.setattr(sockets, "SPEAKS_WITHIN_S", 0.3)
-    monkeypatch.setattr(sockets, "LOOK_AGAIN_S", 0.05)
     ports = listen()
-    silent, half, speaks = (client(ports, "prefixed") for _ in range(3))
+    half, silent, speaks = (client(ports, "prefixed") for _ in range(3))
     half.socket.sendall(struct.pack(">I", 100) + b"/half")
     speaks.take(b"/a\0\0")
-    assert silent.has_ended()
-    assert half.has_ended()
+    patience(lambda: len(keeper.packets) == 1, "it to be heard")
+    assert client(ports, "slip").has_ended()  # they still have time
     time.sleep(0.4)
-    speaks.take(b"/b\0\0")
-    patience(lambda: keeper.bodies == [b"/a\0\0", b"/b\0\0"], "both")
-    assert ports.traffic.connections == 1
+    for body in (b"/b\0\0", b"/c\0\0"):
+        client(ports, "slip").take(body)
+        patience(lambda body=body: body in keeper.bodies, "who comes")
+    assert half.has_ended()
+    assert silent.has_ended()
+    speaks.take(b"/d\0\0")
+    patience(lambda: b"/d\0\0" in keeper.bodies, "who stays")
 
 
 def test_who_is_silent_for_long_gives_its_place_to_who_comes_unless_it_listens(

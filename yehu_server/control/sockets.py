@@ -39,10 +39,9 @@ READ_FOR_NS = 4_000_000  # before we handle some of it
 MOST_PEERS = 1024  # whose addresses we keep
 ACCEPT_AGAIN_S = 1.0
 MOST_CONNECTIONS, MOST_OF_A_HOST = 64, 32
-# A connection that has said nothing for so long: one that never did is closed, another gives its
-# place to who comes, unless it is still told of changes.
-SPEAKS_WITHIN_S, QUIET_S = 10.0, 60.0
-LOOK_AGAIN_S = 1.0
+# A connection that has said nothing for so long, or nothing since it was made, gives its place to
+# who comes where all are taken, unless it is still told of changes.
+QUIET_S, SPEAKS_WITHIN_S = 60.0, 10.0
 WARN_AGAIN_S = 1.0
 LONGEST_WAIT_S = 0.5
 TRIES_FOR_A_PORT = 20
@@ -83,7 +82,7 @@ class OscPorts:
         self._has_more = False  # in the socket, as far as we know
         self._handled_ns = 0
         self._accept_from = math.inf  # monotonic s
-        self._looked = self._warned = 0.0  # monotonic s
+        self._warned = 0.0  # monotonic s
         self._peers: dict[Address, UdpPeer] = {}
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
@@ -166,9 +165,6 @@ class OscPorts:
         if now > self._accept_from:
             self._accept_from = math.inf
             self._selector.register(self._tcp, selectors.EVENT_READ)
-        if now > self._looked + LOOK_AGAIN_S:
-            self._looked = now
-            self._close_silent(now)
 
     def is_behind(self, peer: Peer) -> bool:
         """Whether a peer that comes another way has to wait; any thread may ask."""
@@ -310,17 +306,15 @@ class OscPorts:
 
     def _longest_silent(self, peers: list[TcpPeer]) -> TcpPeer | None:
         """Who has said nothing for longest, if it was too long."""
-        until = time.monotonic() - QUIET_S
-        silent = [peer for peer in peers if peer.heard_s < until and not self._handler.hears(peer)]
+        now = time.monotonic()
+        silent = [
+            peer
+            for peer in peers
+            if now - peer.heard_s > (QUIET_S if peer.has_spoken else SPEAKS_WITHIN_S)
+            and not peer.is_being_heard
+            and not self._handler.hears(peer)
+        ]
         return min(silent, key=lambda peer: peer.heard_s, default=None)
-
-    def _close_silent(self, now: float) -> None:
-        """Close connections that have never said a thing."""
-        for peer in list(self._streams):
-            is_waited_for = not (peer.has_spoken or peer.is_being_heard or peer.is_finished)
-            if is_waited_for and now > peer.heard_s + SPEAKS_WITHIN_S:
-                self._warn(f"{peer.name}: has said nothing; connection closed")
-                peer.cut_off()
 
     def _read_stream(self, peer: TcpPeer) -> None:
         if peer.is_being_heard:  # the sender waits, and nothing is lost

@@ -147,6 +147,15 @@ def test_a_full_disk_is_told_once_and_it_plays(kept, caplog, monkeypatch):
     assert not list(kept.folder.iterdir())
 
 
+def test_a_numba_unlike_ours_compiles_at_each_start_and_it_plays(kept, caplog, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.delattr(code_cache.CompileResult, "_reduce")
+        assert kept.start() == (4, False)
+    assert not list(kept.folder.iterdir())
+    assert kept.start(third_of) == (4, False)
+    assert len(caplog.messages) == 1
+
+
 def test_who_writes_at_once_leaves_a_file_that_is_whole(tmp_path):
     file = tmp_path / "x.code"
     payloads = [bytes([which]) * 100_000 for which in range(4)]

@@ -71,8 +71,8 @@ class CodeCache(NullCache):  # type: ignore[misc]
             return
         try:
             write_sealed(self._path(sig, data.codegen), dumps(data._reduce()))  # noqa: SLF001
-        except OSError as error:
-            reason = error.strerror or error
+        except Exception as error:  # noqa: BLE001 - neither a full disk nor a numba unlike ours
+            reason = getattr(error, "strerror", None) or repr(error)
             _tell(FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start")
 
     def holds(self, sig: Any) -> bool:

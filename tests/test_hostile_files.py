@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from yehu_server.cli import main
-from yehu_server.cli.arguments import MOST_LETTERS
 from yehu_server.cli.config import as_words
 from yehu_server.documents import MOST_DEPTH, parse_json, parse_toml
 from yehu_server.errors import YehuError
+from yehu_server.lines import FIRST, LAST
 from yehu_server.physics.quantities import read_body, read_quantities
 from yehu_server.playing.mapping import load
 from yehu_server.playing.presets import read_preset
@@ -84,10 +84,10 @@ def test_a_line_of_error_is_never_long(tmp_path, capsys):
     assert ended.value.code == 2
     err = capsys.readouterr().err
     assert err.count("\n") == 1
-    assert len(err) < MOST_LETTERS + 200
+    assert len(err) < (FIRST + LAST) + 200
     path.write_text("a = ['" + "a" * 100_000 + "', {}]")
     assert main(["render", "x.mid", "-o", "x.wav", "--config", str(path)]) == 2
-    assert len(capsys.readouterr().err) < MOST_LETTERS + 200
+    assert len(capsys.readouterr().err) < (FIRST + LAST) + 200
 
 
 def nested(depth: int) -> str:

@@ -9,7 +9,7 @@ import pytest
 from yehu_server.analysis.level import a_weighted_db
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import calibration_for
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.fingering import OpenStrings
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.messages import MidiPlayer

@@ -61,7 +61,7 @@ def test_what_is_learned_moves_the_notes_of_every_box(source, is_global):
     mapping, _ = learn(load("keyboard"), "/playing/vibrato", Found(source), soft=False)
     (bind,) = mapping.of(source)
     assert bind.is_global is is_global
-    assert load("keyboard") == mapping
+    assert load("mine/keyboard") == mapping
 
 
 def test_what_the_player_moves_cannot_be_learned(settings):

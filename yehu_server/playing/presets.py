@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -80,7 +81,7 @@ class Presets:
             del places[1]
         for place in places if self._own_first else reversed(places):
             path = place(name.removeprefix(MINE))
-            if path.is_file():
+            if _is_there(path):
                 return path
         names = self.names()
         more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
@@ -194,6 +195,16 @@ class Presets:
     def _shipped_file(self, name: str) -> Path:
         """Where a shipped one is: by a link, as some installers have it, or not."""
         return self.shipped / f"{name}{ENDING}"
+
+
+def _is_there(path: Path) -> bool:
+    """Whether there is a file, or something whose trouble reading it will tell."""
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    except OSError:  # such as a ring of links
+        return True
 
 
 def _tried(path: Path, name: str) -> Preset | str:

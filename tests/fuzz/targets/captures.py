@@ -10,9 +10,8 @@ from yehu_server.errors import YehuError
 from yehu_server.params.table import ENGINE
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.quantities import Quantities, override
-from yehu_server.score.capture import CaptureWriter, read_capture
+from yehu_server.score.capture import MOST_FRAMES, CaptureWriter, read_capture
 
-LONGEST_S = 24 * 3600.0
 WORDS = (
     b'{"end": ',
     b'{"rest": ',
@@ -31,19 +30,18 @@ WORDS = (
 
 @target("capture", YehuError, words=WORDS)
 def capture(data: bytes) -> None:
-    """A capture is of bearable length, its events are in range, and it can be written again."""
+    """A capture has a length, its events are in range, and it can be written again."""
     path = written(data, "file.jsonl")
     taken = read_capture(path)
     check_rate(taken.rate)  # these two are what replay begins with
     first, second = taken.tensions
     override(Quantities(), {"string_1": {"T": first}, "string_2": {"T": second}})
-    most_frames = LONGEST_S * taken.rate
-    assert 0 <= taken.frames <= most_frames
-    assert all(0 <= since <= rest <= most_frames for rest, since in taken.rests.items())
+    assert 0 <= taken.frames <= MOST_FRAMES  # replay sets a bound of its own: --max-duration
+    assert all(0 <= since <= rest <= MOST_FRAMES for rest, since in taken.rests.items())
     events = taken.events
     for frame, index, value, ramp in events.tolist():
         assert 0 <= frame <= taken.frames
-        assert 0 <= ramp <= most_frames
+        assert 0 <= ramp <= MOST_FRAMES
         if index != SILENCE:
             assert ENGINE[index].lo <= value <= ENGINE[index].hi
     again = scratch() / "again.jsonl"

@@ -2,7 +2,7 @@
 
 Who took least of the processor's time of late is served first, for a turn at most. So as long as
 a sender takes less than its share it is served at once, whatever others send; who sends more than
-can be handled waits for it alone. What is large counts beforehand for what it may take, and a
+can be handled waits for it alone. What is long counts beforehand for what it may take, and a
 stranger for one who took much: neither many long packets nor many new ports go before a player.
 What all senders of a host took counts for each of them, so that many ports are no better than one
 against another host's. What one sender says keeps its order.
@@ -26,11 +26,12 @@ MOST_BYTES = 16 << 20  # that wait
 TURN_NS, SLICE_NS = 2_000_000, 500_000  # for all, and for one sender
 FORGIVEN_NS = 1_000_000_000  # in which half of what was taken is forgotten
 RESCALE_NS = 500 * FORGIVEN_NS  # before numbers grow too large
-EXPECTED_NS = 5_000.0  # that a byte takes at worst
+LITTLE_BYTES = 1 << 10
+LONG_TAKES_NS = 1_000_000_000.0  # what is longer than that is expected to take so much
 # Who has been heard for so long is no stranger, until it has been silent for longer. Strangers
 # are taken for some who took so much.
 STRANGE_NS, SILENT_NS = 1_000_000_000, 60_000_000_000
-STRANGERS_TOOK_NS = 100_000_000.0  # less than a long packet is expected to take
+STRANGERS_TOOK_NS = 100_000_000.0
 MOST_KNOWN, MOST_SENDERS = 256, 2048
 OWED_BYTES = 4 << 10  # room that one who is known always finds
 
@@ -153,7 +154,8 @@ class Backlog(Generic[T]):
                     self._enqueue(sender)
 
     def _enqueue(self, sender: Sender[T]) -> None:
-        expected_ns = EXPECTED_NS * sender.works[0].size
+        is_long = sender.works[0].size > LITTLE_BYTES + OVERHEAD_BYTES
+        expected_ns = LONG_TAKES_NS if is_long else 0.0
         key = sender.host.took + sender.took + expected_ns * self._scale(time.monotonic_ns())
         heapq.heappush(self._queue, (key, next(self._order), sender))
         sender.is_queued = True

@@ -196,6 +196,15 @@ def _burst(port: int, seconds: float, count: int) -> None:
     time.sleep(seconds)
 
 
+def shorter_of_many(port: int, seconds: float) -> None:
+    """Eight thousand datagrams of 16 kB, which are heard, from five hundred ports."""
+    packet = full_of(NOTHING, 16_000)
+    sockets = senders(port, 500)
+    for number in range(8000):
+        _send(sockets[number % 500], packet)
+    time.sleep(seconds)
+
+
 def slip_without_end(port: int, seconds: float) -> None:
     """SLIP that never ends a packet."""
     streams(port, seconds, b"\xc0/" + b"x" * (LONG - 2), 8)
@@ -252,8 +261,8 @@ def due_together(port: int, seconds: float) -> None:
     (sender,) = senders(port, 1)
     element = message("/yehu/bow/force", 0.5)
     for _ in until(seconds):
-        packet = bundle([element] * 1500, 0.5)
-        for _ in range(20):
+        packet = bundle([element] * 400, 0.5)
+        for _ in range(75):
             _send(sender, packet)
         time.sleep(0.25)
 
@@ -261,7 +270,7 @@ def due_together(port: int, seconds: float) -> None:
 def due_never(port: int, seconds: float) -> None:
     """Long messages for a time far ahead."""
     (sender,) = senders(port, 1)
-    packet = bundle([text("/yehu/ping") + text(",s") + text("x" * 60_000)], 1e6)
+    packet = bundle([text("/yehu/ping") + text(",s") + text("x" * 16_000)], 1e6)
     for _ in until(seconds):
         _send(sender, packet)
         time.sleep(0.0005)
@@ -310,6 +319,7 @@ KINDS: dict[str, Attack] = {
         many_streams,
         datagrams,
         datagrams_of_many,
+        shorter_of_many,
         slip_without_end,
         empty_packets,
         idle,

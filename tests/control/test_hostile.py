@@ -7,6 +7,7 @@ faster than Python reads, it drops of others, too.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 
 import hostile
@@ -30,6 +31,8 @@ KINDS = [
     "subscriptions",
     "due_never",
 ]
+# On Linux the system drops these before they take room, and nobody else's.
+TOO_LONG = ("datagrams_of_many", "questions") if sys.platform == "linux" else ()
 
 
 @pytest.fixture
@@ -44,8 +47,9 @@ def test_beside_a_hostile_sender_a_player_loses_no_note(served, kind, monkeypatc
     monkeypatch.setattr(hostile, "RECOVERS_S", RECOVERS_S)
     figures = measured(kind, SECONDS, served)
     assert figures.notes > 50
-    assert figures.lost <= figures.system_dropped
-    assert figures.unanswered <= figures.system_dropped
+    dropped = 0 if kind in TOO_LONG else figures.system_dropped
+    assert figures.lost <= dropped
+    assert figures.unanswered <= dropped
     assert figures.hostile_notes == 0
     assert figures.growth_mb < GROWTH_MB
-    assert figures.ping_median_ms < PING_MS or figures.system_dropped
+    assert figures.ping_median_ms < PING_MS or dropped

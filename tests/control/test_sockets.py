@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yehu_server.control import sockets
+from yehu_server.control import listening, sockets
 from yehu_server.control.addresses import Allowed, parse_address, shown
 from yehu_server.control.backlog import MOST_BYTES
 from yehu_server.control.packets import pack
@@ -207,12 +207,31 @@ def test_a_packet_is_as_early_as_it_came_however_late_it_is_read(listen, client,
     assert before - 2_000_000 <= arrived_ns <= after + 50_000_000
 
 
-@pytest.mark.parametrize("size", [0, 1, 1472, 9000, 65507])
+@pytest.mark.parametrize("size", [0, 1, 1472, 9000, listening.DATAGRAM_BYTES])
 def test_datagrams_of_any_size_come_whole(listen, client, keeper, patience, size):
     ports = listen()
     client(ports).take(b"x" * size)
     patience(lambda: keeper.packets, "the packet")
     assert keeper.bodies == [b"x" * size]
+
+
+@pytest.mark.parametrize("kernel_filters", [True, False])
+def test_longer_datagrams_are_dropped_and_counted(
+    listen, client, keeper, patience, monkeypatch, kernel_filters
+):
+    if not kernel_filters:
+        monkeypatch.setattr(listening, "FILTER", ((6, 0, 0, 0xFFFFFFFF),))
+    elif sys.platform != "linux":
+        pytest.skip("only Linux filters")
+    ports = listen()
+    sender = client(ports)
+    for size in (listening.DATAGRAM_BYTES + 1, 65507):
+        sender.take(b"x" * size)
+    sender.take(b"/a\0\0")
+    patience(lambda: keeper.packets, "the short one")
+    assert keeper.bodies == [b"/a\0\0"]
+    assert ports.traffic.kernel_drops == (2 if kernel_filters else 0)
+    assert ports.traffic.excess == (0 if kernel_filters else 2)
 
 
 def test_answers_come_from_the_listening_port_to_who_asked(listen, client, keeper):
@@ -242,21 +261,21 @@ def test_what_waits_in_memory_is_bounded_and_what_is_over_is_counted(
     one, other = client(ports), client(ports)
     keeper.is_slow = True
     keeper.go_on.clear()
-    sent = MOST_BYTES // 60_000
+    sent = MOST_BYTES // 16_000
     for number in range(sent):
-        one.take(b"x" * 60_000)
-        if number % 20 == 0:  # as the system's buffer may be small
+        one.take(b"x" * 16_000)
+        if number % 10 == 0:  # as the system's buffer may be small
             patience(lambda sent=number + 1: ports.traffic.packets == sent, "it to be read")
     patience(lambda: ports.traffic.packets == sent, "all to be read")
     for _ in range(5):
-        other.take(b"y" * 60_000)
+        other.take(b"y" * 16_000)
     patience(lambda: ports.traffic.packets == sent + 5, "all to be read")
     assert 0.4 * sent < ports.traffic.excess < 0.6 * sent  # half of it is for others
     assert ports._backlog.bytes < 0.6 * MOST_BYTES
     keeper.go_on.set()
     patience(lambda: ports._backlog.bytes == 0, "nothing to be left")
     assert len(keeper.packets) == sent + 5 - ports.traffic.excess
-    assert keeper.bodies.count(b"y" * 60_000) == 5
+    assert keeper.bodies.count(b"y" * 16_000) == 5
 
 
 def test_there_is_osc_over_ipv6(listen, client, keeper):
@@ -318,7 +337,7 @@ def test_a_stream_is_not_read_further_before_it_is_handled(listen, client, keepe
     for sender in senders:
         sender.start()
     time.sleep(SETTLE_S)
-    assert ports._backlog.bytes <= len(streams) * 2 * sockets.DATAGRAM_BYTES
+    assert ports._backlog.bytes <= len(streams) * 2 * sockets.STREAM_BYTES
     keeper.go_on.set()
     patience(lambda: len(keeper.packets) == 80, "all packets")
     for sender in senders:

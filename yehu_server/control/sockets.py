@@ -15,23 +15,27 @@ import math
 import selectors
 import socket
 import struct
-import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from typing import Protocol
 
-from yehu_server.control.addresses import Address, Allowed, is_here, shown, why
+from yehu_server.control.addresses import Address, Allowed, is_here
 from yehu_server.control.backlog import Backlog
 from yehu_server.control.framing import FramingError
+from yehu_server.control.listening import (
+    DATAGRAM_BYTES,
+    SO_RXQ_OVFL,
+    SO_TIMESTAMPNS,
+    open_both,
+    widen,
+)
 from yehu_server.control.peers import Peer, TcpPeer, Traffic, UdpPeer
-from yehu_server.errors import DeviceError
 
 log = logging.getLogger(__name__)
 
-BUFFER_BYTES = 32 << 20  # asked for; the system grants what it may
-DATAGRAM_BYTES = 1 << 16
+STREAM_BYTES = 1 << 16  # read at a time
 BEHIND_BYTES = 1 << 16  # of a peer that came another way, before it waits
 MOST_ASKED = 64
 READ_AT_ONCE = 128  # datagrams, before we look for what is due
@@ -44,9 +48,6 @@ MOST_CONNECTIONS, MOST_OF_A_HOST = 64, 32
 QUIET_S, SPEAKS_WITHIN_S = 60.0, 10.0
 WARN_AGAIN_S = 1.0
 LONGEST_WAIT_S = 0.5
-TRIES_FOR_A_PORT = 20
-# Linux's numbers for what Python's socket module does not name.
-SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 33, 35, 40
 
 
 class Handler(Protocol):
@@ -86,10 +87,10 @@ class OscPorts:
         self._peers: dict[Address, UdpPeer] = {}
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
-        self._udp, self._tcp = _open(host, port)
+        self._udp, self._tcp = open_both(host, port)
         self.port = int(self._udp.getsockname()[1])
         self.host = str(self._udp.getsockname()[0])
-        self.traffic.buffer_bytes = _widen(self._udp)
+        self.traffic.buffer_bytes = widen(self._udp)
         self._wake_here, self._wake_there = socket.socketpair()
         self._wake_there.setblocking(False)
         self._asked: deque[Callable[[], object]] = deque()
@@ -224,7 +225,7 @@ class OscPorts:
 
     def _do_asked(self) -> None:
         with contextlib.suppress(BlockingIOError):
-            self._wake_here.recv(DATAGRAM_BYTES)
+            self._wake_here.recv(STREAM_BYTES)
         for _ in range(len(self._asked)):  # of what is asked meanwhile the next turn hears
             self._asked.popleft()()
         if self._asked:
@@ -235,7 +236,7 @@ class OscPorts:
         offset_ns = time.time_ns() - time.monotonic_ns()
         for _ in range(READ_AT_ONCE):
             try:
-                packet, extras, _, address = self._udp.recvmsg(DATAGRAM_BYTES, 128)
+                packet, extras, _, address = self._udp.recvmsg(DATAGRAM_BYTES + 1, 128)
             except BlockingIOError:
                 return
             except OSError as error:  # of an earlier answer that nobody took
@@ -266,7 +267,8 @@ class OscPorts:
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
         self.traffic.packets += 1
-        if not self._backlog.add(packet, peer, arrived_ns, len(packet)):
+        is_short = len(packet) <= DATAGRAM_BYTES  # where the kernel did not see to it
+        if not (is_short and self._backlog.add(packet, peer, arrived_ns, len(packet))):
             self.traffic.excess += 1
 
     # -- TCP -----------------------------------------------------------------------------------
@@ -320,7 +322,7 @@ class OscPorts:
         if peer.is_being_heard:  # the sender waits, and nothing is lost
             return
         try:
-            data = peer.socket.recv(DATAGRAM_BYTES)
+            data = peer.socket.recv(STREAM_BYTES)
         except BlockingIOError:
             return
         except OSError:
@@ -347,39 +349,3 @@ class OscPorts:
             peer.socket.close()
             self._streams.discard(peer)
             self.traffic.connections -= 1
-
-
-def _open(host: str, port: int) -> tuple[socket.socket, socket.socket]:
-    try:
-        family = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0][0]
-        for _ in range(TRIES_FOR_A_PORT if port == 0 else 0):
-            with contextlib.suppress(OSError):  # free on UDP, but not on TCP
-                return _bind(family, host, port)
-        return _bind(family, host, port)
-    except OSError as error:
-        raise DeviceError(f"OSC: cannot listen at {shown(host, port)}: {why(error)}") from error
-
-
-def _bind(family: int, host: str, port: int) -> tuple[socket.socket, socket.socket]:
-    with contextlib.ExitStack() as undo:
-        udp = undo.enter_context(socket.socket(family, socket.SOCK_DGRAM))
-        tcp = undo.enter_context(socket.socket(family, socket.SOCK_STREAM))
-        udp.bind((host, port))
-        tcp.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        tcp.bind((host, udp.getsockname()[1]))
-        tcp.listen()
-        undo.pop_all()
-    return udp, tcp
-
-
-def _widen(udp: socket.socket) -> int:
-    """Ask for a large buffer, and for the kernel's stamps and counts; return what is granted."""
-    with contextlib.suppress(OSError):
-        udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
-    if sys.platform == "linux":
-        with contextlib.suppress(OSError):  # for the privileged only
-            udp.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, BUFFER_BYTES)
-        for option in (SO_TIMESTAMPNS, SO_RXQ_OVFL):
-            with contextlib.suppress(OSError):
-                udp.setsockopt(socket.SOL_SOCKET, option, 1)
-    return udp.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)

@@ -1,0 +1,71 @@
+"""The sockets that listen for OSC, and what the system does for them."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import socket
+import struct
+import sys
+
+from yehu_server.control.addresses import shown, why
+from yehu_server.errors import DeviceError
+
+BUFFER_BYTES = 32 << 20  # asked for; the system grants what it may
+DATAGRAM_BYTES = 1 << 14  # longer ones are not heard: few would fill the system's buffer
+TRIES_FOR_A_PORT = 20
+# Linux's numbers for what Python's socket module does not name.
+SO_ATTACH_FILTER, SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 26, 33, 35, 40
+UDP_HEADER_BYTES = 8
+# A filter for the kernel: what is longer than a datagram may be is dropped before it takes room.
+FILTER = (
+    (0x80, 0, 0, 0),  # load the length
+    (0x25, 0, 1, DATAGRAM_BYTES + UDP_HEADER_BYTES),  # skip one if it is no more than this
+    (0x06, 0, 0, 0),  # drop
+    (0x06, 0, 0, 0xFFFFFFFF),  # keep
+)
+
+
+def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
+    """A UDP and a TCP socket at one address, the latter listening. Errors: DeviceError."""
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0][0]
+        for _ in range(TRIES_FOR_A_PORT if port == 0 else 0):
+            with contextlib.suppress(OSError):  # free on UDP, but not on TCP
+                return _bind(family, host, port)
+        return _bind(family, host, port)
+    except OSError as error:
+        raise DeviceError(f"OSC: cannot listen at {shown(host, port)}: {why(error)}") from error
+
+
+def _bind(family: int, host: str, port: int) -> tuple[socket.socket, socket.socket]:
+    with contextlib.ExitStack() as undo:
+        udp = undo.enter_context(socket.socket(family, socket.SOCK_DGRAM))
+        tcp = undo.enter_context(socket.socket(family, socket.SOCK_STREAM))
+        udp.bind((host, port))
+        tcp.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        tcp.bind((host, udp.getsockname()[1]))
+        tcp.listen()
+        undo.pop_all()
+    return udp, tcp
+
+
+def widen(udp: socket.socket) -> int:
+    """Ask for a large buffer, and for the kernel's stamps, counts and filter.
+
+    Returns what is granted, in bytes.
+    """
+    with contextlib.suppress(OSError):
+        udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
+    if sys.platform == "linux":
+        with contextlib.suppress(OSError):  # for the privileged only
+            udp.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, BUFFER_BYTES)
+        for option in (SO_TIMESTAMPNS, SO_RXQ_OVFL):
+            with contextlib.suppress(OSError):
+                udp.setsockopt(socket.SOL_SOCKET, option, 1)
+        program = b"".join(struct.pack("HBBI", *line) for line in FILTER)
+        buffer = ctypes.create_string_buffer(program, len(program))
+        with contextlib.suppress(OSError):
+            described = struct.pack("HP", len(FILTER), ctypes.addressof(buffer))
+            udp.setsockopt(socket.SOL_SOCKET, SO_ATTACH_FILTER, described)
+    return udp.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)

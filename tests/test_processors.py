@@ -39,7 +39,7 @@ def test_without_any_instruction_newer_than_2003_one_step_is_the_references(tmp_
     child = run_as("generic", *pytest_alone, *nodes, NUMBA_CACHE_DIR=str(tmp_path))
     assert child.returncode == 0, child.stdout + child.stderr
     assert " skipped" not in child.stdout
-    assert list(tmp_path.rglob("*.nbc"))  # it was compiled there and then
+    assert list(tmp_path.rglob("*.code"))  # it was compiled there and then
 
 
 @here

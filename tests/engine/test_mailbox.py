@@ -22,7 +22,7 @@ from yehu_server.engine import native
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
-from yehu_server.params.table import SLOT
+from yehu_server.params.table import ENGINE, SLOT
 
 RATE = 22050
 PATIENCE_S = 30.0  # for other threads and processes, on a busy machine
@@ -314,6 +314,12 @@ def test_cursors_are_words_of_their_own_in_cache_lines_of_their_own():
 # ---------------------------------------------------------------- the heap: a plain model
 
 
+def target(index: int, order: int) -> float:
+    """A value within the parameter's range that tells an event from all others."""
+    param = ENGINE[index]
+    return param.lo + (param.hi - param.lo) * order / (1 << 16)
+
+
 class Model:
     """What the mailbox must do, in plain Python: a list, sorted anew at each frame."""
 
@@ -328,7 +334,7 @@ class Model:
         self.order += 1
         self.late += frame < self.frame
         self.waiting.append((frame, self.order, index))
-        return float(self.order)
+        return target(index, self.order)
 
     def play(self, frames: int, start: tuple[float, ...]) -> None:
         now = dict(zip(INERT, self.values[-1] if self.values else start, strict=True))
@@ -337,8 +343,8 @@ class Model:
             for event in due[:APPLIED_AT_ONCE]:
                 self.waiting.remove(event)
                 _, order, index = event
-                self.applied.append((self.frame, index, float(order)))
-                now[index] = float(order)
+                self.applied.append((self.frame, index, target(index, order)))
+                now[index] = target(index, order)
             self.values.append(tuple(now.values()))
             self.frame += 1
 

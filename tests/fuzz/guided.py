@@ -6,6 +6,7 @@ import contextlib
 import io
 import os
 import re
+import resource
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -37,6 +38,11 @@ def watched() -> Iterator[None]:
         yield
 
 
+def _resident_mb() -> int:
+    """Peak of this process so far: that of who started it counts as its own."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
+
+
 def fuzz(target: Target, seconds: float, seed: int, folder: Path) -> None:
     """Fuzz for some seconds, in this process, which ends with it."""
     findings = Findings(target, folder)
@@ -52,7 +58,7 @@ def fuzz(target: Target, seconds: float, seed: int, folder: Path) -> None:
         f"-seed={seed}",
         *([f"-dict={words}"] if target.words else []),
         f"-max_len={MOST_BYTES}",
-        f"-rss_limit_mb={MOST_RESIDENT_MB}",
+        f"-rss_limit_mb={MOST_RESIDENT_MB + _resident_mb()}",
         f"-timeout={STUCK_S}",
         f"-artifact_prefix={folder}/{target.name}-fatal-",
         "-print_final_stats=1",

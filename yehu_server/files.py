@@ -37,8 +37,12 @@ def _open_regular(path: Path, most_bytes: int) -> BinaryIO:
         return file
     file.close()
     if stat.S_ISREG(status.st_mode):
-        raise OSError(errno.EFBIG, f"File too large, above {most_bytes // 2**20} MiB")
+        raise _too_large(most_bytes)
     raise OSError(errno.EINVAL, "Not a regular file")
+
+
+def _too_large(most_bytes: int) -> OSError:
+    return OSError(errno.EFBIG, f"File too large, above {most_bytes >> 10} KiB")
 
 
 def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
@@ -46,7 +50,7 @@ def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     with _open_regular(path, most_bytes) as file:
         data = file.read(most_bytes + 1)
     if len(data) > most_bytes:  # it has grown, or its file system tells no sizes
-        raise OSError(errno.EFBIG, f"File too large, above {most_bytes // 2**20} MiB")
+        raise _too_large(most_bytes)
     return data
 
 

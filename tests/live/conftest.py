@@ -31,7 +31,7 @@ ROOT = Path(__file__).resolve().parents[2]
 RATE = 48000
 COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
 STARTED_WITHIN_S = 120.0  # where everything has to be compiled first
-RECORDED_S = 45
+RECORDED_S = 60
 
 
 def until(condition: Callable[[], Any], within_s: float, what: str) -> Any:

@@ -15,7 +15,7 @@ from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.performer import Performer
 
 RATE = 48000
-FIRST = 30 * RATE  # by then the device has taken over
+FIRST = 20 * RATE  # by then the device has taken over
 FRAMES = 4 * RATE
 BLOCKS = [64, 100, 128, 333, 1024]
 

@@ -262,7 +262,7 @@ def test_a_broken_file_does_not_hide_the_others(presets, put):
 
 def test_a_file_that_would_take_long_to_read_is_refused(presets, put):
     put("long", "version = 1\n" + "#" * MOST_BYTES)
-    with pytest.raises(PresetError, match="long: Larger than"):
+    with pytest.raises(PresetError, match="long: File too large, above 16 KiB"):
         presets.load("long")
 
 

@@ -32,7 +32,7 @@ def asked() -> Calibration:
 def kept() -> tuple[Path, bytes]:
     """Where a calibration is kept, and as what."""
     folder = scratch() / "cache"
-    folder.mkdir()
+    folder.mkdir(exist_ok=True)
     asked()
     (file,) = folder.glob("calibration*")
     return file, file.read_bytes()

@@ -796,14 +796,16 @@ def test_a_message_is_heard_a_constant_time_after_it_came(hall, busy):
     delays = []
     with busy():
         for number in range(30):
+            # It follows the device's period, which a machine that is held up makes longer.
+            delay = hall.player.delay
             before = hall.instrument.frame_at(time.monotonic_ns())
             client.tell("/bow/position", 0.1 + 0.001 * number)
             after = hall.instrument.frame_at(time.monotonic_ns())
             client.wait_for("/bow/position")
             moves = [frame for frame, address, _ in hall.settle() if address == "/bow/position"]
-            delays.append((moves[0] - before, moves[0] - after))
+            delays.append((moves[0] - before, moves[0] - after, delay))
     # On a machine that is busy some may be late; most are not.
-    on_time = [1 for most, least in delays if least <= hall.player.delay <= most + 1]
+    on_time = [1 for most, least, delay in delays if least <= delay <= most + 1]
     assert len(on_time) > len(delays) // 2
 
 

@@ -601,7 +601,9 @@ def test_an_address_that_is_shown_is_read_as_the_same(host):
     assert parse_address(shown(host, 9005), "0.0.0.0", 9001) == (host, 9005)  # noqa: S104
 
 
-@pytest.mark.parametrize("text", ["a:b", "a:-1", "a:65536", "a:1.5", "a:1e3", "[::1]:x"])
+@pytest.mark.parametrize(
+    "text", ["a:b", "a:-1", "a:65536", "a:1.5", "a:1e3", "[::1]:x", "a..b", f"{64 * 'a'}.b"]
+)
 def test_where_nobody_can_listen_is_refused(text):
     with pytest.raises(ParameterError, match="HOST:PORT"):
         parse_address(text, "127.0.0.1", 9000)

@@ -17,7 +17,9 @@ Address = tuple[str, int]
 
 MOST_KNOWN = 1 << 16
 # The name of a host, or its number in IPv4.
-_NAME = re.compile(r"[A-Za-z0-9_]([A-Za-z0-9_.-]*[A-Za-z0-9_.])?")
+# Labels of 1 to 63 characters, and a full stop at the end or not.
+_LABEL = r"[A-Za-z0-9_](?:[A-Za-z0-9_-]{0,61}[A-Za-z0-9_])?"
+_NAME = re.compile(rf"{_LABEL}(?:\.{_LABEL})*\.?")
 ANYWHERE = "0.0.0.0"  # noqa: S104 - names it only
 
 

@@ -16,9 +16,9 @@ venv=$root/.venv
 log=$venv/setup.log
 
 # What we need from Debian: to play live, and to compile python-rtmidi, which has no wheels for
-# Python 3.13 and newer.
+# Python 3.13 and newer: for ALSA and, as its wheels are, for JACK.
 debian_packages=(libportaudio2)
-debian_build_packages=(g++ libasound2-dev pkg-config)
+debian_build_packages=(g++ libasound2-dev libjack-jackd2-dev pkg-config)
 # What only tests need: a C compiler, a JACK server, and real OSC senders.
 debian_test_packages=(gcc libc6-dev jackd2 liblo-tools puredata-core)
 
@@ -233,6 +233,7 @@ is_there() {
             esac
             return 1
             ;;
+        libjack-jackd2-dev) pkg-config --exists jack 2>/dev/null ;; # also JACK 1's will do
         *) [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ;;
     esac
 }

@@ -15,6 +15,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -135,15 +136,34 @@ class Jackd:
         return found.stdout.split("\n")
 
 
+@contextlib.contextmanager
+def free_name() -> Iterator[str]:
+    """Give a server name that no other run of the tests has.
+
+    One of a few: JACK keeps room for eight names in all, of killed servers too.
+    """
+    import fcntl
+
+    for number in range(6):
+        with Path(tempfile.gettempdir(), f"yehu-tests-jack-{number}").open("a") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                continue
+            yield f"yehu-tests-{number}"
+            return
+    pytest.skip("six other runs of the tests have a JACK server each")
+
+
 @pytest.fixture(scope="module")
-def jackd(request) -> Iterator[Jackd]:
+def jackd() -> Iterator[Jackd]:
     if missing():
         pytest.skip(missing())
     native.warm_up()  # what an audio process had to compile would come too late
-    server = Jackd(f"yehu-{request.path.stem.removeprefix('test_')}")
-    with pytest.MonkeyPatch.context() as patch:
-        for name in ("JACK_DEFAULT_SERVER", "JACK_NO_START_SERVER"):
-            patch.setenv(name, server.environment[name])
+    with free_name() as name, pytest.MonkeyPatch.context() as patch:
+        server = Jackd(name)
+        for variable in ("JACK_DEFAULT_SERVER", "JACK_NO_START_SERVER"):
+            patch.setenv(variable, server.environment[variable])
         yield server
         server.stop()
         for left in Path("/dev/shm").glob(f"jack_sem.*_{server.name}_*"):  # noqa: S108

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import subprocess
 import sys
 import threading
@@ -14,7 +15,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.control.packets import unpack
@@ -134,21 +134,24 @@ def test_under_load_the_callback_keeps_its_deadlines(jackd, until):
     assert playing["underruns"] <= 3 * idles["underruns"] + 100
 
 
-def test_an_event_is_heard_within_two_blocks_and_half_a_millisecond_of_its_arrival(jackd):
+def test_an_event_is_heard_one_block_and_a_millisecond_after_its_arrival(jackd, until):
     jackd.start(64)
+    shortest = math.ceil(64 + 0.001 * RATE)
     slot = SLOT["/bow/position"]
-    arrived: dict[float, float] = {}
+    arrived: dict[float, tuple[float, int]] = {}  # the frame, and the delay at that time
     with server_of(64) as server:
         instrument, handle = server.instrument, server.handler.handle
 
         def witness(packet: bytes, peer: object, arrived_ns: int) -> Iterator[None]:
             (message,) = unpack(packet)
             if message.address == "/yehu/bow/position":
-                arrived[message.arguments[0]] = instrument.frame_at(arrived_ns)
+                frame = instrument.frame_at(arrived_ns)
+                arrived[message.arguments[0]] = frame, server.player.delay
             return handle(packet, peer, arrived_ns)
 
         server.handler.handle = witness
-        time.sleep(0.3)
+        # It is longer only where JACK is not in time itself.
+        until(lambda: server.player.delay <= shortest, 30.0, "the shortest delay")
         applied = {}
         client = subprocess.Popen(
             [sys.executable, "-c", STEPS, str(server.osc.port)], stdout=subprocess.DEVNULL
@@ -161,13 +164,17 @@ def test_an_event_is_heard_within_two_blocks_and_half_a_millisecond_of_its_arriv
                         applied[np.float32(event["target"]).item()] = int(event["frame"])
         finally:
             client.wait()
-    shares = np.array([applied[value] - arrived[value] for value in arrived if value in applied])
-    assert len(shares) > 450
-    assert (shares >= 0.0).all()
-    bound = 2 * 64 + 0.0005 * RATE
-    assert (shares < bound).mean() > 0.9
-    # One block and a millisecond after it came: the rhythm is kept to the frame.
-    assert np.median(shares) == pytest.approx(64 + 0.001 * RATE, abs=2.0)
+    heard = [
+        (applied[value] - frame, delay)
+        for value, (frame, delay) in arrived.items()
+        if value in applied
+    ]
+    waits, delays = np.array(heard).T
+    assert len(waits) > 450
+    assert (waits >= 0.0).all()
+    # The rhythm is kept to the frame; a system that holds up everybody may break it.
+    assert np.median(np.abs(waits - delays)) < 2.0
+    assert (waits - delays < 0.0005 * RATE).mean() > 0.9
 
 
 STEPS = """

@@ -1,10 +1,14 @@
 """Write yehu_server/playing/calibrations.json: the instrument in tune at the usual rates.
 
-.venv/bin/python scripts/calibrate.py
+    .venv/bin/python scripts/calibrate.py [--keep]
+
+With --keep nothing is measured: the figures get the keys of the code as it is now. For changes of
+names and order alone, which leave each sample as it was.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import time
 
@@ -17,12 +21,16 @@ RATES = (44100.0, 48000.0, 96000.0)
 
 def main() -> None:
     """Measure and write."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--keep", action="store_true", help="keep the figures under new keys")
+    keep = parser.parse_args().keep
+    kept = {data["rate"]: data for data in json.loads(SHIPPED.read_text(encoding="utf-8")).values()}
     quantities = Quantities()
     shipped = {}
     for rate in RATES:
         start = time.perf_counter()
-        data = as_data(calibrate(rate, quantities))
-        shipped[calibration_key(rate, quantities, 440.0)] = {"rate": rate, **data}
+        data = kept[rate] if keep else {"rate": rate, **as_data(calibrate(rate, quantities))}
+        shipped[calibration_key(rate, quantities, 440.0)] = data
         print(f"{rate:g} Hz: {time.perf_counter() - start:.1f} s", flush=True)
     SHIPPED.write_text(json.dumps(shipped, indent=1) + "\n", encoding="utf-8")
 

@@ -41,10 +41,12 @@ class CodeCache(NullCache):  # type: ignore[misc]
         module = function.__module__.rpartition(".")[2]
         tag = sys.implementation.cache_tag
         self._stem = f"{module}.{function.__qualname__}-{tag}".translate({60: None, 62: None})
-        # What tells functions of one name apart: the code, and what it closes over.
+        # What tells functions of one name apart: the code but for its docstring, and what it
+        # closes over. Not its line: a comment above would move it.
         code = function.__code__
+        constants = [value for value in code.co_consts if value != function.__doc__]
         cells = [cell.cell_contents for cell in function.__closure__ or ()]
-        self._own = (code.co_firstlineno, code.co_code, dumps(cells) if cells else b"")
+        self._own = (code.co_code, code.co_names, dumps((constants, cells)))
 
     @property
     def cache_path(self) -> str:

@@ -1,13 +1,12 @@
 """How this package compiles its hot code: one decorator, one cache.
 
 numba does not notice when a compiled function's callee changes in another file,
-so the cache folder is keyed by a hash of all sources that may be compiled.
+so the cache folder is keyed by all sources that may be compiled.
 """
 
 from __future__ import annotations
 
 import errno
-import hashlib
 import os
 import shutil
 import time
@@ -23,6 +22,7 @@ from numba.core.compiler import Compiler
 from platformdirs import user_cache_dir
 
 from yehu_server.code_cache import CodeCache
+from yehu_server.code_key import key_of
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -34,15 +34,14 @@ FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
 
 @cache
 def source_hash() -> str:
-    """Hash of every source that compiled code comes from or reads constants of (16 hex digits)."""
-    digest = hashlib.sha256(numba.__version__.encode())
+    """Key of all source that compiled code comes from or reads constants of (16 hex digits)."""
     package = Path(__file__).parent
-    for folder in ("physics", "params", "engine"):
-        for source in sorted((package / folder).glob("*.py")):
-            digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
-    for name in ("jit", "code_cache"):
-        digest.update((package / f"{name}.py").read_bytes())
-    return digest.hexdigest()[:16]
+    sources = [
+        source
+        for folder in ("physics", "params", "engine")
+        for source in sorted((package / folder).glob("*.py"))
+    ]
+    return key_of([*sources, package / "jit.py", package / "code_cache.py"], numba.__version__)
 
 
 def cache_folder() -> Path:

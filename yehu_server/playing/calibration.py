@@ -7,7 +7,6 @@ key made from everything it depends on.
 
 from __future__ import annotations
 
-import hashlib
 import math
 import os
 from collections.abc import Callable
@@ -20,6 +19,7 @@ import numpy as np
 
 from yehu_server.analysis.level import SILENCE_DB, a_weighted_db
 from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.code_key import key_of
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities, override
@@ -81,10 +81,7 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     sources = [*sorted((package / "physics").glob("*.py")), package / "playing" / "bowing.py"]
     sources += [package / "engine" / f"{name}.py" for name in ("gesture", "output")]
     sources += [Path(__file__)]
-    digest = hashlib.sha256(repr((rate, a4, quantities)).encode())
-    for source in sources:
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
+    return key_of(sources, repr((rate, a4, quantities)))
 
 
 def calibrate(

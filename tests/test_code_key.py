@@ -1,0 +1,120 @@
+"""What is kept under a key of its source is made anew where the code changes, not its prose."""
+
+import ast
+import io
+import runpy
+import tokenize
+from pathlib import Path
+
+import pytest
+
+import yehu_server
+from yehu_server import code_cache, jit
+from yehu_server.code_key import key_of, without_prose
+
+PACKAGE = Path(yehu_server.__file__).parent
+KEYED = [PACKAGE / "jit.py", PACKAGE / "code_cache.py"]
+for folder in ("physics", "params", "engine", "playing"):
+    KEYED += sorted((PACKAGE / folder).glob("*.py"))
+LAYOUT = {
+    tokenize.ENCODING,
+    tokenize.COMMENT,
+    tokenize.NL,
+    tokenize.NEWLINE,
+    tokenize.INDENT,
+    tokenize.DEDENT,
+}
+CODE = '''"""What the file is for."""
+
+LIMIT = 3  # of something
+
+
+def third(number: int) -> int:
+    """A third of a number."""
+    # Rounded down.
+    return number // LIMIT
+'''
+
+
+def words(source: str, without: frozenset[tuple[int, int]] = frozenset()) -> list[str]:
+    """The tokens that do something, but for those that begin at some places."""
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    return [
+        token.string for token in tokens if token.type not in LAYOUT and token.start not in without
+    ]
+
+
+def docstrings(source: str) -> frozenset[tuple[int, int]]:
+    """Where docstrings begin."""
+    kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    found = [
+        node.body[0]
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, kinds) and ast.get_docstring(node) is not None
+    ]
+    return frozenset((node.lineno, node.col_offset) for node in found)
+
+
+@pytest.mark.parametrize("path", KEYED, ids=lambda path: path.stem)
+def test_comments_and_docstrings_are_left_out_and_nothing_else(path):
+    source = path.read_text(encoding="utf-8")
+    assert words(without_prose(source)) == words(source, docstrings(source))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("  # of something", ""),
+        ("# of something", "# of something else"),
+        ("What the file is for.", "What this is for."),
+        ("A third", "One third,\n\n    rounded down,"),
+        ("    # Rounded down.\n", "\n"),
+        ('    """A third of a number."""\n', ""),
+        ("\n\n\ndef", "\n\n# ---- thirds\n\n\ndef"),
+    ],
+)
+def test_prose_leaves_the_key(tmp_path, old, new):
+    assert edited(tmp_path, old, new) == edited(tmp_path, "", "")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("LIMIT = 3", "LIMIT = 4"),
+        ("//", "/"),
+        ("    return", "        return"),
+        ("return number", "return '#'"),
+    ],
+)
+def test_code_changes_the_key(tmp_path, old, new):
+    assert edited(tmp_path, old, new) != edited(tmp_path, "", "")
+
+
+def edited(folder: Path, old: str, new: str) -> str:
+    assert old in CODE
+    path = folder / "thirds.py"
+    path.write_text(CODE.replace(old, new, 1), encoding="utf-8")
+    return key_of([path])
+
+
+def test_a_comment_compiles_nothing_anew(tmp_path, monkeypatch):
+    cache = tmp_path / "cache"
+    cache.mkdir()
+    monkeypatch.setattr(jit, "cache_folder", lambda: cache)
+    monkeypatch.setattr(jit, "IS_CACHED", True)
+    monkeypatch.setattr(code_cache, "_troubles", set())
+
+    def was_there(source: str) -> bool:
+        """Whether the code of `third` was kept, at a new start."""
+        path = tmp_path / "thirds.py"
+        path.write_text(source, encoding="utf-8")
+        third = runpy.run_path(str(path), run_name="thirds")["third"]
+        native = jit.Native("int64(int64)", third)
+        assert native.call(12) == 4
+        return native.compiled.cache_hits == 1
+
+    assert not was_there(CODE)
+    assert was_there(CODE)
+    assert was_there(CODE.replace("# Rounded down.", "# Rounded\n    # down."))
+    assert was_there("# A comment above.\n" + CODE.replace("A third", "One third"))
+    assert not was_there(CODE.replace("number // LIMIT", "number // LIMIT + 0 * number"))

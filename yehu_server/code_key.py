@@ -1,0 +1,32 @@
+"""Keys of source code, which change with what the code does and not with its prose."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+_PROSE = re.compile(
+    r'(?P<docstring>^[ \t]*"""(?:[^\\]|\\.)*?"""[ \t]*$)'
+    r'|(?P<text>"""(?:[^\\]|\\.)*?"""|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)*\')'
+    r"|#[^\n]*",
+    re.MULTILINE | re.DOTALL,
+)
+
+
+def without_prose(source: str) -> str:
+    """Python source without comments, docstrings and empty lines."""
+    code = _PROSE.sub(lambda match: match["text"] or "", source)
+    return "\n".join(line for line in map(str.rstrip, code.splitlines()) if line)
+
+
+def key_of(sources: Iterable[Path], *more: str) -> str:
+    """Hash of what some files of Python code do, and of other texts (16 hex digits)."""
+    digest = hashlib.sha256()
+    for text in more:
+        digest.update(text.encode() + b"\0")
+    for path in sources:
+        text = without_prose(path.read_text(encoding="utf-8"))
+        digest.update(path.name.encode() + b"\0" + text.encode() + b"\0")
+    return digest.hexdigest()[:16]

@@ -125,6 +125,8 @@ class RefControls:
     f_hammer: float
     x_f: Array  # (F,)
     press: Array  # (F,), N, >= 0; 0 means the finger is lifted
+    f_pluck: float = 0.0  # N, towards the finger: > 0 pulls string 0, < 0 pulls string 1
+    x_pluck: float = 0.2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -156,44 +158,6 @@ def largest_N(
     root = np.sqrt((T * k / rho_A + 4.0 * sigma_1) ** 2 + 16.0 * EI / rho_A)
     h_min = np.sqrt(T * k**2 / (2.0 * rho_A) + 2.0 * k * sigma_1 + k / 2.0 * root)
     return int(np.floor(L / h_min))
-
-
-def default_params(bridge_modes: list[dict[str, float]], rate: float = 44100.0) -> RefParams:
-    """The measured yehu: Table 1 and the published numbers; `bridge_modes` as in body.json."""
-    strings = []
-    for rho, r, T, E, sigma_0, sigma_1 in (
-        (1250.0, 0.55e-3, 50.61, 1.0e10, 0.9754, 0.0026),
-        (1350.0, 0.40e-3, 64.29, 9.5e9, 1.5844, 0.0032),
-    ):
-        A, EI, L = np.pi * r**2, E * np.pi * r**4 / 4.0, 0.38
-        N = largest_N(rho, A, T, EI, sigma_0, sigma_1, L, 1.0 / rate)
-        strings.append(
-            RefString(rho=rho, A=A, T=T, EI=EI, sigma_0=sigma_0, sigma_1=sigma_1, L=L, N=N)
-        )
-    return RefParams(
-        strings=strings,
-        x_c=0.30,
-        M=np.array([mode["mass_kg"] for mode in bridge_modes]),
-        R=np.array([mode["damping_kg_per_s"] for mode in bridge_modes]),
-        omega=2.0 * np.pi * np.array([mode["frequency_hz"] for mode in bridge_modes]),
-        eps0=3.186e4,
-        eps1bar=0.0027,
-        v_s=0.228,
-        mu_C=0.5071,
-        mu_S=1.0207,
-        xi=np.array([0.7, 0.4]),
-        M_h=4.5e-3,
-        K_h=4.8297e4,
-        R_h=5.7674,
-        lift_threshold=1e-3,
-        M_f=0.02,
-        K_f=5e5,
-        alpha=2.3,
-        beta=20.0,
-        omega_lift=400.0,
-        U_rest=0.5e-3,
-        rate=rate,
-    )
 
 
 def rest_state(params: RefParams, fingers: int) -> RefState:
@@ -397,6 +361,11 @@ def bowed_string(params: RefParams, controls: RefControls) -> int:
     return 0 if controls.F_N > 0.0 else 1
 
 
+def plucking_force(controls: RefControls, string: int) -> float:
+    """N, never negative; the sign of f_pluck chooses the string as that of F_N does."""
+    return max(controls.f_pluck if string == 0 else -controls.f_pluck, 0.0)
+
+
 def finger_readings(params: RefParams, state_u: list[Array], U: Array, x_f: Array) -> Array:
     """eta (F, 2) of (6): I_f u_i - U."""
     eta = np.zeros((len(U), 2))
@@ -470,6 +439,9 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
         ) * D2
         a[in_u[i]] = A_s
         b[in_u[i]] = B_s @ state.u[i][1:-1] + C_s @ state.u_prev[i][1:-1]
+        # + J_pluck |f_pluck|, (30)
+        pluck = plucking_force(controls, i)
+        b[in_u[i]] += pluck * interpolate_cubic(string, controls.x_pluck) / string.h
     # (41), written out: M dtt q + K mu_tt q + R dt. q = f_hammer (- f_c1 - f_c2, below)
     M, K, R = params.M, params.K, params.R
     a[in_q] = M / k**2 + K / 4.0 + R / (2.0 * k)
@@ -699,10 +671,18 @@ def power(
 ) -> dict[str, float]:
     """p^n by source, in watts, (56a) corrected: the bow does the work - f_b v_b."""
     two_k = 2.0 * params.k
+    plucked = [
+        plucking_force(controls, i)
+        * float(interpolate_cubic(string, controls.x_pluck) @ (u - u_prev)[1:-1])
+        for i, (string, u, u_prev) in enumerate(
+            zip(params.strings, after.u, before.u_prev, strict=True)
+        )
+    ]
     parts = {
         "finger": float(np.sum(outputs.f_ext * (after.U - before.U_prev))) / two_k,
         "bow": -outputs.f_b * controls.v_b,
         "hammer": controls.f_hammer * float(np.sum(after.q - before.q_prev)) / two_k,
+        "pluck": sum(plucked) / two_k,
     }
     return {**parts, "total": sum(parts.values())}
 

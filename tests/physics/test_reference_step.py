@@ -96,6 +96,8 @@ def random_problem(params, rng):
         f_hammer=float(rng.choice([0.0, rng.normal()])),
         x_f=x_f,
         press=rng.uniform(0.0, 3.0, fingers) * (rng.random(fingers) > 0.3),
+        f_pluck=float(rng.choice([0.0, rng.normal()])),
+        x_pluck=float(rng.uniform(0.03, 0.3)),
     )
     return state, controls
 
@@ -113,6 +115,15 @@ def natural_scales(expected, controls):
         "f_f": 1e-6,
     }
     return {name: max(size, floors.get(name, 0.0)) for name, size in sizes.items()}
+
+
+def friction_regime(params, controls, outputs):
+    """What bow and string do: chi of (18) is 0 where the bristles hold."""
+    if outputs.bowed < 0:
+        return "bow lifted"
+    law = ref.Friction(params=params, F_N=abs(controls.F_N), xi=params.xi[outputs.bowed], z=0.0)
+    chi = law.chi(np.array(outputs.v_r), np.array(outputs.zbar))
+    return f"string {outputs.bowed} slips" if chi > 0.0 else f"string {outputs.bowed} sticks"
 
 
 @pytest.fixture(
@@ -141,18 +152,19 @@ def compared(request):
 
 def test_random_steps_meet_every_kind_of_contact(compared):
     """Or the next test would say little."""
-    _, steps = compared
+    params, steps = compared
     met = Counter()
     for _, controls, _, _, outputs, _, _ in steps:
         met["all"] += 1
         met[f"{len(controls.x_f)} fingers"] += 1
-        met["bowed" if outputs.bowed >= 0 else "bow lifted"] += 1
         met["touching"] += bool((outputs.g > 0.0).any())
         met["limited by theta"] += bool(((outputs.theta < 1.0) & (outputs.g > 0.0)).any())
         met["finger lifted"] += bool((controls.press == 0.0).any())
         met["hammer"] += controls.f_hammer != 0.0
-        h = compared[0].strings[max(outputs.bowed, 0)].h
-        met["bow at the bridge"] += controls.x_b > compared[0].x_c - 2.0 * h
+        met[f"plucked string {int(controls.f_pluck < 0.0)}"] += controls.f_pluck != 0.0
+        met[friction_regime(params, controls, outputs)] += 1
+        h = params.strings[max(outputs.bowed, 0)].h
+        met["bow at the bridge"] += controls.x_b > params.x_c - 2.0 * h
         met["finger at the bow"] += bool((np.abs(controls.x_f - controls.x_b) < 2.0 * h).any())
     assert met["all"] >= 240
     assert min(met.values()) >= 25, met

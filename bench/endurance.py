@@ -11,12 +11,9 @@ JACK server with the dummy driver, which has no real-time rights.
 
 from __future__ import annotations
 
-import argparse
 import asyncio
 import contextlib
-import json
 import os
-import platform
 import re
 import signal
 import subprocess
@@ -31,11 +28,11 @@ from typing import IO, Any
 from urllib.request import urlopen
 
 import numpy as np
+import report
 import soundfile
 from load import CARD, SPAWN, send_load, sound_card
 from rich.console import Console
 from rich.table import Table
-from run import processor
 
 from yehu_server.audio.output import NULL, Output, OutputOptions
 from yehu_server.engine import native
@@ -272,11 +269,10 @@ def print_report(figures: dict[str, Any]) -> None:
 
 def main() -> None:
     """Measure and print everything."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = report.options(__doc__)
     parser.add_argument("--seconds", type=float, default=3600.0, help="default: 3600")
     parser.add_argument("--blocksize", type=int, default=64)
     parser.add_argument("--audio-device", help="see yehu-server devices (default: a dummy)")
-    parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
     arguments = parser.parse_args()
     device = arguments.audio_device or CARD
     if device == NULL:
@@ -288,17 +284,13 @@ def main() -> None:
     ):
         figures = play(device, arguments.blocksize, arguments.seconds, Path(f))
     print_report(figures)
-    if arguments.save:
-        record = {
-            "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
-            "python": platform.python_version(),
-            "device": arguments.audio_device or "JACK, dummy driver, no real-time rights",
-            "seconds": arguments.seconds,
-            "blocksize": arguments.blocksize,
-            "figures": figures,
-        }
-        arguments.save.parent.mkdir(parents=True, exist_ok=True)
-        arguments.save.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    report.save(
+        arguments.save,
+        figures,
+        device=arguments.audio_device or report.NO_CARD,
+        seconds=arguments.seconds,
+        blocksize=arguments.blocksize,
+    )
 
 
 if __name__ == "__main__":

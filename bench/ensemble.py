@@ -9,15 +9,13 @@ instruments, a block of all before the next, as a mixer would ask for them.
 
 from __future__ import annotations
 
-import argparse
-import json
 import os
 import statistics
 import threading
 import time
-from pathlib import Path
 
 import numpy as np
+import report
 from rich.console import Console
 from rich.table import Table
 
@@ -67,9 +65,7 @@ def pace(instruments: list[Instrument], threads: int) -> list[float]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
-    arguments = parser.parse_args()
+    arguments = report.options(__doc__).parse_args()
     cores = os.cpu_count() or 1
     figures: dict[str, list[float]] = {}
     for count in COUNTS:
@@ -87,9 +83,8 @@ def main() -> None:
         spread = (statistics.median(values), min(values), max(values))
         table.add_row(name, *(f"{value:.1f}" for value in spread))
     Console().print(table)
-    if arguments.save:
-        record = {name: {"median": statistics.median(v), "all": v} for name, v in figures.items()}
-        arguments.save.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    record = {name: {"median": statistics.median(v), "all": v} for name, v in figures.items()}
+    report.save(arguments.save, record)
 
 
 if __name__ == "__main__":

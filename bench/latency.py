@@ -12,10 +12,7 @@ message's arrival, as stamped, to the frame at which it was applied.
 
 from __future__ import annotations
 
-import argparse
-import json
 import os
-import platform
 import random
 import re
 import socket
@@ -24,14 +21,13 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+import report
 from load import JACK, SPAWN, dummy_jack, midi_out, start
 from rich.console import Console
 from rich.table import Table
-from run import processor
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control.packets import pack, unpack
@@ -210,9 +206,8 @@ def summary(values: list[float]) -> dict[str, float]:
 
 def main() -> None:
     """Measure and print everything."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = report.options(__doc__)
     parser.add_argument("--trials", type=int, default=200, help="of each (default: 200)")
-    parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
     arguments = parser.parse_args()
 
     figures = {}
@@ -235,16 +230,7 @@ def main() -> None:
         row += [f"{100 * figure['within_bound']:.1f} %", f"+{figure['device_ms']:.2f}"]
         table.add_row(name, f"{figure['heard']} of {arguments.trials}", *row)
     Console(width=150).print(table)
-    if arguments.save:
-        arguments.save.parent.mkdir(parents=True, exist_ok=True)
-        record = {
-            "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
-            "python": platform.python_version(),
-            "device": "JACK, dummy driver, no real-time rights",
-            "trials": arguments.trials,
-            "figures": figures,
-        }
-        arguments.save.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    report.save(arguments.save, figures, device=report.NO_CARD, trials=arguments.trials)
 
 
 if __name__ == "__main__":

@@ -7,10 +7,7 @@ Each figure is the median of several runs, with the spread from the fastest to t
 
 from __future__ import annotations
 
-import argparse
-import json
 import os
-import platform
 import statistics
 import subprocess
 import sys
@@ -22,6 +19,7 @@ from typing import Any
 
 import mido
 import numpy as np
+import report
 from rich.console import Console
 from rich.table import Table
 
@@ -118,9 +116,7 @@ def start_runs(cache: Path, runs: int) -> list[float]:
 
 def main() -> None:
     """Measure and print everything."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
-    arguments = parser.parse_args()
+    arguments = report.options(__doc__).parse_args()
 
     figures: dict[str, tuple[str, list[float]]] = {}
     unit = "x real time"
@@ -146,27 +142,11 @@ def main() -> None:
         row = [f"{value:.2f}" for value in (statistics.median(values), min(values), max(values))]
         table.add_row(name, *row, unit)
     Console().print(table)
-    if arguments.save:
-        arguments.save.parent.mkdir(parents=True, exist_ok=True)
-        record = {
-            "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
-            "python": platform.python_version(),
-            "figures": {
-                name: {"unit": unit, "median": statistics.median(values), "all": values}
-                for name, (unit, values) in figures.items()
-            },
-        }
-        arguments.save.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-
-
-def processor() -> str:
-    """The processor's name, as far as the system tells."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor() or platform.machine()
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
+    record = {
+        name: {"unit": unit, "median": statistics.median(values), "all": values}
+        for name, (unit, values) in figures.items()
+    }
+    report.save(arguments.save, record)
 
 
 if __name__ == "__main__":

@@ -9,13 +9,11 @@ time is this thread's, so that what else the machine does is left out as far as 
 
 from __future__ import annotations
 
-import argparse
-import json
 import random
 import time
-from pathlib import Path
 
 import numpy as np
+import report
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import ENGINE
@@ -60,9 +58,8 @@ def play(instrument: Instrument, blocks: int) -> np.ndarray:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = report.options(__doc__)
     parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("--save", type=Path, help="write the figures to a JSON file")
     arguments = parser.parse_args()
     instrument = Instrument(RATE)
     play(instrument, 100)
@@ -79,8 +76,7 @@ def main() -> None:
     print(
         f"{instrument.lost_states} lost states, {instrument.unconverged_solves} unconverged solves"
     )
-    if arguments.save:
-        arguments.save.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
+    report.save(arguments.save, figures, seconds=arguments.seconds)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ from yehu_server.control.web import WebOptions
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.errors import OutputError
-from yehu_server.params.table import ENGINE
+from yehu_server.params.table import SLOT
 from yehu_server.playing import live
 from yehu_server.playing.style import Style
 from yehu_server.server import ServeOptions, Server
@@ -35,7 +35,7 @@ HOST = "127.0.0.1"
 PATIENCE_S = 20.0  # for other threads, on a busy machine
 QUIET_S = 0.15  # nothing comes for so long: nothing comes
 SINCE_1900_S = 2_208_988_800
-ADDRESSES = {slot: param.address for slot, param in enumerate(ENGINE)} | {SILENCE: "silence"}
+ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: "silence"}
 
 
 def until(condition: Callable[[], Any], what: str, within_s: float = PATIENCE_S) -> Any:
@@ -45,6 +45,11 @@ def until(condition: Callable[[], Any], what: str, within_s: float = PATIENCE_S)
         assert time.monotonic() < deadline, f"not within {within_s} s: {what}"
         time.sleep(0.002)
     return value
+
+
+def target_of(instrument: Instrument, address: str) -> float:
+    """Where a parameter of the engine goes, as the audio side has it."""
+    return float(instrument._rig["gesture"]["target"][0, SLOT[address]])
 
 
 # ---------------------------------------------------------------- bytes
@@ -325,6 +330,9 @@ class Stage:
         ]
         return np.concatenate(out) if out else np.zeros(0, np.float32)
 
+    def target(self, address: str) -> float:
+        return target_of(self.instrument, address)
+
     def frames(self, address: str) -> list[int]:
         """When a parameter was told to move, so far."""
         return [frame for frame, moved, _ in self.events if moved == address]
@@ -525,9 +533,7 @@ class Hall:
         until(lambda: self.instrument.frame >= end, f"frame {end}")
 
     def target(self, address: str) -> float:
-        """Where a parameter of the engine goes, as the audio side has it."""
-        slot = {param.address: slot for slot, param in enumerate(ENGINE)}[address]
-        return float(self.instrument._rig["gesture"]["target"][0, slot])
+        return target_of(self.instrument, address)
 
     def level(self, seconds: float = 0.2) -> float:
         """How loud it is for a while from now (rms)."""

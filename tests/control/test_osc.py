@@ -23,7 +23,6 @@ from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE, find
 
 INFINITE = [math.nan, math.inf, -math.inf]
-every_param = pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
 
 
 def f32(value: float) -> float:
@@ -42,97 +41,95 @@ def rms(sound: np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.square(sound, dtype=np.float64))))
 
 
-# ---------------------------------------------------------------- parameters, over the wire
+# ---------------------------------------------------------------- parameters
 
 
-@every_param
-def test_every_parameter_also_answers_as_zero_to_one(house, param):
+def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(stage):
+    for param in TABLE:
+        third = param.lo + (param.hi - param.lo) / 3.0
+        for sent, accepted in (
+            *((param.hi, param.hi), (param.lo, param.lo), (third, third)),
+            *((1e30, param.hi), (-1e30, param.lo), (param.default, param.default)),
+        ):
+            told = [("/yehu" + param.address, [f32(accepted)])]
+            assert stage.ask(param.address, sent) == told
+            assert stage.ask("/get", param.address) == told
+        if param.place is Place.ENGINE:
+            stage.pass_time(0.02)
+            assert stage.target(param.address) == pytest.approx(param.default, rel=1e-6)
+
+
+def test_every_parameter_also_answers_as_zero_to_one(stage):
+    for param in TABLE:
+        at = param.address + "/unit"
+        for sent, accepted in ((1.0, 1.0), (0.0, 0.0), (0.25, 0.25), (7.0, 1.0), (-7.0, 0.0)):
+            told = [("/yehu" + at, [pytest.approx(accepted, abs=1e-6)])]
+            assert stage.ask(at, sent) == told
+            assert stage.ask("/get", at) == told
+            assert stage.player.value(param.address) == param.from_unit(accepted)
+
+
+NUMBERS = [
+    *((1, "i"), (-3, "i"), (2**31 - 1, "i"), (2**62, "h")),
+    *((0.37, "f"), (0.37, "d"), (-1e300, "d"), (True, "T"), (False, "F")),
+]
+
+
+def test_every_parameter_takes_ints_doubles_and_truth(stage):
+    for param in TABLE:
+        for value, tags in NUMBERS:
+            stage.tell(param.address, value, tags=tags)
+            sent = f32(value) if tags == "f" else float(value)
+            assert stage.player.value(param.address) == min(max(sent, param.lo), param.hi)
+
+
+NO_NUMBERS = [
+    *(((), None), ((0.5, 0.5), None), (("0.5",), None), ((b"0.5",), None), ((None,), None)),
+    *(((value,), None) for value in INFINITE),
+    ((0.5,), "[f]"),
+]
+
+
+def test_what_no_parameter_can_take_is_answered_and_changes_nothing(stage):
+    before = stage.player.values()
+    for param in TABLE:
+        stage.clock.now += clients.FORGIVEN_S
+        for arguments, tags in NO_NUMBERS:
+            (refused,) = stage.ask(param.address, *arguments, tags=tags)
+            assert refused.address == "/yehu/error"
+            address, reason = refused.arguments
+            assert address == "/yehu" + param.address
+            assert reason
+    assert stage.player.values() == before
+
+
+@pytest.mark.parametrize(("value", "tags"), NUMBERS)
+def test_a_number_of_any_type_comes_over_the_wire(house, value, tags):
     client = house.client()
-    at = param.address + "/unit"
-    for sent, accepted in ((1.0, 1.0), (0.0, 0.0), (0.25, 0.25), (7.0, 1.0), (-7.0, 0.0)):
-        client.tell(at, sent)
-        assert client.wait_for(at) == [pytest.approx(accepted, abs=1e-6)]
-        assert client.value(at) == pytest.approx(accepted, abs=1e-6)
-        assert client.value(param.address) == f32(param.from_unit(accepted))
-    client.tell(param.address, param.default)
+    accepted = f32(min(max(value, 0.0), 5.0))
+    client.tell("/bow/force", value, tags=tags)
+    assert client.wait_for("/bow/force") == [accepted]
+    assert client.value("/bow/force") == accepted
+    assert client.value("/bow/force/unit") == pytest.approx(accepted / 5.0)
+    house.settle()
+    assert house.target("/bow/force") == pytest.approx(accepted, rel=1e-6)
+    assert house.is_well()
+
+
+@pytest.mark.parametrize(("arguments", "tags"), NO_NUMBERS)
+def test_what_is_no_number_is_refused_over_the_wire(house, arguments, tags):
+    client = house.client()
+    before = house.player.values()
+    client.tell("/bow/force", *arguments, tags=tags)
+    assert client.wait_for("/error")[0] == "/yehu/bow/force"
     client.sync()
+    assert house.player.values() == before
+    assert house.is_well()
 
 
 def test_every_call_is_in_the_documentation():
     text = (Path(__file__).parents[2] / "docs" / "osc.md").read_text()
     assert [call.address for call in CALLS if f"`/yehu{call.address}" not in text] == []
-
-
-@every_param
-def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(house, param):
-    client = house.client()
-    at = param.address
-    third = f32(param.lo + (param.hi - param.lo) / 3.0)
-    for sent, accepted in ((param.hi, param.hi), (param.lo, param.lo), (third, third)):
-        client.tell(at, sent)
-        assert client.value(at) == f32(accepted)
-    for sent, accepted in ((1e30, param.hi), (-1e30, param.lo), (param.default, param.default)):
-        client.tell(at, sent)
-        while client.wait_for(at) != [f32(accepted)]:  # after echoes of what was set before
-            pass
-        assert client.value(at) == f32(accepted)
-    if param.place is Place.ENGINE:
-        house.settle()
-        assert house.target(at) == pytest.approx(param.default, rel=1e-6)
-    assert house.is_well()
-
-
-@every_param
-def test_every_parameter_takes_ints_doubles_and_truth(house, param):
-    client = house.client()
-
-    def accepted(value: float) -> float:
-        return f32(min(max(value, param.lo), param.hi))
-
-    for value, tags in (
-        (1, "i"),
-        (-3, "i"),
-        (2**31 - 1, "i"),
-        (2**62, "h"),
-        (0.37, "d"),
-        (-1e300, "d"),
-        (True, "T"),
-        (False, "F"),
-    ):
-        client.tell(param.address, value, tags=tags)
-        assert client.value(param.address) == accepted(value)
-    client.tell(param.address, param.default)
-    client.sync()
-    assert house.is_well()
-
-
-@every_param
-def test_what_no_parameter_can_take_is_answered_and_changes_nothing(house, param):
-    client = house.client()
-    before = house.player.values()
-    wrong = [
-        (),
-        (0.5, 0.5),
-        ("0.5",),
-        (b"0.5",),
-        (None,),
-        *((value,) for value in INFINITE),
-    ]
-    for arguments in wrong:
-        client.tell(param.address, *arguments)
-        address, reason = client.wait_for("/error")
-        assert address == "/yehu" + param.address
-        assert reason
-    client.take(
-        b"/yehu"
-        + param.address.encode()
-        + b"\0" * (4 - len("/yehu" + param.address) % 4)
-        + b",[f]\0\0\0\0\x3f\0\0\0"
-    )
-    assert client.wait_for("/error")[0] == "/yehu" + param.address
-    client.sync()
-    assert house.player.values() == before
-    assert house.is_well()
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,42 @@ def test_no_node_has_an_attribute_we_do_not_tell_of(root):
         assert set(node) <= set(ATTRIBUTES)
 
 
+@pytest.mark.parametrize("param", TABLE, ids=lambda param: param.address)
+def test_every_parameter_is_described_as_the_table_has_it(root, param):
+    path = "/yehu" + param.address
+    node = find(root, path)
+    assert node["FULL_PATH"] == path
+    assert (node["TYPE"], node["ACCESS"]) == ("f", 3)
+    assert node["RANGE"] == [{"MIN": param.lo, "MAX": param.hi}]
+    assert node["CLIPMODE"] == ["both"]
+    assert node["DESCRIPTION"].startswith(param.doc)
+    assert ("UNIT" in node) == (param.unit != "1")
+    unit = node["CONTENTS"]["unit"]
+    assert unit["FULL_PATH"] == path + "/unit"
+    assert unit["RANGE"] == [{"MIN": 0.0, "MAX": 1.0}]
+    assert (unit["TYPE"], unit["ACCESS"]) == ("f", 3)
+
+
+def test_every_value_that_is_set_over_osc_is_read(stage):
+    def read(path):
+        return find(tree(stage.player.values(), STANDING), path)["VALUE"]
+
+    for param in TABLE:
+        path = "/yehu" + param.address
+        wished = param.lo + 0.375 * (param.hi - param.lo)
+        stage.tell(param.address, wished)
+        assert read(path) == pytest.approx([wished], rel=1e-6)
+        stage.tell(f"{param.address}/unit", 0.625)
+        assert read(f"{path}/unit") == pytest.approx([0.625], abs=1e-6)
+
+
+def test_every_value_can_be_listened_to(stage):
+    for address in LISTENABLE:
+        stage.handler.clients.listen(stage.ear, address)
+    stage.pass_time(0.5)
+    assert {heard.address for heard in stage.ear.heard()} == {"/yehu" + at for at in LISTENABLE}
+
+
 def test_what_has_a_value_can_be_listened_to_and_nothing_else(root):
     with_value = {path for path, node in walk(root) if "VALUE" in node}
     assert with_value == {"/yehu" + address for address in LISTENABLE}

@@ -26,6 +26,7 @@ import numpy as np
 import pytest
 
 from yehu_server.control.packets import pack, unpack
+from yehu_server.control.status import STATUS
 from yehu_server.engine import native
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -323,7 +324,7 @@ class Osc:
             self._socket.send(pack(f"/yehu{address}", *arguments))
 
     def ask(self, address: str, *arguments: float | str, last: str = "") -> dict[str, Any]:
-        """Send, and return the answers of the next moment by address, or as far as `last`."""
+        """Send, and return the answers by address: until that of `last` comes, or none for 0.1 s."""
         self._socket.setblocking(False)
         with contextlib.suppress(OSError):
             while True:
@@ -338,16 +339,19 @@ class Osc:
             while not last or last not in heard:
                 for message in unpack(self._socket.recv(65536)):
                     heard[message.address.removeprefix("/yehu")] = message.arguments
-                self._socket.settimeout(0.1)
+                self._socket.settimeout(within_s if last else 0.1)
         return heard
 
     def status(self) -> dict[str, Any]:
-        heard = self.ask("/status", last="/status/recording")
-        return {
-            address.removeprefix("/status/"): arguments[0]
-            for address, arguments in heard.items()
-            if address.startswith("/status/")
-        }
+        """The whole status: asked for again where a datagram is lost."""
+        names = [value.name for value in STATUS]
+
+        def ask() -> dict[str, Any]:
+            heard = self.ask("/status", last=f"/status/{names[-1]}")
+            told = {name: heard[at][0] for name in names if (at := f"/status/{name}") in heard}
+            return told if len(told) == len(names) else {}
+
+        return until(ask, 20.0, "the whole status")
 
     def close(self) -> None:
         self._socket.close()

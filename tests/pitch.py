@@ -1,4 +1,4 @@
-"""How high a sound is: an estimator for tests that shares nothing with the package.
+"""The pitch of a sound: an estimator for tests that shares nothing with the package's.
 
 YIN (de Cheveigné and Kawahara, "YIN, a fundamental frequency estimator for speech and music",
 JASA 111, 2002): the difference function, normalised by its running mean, falls under a
@@ -8,11 +8,13 @@ threshold first at one period. A parabola through the dips at ever more periods 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 THRESHOLD = 0.15
 FRAME_S = 0.06
+LOWEST_HZ, HIGHEST_HZ = 80.0, 3000.0
 
 
 def hertz(note: float) -> float:
@@ -20,13 +22,13 @@ def hertz(note: float) -> float:
     return 440.0 * 2.0 ** ((note - 69.0) / 12.0)
 
 
-def cents(frequency: float, reference: float) -> float:
-    """How far a frequency lies above a reference."""
-    return 1200.0 * math.log2(frequency / reference)
+def cents(frequency: Any, reference: Any) -> Any:
+    """How far frequencies lie above references."""
+    return 1200.0 * np.log2(np.asarray(frequency) / np.asarray(reference))
 
 
 def difference(samples: np.ndarray, longest: int) -> np.ndarray:
-    """Power of what is left when a sound, delayed by each lag, is taken from itself."""
+    """Power of the difference between a sound and itself delayed by each lag."""
     window = len(samples) - longest
     head = samples[:window]
     squares = np.concatenate(([0.0], np.cumsum(samples**2)))
@@ -37,23 +39,25 @@ def difference(samples: np.ndarray, longest: int) -> np.ndarray:
 
 
 def dip(d: np.ndarray, near: int) -> float:
-    """Where a parabola puts the local minimum at a lag."""
+    """The local minimum next to a lag, by a parabola."""
     left, here, right = d[near - 1 : near + 2]
     return near + 0.5 * (left - right) / (left - 2.0 * here + right)
 
 
-def frame_pitch(samples: np.ndarray, rate: float, lo: float = 80.0, hi: float = 3000.0) -> float:
-    """Fundamental frequency (Hz) of one frame, or NaN where nothing repeats."""
-    longest = int(rate / lo) + 2
-    d = difference(samples, longest)
-    mean = np.maximum(np.cumsum(d[1:]) / np.arange(1, longest), 1e-300)
+def frame_pitch(samples: np.ndarray, rate: float, lo: float = LOWEST_HZ) -> float:
+    """Fundamental frequency (Hz) of one frame, `lo` at least; NaN where nothing repeats."""
+    longest, last = int(rate / LOWEST_HZ) + 2, int(rate / lo) + 1
+    d = difference(np.asarray(samples, dtype=np.float64), longest)
+    if not d.any():
+        return math.nan
+    mean = np.cumsum(d[1:]) / np.arange(1, longest)
     normal = np.concatenate(([1.0], d[1:] / mean))
-    lag = max(2, int(rate / hi))
-    while lag < longest - 1 and normal[lag] >= THRESHOLD:
+    lag = max(2, int(rate / HIGHEST_HZ))
+    while lag < last and normal[lag] >= THRESHOLD:
         lag += 1
-    while lag < longest - 1 and normal[lag + 1] < normal[lag]:
+    while lag < last and normal[lag + 1] < normal[lag]:
         lag += 1
-    if lag >= longest - 1:
+    if lag >= last:
         return math.nan
     period = dip(d, lag)
     for periods in range(2, int((longest - 2) / period)):
@@ -64,11 +68,10 @@ def frame_pitch(samples: np.ndarray, rate: float, lo: float = 80.0, hi: float = 
     return rate / period
 
 
-def pitch_of(samples: np.ndarray, rate: float) -> float:
+def pitch_of(samples: np.ndarray, rate: float, lo: float = LOWEST_HZ) -> float:
     """Median fundamental frequency (Hz) of a steady sound; NaN where most of it has none."""
-    samples = np.asarray(samples, dtype=np.float64)
     size = int(rate * FRAME_S)
     starts = range(0, len(samples) - size + 1, size // 2)
-    found = [frame_pitch(samples[start : start + size], rate) for start in starts]
+    found = [frame_pitch(samples[start : start + size], rate, lo) for start in starts]
     voiced = [value for value in found if math.isfinite(value)]
     return float(np.median(voiced)) if 2 * len(voiced) > len(found) else math.nan

@@ -1,4 +1,4 @@
-"""The pitch estimator, on tones whose pitch is known."""
+"""The package's pitch estimator, and the tests' own, on tones whose pitch is known."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from pitch import cents, pitch_of
 
 from yehu_server.analysis import pitch
-from yehu_server.analysis.pitch import cents, pitch_hz, track
+from yehu_server.analysis.pitch import pitch_hz, track
 
 RATES = (22050.0, 44100.0, 48000.0, 96000.0)
 
@@ -32,6 +33,22 @@ def test_steady_tones_are_right_to_half_a_cent(rate, note):
         assert abs(cents(pitch_hz(tone(frequency, rate, seconds), rate), frequency)) < 0.5
 
 
+@pytest.mark.parametrize("estimate", [pitch_hz, pitch_of])
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("note", [65, 69.3, 72, 77, 83, 89])
+@pytest.mark.parametrize("first", [1, 2], ids=["with a fundamental", "without"])
+def test_tones_in_noise_are_right_to_half_a_cent(estimate, rate, note, first):
+    frequency = 440.0 * 2.0 ** ((note - 69) / 12)
+    time = np.arange(round(rate / 4)) / rate
+    partials = range(first, max(first + 2, min(12, int(0.45 * rate / frequency))))
+    chance = np.random.default_rng(1)
+    x = sum(
+        np.sin(2.0 * np.pi * n * frequency * time + chance.uniform(0.0, 6.0)) / n for n in partials
+    )
+    noisy = x + 1e-3 * chance.standard_normal(len(time))
+    assert abs(cents(estimate(noisy, rate), frequency)) < 0.5
+
+
 def test_a_weak_fundamental_is_still_the_pitch():
     x = tone(349.2, 44100.0, 0.3) - 0.97 * np.sin(
         2.0 * np.pi * 349.2 * np.arange(13230) / 44100.0
@@ -46,10 +63,11 @@ def test_noise_level_and_offset_do_not_matter():
     assert abs(cents(pitch_hz(x, 44100.0), 523.3)) < 0.5
 
 
-def test_what_has_no_pitch_gets_none():
-    assert math.isnan(pitch_hz(np.random.default_rng(3).normal(size=13230), 44100.0))
-    assert math.isnan(pitch_hz(np.zeros(13230), 44100.0))
-    assert math.isnan(pitch_hz(np.ones(3), 44100.0))
+@pytest.mark.parametrize("estimate", [pitch_hz, pitch_of])
+def test_what_has_no_pitch_gets_none(estimate):
+    assert math.isnan(estimate(np.random.default_rng(3).normal(size=13230), 44100.0))
+    assert math.isnan(estimate(np.zeros(13230), 44100.0))
+    assert math.isnan(estimate(np.ones(3), 44100.0))
 
 
 def test_a_track_follows_a_glide():

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pitch import cents, pitch_of
 
-from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import ENGINE
 
@@ -28,10 +28,6 @@ def play(instrument: Instrument, seconds: float, block: int = 512) -> np.ndarray
     return out
 
 
-def pitch(out: np.ndarray) -> float:
-    return pitch_hz(out.astype(float), RATE, 200.0, 800.0)
-
-
 def loudness(out: np.ndarray) -> float:
     return float(20.0 * np.log10(np.sqrt(np.mean(np.square(out, dtype=np.float64)))))
 
@@ -40,9 +36,9 @@ def loudness(out: np.ndarray) -> float:
 @pytest.mark.parametrize("tuning", [-200.0, -50.0, 40.0])
 def test_a_string_is_tuned_by_cents_while_it_sounds(name, side, about_hz, tuning):
     instrument = bow(side)
-    before = pitch(play(instrument, 1.0)[-RATE // 4 :])
+    before = pitch_of(play(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
     instrument.write(f"/string/{name}/tuning", tuning)
-    after = pitch(play(instrument, 1.0)[-RATE // 4 :])
+    after = pitch_of(play(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
     assert before == pytest.approx(about_hz, rel=0.02)
     # The body's modes pull what the tension asks for.
     assert cents(after, before) == pytest.approx(tuning, abs=20.0)
@@ -52,9 +48,9 @@ def test_a_string_is_tuned_by_cents_while_it_sounds(name, side, about_hz, tuning
 def test_the_other_string_keeps_its_tuning(name, side, about_hz):
     other = {"inner": "outer", "outer": "inner"}[name]
     instrument = bow(side)
-    before = pitch(play(instrument, 1.0)[-RATE // 4 :])
+    before = pitch_of(play(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
     instrument.write(f"/string/{other}/tuning", -150.0)
-    after = pitch(play(instrument, 1.0)[-RATE // 4 :])
+    after = pitch_of(play(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
     assert cents(after, before) == pytest.approx(0.0, abs=6.0)
     assert before == pytest.approx(about_hz, rel=0.02)
 

@@ -324,7 +324,7 @@ class Osc:
             self._socket.send(pack(f"/yehu{address}", *arguments))
 
     def ask(self, address: str, *arguments: float | str, last: str = "") -> dict[str, Any]:
-        """Send, and return the answers by address: until that of `last` comes, or none for 0.1 s."""
+        """Send, and return the answers by address: up to `last`, or until none comes for 0.1 s."""
         self._socket.setblocking(False)
         with contextlib.suppress(OSError):
             while True:

@@ -122,34 +122,6 @@ def bump(left: float, right: float, height: float) -> Callable[[Any], Any]:
     return shape
 
 
-def pitch(signal: Any, rate: float) -> float:
-    """Fundamental frequency (Hz, 100 to 1500) of a steady tone, by autocorrelation.
-
-    The first lag that correlates nearly as well as the best is the period; multiples of
-    it, each refined by a parabola, then sharpen it.
-    """
-    signal = signal - signal.mean()
-    n = len(signal)
-    spectrum = np.fft.rfft(signal, 2 * n)
-    correlation = np.fft.irfft(np.abs(spectrum) ** 2)[: n // 2] / np.arange(n, n - n // 2, -1)
-    first, last = int(rate / 1500), int(rate / 100)
-
-    def peak(lag: int) -> float:
-        left, top, right = correlation[lag - 1 : lag + 2]
-        return lag + 0.5 * (left - right) / (left - 2.0 * top + right)
-
-    inner = correlation[first:last]
-    tops = np.flatnonzero((inner[1:-1] >= inner[:-2]) & (inner[1:-1] > inner[2:])) + 1 + first
-    best = max(correlation[tops])
-    period = peak(int(tops[correlation[tops] > 0.9 * best][0]))
-    for multiple in (4, 16, 64):
-        lag = round(multiple * period)
-        if lag + 3 < len(correlation):
-            lag += int(np.argmax(correlation[lag - 2 : lag + 3])) - 2
-            period = peak(lag) / multiple
-    return rate / period
-
-
 def frequency_near(signal: Any, rate: float, guess: float) -> float:
     """Frequency (Hz) of the partial next to `guess`, from the phase of two Hann windows.
 
@@ -163,8 +135,3 @@ def frequency_near(signal: Any, rate: float, guess: float) -> float:
         early, late = window @ turned[:size], window @ turned[gap : gap + size]
         guess += float(np.angle(late / early)) / (2.0 * np.pi * gap / rate)
     return guess
-
-
-def cents(a: Any, b: Any) -> Any:
-    """The interval from b to a."""
-    return 1200.0 * np.log2(np.asarray(a) / np.asarray(b))

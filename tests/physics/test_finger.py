@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from physics.runs import bump, cents, pitch, play, rows, shaped
+from physics.runs import bump, play, rows, shaped
+from pitch import cents, pitch_of
 
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.finger import gradient, limited
@@ -29,7 +30,7 @@ def bowed(t, x_b=0.27, sign=1.0):
 
 def sounding(run):
     """Pitch of the last 0.3 s (Hz)."""
-    return pitch(run["bridge_force"][-round(0.3 * RATE) :], RATE)
+    return pitch_of(run["bridge_force"][-round(0.3 * RATE) :], RATE)
 
 
 def penetration(run, j=0):
@@ -200,8 +201,8 @@ def test_a_finger_that_glides_drags_the_pitch_with_it():
         return {**bowed(t), "x_f": [x_f], "press": [2.0]}
 
     force = play(glide, 1.0, ledger=False)["bridge_force"]
-    low = pitch(force[round(0.2 * RATE) : round(0.35 * RATE)], RATE)
-    high = pitch(force[round(0.7 * RATE) :], RATE)
+    low = pitch_of(force[round(0.2 * RATE) : round(0.35 * RATE)], RATE)
+    high = pitch_of(force[round(0.7 * RATE) :], RATE)
     assert cents(high, low) == pytest.approx(1200.0 * math.log2(0.25 / 0.20), abs=25.0)
 
 

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from physics.runs import bump, cents, pitch, play, rows, shaped
+from physics.runs import bump, play, rows, shaped
+from pitch import cents, pitch_of
 
 from yehu_server.errors import ParameterError
 from yehu_server.physics import kernel, layout
@@ -29,7 +30,7 @@ def test_an_open_string_speaks_at_its_pitch(string, rate):
     # It speaks within 0.3 s and stays: the same over each later 0.3 s.
     for start in (0.3, 0.6, 0.9):
         part = run["bridge_force"][round(start * rate) : round((start + 0.3) * rate)]
-        assert abs(cents(pitch(part, rate), frequency_hz)) < 35.0
+        assert abs(cents(pitch_of(part, rate), frequency_hz)) < 35.0
         assert part.std() > 0.05
 
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from physics.runs import cents, pitch, play
+from physics.runs import play
+from pitch import cents, pitch_of
 
 from yehu_server.physics import layout
 from yehu_server.physics.quantities import Quantities
@@ -54,4 +55,4 @@ def test_a_string_let_go_sounds_its_pitch():
     run = play(lambda t: {"pluck": np.where(t < 0.01, t / 0.01, 0.0), "x_pluck": 0.2}, 0.6)
     silk = YEHU.string_1
     ideal = (silk.T / silk.rho_A) ** 0.5 / (2.0 * YEHU.bridge_x)
-    assert abs(cents(pitch(run["bridge_force"][round(0.1 * RATE) :], RATE), ideal)) < 40.0
+    assert abs(cents(pitch_of(run["bridge_force"][round(0.1 * RATE) :], RATE), ideal)) < 40.0

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from physics.runs import bump, cents, frequency_near, play, shaped
+from physics.runs import bump, frequency_near, play, shaped
+from pitch import cents
 
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities, override

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from physics.runs import cents
+from pitch import cents
 
 from yehu_server.physics import kernel, layout
 from yehu_server.physics import string as string_module

@@ -7,9 +7,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from pitch import cents, hertz, pitch_of
+from pitch import cents, frame_pitch, hertz, pitch_of
 
-from yehu_server.analysis.pitch import pitch_hz
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibrations import calibration_for
@@ -60,7 +59,7 @@ def heard(sound: np.ndarray, start_s: float, seconds: float) -> float:
     None is looked for below F4: both strings ring, and share longer periods.
     """
     part = sound[round(start_s * RATE) : round((start_s + seconds) * RATE)]
-    frequency = pitch_hz(part, RATE, lo=330.0)
+    frequency = frame_pitch(part, RATE, lo=330.0)
     return 69.0 + 12.0 * math.log2(frequency / 440.0)
 
 

@@ -30,29 +30,6 @@ def player_at(rate: float, seed: int = 0) -> tuple[Performer, Instrument]:
     return Performer(instrument, seed=seed), instrument
 
 
-# ---------------------------------------------------------------- the estimator itself
-
-
-@pytest.mark.parametrize("rate", [22050, 44100, 96000])
-@pytest.mark.parametrize("note", [65, 69.3, 72, 77, 83, 89])
-@pytest.mark.parametrize("first", [1, 2])  # with and without a fundamental
-def test_the_estimator_hears_synthetic_tones_to_half_a_cent(rate, note, first):
-    frequency = hertz(note)
-    time = np.arange(rate // 4) / rate
-    partials = range(first, max(first + 2, min(12, int(0.45 * rate / frequency))))
-    chance = np.random.default_rng(1)
-    tone = sum(
-        np.sin(2.0 * np.pi * n * frequency * time + chance.uniform(0.0, 6.0)) / n for n in partials
-    )
-    noisy = tone + 1e-3 * chance.standard_normal(len(time))
-    assert abs(cents(pitch_of(noisy, rate), frequency)) < 0.5
-
-
-def test_the_estimator_hears_no_pitch_in_noise():
-    noise = np.random.default_rng(1).standard_normal(RATE // 2)
-    assert math.isnan(pitch_of(noise, RATE))
-
-
 # ---------------------------------------------------------------- notes
 
 

@@ -1,10 +1,12 @@
 """Settings for all tests."""
 
 import os
+import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from commands import is_one_line
 from hypothesis import settings
 from platformdirs import user_config_path
 
@@ -49,14 +51,44 @@ def own_presets(_config_home) -> Path:
     return user_config_path("yehu-server") / "presets"
 
 
+@pytest.fixture(autouse=True)
+def _signals() -> Iterator[None]:
+    """Commands that run in this process handle SIGTERM; no test leaves that behind."""
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
 @pytest.fixture
-def mappings(capsys) -> Callable[..., tuple[int, str, str]]:
-    """Run ``yehu-server mappings``; its exit code and what it printed."""
+def command(capsys) -> Callable[..., tuple[int, str, str]]:
+    """Run a command line in this process; its exit code, stdout and stderr."""
     from yehu_server.cli import main
 
     def run(*words: object) -> tuple[int, str, str]:
-        code = main(["mappings", *(str(word) for word in words)])
+        try:
+            code = main([str(word) for word in words])
+        except SystemExit as end:
+            code = end.code
         out, err = capsys.readouterr()
         return code, out, err
 
     return run
+
+
+@pytest.fixture
+def refused(command) -> Callable[..., str]:
+    """Run a command line that must be refused; its one line of error."""
+
+    def run(*words: object) -> str:
+        code, out, err = command(*words)
+        assert (code, out) == (2, "")
+        assert is_one_line(err)
+        return err
+
+    return run
+
+
+@pytest.fixture
+def mappings(command) -> Callable[..., tuple[int, str, str]]:
+    """Run ``yehu-server mappings``; its exit code, stdout and stderr."""
+    return lambda *words: command("mappings", *words)

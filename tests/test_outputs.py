@@ -2,30 +2,16 @@
 
 from __future__ import annotations
 
-import signal
 from pathlib import Path
 
 import pytest
 
-from yehu_server.cli import main
-
 MAPPING = 'base = "keyboard"\n'
 
 
-@pytest.fixture
-def refused(capsys, monkeypatch, tmp_path):
-    """Run a command that must be refused in one line; that line."""
-    monkeypatch.setattr(signal, "signal", lambda *_: None)
+@pytest.fixture(autouse=True)
+def _here(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-
-    def run(*words: str | Path) -> str:
-        assert main([str(word) for word in words]) == 2
-        out, err = capsys.readouterr()
-        assert out == ""
-        assert err.count("\n") == 1
-        return err
-
-    return run
 
 
 @pytest.fixture
@@ -103,10 +89,10 @@ def test_a_replay_does_not_go_over_its_capture(refused, tmp_path):
     assert "-o would overwrite what is read" in err
 
 
-def test_a_mapping_is_converted_into_a_new_file(refused, tmp_path):
+def test_a_mapping_is_converted_into_a_new_file(mappings, refused, tmp_path):
     (tmp_path / "mine.toml").write_text("# what I made\n")
     err = refused("mappings", "convert", "wind", "-o", "mine.toml")
     assert "mine.toml: exists; --overwrite replaces it" in err
     assert (tmp_path / "mine.toml").read_text() == "# what I made\n"
-    assert main(["mappings", "convert", "wind", "-o", "mine.toml", "--overwrite"]) == 0
+    assert mappings("convert", "wind", "-o", "mine.toml", "--overwrite")[0] == 0
     assert "[[bind]]" in (tmp_path / "mine.toml").read_text()

@@ -8,24 +8,12 @@ from pathlib import Path
 
 import mido
 import pytest
+from scores import midi_file, notes
 
-from yehu_server.cli import main
 from yehu_server.playing.presets import Presets
 
 SHIPPED = Presets(Path(os.devnull))
 HEAD = "version = 1\n"
-
-
-@pytest.fixture
-def told(capsys):
-    """Run a command; its exit code and what it printed."""
-
-    def run(*words: object) -> tuple[int, str, str]:
-        code = main([str(word) for word in words])
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return run
 
 
 @pytest.fixture
@@ -35,54 +23,54 @@ def own(tmp_path) -> Path:
     return folder
 
 
-def test_presets_are_listed_with_their_programs(told, own):
+def test_presets_are_listed_with_their_programs(command, own):
     (own / "mine.toml").write_text(HEAD + 'about = "wild"\n')
     (own / "bad.toml").write_text("version = 9\n")
-    code, out, err = told("presets", "list", "--presets", own)
+    code, out, err = command("presets", "list", "--presets", own)
     assert code == 0
     assert [line.split()[0] for line in out.splitlines()] == sorted([*SHIPPED.names(), "mine"])
     assert "your own: wild" in out
     assert "bad: version 9 is newer" in err
-    rows = json.loads(told("presets", "list", "--json", "--presets", own)[1])
+    rows = json.loads(command("presets", "list", "--json", "--presets", own)[1])
     assert rows["mine"] == {"program": None, "about": "wild", "own": True}
     assert rows["tremolo"]["own"] is False
 
 
 @pytest.mark.parametrize("name", SHIPPED.names())
-def test_a_preset_is_shown_with_all_its_values(told, name):
+def test_a_preset_is_shown_with_all_its_values(command, name):
     preset = SHIPPED.load(name)
-    shown = json.loads(told("presets", "show", name, "--json")[1])
+    shown = json.loads(command("presets", "show", name, "--json")[1])
     assert shown["values"] == preset.values
     assert (shown["program"], shown["about"]) == (preset.program, preset.about)
-    code, out, _ = told("presets", "show", name)
+    code, out, _ = command("presets", "show", name)
     assert code == 0
     for address in preset.values:
         assert address in out
 
 
-def test_files_are_checked(told, tmp_path):
+def test_files_are_checked(command, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(HEAD + '[values]\n"/playing/vibrato" = 5\n"/a/b" = 3\n')
-    code, out, err = told("presets", "check", path)
+    code, out, err = command("presets", "check", path)
     assert (code, out) == (0, f"{path}: right, 1 values\n")
     assert "unknown parameter '/a/b'" in err
     path.write_text(HEAD + '[values]\n"/playing/vibrato" = 500\n')
-    code, out, err = told("presets", "check", path)
+    code, out, err = command("presets", "check", path)
     assert (code, out) == (2, "")
     assert f"{path}: /playing/vibrato: 500 is not within 0 to 100 cents" in err
     right = tmp_path / "right.toml"
     right.write_text(HEAD)
-    code, out, err = told("presets", "check", path, right, tmp_path / "missing.toml")
+    code, out, err = command("presets", "check", path, right, tmp_path / "missing.toml")
     assert (code, out) == (2, f"{right}: right, 0 values\n")
     assert [str(path) in err, "missing.toml: No such file" in err] == [True, True]
 
 
-def test_all_that_is_wrong_with_each_file_is_told(told, tmp_path):
+def test_all_that_is_wrong_with_each_file_is_told(command, tmp_path):
     first, second = tmp_path / "first.toml", tmp_path / "second.toml"
     values = '"/playing/vibrato" = 500\n"/bow/speed" = 1\n"/playing/volume" = "loud"\n'
     first.write_text(f"{HEAD}program = 0\nabout = 3\nwho = 1\n[values]\n{values}")
     second.write_text(HEAD + "values = 3\nprogram = 129\n")
-    code, out, err = told("presets", "check", first, second)
+    code, out, err = command("presets", "check", first, second)
     assert (code, out) == (2, "")
     lines = err.splitlines()
     assert [line.split(": ")[1] for line in lines] == [str(first)] * 6 + [str(second)] * 2
@@ -94,19 +82,15 @@ def test_all_that_is_wrong_with_each_file_is_told(told, tmp_path):
 
 
 @pytest.fixture
-def rendered(told, tmp_path):
+def rendered(command, tmp_path):
     """Render a note after program changes; the bytes written, and the report."""
     paths = iter(range(100))
 
     def run(*words: object, programs: tuple[int, ...] = ()) -> tuple[bytes, str]:
-        score = mido.MidiFile(ticks_per_beat=480)
-        track = score.add_track("")
-        track += [mido.Message("program_change", program=program - 1) for program in programs]
-        track.append(mido.Message("note_on", note=77, velocity=90))
-        track.append(mido.Message("note_off", note=77, time=240))
-        score.save(tmp_path / "in.mid")
+        changes = [(0.0, mido.Message("program_change", program=n - 1)) for n in programs]
+        score = midi_file(tmp_path / "in.mid", [*changes, *notes((0.0, 0.25, 77, 90))])
         target = tmp_path / f"{next(paths)}.wav"
-        code, out, err = told("render", tmp_path / "in.mid", "-o", target, "--tail", 0, *words)
+        code, out, err = command("render", score, "-o", target, "--tail", 0, *words)
         assert code == 0, err
         return target.read_bytes(), out + err
 
@@ -154,11 +138,7 @@ def test_the_gain_asked_for_wins_over_a_presets(rendered, tmp_path):
     assert rendered("--preset", path, "--gain-db", 0)[0] == rendered()[0]
 
 
-def test_a_preset_that_there_is_not_is_named(told, tmp_path):
-    words = ("render", tmp_path / "in.mid", "-o", tmp_path / "out.wav")
-    code, _, err = told(*words, "--preset", "nothing")
-    assert code == 2
-    assert "no preset 'nothing' (there are: flautando" in err
-    code, _, err = told(*words, "--preset", tmp_path / "none.toml")
-    assert code == 2
-    assert "none.toml: No such file" in err
+def test_a_preset_that_there_is_not_is_named(refused, tmp_path):
+    words = ("render", tmp_path / "in.mid", "-o", tmp_path / "out.wav", "--preset")
+    assert "no preset 'nothing' (there are: flautando" in refused(*words, "nothing")
+    assert "none.toml: No such file" in refused(*words, tmp_path / "none.toml")

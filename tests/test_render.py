@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import signal
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,8 +12,8 @@ import numpy as np
 import pytest
 import soundfile
 from pitch import cents, hertz, pitch_of
+from scores import midi_file, notes
 
-from yehu_server.cli import main
 from yehu_server.playing.style import Style
 from yehu_server.render import Options, Performance, render
 from yehu_server.score.smf import concatenate, read_score
@@ -32,35 +31,14 @@ PHRASE = (  # start and length in s, note, velocity
 )
 
 
-def notes(*events: tuple, channel: int = 1) -> list[tuple[float, mido.Message]]:
-    messages = []
-    for start, length, note, velocity in events:
-        of = {"channel": channel - 1, "note": note}
-        messages.append((start, mido.Message("note_on", velocity=velocity, **of)))
-        messages.append((start + length, mido.Message("note_off", **of)))
-    return messages
-
-
 def cc(time: float, control: int, value: int, channel: int = 1) -> tuple[float, mido.Message]:
     return time, mido.Message("control_change", control=control, value=value, channel=channel - 1)
 
 
 @pytest.fixture
 def midi(tmp_path):
-    """Write messages at their times (s) to a MIDI file; it lasts until the last one."""
-
-    def write(*messages: tuple[float, mido.Message], name: str = "tune.mid") -> Path:
-        file = mido.MidiFile(ticks_per_beat=500)  # at 120 bpm, a tick is a millisecond
-        track = mido.MidiTrack()
-        file.tracks.append(track)
-        now = 0
-        for time, message in sorted(messages, key=lambda pair: pair[0]):
-            track.append(message.copy(time=round(1000 * time) - now))
-            now = round(1000 * time)
-        file.save(tmp_path / name)
-        return tmp_path / name
-
-    return write
+    """Write messages at their times (s) to a MIDI file."""
+    return lambda *messages, name="tune.mid": midi_file(tmp_path / name, messages)
 
 
 @pytest.fixture
@@ -69,22 +47,15 @@ def phrase(midi) -> Path:
     return midi(*notes(*PHRASE), *bends, cc(0.1, 1, 90), cc(0.2, 11, 100), cc(0.55, 64, 127))
 
 
-@pytest.fixture(autouse=True)
-def _signals():
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
-
-
 @pytest.fixture
-def play(tmp_path, capsys):
+def play(command, tmp_path):
     """Render with `--json`; return the summary and the samples of the file."""
 
-    def run(*arguments, target: str = "out.wav") -> tuple[dict, np.ndarray]:
+    def run(*words: object, target: str = "out.wav") -> tuple[dict, np.ndarray]:
         path = tmp_path / target
-        words = [str(word) for word in arguments]
-        assert main(["render", *words, "-o", str(path), "--json"]) == 0
-        return json.loads(capsys.readouterr().out), soundfile.read(path)[0]
+        code, out, err = command("render", *words, "-o", path, "--json")
+        assert code == 0, err
+        return json.loads(out), soundfile.read(path)[0]
 
     return run
 
@@ -326,14 +297,14 @@ def test_all_channels_but_the_tenth_play_unless_some_are_chosen(play, duet, word
     assert sound.any() == bool(channels)
 
 
-def test_what_the_tenth_channel_leaves_out_is_told(play, duet, midi, tmp_path, capsys):
+def test_what_the_tenth_channel_leaves_out_is_told(play, duet, midi, tmp_path, command):
     assert play(duet)[0]["percussion_notes"] == 3
     assert play(duet, "--channel", 10)[0]["percussion_notes"] == 0
     assert play(duet, "--channel", 3)[0]["percussion_notes"] == 0
     drums = midi(*notes((0.0, 0.1, 70, 64), channel=10), name="drums.mid")
-    assert main(["render", str(drums), "-o", str(tmp_path / "x.wav"), "--tail", "0"]) == 0
-    lines = capsys.readouterr().out.splitlines()[1:]
-    assert lines == [
+    code, out, _ = command("render", drums, "-o", tmp_path / "x.wav", "--tail", 0)
+    assert code == 0
+    assert out.splitlines()[1:] == [
         "no notes to play",
         "channel 10 is percussion: 1 note not played; --channel 10 plays them",
     ]
@@ -547,10 +518,9 @@ def test_a_scala_scale_tunes_the_notes(play, midi, meantone):
     assert cents(pitches[1], pitches[0]) == pytest.approx(-13.7, abs=5.0)
 
 
-def test_a_keyboard_map_needs_a_scale(midi, tmp_path, capsys):
-    arguments = ["render", str(midi(*notes((0, 0.1, 76, 80)))), "-o", str(tmp_path / "out.wav")]
-    assert main([*arguments, "--keyboard-map", "white.kbm"]) != 0
-    assert "--tuning" in capsys.readouterr().err
+def test_a_keyboard_map_needs_a_scale(midi, tmp_path, refused):
+    words = ("render", midi(*notes((0, 0.1, 76, 80))), "-o", tmp_path / "out.wav")
+    assert "--tuning" in refused(*words, "--keyboard-map", "white.kbm")
 
 
 def test_mpe_bends_a_note_by_48_semitones(play, midi):

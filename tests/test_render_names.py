@@ -7,8 +7,8 @@ from pathlib import Path
 
 import mido
 import pytest
+from scores import midi_file, notes
 
-from yehu_server.cli import main
 from yehu_server.playing.learned import learn
 from yehu_server.playing.learner import Found
 from yehu_server.playing.mapping import load, mapping_folder
@@ -19,27 +19,23 @@ LOUD = 'version = 1\nprogram = 3\n[values]\n"/playing/pressure" = 0.9\n'
 
 @pytest.fixture
 def tune(tmp_path) -> Path:
-    track = mido.MidiTrack()
-    track.append(mido.Message("program_change", program=2))
-    track.append(mido.Message("control_change", control=20, value=3))
-    track.append(mido.Message("note_on", note=67, velocity=90))
-    track.append(mido.Message("note_off", note=67, time=120))
-    path = tmp_path / "tune.mid"
-    mido.MidiFile(tracks=[track]).save(path)
-    return path
+    changes = (
+        (0.0, mido.Message("program_change", program=2)),
+        (0.0, mido.Message("control_change", control=20, value=3)),
+    )
+    return midi_file(tmp_path / "tune.mid", [*changes, *notes((0.0, 0.125, 67, 90))])
 
 
 pytestmark = pytest.mark.usefixtures("config_home")
 
 
 @pytest.fixture
-def rendered(tune, tmp_path, capsys):
+def rendered(command, tune, tmp_path):
     """Render the tune: the sound, what was printed as JSON, and what was said."""
 
     def run(*words: object) -> tuple[bytes, dict, str]:
         out = tmp_path / "out.wav"
-        code = main(["render", str(tune), "-o", str(out), "--json", *map(str, words)])
-        printed, err = capsys.readouterr()
+        code, printed, err = command("render", tune, "-o", out, "--json", *words)
         assert code == 0, err
         return out.read_bytes(), json.loads(printed), err
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import signal
 from pathlib import Path
 
 import numpy as np
@@ -54,13 +53,6 @@ LOSSES = (
     "loss_contact_reset",
 )
 PLUCK = {"string": 1, "position": 0.1, "amplitude": 0.001}
-
-
-@pytest.fixture(autouse=True)
-def _signals():
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
 
 
 def run(gesture: dict, **options) -> dict:

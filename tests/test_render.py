@@ -13,6 +13,7 @@ import pytest
 import soundfile
 from pitch import cents, hertz, pitch_of
 from scores import midi_file, notes
+from sound import rms
 
 from yehu_server.playing.style import Style
 from yehu_server.render import Options, Performance, render
@@ -65,10 +66,6 @@ def samples(path: Path, **options) -> np.ndarray:
     style = Style(**{name: options.pop(name) for name in ("seed", "settings") if name in options})
     blocks = Performance(read_score(path), Options(style=style, **options)).blocks()
     return np.concatenate(list(blocks))
-
-
-def rms(sound: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(np.square(sound, dtype=np.float64))))
 
 
 # ---------------------------------------------------------------- the tune that ships

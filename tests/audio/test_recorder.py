@@ -9,6 +9,7 @@ import threading
 import numpy as np
 import pytest
 import soundfile
+from sound import run
 
 from yehu_server.audio import recorder, wav
 from yehu_server.audio.recorder import Recorder
@@ -26,16 +27,10 @@ def instrument() -> Instrument:
     return instrument
 
 
-def play(instrument: Instrument, frames: int) -> np.ndarray:
-    out = np.zeros(frames, np.float32)
-    instrument.process(out)
-    return out
-
-
 def test_a_recording_is_every_sample_from_its_beginning(instrument, tmp_path):
-    before = play(instrument, 1000)
+    before = run(instrument, 1000)
     recording = Recorder(instrument, tmp_path / "r.wav", 0, pytest.fail)
-    played = np.concatenate([before, *(play(instrument, 777) for _ in range(20))])
+    played = np.concatenate([before, *(run(instrument, 777) for _ in range(20))])
     assert recording.is_running
     recording.stop()
     assert not recording.is_running
@@ -46,9 +41,9 @@ def test_a_recording_is_every_sample_from_its_beginning(instrument, tmp_path):
 
 
 def test_a_recording_may_begin_later(instrument, tmp_path):
-    play(instrument, 1000)
+    run(instrument, 1000)
     recording = Recorder(instrument, tmp_path / "r.flac", 1000, pytest.fail)
-    played = play(instrument, 4800)
+    played = run(instrument, 4800)
     recording.stop()
     samples, _ = soundfile.read(tmp_path / "r.flac")
     assert samples == pytest.approx(played, abs=2.0**-22)
@@ -60,7 +55,7 @@ def test_what_was_missed_is_said_and_is_silence_so_that_the_rest_keeps_its_place
     monkeypatch.setattr(recorder, "EVERY_S", 10.0)  # held up until it is stopped
     said: list[str] = []
     recording = Recorder(instrument, tmp_path / "r.wav", 0, said.append)
-    played = play(instrument, TAPE_FRAMES + 1000)
+    played = run(instrument, TAPE_FRAMES + 1000)
     recording.stop()
     samples, _ = soundfile.read(tmp_path / "r.wav", dtype="float32")
     missed = recording.missed_frames
@@ -78,7 +73,7 @@ def test_a_file_as_long_as_can_be_ends_the_recording_and_is_kept(instrument, tmp
     monkeypatch.setattr(recorder, "EVERY_S", 0.001)
     said: list[str] = []
     recording = Recorder(instrument, tmp_path / "r.wav", 0, said.append)
-    until(recording, lambda: [play(instrument, 100), not recording.is_running][1])
+    until(recording, lambda: [run(instrument, 100), not recording.is_running][1])
     assert "too long for a WAV file" in said[0]
     assert 1000 < soundfile.info(tmp_path / "r.wav").frames <= 2000
     assert not recording.is_whole
@@ -101,7 +96,7 @@ def test_a_recording_can_be_opened_at_any_moment_as_after_a_kill(
     recording = Recorder(instrument, target, 0, pytest.fail)
     played = np.zeros(0, np.float32)
     for _ in range(4):
-        played = np.concatenate([played, play(instrument, 5000)])
+        played = np.concatenate([played, run(instrument, 5000)])
         until(recording, lambda: recording._position == len(played))  # noqa: B023
         killed = tmp_path / f"copy of {name}"
         killed.write_bytes(target.read_bytes())
@@ -130,10 +125,10 @@ def test_a_full_disk_ends_the_recording_and_keeps_it_as_far_as_it_got(
     monkeypatch.setattr(recorder, "EVERY_S", 0.001)
     said: list[str] = []
     recording = Recorder(instrument, tmp_path / name, 0, said.append)
-    played = play(instrument, 10_000)
+    played = run(instrument, 10_000)
     until(recording, lambda: recording._position == 10_000)
     disk(50_001)
-    played = np.concatenate([played, *(play(instrument, 1000) for _ in range(40))])
+    played = np.concatenate([played, *(run(instrument, 1000) for _ in range(40))])
     until(recording, lambda: not recording.is_running)
     recording.stop()
     samples, rate = soundfile.read(tmp_path / name, dtype="float32")
@@ -170,7 +165,7 @@ def test_an_older_file_is_replaced_only_where_that_is_asked_for(instrument, tmp_
     with pytest.raises(OutputError, match=r"r\.wav: exists"):
         Recorder(instrument, target, 0, pytest.fail)
     recording = Recorder(instrument, target, 0, pytest.fail, overwrite=True)
-    play(instrument, 1000)
+    run(instrument, 1000)
     recording.stop()
     assert soundfile.info(target).frames == 1000
     assert link.read_text() == "older"

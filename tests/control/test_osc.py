@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sound import rms
 
 from yehu_server.control import clients, osc
 from yehu_server.control.addresses import Allowed
@@ -35,10 +36,6 @@ def values(heard) -> dict[str, float]:
 
 def errors(heard) -> list[str]:
     return [message.arguments[0] for message in heard if message.address == "/yehu/error"]
-
-
-def rms(sound: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(np.square(sound, dtype=np.float64))))
 
 
 # ---------------------------------------------------------------- parameters

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from sound import run
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import ENGINE, SLOT
@@ -15,12 +16,6 @@ RATE = 44100
 BRIDGE_X = 0.30  # m
 
 every = pytest.mark.parametrize("param", ENGINE, ids=lambda param: param.address)
-
-
-def run(instrument: Instrument, frames: int) -> np.ndarray:
-    out = np.zeros(frames, np.float32)
-    instrument.process(out)
-    return out
 
 
 def value(instrument: Instrument, address: str) -> float:

@@ -7,6 +7,7 @@ import random
 
 import numpy as np
 import pytest
+from sound import rms, run, run_for
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
@@ -16,22 +17,12 @@ from yehu_server.physics.quantities import Quantities, StringQuantities
 RATE = 44100
 
 
-def run(instrument: Instrument, seconds: float) -> np.ndarray:
-    out = np.zeros(round(seconds * instrument.rate), np.float32)
-    instrument.process(out)
-    return out
-
-
 def bow(instrument: Instrument, press: float = 0.0, frame: int = 0) -> None:
     """Bow the F string, open or stopped at 10 cm."""
     instrument.write("/finger/1/position", 0.1, frame=frame, ramp_ms=0.0)
     instrument.write("/finger/1/press", press, frame=frame)
     instrument.write("/bow/side", 1.0, frame=frame)
     instrument.write("/bow/speed", 0.2, frame=frame, ramp_ms=40.0)
-
-
-def rms(samples: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(np.square(samples, dtype=np.float64))))
 
 
 def level(samples: np.ndarray) -> float:
@@ -64,9 +55,7 @@ def busy(instrument: Instrument) -> None:
 def played(block: int) -> np.ndarray:
     instrument = Instrument(RATE)
     busy(instrument)
-    out = np.zeros(RATE, np.float32)
-    for start in range(0, RATE, block):
-        instrument.process(out[start : start + block])
+    out = run(instrument, RATE, block)
     assert instrument.frame == RATE
     return out
 
@@ -85,10 +74,10 @@ def test_what_is_heard_does_not_depend_on_the_size_of_blocks(whole, block):
 def test_what_is_heard_does_not_depend_on_when_a_write_is_scheduled():
     early, late = Instrument(RATE), Instrument(RATE)
     bow(early, frame=5000)
-    expected = run(early, 0.4)
-    first = run(late, 0.1)
+    expected = run_for(early, 0.4)
+    first = run_for(late, 0.1)
     bow(late, frame=5000)
-    np.testing.assert_array_equal(np.concatenate([first, run(late, 0.3)]), expected)
+    np.testing.assert_array_equal(np.concatenate([first, run_for(late, 0.3)]), expected)
 
 
 def test_an_empty_block_is_no_time():
@@ -111,8 +100,8 @@ def test_two_instruments_do_not_hear_each_other(whole):
     bow(other)
     parts = []
     for _ in range(10):
-        parts.append(run(one, 0.1))
-        run(other, 0.1)
+        parts.append(run_for(one, 0.1))
+        run_for(other, 0.1)
     np.testing.assert_array_equal(np.concatenate(parts), whole)
 
 
@@ -121,11 +110,11 @@ def test_after_a_reset_it_plays_as_if_new(whole):
     bow(instrument, press=3.0)
     instrument.write("/output/gain", 12.0)
     instrument.write("/bow/speed", 1.0, frame=RATE)  # still to come
-    run(instrument, 0.5)
+    run_for(instrument, 0.5)
     instrument.reset()
     assert instrument.frame == 0
     busy(instrument)
-    np.testing.assert_array_equal(run(instrument, 1.0), whole)
+    np.testing.assert_array_equal(run_for(instrument, 1.0), whole)
 
 
 # ---------------------------------------------------------------- sound and silence
@@ -133,30 +122,30 @@ def test_after_a_reset_it_plays_as_if_new(whole):
 
 @pytest.mark.parametrize("rate", [22050, 44100, 48000, 96000, 192000])
 def test_an_instrument_left_alone_is_silent(rate):
-    assert not run(Instrument(rate), 0.1).any()
+    assert not run_for(Instrument(rate), 0.1).any()
 
 
 @pytest.mark.parametrize("rate", [22050, 44100, 96000])
 def test_a_bowed_string_sounds_and_a_lifted_bow_lets_it_ring_out(rate):
     instrument = Instrument(rate)
     bow(instrument)
-    assert rms(run(instrument, 0.5)[rate // 4 :]) > 0.01
+    assert rms(run_for(instrument, 0.5)[rate // 4 :]) > 0.01
     instrument.write("/bow/side", 0.0)
     instrument.write("/bow/speed", 0.0)
-    assert level(run(instrument, 4.0)[-rate // 2 :]) < -60.0
+    assert level(run_for(instrument, 4.0)[-rate // 2 :]) < -60.0
 
 
 @pytest.mark.parametrize("press", [0.0, 1.5, 5.0])
 def test_silence_ends_the_sound_within_five_milliseconds(press):
     instrument = Instrument(RATE)
     bow(instrument, press)
-    before = run(instrument, 0.5)
+    before = run_for(instrument, 0.5)
     assert level(before[-2000:]) > -40.0
     # The bow is lifted and the finger up at the same moment: nothing is left to sound.
     for address in ("/bow/speed", "/bow/side", "/finger/1/press"):
         instrument.write(address, 0.0, ramp_ms=0.0)
     instrument.silence()
-    out = run(instrument, 0.5)
+    out = run_for(instrument, 0.5)
     end = round(0.005 * RATE)
     assert abs(float(out[0]) - float(before[-1])) < 0.05  # a fade, not a cut
     assert np.abs(out[end - 10 : end]).max() < 0.1 * np.abs(before[-2000:]).max()
@@ -166,11 +155,11 @@ def test_silence_ends_the_sound_within_five_milliseconds(press):
 def test_silence_puts_the_model_to_rest():
     instrument = Instrument(RATE)
     bow(instrument, 1.5)
-    run(instrument, 0.5)
+    run_for(instrument, 0.5)
     for address in ("/bow/speed", "/bow/side", "/finger/1/press"):
         instrument.write(address, 0.0, ramp_ms=0.0)
     instrument.silence()
-    run(instrument, 0.006)
+    run_for(instrument, 0.006)
     state = instrument._rig["state"][0]
     assert not state["u"].any()
     assert not state["q"].any()
@@ -181,28 +170,28 @@ def test_silence_puts_the_model_to_rest():
 def test_silence_asked_for_twice_comes_no_later():
     instrument = Instrument(RATE)
     bow(instrument)
-    run(instrument, 0.5)
+    run_for(instrument, 0.5)
     start = instrument.frame
     for address in ("/bow/speed", "/bow/side"):
         instrument.write(address, 0.0, ramp_ms=0.0)
     instrument.silence(frame=start)
     instrument.silence(frame=start + 130)  # 3 ms later
-    out = run(instrument, 0.1)
+    out = run_for(instrument, 0.1)
     assert level(out[round(0.005 * RATE) + 1 :]) < -80.0
 
 
 def test_after_silence_the_instrument_speaks_again():
     instrument = Instrument(RATE)
     bow(instrument)
-    loud = rms(run(instrument, 1.0)[RATE // 2 :])
+    loud = rms(run_for(instrument, 1.0)[RATE // 2 :])
     instrument.silence()
-    assert rms(run(instrument, 1.0)[RATE // 2 :]) == pytest.approx(loud, rel=0.3)
+    assert rms(run_for(instrument, 1.0)[RATE // 2 :]) == pytest.approx(loud, rel=0.3)
 
 
 def test_a_resting_finger_makes_no_sound_of_its_own():
     instrument = Instrument(RATE)
     instrument.write("/finger/1/press", 3.0, ramp_ms=50.0)
-    out = run(instrument, 3.0)
+    out = run_for(instrument, 3.0)
     assert level(out[-RATE:]) < -80.0  # its pull at the bridge lasts, and is no sound
     assert abs(float(out[-RATE:].mean())) < 1e-5
 
@@ -221,11 +210,11 @@ def spoil(instrument: Instrument, where: str, value: float) -> None:
 def test_a_lost_state_fades_is_counted_and_the_instrument_speaks_again(press, where):
     instrument = Instrument(RATE)
     bow(instrument, press)
-    before = run(instrument, 1.0)
+    before = run_for(instrument, 1.0)
     loud = rms(before[RATE // 2 :])
     step = float(np.abs(np.diff(before[RATE // 2 :])).max())
     spoil(instrument, where, math.nan)
-    after = run(instrument, 1.0)
+    after = run_for(instrument, 1.0)
     assert np.isfinite(after).all()
     assert instrument.lost_states == 1
     joint = np.concatenate([before[-100:], after[:1000]])
@@ -237,11 +226,11 @@ def test_a_state_lost_again_and_again_never_breaks_the_output():
     instrument = Instrument(RATE)
     bow(instrument, 1.5)
     for number in range(50):
-        out = run(instrument, 0.01)
+        out = run_for(instrument, 0.01)
         assert np.isfinite(out).all()
         assert instrument.lost_states == number
         spoil(instrument, "u", math.inf)
-    run(instrument, 0.5)
+    run_for(instrument, 0.5)
     assert instrument.lost_states == 50
 
 
@@ -262,7 +251,7 @@ def test_whatever_is_written_the_output_is_finite_and_within_full_scale(rate, se
         if chance.random() < 0.01:
             instrument.silence(frame=frame)
         frame += chance.randrange(rate // 100)
-    out = run(instrument, 3.0)
+    out = run_for(instrument, 3.0)
     assert np.isfinite(out).all()
     assert np.abs(out).max() <= 1.0
     assert instrument.lost_states == 0
@@ -297,7 +286,7 @@ def test_what_the_engine_does_not_know_or_cannot_reckon_with_is_refused(address,
     instrument = Instrument(RATE)
     with pytest.raises(ParameterError):
         instrument.write(address, value)
-    assert not run(instrument, 0.01).any()
+    assert not run_for(instrument, 0.01).any()
 
 
 @pytest.mark.parametrize("rate", [0.0, -44100.0, 8000.0, 22049.0, 192001.0, math.nan, math.inf])

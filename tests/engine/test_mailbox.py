@@ -10,11 +10,13 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from itertools import combinations, product
 
 import numba
 import numpy as np
 import pytest
+import sound
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,16 +30,10 @@ RATE = 22050
 PATIENCE_S = 120.0  # for other threads and processes; on a busy machine they took 20 s
 # While no bow lies on the strings, these change nothing that is heard.
 INERT = [SLOT["/bow/force"], SLOT["/bow/pressure"]]
+run = partial(sound.run, block=4096)
 FAR = 10**9  # a frame that never comes
 
 needs_memfd = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no memfd_create here")
-
-
-def run(instrument: Instrument, frames: int, block: int = 4096) -> np.ndarray:
-    out = np.zeros(frames, np.float32)
-    for start in range(0, frames, block):
-        instrument.process(out[start : start + block])
-    return out
 
 
 def values(instrument: Instrument) -> tuple[float, ...]:
@@ -392,7 +388,7 @@ def test_within_longer_blocks_they_apply_on_the_same_frames(batches, block):
         for frame, index in events:
             instrument.post(frame, index, model.post(frame, index), 0)
         model.play(frames, values(instrument))
-        run(instrument, frames, block)
+        run(instrument, frames, block=block)
     assert reported(instrument) == model.applied
     assert instrument.meters()["late_events"] == model.late
 
@@ -522,7 +518,7 @@ def crowded(block: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             instrument.post(frame + chance.randrange(3), index, target, ramp)
     instrument.post(RATE // 4, SILENCE, 0.0, 0)
     instrument.write("/output/level", 1.0, frame=RATE // 4 + 400)
-    out = run(instrument, RATE // 2, block)
+    out = run(instrument, RATE // 2, block=block)
     return out, instrument.applied_events(), instrument._rig["gesture"]["value"].copy()
 
 
@@ -548,7 +544,7 @@ def test_even_more_than_can_wait_at_once_apply_the_same_in_blocks_of_any_size():
             post_numbered(instrument, number, 10 + number // 20)
         for number in range(500):
             post_numbered(instrument, number, 30 + 7 * number % 500)
-        run(instrument, 3200, block)
+        run(instrument, 3200, block=block)
         return instrument.applied_events()
 
     np.testing.assert_array_equal(applied(1), applied(64))

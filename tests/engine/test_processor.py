@@ -11,6 +11,7 @@ import numba
 import numpy as np
 import pytest
 from llvmlite import ir
+from sound import run
 
 from yehu_server.engine import processor
 from yehu_server.engine.instrument import Instrument
@@ -153,12 +154,6 @@ def denormals(instrument: Instrument) -> int:
         int(((part != 0.0) & (np.abs(part) < SMALLEST)).sum())
         for part in (np.asarray(state[name]) for name in MOVING)
     )
-
-
-def run(instrument: Instrument, frames: int) -> np.ndarray:
-    out = np.zeros(frames, np.float32)
-    instrument.process(out)
-    return out
 
 
 def ringing() -> Instrument:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from pitch import cents, pitch_of
+from sound import run_for
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import ENGINE
@@ -21,13 +22,6 @@ def bow(side: float, **options) -> Instrument:
     return instrument
 
 
-def play(instrument: Instrument, seconds: float, block: int = 512) -> np.ndarray:
-    out = np.zeros(round(seconds * instrument.rate), np.float32)
-    for start in range(0, len(out), block):
-        instrument.process(out[start : start + block])
-    return out
-
-
 def loudness(out: np.ndarray) -> float:
     return float(20.0 * np.log10(np.sqrt(np.mean(np.square(out, dtype=np.float64)))))
 
@@ -36,9 +30,9 @@ def loudness(out: np.ndarray) -> float:
 @pytest.mark.parametrize("tuning", [-200.0, -50.0, 40.0])
 def test_a_string_is_tuned_by_cents_while_it_sounds(name, side, about_hz, tuning):
     instrument = bow(side)
-    before = pitch_of(play(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
+    before = pitch_of(run_for(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
     instrument.write(f"/string/{name}/tuning", tuning)
-    after = pitch_of(play(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
+    after = pitch_of(run_for(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
     assert before == pytest.approx(about_hz, rel=0.02)
     # The body's modes pull what the tension asks for.
     assert cents(after, before) == pytest.approx(tuning, abs=20.0)
@@ -48,9 +42,9 @@ def test_a_string_is_tuned_by_cents_while_it_sounds(name, side, about_hz, tuning
 def test_the_other_string_keeps_its_tuning(name, side, about_hz):
     other = {"inner": "outer", "outer": "inner"}[name]
     instrument = bow(side)
-    before = pitch_of(play(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
+    before = pitch_of(run_for(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
     instrument.write(f"/string/{other}/tuning", -150.0)
-    after = pitch_of(play(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
+    after = pitch_of(run_for(instrument, 1.0)[-RATE // 4 :], RATE, 200.0)
     assert cents(after, before) == pytest.approx(0.0, abs=6.0)
     assert before == pytest.approx(about_hz, rel=0.02)
 
@@ -60,7 +54,7 @@ def test_a_string_is_another_at_the_very_sample(frame):
     def heard(tuning: float) -> np.ndarray:
         instrument = bow(1.0)
         instrument.write("/string/inner/tuning", tuning, frame=frame, ramp_ms=0.0)
-        return play(instrument, 0.1)
+        return run_for(instrument, 0.1)
 
     assert np.flatnonzero(heard(0.0) != heard(-50.0))[0] == frame
 
@@ -68,11 +62,11 @@ def test_a_string_is_another_at_the_very_sample(frame):
 def test_tuning_while_it_sounds_makes_no_click():
     def steps(retuned: bool) -> float:
         instrument = bow(1.0)
-        play(instrument, 1.0)
+        run_for(instrument, 1.0)
         if retuned:
             instrument.write("/string/inner/tuning", -100.0)
             instrument.write("/string/inner/loss", 2.0)
-        return float(np.abs(np.diff(play(instrument, 0.3))).max())
+        return float(np.abs(np.diff(run_for(instrument, 0.3))).max())
 
     assert steps(retuned=True) < 1.3 * steps(retuned=False)
 
@@ -85,8 +79,8 @@ def test_a_damped_string_dies_away_sooner(name, side, about_hz):
         instrument = Instrument(RATE)
         instrument.write(f"/string/{name}/loss", loss, ramp_ms=0.0)
         instrument.write("/pluck/force", 1.0 * side)
-        play(instrument, 0.6)
-        return loudness(play(instrument, 0.2))
+        run_for(instrument, 0.6)
+        return loudness(run_for(instrument, 0.2))
 
     lively, usual, damped = (left(loss) for loss in (0.25, 1.0, 4.0))
     assert lively > usual + 1.0
@@ -101,7 +95,7 @@ def test_a_string_that_comes_back_is_as_it_was(address):
     fresh = instrument._rig["model"].copy()
     for value in (param.lo, param.hi, param.default):
         instrument.write(address, value)
-        play(instrument, 0.06)
+        run_for(instrument, 0.06)
         model = instrument._rig["model"]
         is_fresh = all(np.allclose(model[field], fresh[field], rtol=1e-13, atol=0.0)
                        for field in model.dtype.names)  # fmt: skip
@@ -115,7 +109,7 @@ def test_a_string_that_is_being_tuned_sounds_the_same_in_any_block(block):
         instrument.write("/string/inner/tuning", -100.0, frame=1234)
         instrument.write("/string/outer/loss", 3.0, frame=1300)
         instrument.write("/bow/noise", 0.5, frame=2000)
-        return play(instrument, 0.15, block).tobytes()
+        return run_for(instrument, 0.15, block).tobytes()
 
     assert heard(block) == heard(512)
 
@@ -133,13 +127,13 @@ def test_every_tuning_and_loss_is_stable(rate, tuning, loss):
         instrument.write(f"/finger/{finger}/press", 5.0)
     instrument.write("/bow/side", 1.0)
     instrument.write("/bow/speed", 0.3)
-    play(instrument, 0.2)
+    run_for(instrument, 0.2)
     instrument.write("/bow/speed", 0.0)
     for finger in (1, 2):
         instrument.write(f"/finger/{finger}/press", 0.0)
     instrument.write("/pluck/force", 3.0)
-    loud = play(instrument, 0.3)
-    ringing = play(instrument, 0.3)
+    loud = run_for(instrument, 0.3)
+    ringing = run_for(instrument, 0.3)
     assert instrument.lost_states == 0
     assert np.abs(loud).max() > 0.01
     assert loudness(ringing) < loudness(loud)
@@ -148,10 +142,10 @@ def test_every_tuning_and_loss_is_stable(rate, tuning, loss):
 def test_tuning_again_and_again_pumps_no_energy_in():
     instrument = Instrument(RATE)
     instrument.write("/pluck/force", 2.0)
-    before = loudness(play(instrument, 0.2)[RATE // 10 :])
+    before = loudness(run_for(instrument, 0.2)[RATE // 10 :])
     for turn in range(40):
         instrument.write("/string/inner/tuning", 40.0 if turn % 2 else -200.0, ramp_ms=25.0)
-        after = loudness(play(instrument, 0.025))
+        after = loudness(run_for(instrument, 0.025))
     assert after < before
     assert instrument.lost_states == 0
 
@@ -187,7 +181,9 @@ def test_noise_is_heard():
     def spread(noise: float) -> float:
         instrument = bow(1.0)
         instrument.write("/bow/noise", noise)
-        spectrum = np.abs(np.fft.rfft(play(instrument, 1.2)[-RATE // 2 :] * np.hanning(RATE // 2)))
+        spectrum = np.abs(
+            np.fft.rfft(run_for(instrument, 1.2)[-RATE // 2 :] * np.hanning(RATE // 2))
+        )
         hz = np.fft.rfftfreq(RATE // 2, 1 / RATE)
         band = spectrum[(hz > 1000.0) & (hz < 8000.0)]
         return float(np.median(band) / band.max())

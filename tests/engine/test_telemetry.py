@@ -6,10 +6,12 @@ import itertools
 import math
 import threading
 import time
+from functools import partial
 
 import numba
 import numpy as np
 import pytest
+import sound
 
 from yehu_server.engine import native, telemetry
 from yehu_server.engine.atomics import at, load_acquire
@@ -25,6 +27,7 @@ from yehu_server.physics.layout import GHOST, STRINGS
 
 RATE = 44100
 PATIENCE_S = 60.0  # for another thread, on a busy machine
+run = partial(sound.run, block=4096)
 # PortAudio's flags: the one that counts; input under- and overflow, output overflow, priming.
 OUTPUT_UNDERFLOW, OTHER_FLAGS = 4, [0, 1, 2, 8, 16]
 
@@ -36,13 +39,6 @@ def bowed(rate: float = RATE) -> Instrument:
     instrument.write("/bow/side", 1.0)
     instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
     return instrument
-
-
-def run(instrument: Instrument, frames: int, block: int = 4096) -> np.ndarray:
-    out = np.zeros(frames, np.float32)
-    for start in range(0, frames, block):
-        instrument.process(out[start : start + block])
-    return out
 
 
 # ---------------------------------------------------------------- level
@@ -66,7 +62,7 @@ def windows(frames: int, block: int, rate: float) -> list[tuple[int, int]]:
 def test_peak_and_rms_are_those_of_the_last_whole_window(rate, block):
     instrument = bowed(rate)
     frames = rate // 5 + 7
-    out = run(instrument, frames, block).astype(np.float64)
+    out = run(instrument, frames, block=block).astype(np.float64)
     expected = windows(frames, block, rate)
     begin, end = expected[-1]
     meters = instrument.meters()

@@ -9,6 +9,7 @@ import mido
 import numpy as np
 import pytest
 from pitch import cents, hertz, pitch_of
+from sound import run, run_for
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
@@ -76,8 +77,7 @@ def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
-    out = np.zeros(round(0.7 * rate), np.float32)
-    instrument.process(out)
+    out = run_for(instrument, 0.7)
     return pitch_of(out[round(0.1 * rate) :], rate)
 
 
@@ -113,8 +113,7 @@ def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
-    out = np.zeros(30870, np.float32)
-    instrument.process(out)
+    out = run(instrument, 30870)
     power = np.abs(np.fft.rfft(out[13230:] * np.hanning(17640))) ** 2
     f2 = np.fft.rfftfreq(17640, 1.0 / 44100.0)[1:] ** 2
     curve = 12194.0**4 * f2**4 / ((f2 + 424.4) * (f2 + 12194.0**2)) ** 2

@@ -9,6 +9,7 @@ import time
 import mido
 import numpy as np
 import pytest
+from sound import run
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
@@ -32,14 +33,8 @@ def live(instrument) -> LivePlayer:
     return LivePlayer(instrument, Style(), delay_ms=3.0)
 
 
-def play(instrument: Instrument, frames: int) -> np.ndarray:
-    out = np.zeros(frames, np.float32)
-    instrument.process(out)
-    return out
-
-
 def applied(instrument: Instrument, frames: int) -> list[tuple[int, str, float]]:
-    play(instrument, frames)
+    run(instrument, frames)
     events = instrument.applied_events()
     return [
         (int(e["frame"]), INDEX.get(int(e["index"]), "silence"), float(e["target"])) for e in events
@@ -55,7 +50,7 @@ def test_a_note_is_heard_at_its_frame(live, instrument):
 
 
 def test_what_arrives_is_heard_a_constant_time_later(live, instrument):
-    play(instrument, 480)
+    run(instrument, 480)
     now = int(instrument.meters()["due_ns"])
     frames = [live.frame_of(now + ns) for ns in range(0, 10_000_000, 1_000_000)]
     assert frames[0] == pytest.approx(144, abs=1)  # 3 ms after the block's beginning
@@ -126,11 +121,11 @@ def test_nothing_sounds_on_after_the_end(live, instrument, ending):
     live.receive(mido.Message("note_on", note=72, velocity=90), frame=0, port=0)
     live.receive(mido.Message("note_off", note=72), frame=100, port=0)
     live.note_on(67.0, 90.0, frame=200)
-    play(instrument, 9600)
+    run(instrument, 9600)
     live.draw(0.2, 1.0, frame=9600)
-    play(instrument, 9600)
+    run(instrument, 9600)
     getattr(live, ending)(frame=19200)
-    tail = play(instrument, 2 * 48000)
+    tail = run(instrument, 2 * 48000)
     assert live.pitch is None
     assert np.abs(tail[-4800:]).max() < 1e-3
     assert instrument._rig["gesture"]["target"][0, SLOT["/bow/speed"]] == 0.0
@@ -138,9 +133,9 @@ def test_nothing_sounds_on_after_the_end(live, instrument, ending):
 
 def test_panic_is_silent_within_ten_milliseconds(live, instrument):
     live.note_on(67.0, 90.0, frame=0)
-    play(instrument, 9600)
+    run(instrument, 9600)
     live.panic(frame=9600)
-    assert not play(instrument, 4800)[480:].any()
+    assert not run(instrument, 4800)[480:].any()
 
 
 def test_a_held_setting_stays_through_notes_and_controllers(live):

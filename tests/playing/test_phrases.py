@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from pitch import cents, frame_pitch, hertz, pitch_of
+from sound import run_for
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
@@ -48,9 +49,7 @@ class Stand:
         self.off(seconds + 0.005, note)
 
     def play(self, seconds: float) -> np.ndarray:
-        out = np.zeros(round(seconds * RATE), np.float32)
-        self.instrument.process(out)
-        return out
+        return run_for(self.instrument, seconds)
 
 
 def heard(sound: np.ndarray, start_s: float, seconds: float) -> float:

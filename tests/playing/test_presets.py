@@ -11,6 +11,7 @@ import mido
 import numpy as np
 import pytest
 from pitch import cents, hertz, pitch_of
+from sound import run
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError, PresetError
@@ -298,12 +299,6 @@ def live_player(instrument: Instrument, **style) -> LivePlayer:
     return LivePlayer(instrument, Style(**style), delay_ms=3.0)
 
 
-def played(instrument: Instrument, frames: int) -> np.ndarray:
-    out = np.zeros(frames, np.float32)
-    instrument.process(out)
-    return out
-
-
 def test_a_load_sets_what_it_names_and_leaves_the_rest(instrument):
     live = live_player(instrument)
     live.write("/playing/variation", 0.7, frame=0)
@@ -317,11 +312,11 @@ def test_a_load_sets_what_it_names_and_leaves_the_rest(instrument):
 def test_all_of_a_load_is_heard_at_one_frame(instrument):
     live = live_player(instrument)
     live.note_on(74.0, 90.0, frame=0)
-    played(instrument, 22050)
+    run(instrument, 22050)
     instrument.applied_events()
     far = {p.address: p.from_unit(0.3) for p in POSSIBLE.values() if p.address != "/playing/bend"}
     live.load(far, frame=23000)
-    played(instrument, 4410)
+    run(instrument, 4410)
     moves = instrument.applied_events()
     assert {int(move["frame"]) for move in moves} == {23000}
     assert {SLOT["/bow/speed"], SLOT["/output/gain"], SLOT["/bow/position"]} <= {
@@ -348,7 +343,7 @@ def test_loading_while_a_note_sounds_makes_no_click(instrument):
     sounds = []
     for name in ("ordinary", "flautando", "sul-ponticello", "sul-tasto", "vibrato", "ordinary"):
         live.load(presets.load(name).values, frame=instrument.frame)
-        sounds.append(np.abs(np.diff(played(instrument, 22050))))
+        sounds.append(np.abs(np.diff(run(instrument, 22050))))
     for before, after in itertools.pairwise(sounds):
         steady = max(before[11025:].max(), after[11025:].max())
         assert after[:4410].max() < 1.5 * steady
@@ -442,7 +437,7 @@ def heard(name: str, note: int, seconds: float = 0.5) -> np.ndarray:
     performer = style.performer(instrument, calibration)
     midi = style.midi(performer)
     midi.receive(mido.Message("note_on", note=note, velocity=64), frame=0)
-    return played(instrument, round(RATE * seconds)).astype(np.float64)
+    return run(instrument, round(RATE * seconds)).astype(np.float64)
 
 
 @pytest.mark.parametrize("note", [74, 77, 81, 84])

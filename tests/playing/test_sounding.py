@@ -7,17 +7,12 @@ import math
 import numpy as np
 import pytest
 from pitch import cents, hertz, pitch_of
+from sound import run_for
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.playing.performer import Key, Performer
 
 RATE = 44100
-
-
-def run(instrument: Instrument, seconds: float) -> np.ndarray:
-    out = np.zeros(round(seconds * instrument.rate), np.float32)
-    instrument.process(out)
-    return out
 
 
 def level(samples: np.ndarray) -> float:
@@ -38,7 +33,7 @@ def player_at(rate: float, seed: int = 0) -> tuple[Performer, Instrument]:
 def test_every_note_is_heard_in_tune_without_any_controller(note, rate):
     player, instrument = player_at(rate)
     player.note_on(Key(0, note))
-    out = run(instrument, 1.0)[rate // 2 :]
+    out = run_for(instrument, 1.0)[rate // 2 :]
     assert abs(cents(pitch_of(out, rate), hertz(note))) < 35.0
     assert level(out) > -40.0
 
@@ -47,7 +42,7 @@ def test_every_note_is_heard_in_tune_without_any_controller(note, rate):
 def test_every_note_speaks_within_a_fifth_of_a_second(note):
     player, instrument = player_at(RATE)
     player.note_on(Key(0, note))
-    out = run(instrument, 0.5)
+    out = run_for(instrument, 0.5)
     assert abs(cents(pitch_of(out[RATE // 5 :], RATE), hertz(note))) < 50.0
 
 
@@ -56,9 +51,9 @@ def test_every_note_speaks_within_a_fifth_of_a_second(note):
 def test_a_bend_is_heard_as_far_as_it_says(note, bend):
     player, instrument = player_at(RATE)
     player.note_on(Key(0, note))
-    run(instrument, 0.4)
+    run_for(instrument, 0.4)
     player.write("/playing/bend", bend)
-    out = run(instrument, 0.8)[RATE // 3 :]
+    out = run_for(instrument, 0.8)[RATE // 3 :]
     expected = max(note + bend, 65)  # nothing is below the open F string
     assert abs(cents(pitch_of(out, RATE), hertz(expected))) < 35.0
 
@@ -71,7 +66,7 @@ def test_legato_turns_reach_every_note():
         if held:
             player.note_off(held)
         held = Key(0, note)
-        out = run(instrument, 0.7)[RATE // 3 :]
+        out = run_for(instrument, 0.7)[RATE // 3 :]
         assert abs(cents(pitch_of(out, RATE), hertz(note))) < 50.0, note
 
 
@@ -82,7 +77,7 @@ def test_a_faster_bow_and_a_higher_level_are_louder():
         player.write("/playing/speed", speed)
         player.write("/playing/volume", volume)
         player.note_on(Key(0, 75))
-        levels.append(level(run(instrument, 1.0)[RATE // 2 :]))
+        levels.append(level(run_for(instrument, 1.0)[RATE // 2 :]))
     slow, fast, fast_but_low = levels
     assert fast > slow + 2.0
     assert fast_but_low < fast - 2.0
@@ -92,19 +87,19 @@ def test_a_faster_bow_and_a_higher_level_are_louder():
 def test_a_note_ends(note):
     player, instrument = player_at(RATE)
     player.note_on(Key(0, note))
-    loud = level(run(instrument, 0.5)[RATE // 4 :])
+    loud = level(run_for(instrument, 0.5)[RATE // 4 :])
     player.note_off(Key(0, note))
-    assert level(run(instrument, 3.0)[-RATE // 2 :]) < loud - 50.0
+    assert level(run_for(instrument, 3.0)[-RATE // 2 :]) < loud - 50.0
 
 
 @pytest.mark.parametrize("note", [65, 70, 72, 80])
 def test_all_sound_off_is_silence_within_five_milliseconds(note):
     player, instrument = player_at(RATE)
     player.note_on(Key(0, note))
-    run(instrument, 0.5)
+    run_for(instrument, 0.5)
     player.all_sound_off()
-    out = run(instrument, 0.5)[round(0.005 * RATE) + 1 :]
+    out = run_for(instrument, 0.5)[round(0.005 * RATE) + 1 :]
     assert np.abs(out).max() < 1e-3  # -60 dBFS
     player.note_on(Key(0, note))  # and the next note speaks
-    out = run(instrument, 1.0)[RATE // 2 :]
+    out = run_for(instrument, 1.0)[RATE // 2 :]
     assert abs(cents(pitch_of(out, RATE), hertz(note))) < 35.0

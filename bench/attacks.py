@@ -1,4 +1,4 @@
-"""What hostile senders do to the OSC port, by name: see `hostile.py`."""
+"""Hostile senders to the OSC port, by name, for `hostile.py`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ATTACKER_HOST = HOST  # where datagrams come from
 
 
 def text(of: str) -> bytes:
-    """A string as OSC has it."""
+    """A string in OSC's encoding."""
     data = of.encode()
     return data + b"\0" * (4 - len(data) % 4)
 
@@ -36,23 +36,23 @@ def question(address: str, word: str) -> bytes:
 
 
 def bundle(elements: list[bytes], in_s: float | None = None) -> bytes:
-    """A bundle for at once, or for some seconds from now."""
+    """A bundle to act on at once, or in some seconds."""
     tag = 1 if in_s is None else round((time.time() + in_s + 2_208_988_800) * 2**32)
     sized = (struct.pack(">i", len(element)) + element for element in elements)
     return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(sized)
 
 
 def full_of(element: bytes, size: int) -> bytes:
-    """A bundle of at most `size` bytes, of one message again and again."""
+    """A bundle of at most `size` bytes that repeats one message."""
     return bundle([element] * ((size - 16) // (len(element) + 4)))
 
 
 def prefixed(packet: bytes) -> bytes:
-    """A packet as a stream has it."""
+    """A packet as a TCP stream frames it: its length first."""
     return struct.pack(">I", len(packet)) + packet
 
 
-# ---------------------------------------------------------------- who is hostile
+# ---------------------------------------------------------------- attacks
 
 Attack = Callable[[int, float], None]
 DATAGRAM = 65_000
@@ -66,10 +66,10 @@ def connect(port: int) -> socket.socket:
 
 
 def senders(port: int, count: int) -> list[socket.socket]:
-    """UDP sockets, each with a port of its own, that wait for nobody."""
+    """Non-blocking UDP sockets, each with its own port."""
     made = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
     for each in made:
-        with contextlib.suppress(OSError):  # elsewhere than on Linux there is one such address
+        with contextlib.suppress(OSError):  # only Linux has the whole 127.0.0.0/8
             each.bind((ATTACKER_HOST, 0))
         each.connect((HOST, port))
         each.setblocking(False)
@@ -77,13 +77,13 @@ def senders(port: int, count: int) -> list[socket.socket]:
 
 
 def until(seconds: float) -> Iterator[int]:
-    """Count for so long."""
+    """Count until the time is over."""
     end = time.monotonic() + seconds
     return itertools.takewhile(lambda _: time.monotonic() < end, itertools.count())
 
 
 def flood(port: int, seconds: float, packets: list[bytes], count: int = 1) -> None:
-    """Send datagrams in turn from many ports, without a pause."""
+    """Send datagrams from many ports in turn, without a pause."""
     sockets = senders(port, count)
     for number in until(seconds):
         with contextlib.suppress(OSError):
@@ -91,7 +91,7 @@ def flood(port: int, seconds: float, packets: list[bytes], count: int = 1) -> No
 
 
 def streams(port: int, seconds: float, data: bytes, count: int = 1) -> None:
-    """Send the same over many connections, as fast as they take it; connect again when cut."""
+    """Send data over many connections as fast as they take it; reconnect when cut off."""
 
     def send() -> None:
         for _ in until(seconds):
@@ -113,7 +113,7 @@ def quiet(_port: int, seconds: float) -> None:
 
 
 def web_page(port: int, seconds: float) -> None:
-    """What a page in a browser can send: a POST whose body is SLIP."""
+    """A POST with a SLIP body, as a page in a browser can send it."""
     body = b"\xc0" + message("/yehu/note", HOSTILE, 100.0) + b"\xc0"
     head = f"POST / HTTP/1.1\r\nHost: {HOST}:{port}\r\nOrigin: http://evil.example\r\n"
     request = f"{head}Content-Length: {len(body)}\r\n\r\n".encode() + body
@@ -151,7 +151,7 @@ def _send_all(stream: socket.socket, data: bytes) -> None:
 
 
 def many_streams(port: int, seconds: float) -> None:
-    """Sixty connections with bundles of messages, each as long as a datagram, without an end."""
+    """Sixty connections with an endless stream of bundles as long as a datagram."""
     streams(port, seconds, prefixed(full_of(message("/yehu/bow/force", 0.5), DATAGRAM)), 60)
 
 
@@ -161,7 +161,7 @@ def datagrams(port: int, seconds: float) -> None:
 
 
 def datagrams_of_many(port: int, seconds: float) -> None:
-    """Two thousand datagrams of 65 kB, each from a port of its own."""
+    """Two thousand datagrams of 65 kB from five hundred ports."""
     _burst(port, seconds, 500)
 
 
@@ -175,7 +175,7 @@ def _burst(port: int, seconds: float, count: int) -> None:
 
 
 def shorter_of_many(port: int, seconds: float) -> None:
-    """Eight thousand datagrams of 16 kB, which are heard, from five hundred ports."""
+    """Eight thousand datagrams of 16 kB, short enough to be accepted, from five hundred ports."""
     packet = full_of(NOTHING, 16_000)
     sockets = senders(port, 500)
     for number in range(8000):
@@ -189,12 +189,12 @@ def slip_without_end(port: int, seconds: float) -> None:
 
 
 def empty_packets(port: int, seconds: float) -> None:
-    """Streams of packets without a byte."""
+    """Streams of empty packets."""
     streams(port, seconds, bytes(1 << 16), 8)
 
 
 def idle(port: int, seconds: float) -> None:
-    """As many idle connections as there are."""
+    """As many idle connections as the server allows."""
     made = [connect(port) for _ in range(64)]
     time.sleep(seconds)
     for stream in made:
@@ -202,7 +202,7 @@ def idle(port: int, seconds: float) -> None:
 
 
 def questions(port: int, seconds: float) -> None:
-    """Datagrams of 65 kB that ask for everything, again and again."""
+    """Datagrams of 65 kB that repeat a question for every value."""
     flood(port, seconds, [full_of(question("/yehu/get", "/*/*"), DATAGRAM)])
 
 
@@ -218,7 +218,7 @@ def tables(port: int, seconds: float) -> None:
 
 
 def subscriptions(port: int, seconds: float) -> None:
-    """As many subscriptions as there are, and patterns that set everything."""
+    """As many subscriptions as the server allows, and patterns that set every parameter."""
     (sender,) = senders(port, 1)
     listening = senders(port, 64)
     for each in listening:
@@ -230,12 +230,12 @@ def subscriptions(port: int, seconds: float) -> None:
 
 
 def patterns(port: int, seconds: float) -> None:
-    """Patterns that take long to match and fit nothing."""
+    """Patterns that take long to match and match nothing."""
     flood(port, seconds, [message("/yehu/" + "{*,?*,*?}*[!x]*" * 15, 1.0)], 8)
 
 
 def due_together(port: int, seconds: float) -> None:
-    """All that may wait for its time, for one time."""
+    """As many scheduled messages as the server allows, all due at one time."""
     (sender,) = senders(port, 1)
     element = message("/yehu/bow/force", 0.5)
     for _ in until(seconds):
@@ -246,7 +246,7 @@ def due_together(port: int, seconds: float) -> None:
 
 
 def due_never(port: int, seconds: float) -> None:
-    """Long messages for a time far ahead."""
+    """Long messages scheduled for a time far ahead."""
     (sender,) = senders(port, 1)
     packet = bundle([text("/yehu/ping") + text(",s") + text("x" * 16_000)], 1e6)
     for _ in until(seconds):
@@ -277,7 +277,7 @@ def tables_of_another_host(port: int, seconds: float) -> None:
 
 
 def small_of_one(port: int, seconds: float) -> None:
-    """Small datagrams from one port, as many as it can."""
+    """Small datagrams from one port, as many as possible."""
     flood(port, seconds, [message("/yehu/bow/force", 0.5)])
 
 

@@ -3,10 +3,10 @@
     .venv/bin/python bench/endurance.py [--seconds N] [--save bench/results/NAME.json]
 
 `yehu-server serve` plays with --record and --capture. Another process sends dense OSC and MIDI, and
-OSCQuery clients listen to every address. Beside it, on the same device, plays an idle stream: what
-that one misses, the machine missed. Memory is read every few seconds. In the end the capture is
-replayed and compared with the recording, sample by sample. Without --audio-device it starts a
-JACK server with the dummy driver, which has no real-time rights.
+OSCQuery clients listen to every address. An idle stream on the same device shows which deadlines
+the machine itself misses. Memory is sampled every few seconds. In the end the capture is replayed
+and compared with the recording, sample by sample. Without --audio-device the benchmark starts a JACK
+server with the dummy driver, which has no real-time rights.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ COMPARED_FRAMES = 1 << 20
 
 
 def play_idle(device: str, blocksize: int, answer: Any) -> None:
-    """The same callback with nothing to play, until it is asked for its counts."""
+    """Play silence with the same callback; answer each request with the callback's counters."""
     output = Output(OutputOptions(device=device, blocksize=blocksize), lambda _line: None)
     instrument = Instrument(output.find(), memory=output.memory.buffer)
     output.begin(instrument)
@@ -70,7 +70,7 @@ def play_idle(device: str, blocksize: int, answer: Any) -> None:
 
 
 def listen(port: int, answer: Any) -> None:
-    """Pages that listen to every address that has a value; count what they are told."""
+    """Listen as several pages to every address that has a value; answer with messages received."""
     counts = [0] * PAGES
     answer.send(asyncio.run(_listen(port, counts, answer)))
 
@@ -106,7 +106,7 @@ async def _page(session: Any, port: int, paths: list[str], counts: list[int], i:
 
 @contextlib.contextmanager
 def helper(work: Any, *arguments: Any) -> Iterator[Any]:
-    """Run a function in a process of its own; yield the pipe to it."""
+    """Run a function in another process; yield the pipe to it."""
     here, there = SPAWN.Pipe()
     process = SPAWN.Process(target=work, args=(*arguments, there), daemon=True)
     process.start()
@@ -123,7 +123,7 @@ def helper(work: Any, *arguments: Any) -> Iterator[Any]:
 
 
 class Playing:
-    """``yehu-server serve``, as a command, and what it tells of itself."""
+    """``yehu-server serve`` as a command, its messages and metrics."""
 
     def __init__(self, device: str, blocksize: int, folder: Path) -> None:
         words = ["--audio-device", device, "--blocksize", str(blocksize)]
@@ -150,7 +150,7 @@ class Playing:
         sys.exit("serve does not start:\n" + "\n".join(self.lines))
 
     def status(self) -> dict[str, float]:
-        """Its metrics, by the names of the status values."""
+        """Its metrics, by status value."""
         with urlopen(f"http://127.0.0.1:{self.http}/metrics", timeout=10.0) as page:
             lines = page.read().decode().splitlines()
         pairs = (line.split() for line in lines if not line.startswith("#"))
@@ -159,7 +159,7 @@ class Playing:
         }
 
     def memory_mb(self) -> float | None:
-        """Memory of it and its helper processes, shared pages once; Linux only."""
+        """Memory of the server and its helper processes, shared pages counted once; Linux only."""
         total = 0
         for pid in [self.process.pid, *_children(self.process.pid)]:
             try:
@@ -171,7 +171,7 @@ class Playing:
         return total / 1000.0
 
     def end(self) -> int:
-        """Let it end; return its exit code."""
+        """End it; return its exit code."""
         self.process.send_signal(signal.SIGTERM)
         return self.process.wait(ENDED_WITHIN_S)
 
@@ -185,7 +185,7 @@ def _children(pid: int) -> list[int]:
 
 
 def replayed_equal(folder: Path) -> tuple[int, int]:
-    """Replay the capture; return frames recorded, and how many differ or are missing."""
+    """Replay the capture; return the frames recorded, and how many differ or are missing."""
     again = folder / "again.wav"
     words = ["replay", str(folder / "take.jsonl"), "-o", str(again), "--quiet"]
     subprocess.run([*COMMAND, *words], check=True)  # noqa: S603
@@ -201,7 +201,7 @@ def replayed_equal(folder: Path) -> tuple[int, int]:
 
 
 def play(device: str, blocksize: int, seconds: float, folder: Path) -> dict[str, Any]:
-    """Play and count."""
+    """Play under load, replay the take, and return all counts."""
     with helper(play_idle, device, blocksize) as idle:
         idle.recv()
         playing = Playing(device, blocksize, folder)
@@ -247,7 +247,7 @@ def quarters(memory: list[list[float]]) -> list[float]:
 
 
 def print_report(figures: dict[str, Any]) -> None:
-    """Tell what came of it."""
+    """Print the figures."""
     table = Table(title="callbacks", title_justify="left")
     for column in ("", "missed", "late", "under-runs"):
         table.add_column(column)
@@ -277,7 +277,7 @@ def main() -> None:
     device = arguments.audio_device or CARD
     if device == NULL:
         sys.exit("the silent clock has no deadlines")
-    native.warm_up()  # before processes have to wait for each other
+    native.warm_up()  # compile before processes wait for each other
     with (
         sound_card(arguments.audio_device, arguments.blocksize),
         tempfile.TemporaryDirectory() as f,

@@ -1,10 +1,10 @@
-"""How many instruments at once: on one core, on all, and what rates and fingers cost.
+"""How many instruments play in real time: on one core, on all, by rate and by fingers.
 
     .venv/bin/python bench/ensemble.py [--save bench/results/NAME.json]
 
-Each instrument plays a bowed, stopped note in blocks of 128, the default mapping's ordinary bowing.
-Figures are medians over runs, with the spread. On several cores each thread plays its share of the
-instruments, a block of all before the next, as a mixer would ask for them.
+Each instrument plays a bowed, stopped note in blocks of 128, with the default mapping's ordinary
+bowing. Figures are medians over runs, with the spread. On several cores each thread plays its share
+of the instruments, one block of each in turn, as a mixer asks for them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ RATES = (22050.0, 44100.0, 48000.0, 96000.0, 192000.0)
 
 
 def instrument(number: int, rate: float = 44100.0, fingers: int = 1) -> Instrument:
-    """One that bows a stopped note, each another."""
+    """An instrument that bows a stopped note; the number varies its pitch."""
     made = Instrument(rate)
     for finger in range(1, fingers + 1):
         made.write(f"/finger/{finger}/position", 0.11 - 0.02 * finger + 1e-3 * (number % 8))
@@ -39,7 +39,7 @@ def instrument(number: int, rate: float = 44100.0, fingers: int = 1) -> Instrume
 
 
 def play(instruments: list[Instrument], seconds: float) -> None:
-    """Play all for a while, block by block."""
+    """Play all instruments, block by block."""
     out = np.zeros(BLOCK, np.float32)
     for _ in range(round(seconds * instruments[0].rate / BLOCK)):
         for each in instruments:
@@ -47,7 +47,7 @@ def play(instruments: list[Instrument], seconds: float) -> None:
 
 
 def pace(instruments: list[Instrument], threads: int) -> list[float]:
-    """Instruments in real time: seconds of sound of all of them, in a second. One value a run."""
+    """Seconds of sound, of all instruments together, per second: one value for each run."""
     shares = [instruments[first::threads] for first in range(threads)]
     paces = []
     for _ in range(RUNS):

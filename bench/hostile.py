@@ -2,9 +2,9 @@
 
     .venv/bin/python bench/hostile.py [--seconds N] [--kind NAME ...] [--save FILE.json]
 
-The server plays to nobody, in a process of its own, new for each kind; senders are in another.
-The player begins a note, ends the one before and pings, a hundred times a second, by UDP. Memory
-is the server process's own, sampled; it needs Linux.
+Each kind of sender (`attacks.py`) meets a new server, which plays without a device in its own
+process; the sender runs in another. A hundred times a second the player begins a note, ends the one
+before and pings, by UDP. Memory is that of the server process alone, sampled; this needs Linux.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from attacks import HOST, HOSTILE, KINDS, message, text
 
 SPAWN = multiprocessing.get_context("spawn")
 EVERY_S = 0.01  # between a note and the next
-ACQUAINTED_S = 1.5  # for which the player plays alone
-RECOVERS_S = 20.0  # at most, until what was sent is answered
+ACQUAINTED_S = 1.5  # the player alone, before the attack
+RECOVERS_S = 20.0  # at most, until all pings are answered
 PITCHES = 24
 LOWEST = 62  # the player's notes; hostile ones are lower
 
 
-# ---------------------------------------------------------------- who is played
+# ---------------------------------------------------------------- the server
 
 
 def serve(pipe: Any) -> None:
-    """Serve until told to stop; tell what notes came, in order, and how things stand."""
+    """Serve until told to stop; answer each request with the notes received and the status."""
     from yehu_server.audio.output import NULL, OutputOptions
     from yehu_server.server import ServeOptions, Server
 
@@ -58,7 +58,7 @@ def serve(pipe: Any) -> None:
 
 
 class Served:
-    """A server in a process of its own."""
+    """A server in another process."""
 
     def __init__(self) -> None:
         self._pipe, there = SPAWN.Pipe()
@@ -68,13 +68,13 @@ class Served:
         self.port = int(self._pipe.recv())
 
     def told(self) -> tuple[list[tuple[float, float]], dict[str, Any]]:
-        """The notes that came, and the status."""
+        """The notes received so far, in order, and the status."""
         self._pipe.send(True)
         notes, status = self._pipe.recv()
         return notes, status
 
     def bytes(self) -> int:
-        """Memory that is its own, or 0 where the system does not tell."""
+        """The process's private memory; 0 where the system does not tell."""
         with contextlib.suppress(OSError):
             for line in Path(f"/proc/{self.process.pid}/status").read_text().splitlines():
                 if line.startswith("RssAnon"):
@@ -91,11 +91,11 @@ class Served:
             self.process.join()
 
 
-# ---------------------------------------------------------------- who plays
+# ---------------------------------------------------------------- the player
 
 
 class Playing:
-    """A player by UDP: notes, pings between them, and how long answers take."""
+    """A player by UDP: sends notes and pings, and measures how long answers take."""
 
     def __init__(self, port: int) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -116,7 +116,7 @@ class Playing:
         return len(self._sent)
 
     def finish(self) -> None:
-        """Play no more, and wait for what is still to be answered."""
+        """Stop playing, and wait for the pings still unanswered."""
         if self._ending.is_set():
             return
         self._is_playing = False
@@ -157,7 +157,7 @@ class Playing:
 
 @dataclass
 class Figures:
-    """What one kind of sender did to the player."""
+    """The effect of one kind of sender on the player."""
 
     notes: int
     lost: int
@@ -167,12 +167,12 @@ class Figures:
     ping_99_ms: float
     ping_worst_ms: float
     growth_mb: float
-    kept_mb: float  # of the growth, in the end
-    system_dropped: int  # packets, of anyone
+    kept_mb: float  # what is left of the growth at the end
+    system_dropped: int  # packets, of any sender
 
 
 def measured(name: str, seconds: float, served: Served) -> Figures:
-    """Play beside one kind of sender."""
+    """Play beside one kind of sender, and measure its effect."""
     before, status = served.told()
     playing = Playing(served.port)
     attacker = SPAWN.Process(target=KINDS[name], args=(served.port, seconds))

@@ -1,13 +1,13 @@
-"""How soon a message is heard: from sending it to the first changed sample, end to end.
+"""End-to-end latency: from sending a message to the first sample that it changes.
 
     .venv/bin/python bench/latency.py [--trials N] [--save bench/results/NAME.json]
 
-A JACK client in another process sends OSC or MIDI, at moments that have nothing to do with
-blocks, and listens: a note sounds all the while, and each message opens or closes its volume,
-so that the first sample that is not zero is the message's. Its time is that of JACK's cycle,
-on the monotonic clock, and its place therein; where JACK is late, so is the sample. The
-device's own latency comes on top: the last column. The instrument's own share is from the
-message's arrival, as stamped, to the frame at which it was applied.
+A JACK client in another process sends OSC or MIDI at random times and listens. A note sounds
+throughout, and each message opens or closes its volume, so the message is heard at the first sample
+that is not zero. The sample's time is the start of JACK's cycle on the monotonic clock plus its
+place in the cycle; where JACK is late, so is the sample. The device's own latency, the last
+column, comes on top. The instrument's own share is the time from the message's arrival, as stamped,
+to the frame at which it is applied.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Listener:
 
 
 def measure(kind: str, port: int, trials: int, answer: Any) -> None:
-    """Send and listen; answer with the latencies (ms) and what else was found."""
+    """Send and listen; answer with the latencies (ms) and the number of xruns."""
     osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     osc.connect(("127.0.0.1", port))
     midi = midi_out("bench") if kind == "MIDI" else None
@@ -109,7 +109,7 @@ def measure(kind: str, port: int, trials: int, answer: Any) -> None:
 
 
 class Witness:
-    """Notes when messages came and when they were applied, as frames."""
+    """Notes the frames at which messages arrived and were applied."""
 
     def __init__(self, server: Server, kind: str) -> None:
         self._instrument = server.instrument
@@ -136,7 +136,7 @@ class Witness:
             vars(server.midi)["_receive"] = listen
 
     def shares(self) -> list[float]:
-        """From arrival to being applied (ms), for each message that opened the volume."""
+        """Time from arrival to application (ms) of each message that opened the volume."""
         events: Any = self._instrument.applied_events()
         level = events[(events["index"] == SLOT["/output/level"])]
         opened = level["frame"][level["target"] == 1.0]
@@ -184,7 +184,7 @@ def run(kind: str, block: int, trials: int) -> dict[str, Any]:
 
 
 def device_frames() -> int:
-    """From JACK's cycle to the device's output, as its driver says."""
+    """Latency from JACK's cycle to the device's output, as the driver reports it."""
     out, _ = start(["jack_lsp", "-l", "system:playback_1"], subprocess.PIPE).communicate()
     found = re.search(rb"playback latency = \[ \d+ (\d+) \]", out)
     return int(found[1]) if found else 0

@@ -24,17 +24,17 @@ CARD = "system, JACK"
 JACK = "yehu-bench"
 SPAWN = multiprocessing.get_context("spawn")
 
-# ---------------------------------------------------------------- a sound card, if need be
+# ---------------------------------------------------------------- the sound card
 
 
 def start(program: list[str], out: int = subprocess.DEVNULL) -> subprocess.Popen[bytes]:
-    """Start a program whose complaints are of no interest."""
+    """Start a program, without its error messages."""
     return subprocess.Popen(program, stdout=out, stderr=subprocess.DEVNULL)  # noqa: S603
 
 
 @contextlib.contextmanager
 def dummy_jack(period: int, rate: int = 48000) -> Iterator[None]:
-    """A JACK server without a sound card, for all that is started meanwhile."""
+    """A JACK server without a sound card, for every process started within the block."""
     os.environ |= {"JACK_DEFAULT_SERVER": JACK, "JACK_NO_AUDIO_RESERVATION": "1"}
     os.environ["JACK_NO_START_SERVER"] = "1"
     card = ["-d", "dummy", "-r", str(rate), "-p", str(period)]
@@ -45,7 +45,7 @@ def dummy_jack(period: int, rate: int = 48000) -> Iterator[None]:
         while b"playback_1" not in start(["jack_lsp"], subprocess.PIPE).communicate()[0]:
             if time.monotonic() > deadline:
                 sys.exit("JACK's server does not start")
-            if jackd.poll() is not None:  # the one before is still in JACK's registry
+            if jackd.poll() is not None:  # JACK's registry still holds the server before
                 jackd = start(program)
             time.sleep(0.05)
         yield
@@ -58,7 +58,7 @@ def dummy_jack(period: int, rate: int = 48000) -> Iterator[None]:
 
 
 def sound_card(wanted: str | None, period: int) -> contextlib.AbstractContextManager[object]:
-    """The named output, or one that is made for the occasion."""
+    """The named output, or a dummy JACK server."""
     if wanted is not None:
         return contextlib.nullcontext()
     if shutil.which("jackd") is None or ctypes.util.find_library("jack") is None:
@@ -70,7 +70,7 @@ def sound_card(wanted: str | None, period: int) -> contextlib.AbstractContextMan
 
 
 def midi_out(name: str) -> Any:
-    """A MIDI output that others can open, of the first MIDI system there is."""
+    """A virtual MIDI output on the first MIDI system that works."""
     import rtmidi
 
     for api in rtmidi.get_compiled_api():
@@ -82,7 +82,7 @@ def midi_out(name: str) -> Any:
 
 
 def send_load(port: int) -> None:
-    """Notes, wheels and touch over MIDI, 600 messages a second; OSC, 2,000 a second."""
+    """Send notes, wheels and touch over MIDI, 600 messages a second; over OSC 2,000."""
     osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     osc.connect(("127.0.0.1", port))
     midi = midi_out("load")

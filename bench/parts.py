@@ -1,12 +1,12 @@
-"""Where the time of a sample goes: by what is played, by what is left out, by instructions.
+"""Where the time of a sample goes: by what is played, by instructions, and by part left out.
 
     .venv/bin/python bench/parts.py
 
-A step is one long chain in which each part waits for the last, so what a part takes by itself
-says little. First the whole kernel, with more and more to do: nanoseconds (the fastest of many
-short runs), and instructions, counted by single steps (Linux on x86-64). Then with one part
-replaced by next to nothing, each in a process of its own: what the loop gets faster by. There the
-model goes on sounding, more or less; a part that others wait for counts with their waiting.
+Each part of a step waits for the one before, so the time of a part by itself says little.
+The first table is of the whole kernel with ever more to do: nanoseconds (the fastest of many short
+runs), and instructions, counted by single steps (Linux on x86-64). The second tells how much faster
+the loop becomes when one part is replaced by next to nothing, each in its own process. The model
+still sounds there, more or less; a part that others wait for counts with their waiting.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ RATE = 44100.0
 FRAMES, RUNS, STEPPED = 4410, 300, 100
 SINGLE_STEP = 9  # PTRACE_SINGLESTEP
 
-# What is played: fingers, how many are down, bow force (N).
+# Number of fingers, of fingers that are down, bow force (N).
 CASES = {
     "strings, bridge, radiation": (1, 0, 0.0),
     "and a bow": (1, 0, 0.5),
@@ -40,10 +40,10 @@ CASES = {
 
 
 def controls(frames: int, fingers: int, down: int, force: float) -> Any:
-    """One row a sample: a bow that may be lifted, fingers down or parked near the loop."""
+    """Controls, one row a sample: a bow that may be lifted, fingers down or near the loop."""
     rows = np.zeros((frames, layout.control_columns(fingers)))
     rows[:, [layout.F_N, layout.V_B, layout.X_B]] = force, 0.2, 0.26
-    # So that strings which nobody bows move as well, and no number gets too small.
+    # Keeps the strings that are not bowed in motion, clear of denormals.
     rows[:, layout.F_HAMMER] = 1e-3 * np.random.default_rng(1).normal(size=frames)
     for j in range(fingers):
         at = layout.FINGER_CONTROLS + layout.CONTROLS_PER_FINGER * j
@@ -55,7 +55,7 @@ def controls(frames: int, fingers: int, down: int, force: float) -> Any:
 
 
 class Kernel:
-    """The kernel in the midst of playing."""
+    """The kernel after half a second of playing."""
 
     def __init__(self, fingers: int, down: int, force: float) -> None:
         self.playing = fingers, down, force
@@ -69,19 +69,19 @@ class Kernel:
         return controls(frames, *self.playing), probes
 
     def advance(self, rows: Any, probes: Any) -> float:
-        """Seconds that so many rows took."""
+        """Advance over rows of controls; return the seconds it took."""
         start = time.perf_counter()
         kernel.advance(self.model, self.state, rows, probes, None)
         return time.perf_counter() - start
 
     def fastest_ns(self) -> tuple[float, float]:
-        """Nanoseconds a sample, and evaluations of the friction law a sample."""
+        """Nanoseconds and evaluations of the friction law per sample."""
         rows, probes = self.rows(FRAMES)
         seconds = min(self.advance(rows, probes) for _ in range(RUNS))
         return seconds / FRAMES * 1e9, float(probes[:, layout.ITERATIONS].mean())
 
     def instructions(self) -> float:
-        """Instructions a sample."""
+        """Instructions per sample."""
         return (self._stepped(STEPPED) - self._stepped(0)) / STEPPED
 
     def _stepped(self, frames: int) -> int:

@@ -1,4 +1,4 @@
-"""What all benchmarks share: the option --save, and the file that it writes."""
+"""Command line and result file of all benchmarks."""
 
 from __future__ import annotations
 

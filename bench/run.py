@@ -1,4 +1,4 @@
-"""How fast: the kernel, the instrument, the start. Prints a table; keeps it as JSON on request.
+"""Speed of the kernel, of the instrument, of the start; printed, and saved as JSON on request.
 
     .venv/bin/python bench/run.py [--save bench/results/NAME.json]
 
@@ -35,7 +35,7 @@ SECONDS = 2.0
 
 
 def measured(work: Callable[[], object], runs: int = RUNS) -> list[float]:
-    """Seconds of each run, after one that is not counted."""
+    """Seconds of each run, after a first one that does not count."""
     work()
     times = []
     for _ in range(runs):
@@ -94,7 +94,7 @@ def tune_runs() -> Any:
 
 
 def start_runs(cache: Path, runs: int) -> list[float]:
-    """Seconds of whole `render` commands of one short note: the first sample comes before."""
+    """Seconds of whole `render` commands of one short note; the first sample comes earlier."""
     with tempfile.TemporaryDirectory() as folder:
         note = Path(folder) / "note.mid"
         midi = mido.MidiFile(ticks_per_beat=480)

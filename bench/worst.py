@@ -2,9 +2,9 @@
 
     .venv/bin/python bench/worst.py [--seconds 60] [--save bench/results/NAME.json]
 
-Hard playing is all that costs: four fingers that trill, slide and press up to 6 N, tremolo, wide
-vibrato, scratching and flautando, string crossings, plucks, strings that are being tuned. The CPU
-time is this thread's, so that what else the machine does is left out as far as it can be.
+Hard playing is everything that costs time: four fingers that trill, slide and press up to 6 N,
+tremolo, wide vibrato, scratching and flautando, string crossings, plucks, strings being tuned. The
+CPU time is that of this thread, which leaves out most of what else the machine does.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ HARD = {
 
 
 def play(instrument: Instrument, blocks: int) -> np.ndarray:
-    """Play so many blocks; return the CPU time of each (s)."""
+    """Play blocks; return the CPU time of each (s)."""
     chance = random.Random(7)  # noqa: S311 - for music, not secrets
     out = np.zeros(BLOCK, np.float32)
     times = np.zeros(blocks)

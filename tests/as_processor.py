@@ -2,9 +2,9 @@
 
     .venv/bin/python tests/as_processor.py generic .venv/bin/pytest tests/physics
 
-numba compiles for that processor, and numpy, its linear algebra and the C library leave the
-code alone that they choose on newer ones. Where this processor can't run the other's code,
-it says so and exits with 77. `NUMBA_CACHE_DIR` should name a folder of its own.
+numba compiles for that processor; numpy, its linear algebra and the C library do not use the code
+that they have for newer ones. Where this processor can't run the other's code, the script says so
+and exits with 77. Set `NUMBA_CACHE_DIR` to a folder for each processor.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ CANNOT = 77  # exit code
 
 @dataclass(frozen=True)
 class Processor:
-    """What an x86-64 processor has, by the names that each library has for it."""
+    """The features of an x86-64 processor, as each library names them."""
 
     needs: frozenset[str]  # LLVM's features beyond those of 2003
     openblas: str
@@ -38,7 +38,7 @@ PROCESSORS = {  # by LLVM's names
 
 
 def missing(name: str) -> list[str]:
-    """What this processor lacks to run code for the named one."""
+    """The features that this processor lacks to run code for the named one."""
     if platform.machine() not in {"x86_64", "AMD64"}:
         return ["x86-64"]
     from llvmlite import binding
@@ -48,7 +48,7 @@ def missing(name: str) -> list[str]:
 
 
 def environment(name: str) -> dict[str, str]:
-    """The variables by which libraries take this processor for the named one."""
+    """The environment that makes libraries take this processor for the named one."""
     import numpy as np
 
     processor = PROCESSORS[name]
@@ -63,7 +63,7 @@ def environment(name: str) -> dict[str, str]:
 
 
 def main() -> None:
-    """Become the command, or say why not."""
+    """Replace this process with the command, or say why that is impossible."""
     name, *command = sys.argv[1:]
     if lacking := missing(name):
         sys.stderr.write(f"its code does not run here, for lack of {', '.join(lacking)}\n")

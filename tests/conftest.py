@@ -10,8 +10,8 @@ from commands import is_one_line
 from hypothesis import settings
 from platformdirs import user_config_path
 
-# Set before numpy loads: the dense references work on small matrices, where the threads of
-# two test processes only get in each other's way.
+# Set before numpy loads: the references' matrices are small, and the threads of two test processes
+# would only compete.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # The same cases on every machine, and no deadline: a first call may have to compile.
@@ -32,7 +32,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.fixture(scope="session", autouse=True)
 def _config_home(tmp_path_factory) -> Iterator[None]:
-    """No test reads the mappings or settings of whoever runs it."""
+    """Keep tests from reading the mappings and settings of the user who runs them."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CONFIG_HOME", str(tmp_path_factory.mktemp("config")))
         yield
@@ -47,13 +47,13 @@ def config_home(tmp_path, monkeypatch) -> Path:
 
 @pytest.fixture(scope="session")
 def own_presets(_config_home) -> Path:
-    """The folder where whoever runs the tests would keep presets: an empty one."""
+    """The empty folder that stands for the user's own presets."""
     return user_config_path("yehu-server") / "presets"
 
 
 @pytest.fixture(autouse=True)
 def _signals() -> Iterator[None]:
-    """Commands that run in this process handle SIGTERM; no test leaves that behind."""
+    """Restore the handler of SIGTERM, which commands replace in this process."""
     before = signal.getsignal(signal.SIGTERM)
     yield
     signal.signal(signal.SIGTERM, before)
@@ -77,7 +77,7 @@ def command(capsys) -> Callable[..., tuple[int, str, str]]:
 
 @pytest.fixture
 def refused(command) -> Callable[..., str]:
-    """Run a command line that must be refused; its one line of error."""
+    """Run a command line that must be refused in one line; that line."""
 
     def run(*words: object) -> str:
         code, out, err = command(*words)

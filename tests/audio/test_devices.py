@@ -1,4 +1,4 @@
-"""Which audio output is meant."""
+"""How an audio output is chosen by its name."""
 
 from __future__ import annotations
 

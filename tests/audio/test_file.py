@@ -1,4 +1,4 @@
-"""Sound files: what they hold is what was written, or there is none."""
+"""Sound files: they hold what was written, or do not exist."""
 
 from __future__ import annotations
 

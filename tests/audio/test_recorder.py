@@ -1,4 +1,4 @@
-"""Recording off the tape, while the instrument plays."""
+"""Recording from the tape while the instrument plays."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_a_recording_can_be_opened_at_any_moment_as_after_a_kill(
 
 @pytest.fixture
 def disk():
-    """A disk that is full for a while: no file may be longer than so many bytes."""
+    """A disk that is full within the block: no file may grow beyond so many bytes."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     yield lambda most_bytes: resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, hard))

@@ -1,4 +1,4 @@
-"""WAV as we write it, against libsndfile and against the format's own words."""
+"""WAV files as we write them, against libsndfile and the format's specification."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""OSC as bytes, peers that only listen, a clock that stands still, and servers to play on."""
+"""OSC as bytes, peers that only listen, a manual clock, and servers to play on."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def until(condition: Callable[[], Any], what: str, within_s: float = PATIENCE_S)
 
 
 def target_of(instrument: Instrument, address: str) -> float:
-    """Where a parameter of the engine goes, as the audio side has it."""
+    """The target of an engine parameter on the audio side."""
     return float(instrument._rig["gesture"]["target"][0, SLOT[address]])
 
 
@@ -63,7 +63,7 @@ class Heard(NamedTuple):
 
 
 class Wire:
-    """OSC 1.0 in bytes, made and read without help of the package or python-osc."""
+    """OSC 1.0 in bytes, written and read without the package and without python-osc."""
 
     NUMBERS: ClassVar = {
         "i": ">i",
@@ -91,7 +91,7 @@ class Wire:
 
     @classmethod
     def message(cls, address: str, *arguments: Any, tags: str | None = None) -> bytes:
-        """A message; with tags, they say what the arguments are."""
+        """A message; its type tags are those given, or follow from the arguments."""
         if tags is None:
             tags = "".join(map(cls.tag, arguments))
         data = bytearray(cls.text(address) + cls.text("," + tags))
@@ -112,7 +112,7 @@ class Wire:
 
     @staticmethod
     def bundle(at_s: float | None, *elements: bytes) -> bytes:
-        """A bundle for a moment in seconds since 1970, or for at once."""
+        """A bundle for a time in seconds since 1970, or for at once."""
         tag = 1
         if at_s is not None:
             whole = math.floor(at_s)
@@ -122,7 +122,7 @@ class Wire:
 
     @classmethod
     def read(cls, packet: bytes) -> Heard:
-        """Take one message apart, strictly."""
+        """Parse one message, strictly."""
 
         def text(at: int) -> tuple[str, int]:
             end = packet.index(0, at)
@@ -193,14 +193,14 @@ class Ear:
         return self.others.setdefault(port, Ear(port))
 
     def heard(self) -> list[Heard]:
-        """What came since the last call."""
+        """The messages since the last call."""
         packets, self.packets = self.packets, []
         return [Wire.read(packet) for packet in packets]
 
 
 @pytest.fixture(scope="session")
 def ear_type() -> type[Ear]:
-    """For whoever needs many."""
+    """The class, for tests that need several."""
     return Ear
 
 
@@ -210,10 +210,10 @@ def ear() -> Ear:
 
 
 class StillTime:
-    """A clock that moves when told to; stands in for the module ``time``."""
+    """A clock that tests move by hand; stands in for the module ``time``."""
 
     def __init__(self) -> None:
-        self.now = time.monotonic() + 100.0  # s; what began on the true clock is long ago
+        self.now = time.monotonic() + 100.0  # s; later than anything on the true clock
         self.since_1970 = 1.7e9  # of the monotonic clock's zero
 
     def monotonic(self) -> float:
@@ -225,7 +225,7 @@ class StillTime:
     def time(self) -> float:
         return self.since_1970 + self.now
 
-    time_ns = None  # nobody who gets this clock may read others
+    time_ns = None  # code under this clock may not use another
     sleep = None
 
 
@@ -237,11 +237,11 @@ def still_time(monkeypatch) -> StillTime:
     return clock
 
 
-# ---------------------------------------------------------------- a stage without clock
+# ---------------------------------------------------------------- a stage on the manual clock
 
 
 class Desk:
-    """A desk that keeps what it is told."""
+    """A desk that records its calls."""
 
     def __init__(self) -> None:
         self.names: list[str] = []
@@ -272,7 +272,7 @@ class Desk:
 
 
 class Stage:
-    """An instrument that plays as fast as it can, and OSC before it, on a clock of its own."""
+    """An OSC handler and its instrument, on the manual clock."""
 
     RATE = 48000
 
@@ -298,7 +298,7 @@ class Stage:
         return frame + (1e-9 * time_ns - moment) * self.RATE * self.pace
 
     def take(self, packet: bytes, ear: Ear | None = None) -> None:
-        """Let a packet come in now."""
+        """Receive a packet now."""
         for _ in self.handler.handle(packet, ear or self.ear, self.clock.monotonic_ns()):
             pass
 
@@ -306,7 +306,7 @@ class Stage:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
 
     def ask(self, address: str, *arguments: Any, tags: str | None = None) -> list[Heard]:
-        """Say something, and return what is heard by the next flush."""
+        """Send a message; return the answers up to the next flush."""
         self.ear.heard()
         self.tell(address, *arguments, tags=tags)
         self.clock.now += 0.02
@@ -314,7 +314,7 @@ class Stage:
         return self.ear.heard()
 
     def pass_time(self, seconds: float) -> np.ndarray:
-        """Play on, as a device of this pace would; return what is heard."""
+        """Play on at the device's pace; return the sound."""
         out = []
         end = self.clock.now + seconds
         while self.clock.now < end:
@@ -334,11 +334,11 @@ class Stage:
         return target_of(self.instrument, address)
 
     def frames(self, address: str) -> list[int]:
-        """When a parameter was told to move, so far."""
+        """The frames at which a parameter was moved, so far."""
         return [frame for frame, moved, _ in self.events if moved == address]
 
     def late(self) -> int:
-        """Events that came after their frame."""
+        """Number of events that came after their frame."""
         return int(self.instrument.meters()["late_events"])
 
 
@@ -394,14 +394,14 @@ class Client:
         raise AssertionError(f"no {address} within {within_s} s")
 
     def sync(self) -> None:
-        """Wait until all said so far is acted on; forget what was heard."""
+        """Wait until all messages sent so far are handled; discard the answers."""
         token = time.monotonic_ns()
         self.tell("/ping", token)
         while self.wait_for("/pong") != [token]:
             pass
 
     def value(self, address: str) -> float:
-        """Where a parameter is."""
+        """The value of a parameter."""
         self.sync()
         self.tell("/get", address)
         (value,) = self.wait_for(address)
@@ -432,7 +432,7 @@ class Stream:
         self.take(Wire.message("/yehu" + address, *arguments, tags=tags))
 
     def next(self, within_s: float = PATIENCE_S) -> Heard | None:
-        """The next message; None if none comes within the time, or the other end hung up."""
+        """The next message; None after the time, or when the server closed the connection."""
         self.socket.settimeout(within_s)
         while (packet := self._packet()) is None:
             try:
@@ -463,7 +463,7 @@ class Stream:
     value = Client.value
 
     def has_ended(self, within_s: float = PATIENCE_S) -> bool:
-        """Whether the other end hangs up."""
+        """Whether the server closes the connection within the time."""
         self.socket.settimeout(within_s)
         try:
             while self.socket.recv(1 << 16):
@@ -479,7 +479,7 @@ class Stream:
 
 
 class Hall:
-    """A server that plays to nobody, and whoever comes to play it."""
+    """A server without a device, and its clients."""
 
     def __init__(self, folder: Path, ending: contextlib.ExitStack, **options: Any) -> None:
         self.said: list[str] = []
@@ -516,7 +516,7 @@ class Hall:
         return stream
 
     def moves(self) -> list[tuple[int, str, float]]:
-        """What was applied since the last call: frame, address, value."""
+        """The events applied since the last call: frame, address, value."""
         self.wait_frames(1)
         return [
             (int(e["frame"]), ADDRESSES[int(e["index"])], float(e["target"]))
@@ -524,7 +524,7 @@ class Hall:
         ]
 
     def settle(self) -> list[tuple[int, str, float]]:
-        """Wait until all that is decided so far is played; return what was applied."""
+        """Wait until everything decided so far is played; return the events applied."""
         self.wait_frames(2 * self.player.delay + 1024)
         return self.moves()
 
@@ -536,14 +536,14 @@ class Hall:
         return target_of(self.instrument, address)
 
     def level(self, seconds: float = 0.2) -> float:
-        """How loud it is for a while from now (rms)."""
+        """RMS of the sound from now on for some seconds."""
         start = self.instrument.frame
         self.wait_frames(round(seconds * self.instrument.rate))
         _, sound = self.instrument.taped(start)
         return float(np.sqrt(np.mean(np.square(sound, dtype=np.float64))))
 
     def is_at_rest(self) -> bool:
-        """Whether nothing is left sounding or held."""
+        """Whether no note sounds or is held."""
         performer = self.player._performer
         return (
             self.player.pitch is None
@@ -554,7 +554,7 @@ class Hall:
         )
 
     def is_well(self) -> bool:
-        """Whether it listens, and met no defect of its own."""
+        """Whether the server listens, and no message has met a defect."""
         return self.ports._thread.is_alive() and self.ports.traffic.failures == 0
 
 
@@ -584,7 +584,7 @@ def hall(make_hall) -> Hall:
 
 @pytest.fixture(scope="module")
 def house(tmp_path_factory) -> Iterator[Hall]:
-    """One server for a whole file of tests that leave it as it was."""
+    """One server for all tests of a file; each leaves it as it was."""
     with hall_opened(tmp_path_factory.mktemp("house")) as hall:
         yield hall
 
@@ -599,7 +599,7 @@ def web_house(tmp_path_factory) -> Iterator[Hall]:
 
 @contextlib.contextmanager
 def python_is_busy() -> Iterator[None]:
-    """While a thread of ours computes without a pause."""
+    """Keep a thread of this process busy within the block."""
     ending = threading.Event()
 
     def count() -> None:
@@ -624,7 +624,7 @@ def busy() -> Callable[[], contextlib.AbstractContextManager[None]]:
 
 @pytest.fixture(autouse=True)
 def _quiet() -> Iterator[None]:
-    """python-osc warns of each odd byte by itself; not thousands of times to our log."""
+    """Keep python-osc's thousands of warnings about odd bytes out of the log."""
     logging.getLogger().setLevel(logging.ERROR)
     yield
     logging.getLogger().setLevel(logging.WARNING)
@@ -632,5 +632,5 @@ def _quiet() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def kit() -> SimpleNamespace:
-    """What tests without a hall need to make connections of their own."""
+    """The client classes, for tests that connect to servers of their own."""
     return SimpleNamespace(Client=Client, Stream=Stream)

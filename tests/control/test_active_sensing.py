@@ -1,4 +1,4 @@
-"""A controller that promised to say something regularly, and does not."""
+"""MIDI active sensing: a controller that falls silent lets go of its notes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Port:
 
 
 class Desk:
-    """One open port, a clock, and what is told of it."""
+    """One open port, a manual clock, and the events reported."""
 
     def __init__(self, monkeypatch) -> None:
         self.now_ns = 100_000 * MS

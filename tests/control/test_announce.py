@@ -1,4 +1,4 @@
-"""The server is found by zeroconf, on loopback only in these tests."""
+"""Announcing the server by zeroconf; these tests do so on loopback only."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_one_that_ends_before_it_began_leaves_nothing():
 
 
 class Browser:
-    """Someone who looks for servers on loopback."""
+    """A zeroconf browser on loopback."""
 
     def __init__(self) -> None:
         self.found: dict[str, tuple[str, int]] = {}

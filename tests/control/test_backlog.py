@@ -1,4 +1,4 @@
-"""What waits to be handled: in order, and nobody's long work before others' short."""
+"""The backlog: a sender's packets in order, and senders in turn, whatever one of them sends."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SHORT_NS, LONG_NS = SLICE_NS // 100, SLICE_NS + SLICE_NS // 2
 
 
 class Clock:
-    """Goes on where something is done; stands in for the module ``time``."""
+    """Advances with each step of work; stands in for the module ``time``."""
 
     def __init__(self) -> None:
         self.now_ns = 0
@@ -39,7 +39,7 @@ class Clock:
 
 
 class Named(str):
-    """A peer: a host, and after an @ which of its senders."""
+    """A peer, named by its host and, after an @, its sender."""
 
     __slots__ = ()
 
@@ -49,7 +49,7 @@ class Named(str):
 
 
 class Done:
-    """Keeps what was handled: a packet is as many steps as it has letters."""
+    """Records what is handled; a packet takes one step for each letter."""
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
@@ -71,7 +71,7 @@ class Done:
         return self.backlog.add(packet, Named(peer), 0, size)
 
     def work(self) -> str:
-        """Handle all of it; what was handled, in order."""
+        """Handle everything; return what was handled, in order."""
         for _ in range(10_000):
             if not self.backlog:
                 break

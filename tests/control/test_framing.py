@@ -1,4 +1,4 @@
-"""Packets in streams: both framings, however the stream is cut, and damaged ones."""
+"""Packets in streams: both framings, cut anywhere, and damaged."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def prefixed(packets: Iterable[bytes]) -> bytes:
 
 
 def slipped(packets: Iterable[bytes]) -> bytes:
-    """As of OSC 1.1, an END before and after each."""
+    """SLIP of OSC 1.1: an END before and after each packet."""
     return b"".join(slip.encode(packet) for packet in packets)
 
 
 def slipped_bare(packets: Iterable[bytes]) -> bytes:
-    """As of RFC 1055's first sketch, an END after each only."""
+    """SLIP of RFC 1055's first sketch: an END after each packet only."""
     return b"".join(slip.encode(packet)[1:] for packet in packets)
 
 
@@ -144,7 +144,7 @@ def test_what_is_no_osc_after_a_length_ends_a_stream_with_its_first_byte():
 
 
 class Sought(bytearray):
-    """Counts the bytes that are looked at for another."""
+    """Counts the bytes searched for another."""
 
     count = 0
 

@@ -1,8 +1,8 @@
-"""A player beside hostile senders: no note is lost, nobody waits for long, memory is bounded.
+"""A player beside hostile senders loses no note and is answered soon; memory is bounded.
 
-A short version of bench/hostile.py, with bounds that a busy machine of two cores holds: how long
-a ping takes there is more the machine's doing than ours. What the system drops of a sender who is
-faster than Python reads, it drops of others, too.
+A short version of bench/hostile.py, with bounds that hold on a busy machine of two cores, where the
+time of a ping depends more on the machine than on the server. When one sender is faster than Python
+reads, the system drops packets of all senders.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ import pytest
 from hostile import Served, measured
 
 SECONDS = 0.7
-RECOVERS_S = 15.0  # where the system dropped a ping, there is nothing to wait for
-PING_MS = 10_000.0  # half of them; some took a minute, or were never answered
+RECOVERS_S = 15.0  # a ping that the system dropped is never answered
+PING_MS = 10_000.0  # median; single ones took a minute
 GROWTH_MB = 64.0
 KINDS = [
     "web_page",
@@ -31,13 +31,13 @@ KINDS = [
     "subscriptions",
     "due_never",
 ]
-# On Linux the system drops these before they take room, and nobody else's.
+# On Linux the system drops these, and only these, before they take room.
 TOO_LONG = ("datagrams_of_many", "questions") if sys.platform == "linux" else ()
 
 
 @pytest.fixture
 def served() -> Iterator[Served]:
-    served = Served()  # of its own: an attack may leave work for a minute
+    served = Served()  # one for each test: an attack may leave work for a minute
     yield served
     served.stop()
 

@@ -1,4 +1,4 @@
-"""A thread with an asyncio loop outlasts what goes wrong in it."""
+"""A thread with an asyncio loop survives errors in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What OSC messages do: to the instrument, to time, and to who asks."""
+"""OSC messages: parameters, calls, time tags, answers, subscriptions."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Whatever comes in over the wire, the server goes on, leaves no note behind, does not grow.
+"""Garbage over the wire neither stops the server nor leaves a note nor makes it grow.
 
-What single packets do is fuzzed: see tests/fuzz.
+tests/fuzz fuzzes single packets.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ ODD = ["/yehu/*", "/yehu/*/*", "/yehu/bow/[a-z", "/*/note", "/", "/yehu/record/s
 
 
 def garbage(wire, chance: random.Random, now_s: float) -> bytes:
-    """Something that may be a packet."""
+    """Bytes that may be a packet."""
     kind = chance.randrange(8)
     address = chance.choice(PARAMS + PLAYING + ASKING + ODD)
     if kind == 0:

@@ -1,4 +1,4 @@
-"""OSC addresses of the user's own, which the mapping gives a meaning."""
+"""OSC addresses that the user's mapping binds to parameters."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def own_stage(stage):
 
 
 def say(stage, wire, address: str, *arguments, tags: str | None = None) -> list[str]:
-    """Send a message without the prefix; the errors that come back."""
+    """Send a message without the prefix; return the errors answered."""
     stage.ear.heard()
     stage.take(wire.message(address, *arguments, tags=tags))
     return [" ".join(heard.arguments) for heard in stage.ear.heard()]

@@ -1,4 +1,4 @@
-"""What people really use: liblo, Pure Data, python-osc."""
+"""OSC from and to other programs: liblo, Pure Data, python-osc."""
 
 from __future__ import annotations
 

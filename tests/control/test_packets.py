@@ -1,4 +1,4 @@
-"""Packets taken apart: every type, bundles in bundles, and whatever else may come."""
+"""Parsing packets: every type, nested bundles, and damaged data."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ LONGEST_S = 2.0
 
 
 class HangError(BaseException):
-    """It does not come to an end."""
+    """Parsing does not end."""
 
 
 @contextlib.contextmanager
 def soon() -> Iterator[None]:
-    """Nothing here may take long: it would stop the one thread that listens."""
+    """Fail a call that takes long: it would block the only thread that listens."""
     if not hasattr(signal, "setitimer"):
         yield
         return

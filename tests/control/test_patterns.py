@@ -1,4 +1,4 @@
-"""Address patterns: what they fit, what they refuse, and that none takes long."""
+"""Address patterns: what they match, what they refuse, and that none takes long."""
 
 from __future__ import annotations
 

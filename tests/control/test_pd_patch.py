@@ -21,7 +21,7 @@ WATCHED = "/yehu/playing/vibrato"  # nothing but us moves it
 
 
 class Desk:
-    """A Pd with the patch open, and one that moves its sliders and watches one."""
+    """A Pd with the patch open, moved and watched from another patch."""
 
     def __init__(self, folder, port: int) -> None:
         patch = folder / "yehu.pd"
@@ -56,7 +56,7 @@ class Desk:
         self.printed.extend(line.strip() for line in self._pd.stderr)
 
     def move(self, name: str, value: float | str) -> None:
-        """Send something to a slider or button of the patch."""
+        """Send a value to a slider or button of the patch."""
         self._socket.sendto(f"list {name} {value};\n".encode(), ("127.0.0.1", self._port))
 
     def close(self) -> None:

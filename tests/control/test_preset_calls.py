@@ -18,7 +18,7 @@ HEAD = "version = 1\n"
 
 @pytest.fixture
 def own(own_presets):
-    """The player's own folder, empty before and after."""
+    """The user's own folder, empty before and after."""
     own_presets.mkdir(parents=True, exist_ok=True)
     yield own_presets
     for file in own_presets.iterdir():

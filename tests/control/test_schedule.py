@@ -1,4 +1,4 @@
-"""Time tags: what waits for its time, and the frames that moments fall on."""
+"""Time tags: scheduled messages, and the frames of their times."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def test_sixty_thousand_notes_wait_thirty_thousand_of_one_sender(wire):
 
 
 class Device:
-    """A device of some pace; stands in for a player with an instrument."""
+    """A device that runs at some pace; stands in for a player with an instrument."""
 
     def __init__(self, clock, pace: float = 1.0) -> None:
         self.pace = pace

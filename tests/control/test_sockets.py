@@ -1,4 +1,4 @@
-"""Sockets: nothing is lost that need not be, what is lost is counted, and who may speak."""
+"""Sockets: no packet is lost without need, every loss is counted, and only some may send."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells"
 
 
 class Keeper:
-    """Keeps what comes, where it is not held up."""
+    """Keeps the packets that come, unless it is held up."""
 
     def __init__(self) -> None:
         self.packets: list[tuple[bytes, object, int]] = []

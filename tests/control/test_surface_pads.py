@@ -1,4 +1,4 @@
-"""What the pads of the surfaces send, on a real server."""
+"""The pads of the surfaces play a real server."""
 
 from __future__ import annotations
 

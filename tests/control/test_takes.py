@@ -1,4 +1,4 @@
-"""What a server records and captures: kept whatever anybody asks for, and whatever fails."""
+"""Recordings and captures are kept whatever clients ask for and whatever fails."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from yehu_server.score.capture import read_capture
 
 @pytest.fixture
 def disk() -> Iterator[Callable[[int], None]]:
-    """A disk that gets full: no file may be longer than so many bytes."""
+    """A disk that becomes full: no file may grow beyond so many bytes."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     yield lambda most_bytes: resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, hard))
     resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))

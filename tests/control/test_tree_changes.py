@@ -1,4 +1,4 @@
-"""The tree that OSCQuery tells changes as presets are kept and sources are learned."""
+"""OSCQuery's tree changes as presets are saved and sources are learned."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def web(hall):
 
 
 def changed(web: WebSocket) -> str:
-    """The path that the next change is at."""
+    """The path of the next change."""
     while (heard := web.next()) is not None:
         if isinstance(heard, dict) and heard["COMMAND"] == "PATH_CHANGED":
             return heard["DATA"]

@@ -1,4 +1,4 @@
-"""OSCQuery and metrics by HTTP, asked by a client that knows nothing of the package."""
+"""OSCQuery and metrics by HTTP, asked by a client independent of the package."""
 
 from __future__ import annotations
 
@@ -257,7 +257,7 @@ def test_who_is_not_on_the_list_is_refused(make_hall):
 
 
 def raw(port: int, data: bytes) -> bytes:
-    """What comes back for bytes, until the server hangs up."""
+    """The answer to bytes, until the server closes the connection."""
     with socket.create_connection((HOST, port), timeout=20.0) as connection:
         connection.sendall(data)
         answer = b""

@@ -1,4 +1,4 @@
-"""OSC and OSCQuery's commands by WebSocket, from clients that know nothing of the package."""
+"""OSC and OSCQuery's commands by WebSocket, from clients independent of the package."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def web(connect) -> WebSocket:
 
 @pytest.fixture(autouse=True)
 def _as_it_was(web_house, patience):
-    """Each test leaves the server well, and nobody behind."""
+    """Check that each test leaves the server well and without clients."""
     yield
     status = web_house.server.status
     patience(lambda: status()["web_sockets"] == 0, "all WebSockets are gone")
@@ -394,7 +394,7 @@ def test_nobody_is_told_anything_after_its_time(web_house, patience):
 
 
 def lags(web_house, web: WebSocket, changes: int, per_second: float) -> list[float]:
-    """How long each change takes to a listener, in s, while other messages arrive."""
+    """Time (s) from each change to its listener while other messages arrive."""
     ending = threading.Event()
     client, other = web_house.client(), web_house.client()
 

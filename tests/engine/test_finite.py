@@ -1,4 +1,4 @@
-"""Every sample is a number within full scale, whatever has happened to the instrument inside."""
+"""Every sample is finite and within full scale, whatever the instrument's state is."""
 
 import math
 
@@ -14,7 +14,7 @@ STAGES = ("state", "gesture", "output")
 
 
 def fields(stage: str) -> list[str]:
-    """The names of a record's fractions."""
+    """The names of a record's floating-point fields."""
     kind = native.RIG[stage]
     return [name for name in kind.names if kind[name].base == np.float64]
 

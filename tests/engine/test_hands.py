@@ -32,7 +32,7 @@ def put(instrument: Instrument, **values: float) -> None:
 
 
 def rows(instrument: Instrument, seconds: float) -> np.ndarray:
-    """Controls of so much time [shape=(frames, columns)]."""
+    """Controls of the next seconds [shape=(frames, columns)]."""
     found = []
     for _ in range(round(seconds * RATE / 63)):
         instrument.process(np.zeros(63, np.float32))

@@ -1,4 +1,4 @@
-"""The running instrument: blocks, silence, lost states, and what it is told."""
+"""The running instrument: blocks, silence, lost states, parameters."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def test_an_empty_block_is_no_time():
 
 
 def test_a_block_with_gaps_in_memory_is_refused():
-    """What it is made of lies between its own samples and would be overwritten."""
+    """Other data lies between its samples and would be overwritten."""
     wider = np.zeros((64, 2), np.float32)
     with pytest.raises(TypeError, match="contiguous"):
         Instrument(RATE).process(wider[:, 0])

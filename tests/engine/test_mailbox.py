@@ -1,4 +1,4 @@
-"""Events on their way in: the rings between threads and processes, the heap in sample time."""
+"""Events to the instrument: rings between threads and processes, the heap in sample time."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from yehu_server.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET,
 from yehu_server.params.table import ENGINE, SLOT
 
 RATE = 22050
-PATIENCE_S = 120.0  # for other threads and processes; on a busy machine they took 20 s
-# While no bow lies on the strings, these change nothing that is heard.
+PATIENCE_S = 120.0  # for other threads and processes; they took 20 s on a busy machine
+# Parameters that are not heard while no bow is on the strings.
 INERT = [SLOT["/bow/force"], SLOT["/bow/pressure"]]
 run = partial(sound.run, block=4096)
 FAR = 10**9  # a frame that never comes
@@ -37,17 +37,17 @@ needs_memfd = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no mem
 
 
 def values(instrument: Instrument) -> tuple[float, ...]:
-    """What the inert parameters are now."""
+    """The values of the inert parameters."""
     return tuple(float(value) for value in instrument._rig["gesture"]["value"][0, INERT])
 
 
 def post_numbered(instrument: Instrument, number: int, frame: int = 0) -> bool:
-    """Post an event each part of which tells its number."""
+    """Post an event that carries its number in each of its parts."""
     return instrument.post(frame, INERT[number % 2], float(number), -number)
 
 
 def numbers(events: np.ndarray) -> np.ndarray:
-    """The numbers of events posted by `post_numbered`, all of whose parts must agree."""
+    """The numbers of events posted by `post_numbered`; all parts of each must agree."""
     found = -events["ramp"]
     np.testing.assert_array_equal(events["target"], found)
     np.testing.assert_array_equal(events["index"], np.array(INERT)[found % 2])
@@ -55,7 +55,7 @@ def numbers(events: np.ndarray) -> np.ndarray:
 
 
 def live(rate: float = RATE) -> Instrument:
-    """An instrument that lives in given memory."""
+    """An instrument in given memory."""
     return Instrument(rate, memory=mmap.mmap(-1, RIG_BYTES))
 
 
@@ -67,7 +67,7 @@ EVEN, ODD = INERT
 
 @numba.cfunc("int64(voidptr, int64, int64)")
 def storm(rig, start, count):
-    """Post numbered events as fast as can be, until all are taken; return how many were not."""
+    """Post numbered events as fast as possible, each until it is taken; return the refusals."""
     refused = 0
     for number in range(start, start + count):
         index = ODD if number % 2 else EVEN
@@ -93,7 +93,7 @@ def thread(work: Callable[[], object]) -> threading.Thread:
 
 
 class Aside:
-    """A thread that does something again and again until it is told to stop."""
+    """A thread that repeats some work within the block."""
 
     def __init__(self, work: Callable[[], object]) -> None:
         self._work, self._stop = work, threading.Event()
@@ -114,7 +114,7 @@ class Aside:
 def collect(
     instrument: Instrument, count: int, meanwhile: Callable[[], object] = bool
 ) -> np.ndarray:
-    """Read reports until there are so many."""
+    """Read reports until there are `count` of them."""
     reports, read = [], 0
     deadline = time.monotonic() + PATIENCE_S
     while read < count and time.monotonic() < deadline:
@@ -311,13 +311,13 @@ def test_cursors_are_words_of_their_own_in_cache_lines_of_their_own():
 
 
 def target(index: int, order: int) -> float:
-    """A value within the parameter's range that tells an event from all others."""
+    """A value within the parameter's range that no other event has."""
     param = ENGINE[index]
     return param.lo + (param.hi - param.lo) * order / (1 << 16)
 
 
 class Model:
-    """What the mailbox must do, in plain Python: a list, sorted anew at each frame."""
+    """The mailbox in plain Python: a list that is sorted at each frame."""
 
     def __init__(self) -> None:
         self.frame, self.late, self.order = 0, 0, 0
@@ -326,7 +326,7 @@ class Model:
         self.values: list[tuple[float, ...]] = []  # after each frame
 
     def post(self, frame: int, index: int) -> float:
-        """Post an event, and return the target that tells it from all others."""
+        """Post an event; return its target, which no other event has."""
         self.order += 1
         self.late += frame < self.frame
         self.waiting.append((frame, self.order, index))

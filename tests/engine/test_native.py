@@ -1,4 +1,4 @@
-"""The compiled calls: what their machine code may do, and the tape."""
+"""The machine code of the compiled calls, and the tape."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from yehu_server.engine.instrument import RIG_BYTES, TAPE_FRAMES, Instrument
 RATE = 22050
 CALLS = ["callback", "post", "read_meters", "frame_at", "read_reports", "taped"]
 
-# All that the audio thread may call. Of these, none waits, none allocates.
+# Everything that the audio thread may call: none of these waits or allocates.
 REAL_TIME_SAFE = {
     *("clock_gettime", "memcpy", "memset", "memmove"),
     *("exp", "pow", "sin", "cos", "sincos", "tanh", "sqrt", "fabs", "floor"),
@@ -40,7 +40,7 @@ on_x86 = pytest.mark.skipif(platform.machine() != "x86_64", reason="reads x86-64
 
 @cache
 def machine(name: str) -> numba.core.codegen.CPUCodeLibrary:
-    """Compile a call anew: numba shows no code of what comes from its cache."""
+    """Compile a call anew: numba has no code to show for one from its cache."""
     call = getattr(native, name)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(jit, "IS_CACHED", False)
@@ -48,20 +48,20 @@ def machine(name: str) -> numba.core.codegen.CPUCodeLibrary:
 
 
 def parts(name: str) -> dict[str, str]:
-    """The optimised code of each function and global that belongs to a call, by its name."""
+    """The optimised code of each function and global of a call, by name."""
     module = llvm.parse_assembly(machine(name).get_llvm_str())
     return {part.name: str(part) for part in [*module.functions, *module.global_variables]}
 
 
 def body(name: str) -> str:
-    """The name of the call's own function, without the wrapper that numba puts around."""
+    """The name of the call's own function, inside numba's wrapper."""
     is_mine = re.compile(rf"_ZN\d+yehu_server6engine6native\d+{name}B")
     (mine,) = [part for part in parts(name) if is_mine.match(part)]
     return mine
 
 
 def reached(name: str) -> dict[str, str]:
-    """What the call's own function refers to, and what that refers to, and so on."""
+    """Everything that the call's own function refers to, directly or not."""
     known, found, ahead = parts(name), {}, [body(name)]
     while ahead:
         part = ahead.pop()
@@ -77,7 +77,7 @@ def lines(name: str) -> list[str]:
 
 
 def offsets(name: str) -> dict[str, int]:
-    """How far into the rig each pointer of the call's own function leads."""
+    """The offset in the rig of each pointer of the call's own function."""
     step = re.compile(r"(%\S+) = getelementptr (?:inbounds |nuw )*i8, ptr %arg\.rig, i64 (\d+)$")
     found = (step.match(line.strip()) for line in lines(name))
     return {match[1]: int(match[2]) for match in found if match}
@@ -133,7 +133,7 @@ def test_a_call_calls_nobody_by_address_and_waits_for_nobody(name):
 
 
 def names(listing: str, name: str) -> set[str]:
-    """What a call's own function names in x86-64 assembly: functions and data of others."""
+    """The foreign functions and data that a call's own function names in x86-64 assembly."""
     code = listing.partition(f"\n{body(name)}:")[2]
     code = re.split(r"\.cfi_endproc|\.size\b", code)[0]
     code = re.sub(r"#.*|^\s*\..*", "", code, flags=re.MULTILINE)
@@ -145,7 +145,7 @@ def names(listing: str, name: str) -> set[str]:
 
 @cache
 def assembly(name: str, processor: str) -> str:
-    """The assembly of a call for another x86-64 processor, which need not be here to run it."""
+    """The assembly of a call for another x86-64 processor; this one need not be able to run it."""
     module = llvm.parse_assembly(machine(name).get_llvm_str())
     target = llvm.Target.from_triple(llvm.get_process_triple())
     return target.create_target_machine(cpu=processor, features="", opt=3).emit_assembly(module)
@@ -166,7 +166,7 @@ def test_nor_does_it_on_other_processors(name, processor):
 
 @on_x86
 def test_the_assembly_is_that_of_the_processor_asked_for():
-    """Or the last test would say little."""
+    """Otherwise the test before would prove little."""
     old, middle, new = (assembly("callback", processor) for processor in PROCESSORS)
     assert "rint" in names(old, "callback") - names(middle, "callback")
     assert ("vfmadd" in old, "vfmadd" in middle) == (False, True)  # multiply and add in one

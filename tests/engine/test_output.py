@@ -1,4 +1,4 @@
-"""The way out: gain, level, the limiter."""
+"""The output stage: gain, level, limiter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The processor's clocks, and denormal numbers, which the audio thread counts as zero."""
+"""The processor's clocks, and denormal numbers, which the audio thread flushes to zero."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ def thread_cpu_ns():
 
 
 def keeps_denormals() -> tuple[bool, bool]:
-    """Whether this thread keeps a result that is denormal, and an operand."""
+    """Whether this thread keeps denormal results, and denormal operands."""
     small, large = np.array([SMALLEST, 5e-324]), np.array([0.125, 2.0**60])
     product = small * large
     return bool(product.view(np.int64)[0]), bool(product.view(np.int64)[1])
 
 
 def control() -> int:
-    """How this thread calculates, without the flags of what has happened."""
+    """The floating-point control bits of this thread, without its status flags."""
     mode = flush()
     restore(mode)
     return mode & ~0x3F if platform.machine() in processor.X86 else mode
@@ -148,7 +148,7 @@ def test_a_block_leaves_the_threads_mode_as_it_was(is_flushed):
 
 
 def denormals(instrument: Instrument) -> int:
-    """How many numbers of the state are denormal."""
+    """Number of denormal values in the state."""
     state = instrument._rig["state"][0]
     return sum(
         int(((part != 0.0) & (np.abs(part) < SMALLEST)).sum())
@@ -157,7 +157,7 @@ def denormals(instrument: Instrument) -> int:
 
 
 def ringing() -> Instrument:
-    """An instrument that has been bowed and is left to ring."""
+    """An instrument that rings after a bow stroke."""
     instrument = Instrument(RATE)
     instrument.write("/bow/side", 1.0)
     instrument.write("/bow/speed", 0.2)
@@ -206,7 +206,7 @@ def test_a_string_that_dies_away_never_holds_a_denormal():
 
 
 def assembly(monkeypatch: pytest.MonkeyPatch, machine: str, triple: str) -> str:
-    """A function of flush and restore as a machine's assembly."""
+    """Assembly of a function that flushes and restores, for a machine."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     try:

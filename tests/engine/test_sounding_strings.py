@@ -1,4 +1,4 @@
-"""Strings that are tuned and damped while they sound, and hair that grips unevenly."""
+"""Strings tuned and damped while they sound, and uneven bow hair."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the audio side tells of itself: levels, shapes, load, and the time of a frame."""
+"""Telemetry of the audio side: levels, string shapes, load, the time of a frame."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ def test_the_load_is_cpu_time_over_the_deadline():
 
 
 def account(meters: np.ndarray, *loads: float) -> None:
-    """Book callbacks of these loads, without flags."""
+    """Account for callbacks of these loads, without flags."""
     for load in loads:
         seconds = meters[0]["block"] / meters[0]["rate"]
         telemetry.account(meters[0], round(1e9 * load * seconds), 0)
@@ -193,7 +193,7 @@ def test_under_runs_are_counted_as_the_device_flags_them():
 
 
 class Clock:
-    """A device whose callbacks begin about when they should, and the loop that follows it."""
+    """A device with jittering callbacks, and the delay-locked loop that follows it."""
 
     def __init__(self, rate: float, block: int, drift: float = 1.0, jitter_ns: float = 0.0) -> None:
         self.meters = fresh(rate, 0)
@@ -213,7 +213,7 @@ class Clock:
         return started
 
     def follow(self, seconds: float) -> np.ndarray:
-        """How far off (ns) start and frame time were, and ns per frame: one row a callback."""
+        """Errors of start and frame time (ns), and ns per frame: one row per callback."""
         rows = []
         for _ in range(round(seconds * 1e9 / (self.block * self.ns_per_frame))):
             exact = self.exact_ns
@@ -292,7 +292,7 @@ def test_one_callback_that_begins_late_hardly_moves_the_time():
 
 
 class Host(Clock):
-    """A sound server with a period of its own, that keeps what is over of a block."""
+    """A sound server with its own period, which keeps the rest of each block."""
 
     def __init__(self, period: int, block: int, **options: float) -> None:
         super().__init__(48000.0, block, **options)
@@ -302,7 +302,7 @@ class Host(Clock):
         self.ahead: list[float] = []  # frames played before their time, after each request
 
     def frame_at(self, moment_ns: float) -> float:
-        """The frame that what arrives at a moment is stamped with, but for the delay."""
+        """The frame stamped on an arrival at some time, without the delay."""
         return told(self._instrument, self.meters).frame_at(round(moment_ns))
 
     def ask(self, late_ns: float = 0.0, takes_ns: float = 50e3) -> None:
@@ -390,7 +390,7 @@ def test_what_catches_up_after_a_stall_is_not_taken_for_a_longer_period_for_long
 
 
 def told(instrument: Instrument, meters: np.ndarray) -> Instrument:
-    """Let an instrument tell what is in this record."""
+    """Let an instrument publish a record."""
     instrument._rig["published"] = meters
     return instrument
 
@@ -462,7 +462,7 @@ METERS_AT, POSTED_AT = native.METERS_AT, native.POSTED_AT
 
 @numba.cfunc("int64(voidptr, int64)")
 def tell(rig, times):
-    """Publish records, all of whose parts tell the same number."""
+    """Publish records that hold one number in all their fields."""
     t = numba.carray(at(rig, METERS_AT), (1,), METERS)[0]
     for number in range(times):
         t.frame, t.callbacks, t.unreported = number, number, number
@@ -476,7 +476,7 @@ def tell(rig, times):
 
 @numba.cfunc("int64(voidptr, voidptr, int64)")
 def listen(rig, into, times):
-    """Read records; return how many were whole, or below zero how many were not."""
+    """Read records; return the number of whole ones, or minus the number of torn ones."""
     t = numba.carray(into, (1,), METERS)[0]
     whole, torn = 0, 0
     for _ in range(times):

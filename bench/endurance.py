@@ -5,8 +5,8 @@
 `yehu-server serve` plays with --record and --capture. Another process sends dense OSC and MIDI, and
 OSCQuery clients listen to every address. An idle stream on the same device shows which deadlines
 the machine itself misses. Memory is sampled every few seconds. In the end the capture is replayed
-and compared with the recording, sample by sample. Without --audio-device the benchmark starts a JACK
-server with the dummy driver, which has no real-time rights.
+and compared with the recording, sample by sample. Without --audio-device the benchmark starts a
+JACK server with the dummy driver, which has no real-time rights.
 """
 
 from __future__ import annotations

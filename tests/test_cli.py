@@ -27,7 +27,7 @@ EXAMPLE = {
     "duration": 0.05,
     "controls": {"bow_force": 0.5, "bow_velocity": [[0, 0.0], [0.03, 0.2]]},
 }
-# As a disk with 64 kB left; what is compiled must be so before.
+# A disk with 64 kB left. The kernel is compiled first: its cache needs more.
 FULL_DISK = (
     "import resource; from yehu_server.engine.native import warm_up; warm_up();"
     "resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));" + COMMAND
@@ -35,7 +35,7 @@ FULL_DISK = (
 
 
 def start(*words: object, code: str = COMMAND, **options) -> subprocess.Popen:
-    """Run a command line in a process of its own, which an interrupt reaches."""
+    """Run a command line in another process, which can be interrupted."""
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     return subprocess.Popen(
         [sys.executable, "-c", code, *(str(word) for word in words)],
@@ -198,7 +198,7 @@ def test_a_terminal_gets_a_progress_bar_and_a_pipe_its_summary(tmp_path, out):
     try:
         while chunk := os.read(ours, 4096):
             seen += chunk
-    except OSError:  # a terminal nobody writes to any more
+    except OSError:  # the process closed the terminal
         pass
     os.close(ours)
     stdout, _ = process.communicate(timeout=60)
@@ -377,7 +377,7 @@ def test_a_name_with_a_line_break_is_still_one_line(refused, tune, tmp_path, out
 
 @pytest.fixture(params=["render", "simulate"])
 def into(request, tune, gesture):
-    """The words of a good command, but for its target."""
+    """A valid command line without its target."""
     return request.param, tune if request.param == "render" else gesture, "-o"
 
 
@@ -443,7 +443,7 @@ def test_what_is_no_result_of_a_rendering_is_replaced_only_when_told(
 def test_an_output_that_cannot_be_written_is_found_before_anything_is_compiled(
     refused, tune, tmp_path, monkeypatch
 ):
-    # The first run on a machine says that it compiles, and takes a while: not before this.
+    # Compiling, on the first run on a machine, takes long: it must come after this check.
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "fresh"))
     refused("render", tune, "-o", tmp_path / "none" / "x.wav")
 

@@ -1,4 +1,4 @@
-"""Compiled code is kept on disk, and what has become of it there never keeps us from playing."""
+"""Compiled code is cached on disk; a damaged or unusable cache never prevents playing."""
 
 import errno
 import os
@@ -17,7 +17,7 @@ def third_of(number: int) -> int:
 
 
 class Kept:
-    """A small function that is compiled, kept in a folder, and loaded again."""
+    """A small function that is compiled, cached in a folder, and loaded again."""
 
     def __init__(self, folder, monkeypatch) -> None:
         self.folder = folder
@@ -26,7 +26,7 @@ class Kept:
         monkeypatch.setattr(code_cache, "_troubles", set())
 
     def start(self, function=third_of) -> tuple[int, bool]:
-        """What the function says of 12, and whether its code was there, as at a new start."""
+        """Call the function with 12, as after a start; return the result, and whether it was cached."""
         native = jit.Native("int64(int64)", function)
         return native.call(12), native.compiled.cache_hits == 1
 
@@ -169,7 +169,7 @@ def test_who_writes_at_once_leaves_a_file_that_is_whole(tmp_path):
 
 @pytest.mark.usefixtures("kept")
 def test_numba_calls_what_we_put_in_the_place_of_its_cache():
-    """Where this fails, numba has changed, and code is compiled at each start."""
+    """If this fails, numba has changed, and code is compiled at each start."""
 
     def double(number: int) -> int:
         return number * 2

@@ -1,4 +1,4 @@
-"""What is kept under a key of its source is made anew where the code changes, not its prose."""
+"""Keys of source: a change of code changes the key, a change of prose does not."""
 
 import ast
 import io
@@ -37,7 +37,7 @@ def third(number: int) -> int:
 
 
 def words(source: str, without: frozenset[tuple[int, int]] = frozenset()) -> list[str]:
-    """The tokens that do something, but for those that begin at some places."""
+    """The tokens of code, without those at the given places."""
     tokens = tokenize.generate_tokens(io.StringIO(source).readline)
     return [
         token.string for token in tokens if token.type not in LAYOUT and token.start not in without
@@ -45,7 +45,7 @@ def words(source: str, without: frozenset[tuple[int, int]] = frozenset()) -> lis
 
 
 def docstrings(source: str) -> frozenset[tuple[int, int]]:
-    """Where docstrings begin."""
+    """The places where docstrings begin."""
     kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     found = [
         node.body[0]
@@ -105,7 +105,7 @@ def test_a_comment_compiles_nothing_anew(tmp_path, monkeypatch):
     monkeypatch.setattr(code_cache, "_troubles", set())
 
     def was_there(source: str) -> bool:
-        """Whether the code of `third` was kept, at a new start."""
+        """Whether the code of `third` was cached, after a new start."""
         path = tmp_path / "thirds.py"
         path.write_text(source, encoding="utf-8")
         third = runpy.run_path(str(path), run_name="thirds")["third"]

@@ -1,4 +1,4 @@
-"""Whatever is given for a file of one's own, there is one line of error, and soon."""
+"""Any file that is given for one of ours gets one line of error, soon."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Threads go on through the system's troubles, and know when they slept."""
+"""Threads survive errors of the system, and notice when it slept."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_why_says_what_the_system_says():
 
 
 class Work:
-    """Fails with these, each turn with the next, and then ends."""
+    """Work that raises these errors in turn, and then ends."""
 
     def __init__(self, monkeypatch, *errors: BaseException | None) -> None:
         monkeypatch.setattr(Backoff, "failed", lambda _backoff: 0.0)

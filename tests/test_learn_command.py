@@ -1,4 +1,4 @@
-"""``yehu-server learn`` and ``mappings show --live``, with a server that runs."""
+"""``yehu-server learn`` and ``mappings show --live``, with a running server."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def at(server) -> tuple[str, str]:
 
 @contextlib.contextmanager
 def a_fader_that_moves(server, address: str = "/my/fader"):
-    """Somebody who moves a fader up and down until it is enough."""
+    """Move a fader up and down within the block."""
     ending = threading.Event()
 
     def move() -> None:

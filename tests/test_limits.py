@@ -1,4 +1,4 @@
-"""Where the system lets us open few files only."""
+"""The limit on open files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def serve(files: int, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run ``serve`` for a moment with so many open files allowed."""
+    """Run ``serve`` briefly with a limit on open files."""
     ports = ("--osc", "127.0.0.1:0", "--http", "127.0.0.1:0")
     return subprocess.run(
         [sys.executable, "-c", COMMAND, "serve", "--audio-device", "null", *ports, *words],

@@ -1,4 +1,4 @@
-"""What others wrote reaches terminals, logs and answers without steering them."""
+"""Foreign text in terminals, logs and answers: bounded lines without control codes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``yehu-server mappings``: files of one's own, listed, checked and converted."""
+"""``yehu-server mappings``: the user's own files, listed, checked and converted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a command may write over: nothing that it reads, and nothing that somebody made."""
+"""No command overwrites what it reads, or what the user made."""
 
 from __future__ import annotations
 

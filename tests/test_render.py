@@ -1,4 +1,4 @@
-"""MIDI files into sound files: `yehu-server render`, read back from what it wrote."""
+"""``yehu-server render``: MIDI files to sound files, read back."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def play(command, tmp_path):
 
 
 def samples(path: Path, **options) -> np.ndarray:
-    """What a score sounds like, before it becomes a file."""
+    """The sound of a score, before it is written to a file."""
     style = Style(**{name: options.pop(name) for name in ("seed", "settings") if name in options})
     blocks = Performance(read_score(path), Options(style=style, **options)).blocks()
     return np.concatenate(list(blocks))
@@ -81,7 +81,7 @@ def test_shi_bei_jiu_is_played_from_its_first_note_to_its_last(play):
     assert 27.0 < summary["duration_s"] < 33.0
     assert rms(sound) > 0.01
     assert np.abs(sound).max() <= 1.0
-    # It never falls silent for longer than a rest, before its tail.
+    # No second of it is silent, before its tail.
     seconds = sound[: 27 * 44100].reshape(27, 44100)
     assert all(rms(second) > 0.003 for second in seconds)
 
@@ -227,7 +227,7 @@ def test_the_limiter_keeps_a_loud_rendering_within_full_scale(play, phrase, subt
     summary, sound = play(phrase, "--gain-db", 24, "--subtype", subtype)
     assert 0.9 < np.abs(sound).max() <= 1.0
     assert summary["peak"] <= 1.0
-    # Bent, not folded over: no sample jumps from one end to the other.
+    # Limited, not wrapped around: no sample jumps from one end to the other.
     assert np.abs(np.diff(sound)).max() < 1.0
 
 
@@ -332,7 +332,7 @@ def test_a_setting_is_held_whatever_notes_and_controllers_say(play, midi):
 
 
 def test_a_setting_of_the_bow_is_held_through_all_notes(play, midi):
-    # A lifted bow plays nothing, however many notes there are.
+    # A lifted bow plays no note.
     _, sound = play(
         midi(*notes(*((0.2 * n, 0.1, 65, 64) for n in range(5)))), "--set", "/bow/side=0"
     )

@@ -1,4 +1,4 @@
-"""A rendering hangs on what its command names, not on what was learned or kept elsewhere."""
+"""A rendering depends on what its command names, not on what the user learned or saved."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.usefixtures("config_home")
 
 @pytest.fixture
 def rendered(command, tune, tmp_path):
-    """Render the tune: the sound, what was printed as JSON, and what was said."""
+    """Render the tune; return the sound, the JSON printed, and stderr."""
 
     def run(*words: object) -> tuple[bytes, dict, str]:
         out = tmp_path / "out.wav"

@@ -1,4 +1,4 @@
-"""Gestures in physical units: `yehu-server simulate`, read back from its arrays."""
+"""``yehu-server simulate``: gestures in physical units to arrays, read back."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from yehu_server.score.gesture import gesture_from, read_gesture
 from yehu_server.simulate import simulate
 
 BODY = Path(__file__).resolve().parents[1] / "yehu_server" / "physics" / "body.json"
-ISSUE = {
+GESTURE = {
     "sample_rate": 44100,
     "duration": 2.0,
     "instrument": {"bow": {"epsilon_0": 31860.0}},
@@ -61,9 +61,9 @@ def run(gesture: dict, **options) -> dict:
 
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory) -> dict:
-    """The gesture of the issue, through the command, as `np.load` gives it back."""
+    """The arrays that the command writes for GESTURE."""
     folder = tmp_path_factory.mktemp("simulate")
-    (folder / "gesture.json").write_text(json.dumps(ISSUE))
+    (folder / "gesture.json").write_text(json.dumps(GESTURE))
     words = [str(folder / "gesture.json"), "-o", str(folder / "run.npz")]
     assert main(["simulate", *words, "--energy", "--strings", "100", "--quiet"]) == 0
     assert {path.name for path in folder.iterdir()} == {"gesture.json", "run.npz"}
@@ -151,7 +151,7 @@ def test_string_shapes_begin_with_the_first_sample(every, frames, shapes):
 
 
 def test_keeping_more_does_not_change_the_run():
-    gesture = ISSUE | {"duration": 0.3}
+    gesture = GESTURE | {"duration": 0.3}
     plain, all_kept = run(gesture), run(gesture, energy=True, strings_every=13)
     for name in (*SCALARS, "contact_force"):
         np.testing.assert_array_equal(plain[name], all_kept[name])
@@ -159,7 +159,7 @@ def test_keeping_more_does_not_change_the_run():
 
 
 def test_the_same_gesture_gives_the_same_run():
-    gesture = ISSUE | {"duration": 0.2}
+    gesture = GESTURE | {"duration": 0.2}
     once, twice = run(gesture), run(gesture)
     for name, array in once.items():
         np.testing.assert_array_equal(array, twice[name])
@@ -227,7 +227,7 @@ def test_pressing_brings_the_finger_down_onto_both_strings():
 
 @pytest.mark.parametrize("rate", [22050, 48000, 96000.0, 192000])
 def test_other_rates_run_the_same_gesture(rate):
-    gesture = ISSUE | {"sample_rate": rate, "duration": 0.2}
+    gesture = GESTURE | {"sample_rate": rate, "duration": 0.2}
     arrays = run(gesture, energy=True)
     assert len(arrays["time"]) == round(0.2 * rate)
     flow = np.abs(arrays["power_in"]).max()

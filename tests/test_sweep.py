@@ -1,4 +1,4 @@
-"""Gestures with other figures, on all cores: `yehu-server sweep`."""
+"""``yehu-server sweep``: variations of a gesture, simulated on all cores."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def test_what_cannot_be_varied_is_told_before_anything_runs(gesture, tmp_path, c
 
 @pytest.fixture
 def swept(gesture, tmp_path):
-    """Sweep into one folder; the names of what is then in it."""
+    """Sweep into a folder; return the names of the files in it."""
 
     def run(values: str, *words: str, code: int = 0) -> set[str]:
         vary = ("--vary", f"bow_force={values}", "--quiet")

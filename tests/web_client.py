@@ -1,4 +1,4 @@
-"""A client of OSCQuery that knows nothing of the package: the standard library and two standards.
+"""A client of OSCQuery independent of the package.
 
 HTTP by http.client; WebSockets (RFC 6455) and OSC 1.0 by hand.
 """
@@ -191,7 +191,7 @@ class WebSocket:
         self.send(BINARY, packed(address, *arguments))
 
     def next(self, within_s: float = PATIENCE_S) -> Heard | dict[str, Any] | None:
-        """The next message or command; None where none comes."""
+        """The next message or command; None after the time."""
         while True:
             try:
                 kind, data = self.receive(within_s)
@@ -214,18 +214,18 @@ class WebSocket:
         raise AssertionError(f"no {address}")
 
     def sync(self) -> None:
-        """Wait until all said so far is done, and what came of it told; forget all."""
+        """Wait until everything sent so far is done and answered; discard the answers."""
         for _ in range(2):  # changes are told with the flush after
             self.tell("/yehu/get", "/output/gain")
             self.wait_for("/yehu/output/gain")
 
     def close(self) -> None:
-        """Hang up as one should."""
+        """Close the WebSocket by a close frame."""
         self.send(CLOSE, struct.pack(">H", 1000))
         self._socket.close()
 
     def vanish(self) -> None:
-        """Hang up without a word."""
+        """Reset the connection, without a close frame."""
         linger = struct.pack("ii", 1, 0)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
         self._socket.close()

@@ -1,4 +1,4 @@
-"""The bounds of one input: a second of CPU time, and 200 MB more than there were before."""
+"""The bounds on one input: a second of CPU time, and 200 MB more than before."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _too_slow(_signal: int, _frame: FrameType | None) -> None:
 
 @contextlib.contextmanager
 def bounded() -> Iterator[None]:
-    """Bound what the block takes. Errors: TooSlowError, MemoryError."""
+    """Bound the time and memory of the block. Errors: TooSlowError, MemoryError."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

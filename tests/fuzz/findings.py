@@ -1,4 +1,4 @@
-"""What was found: inputs that break a contract, one for each place it breaks at."""
+"""Findings: inputs that break a contract, one for each place in the code."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SHOWN_BYTES = 300
 
 
 def broken(target: Target, data: bytes) -> BaseException | None:
-    """What the contract is broken by."""
+    """The error that breaks the contract, if any."""
     try:
         target.check(data)
     except (Exception, TooSlowError) as error:  # noqa: BLE001 - whatever it is
@@ -23,7 +23,7 @@ def broken(target: Target, data: bytes) -> BaseException | None:
 
 
 def place(error: BaseException) -> str:
-    """The kind of an error and where it was raised; of one that took too long only the first."""
+    """The type of an error and where it was raised; of a timeout, the type alone."""
     if isinstance(error, TooSlowError):
         return "TooSlowError"
     frames = traceback.extract_tb(error.__traceback__)
@@ -40,7 +40,7 @@ class Findings:
         self._known: set[str] = set()
 
     def take(self, data: bytes) -> None:
-        """Try some bytes, and keep them where they break the contract at a new place."""
+        """Try some bytes; keep them if they break the contract at a new place."""
         error = broken(self._target, data)
         if error is None or place(error) in self._known:
             return
@@ -49,7 +49,7 @@ class Findings:
 
 
 def smaller(target: Target, data: bytes) -> bytes:
-    """As little as possible of the data that breaks at the same place."""
+    """The smallest part of the data found that breaks at the same place."""
     error = broken(target, data)
     if error is None:
         return data
@@ -70,7 +70,7 @@ def smaller(target: Target, data: bytes) -> bytes:
 
 
 def described(target: Target, data: bytes) -> str:
-    """A finding for whoever is to mend it: the error, where it was raised, and the bytes."""
+    """A finding as text: the error, where it was raised, and the bytes."""
     error = broken(target, data)
     if error is None:
         return f"{target.name}: breaks only after other inputs"

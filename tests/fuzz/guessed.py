@@ -1,4 +1,4 @@
-"""Without coverage guidance, by hypothesis: seeds, changed here and there, and any bytes."""
+"""Fuzzing by hypothesis, without coverage guidance: seeds with some changes, and any bytes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ AT_ONCE = 50  # examples, between two looks at the clock
 
 
 def inputs(target: Target) -> st.SearchStrategy[bytes]:
-    """Any bytes, and the target's seeds with some changes."""
+    """Any bytes, and the target's seeds with some bytes changed."""
     seeds = list(target.seeds().values()) or [b""]
     pieces = st.binary(max_size=8)
     if target.words:
@@ -26,7 +26,7 @@ def inputs(target: Target) -> st.SearchStrategy[bytes]:
 
 
 def changed(data: bytes, changes: list[tuple[float, int, bytes]]) -> bytes:
-    """The data with a number of bytes at each place (0 to 1) exchanged for others."""
+    """The data with some bytes at each place (0 to 1) replaced by others."""
     for where, count, piece in changes:
         at = round(where * len(data))
         data = data[:at] + piece + data[at + count :]
@@ -34,7 +34,7 @@ def changed(data: bytes, changes: list[tuple[float, int, bytes]]) -> bytes:
 
 
 def fuzz(target: Target, seconds: float, seed: int, folder: Path) -> None:
-    """Fuzz for some seconds; tell the number of executions on stderr."""
+    """Fuzz for some seconds; write the number of executions to stderr."""
     findings = Findings(target, folder)
     until, executions = time.monotonic() + seconds, 0
     for data in target.seeds().values():
@@ -58,6 +58,6 @@ def fuzz(target: Target, seconds: float, seed: int, folder: Path) -> None:
 
 
 def figures(log: str) -> tuple[int, str]:
-    """Executions, as told in the log; what was covered is not known."""
+    """Executions from the log; the coverage is not known."""
     told = log.rpartition("executions: ")[2].split()
     return int(told[0]) if told and told[0].isdigit() else 0, "-"

@@ -1,4 +1,4 @@
-"""Under coverage guidance, by atheris: what reaches a new place in the code is varied further."""
+"""Fuzzing by atheris, guided by coverage: inputs that reach new code are varied further."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _EXECUTIONS = re.compile(r"stat::number_of_executed_units: (\d+)")
 
 @contextlib.contextmanager
 def watched() -> Iterator[None]:
-    """Watch the modules that are imported here, but for those that numba compiles."""
+    """Watch the modules imported in the block, except those that numba compiles."""
     package = ROOT / "yehu_server"
     compiled = [
         f"yehu_server.{folder}.{file.stem}"
@@ -39,7 +39,7 @@ def watched() -> Iterator[None]:
 
 
 def _resident_mb() -> int:
-    """Peak of this process so far: that of who started it counts as its own."""
+    """Peak memory of this process, which begins at that of its parent."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
 
 
@@ -69,7 +69,7 @@ def fuzz(target: Target, seconds: float, seed: int, folder: Path) -> None:
 
 
 def figures(log: str) -> tuple[int, str]:
-    """Executions, and edges and features covered, as told in the log."""
+    """Executions, and edges and features covered, from the log."""
     executions, last = _EXECUTIONS.search(log), _LAST.search(log)
     covered = f"{last[1]} / {last[2]}" if last else "?"
     return int(executions[1]) if executions else 0, covered

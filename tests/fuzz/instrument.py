@@ -1,4 +1,4 @@
-"""An instrument that only listens, and minds what it is told; and a calibration for it."""
+"""An instrument that only checks its events, and a calibration for it."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Writes the seeds that are no text: MIDI files and messages, OSC packets and streams, frames.
+"""Writes the binary seeds: MIDI files and messages, OSC packets and streams, WebSocket frames.
 
     .venv/bin/python tests/fuzz/make_seeds.py
 
-Seeds that are text, and those that once broke something, are files of their own.
+Text seeds, and those that once broke something, are written by hand.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
-"""Fuzzes every reader, one after another, each in a process of its own.
+"""Fuzzes every reader in turn, each in its own process.
 
     .venv/bin/python tests/fuzz/run.py --seconds 600
     .venv/bin/python tests/fuzz/run.py --seconds 60 --target preset mapping
     .venv/bin/python tests/fuzz/run.py --target preset --input FILE
 
-Prints a table, and for each finding the least input that shows it; then the exit code is 1.
-With atheris the inputs follow what they reach in the code; without it they are guessed.
+Prints a table, and the smallest input of each finding; with findings the exit code is 1.
+With atheris coverage guides the inputs; without it they are guessed.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ HEAD = ("target", "seconds", "executions", "a second", "edges / features", "find
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of fuzzing one target."""
+    """The result of fuzzing one target."""
 
     target: Target
     seconds: float
@@ -53,7 +53,7 @@ class Outcome:
 
 
 def engine_named(name: str) -> ModuleType:
-    """The engine asked for; of ``any``, atheris where it is to be had."""
+    """The engine asked for; ``any`` is atheris if it is installed."""
     if name != "hypothesis":
         try:
             return importlib.import_module("fuzz.guided")
@@ -65,7 +65,7 @@ def engine_named(name: str) -> ModuleType:
 
 
 def load_targets(engine: ModuleType) -> None:
-    """Import all targets, watched where the engine can do that."""
+    """Import all targets, with coverage where the engine can watch it."""
     if hasattr(engine, "watched"):
         with engine.watched():
             importlib.import_module("fuzz.targets")
@@ -74,7 +74,7 @@ def load_targets(engine: ModuleType) -> None:
 
 
 def fuzzed(target: Target, engine: ModuleType, seconds: float, seed: int) -> Outcome:
-    """Fuzz one target in a process forked off."""
+    """Fuzz one target in a forked process."""
     folder = Path(tempfile.mkdtemp(prefix=f"{target.name}-", dir=scratch()))
     log = folder / "log"
     sys.stdout.flush()
@@ -102,7 +102,7 @@ def fuzzed(target: Target, engine: ModuleType, seconds: float, seed: int) -> Out
 
 
 def kept(outcome: Outcome, folder: Path) -> list[Path]:
-    """Print each finding at its smallest, and keep it in the folder."""
+    """Print each finding at its smallest, and save it in the folder."""
     files = []
     for number, data in enumerate(outcome.findings, start=1):
         least = smaller(outcome.target, data)
@@ -116,7 +116,7 @@ def kept(outcome: Outcome, folder: Path) -> list[Path]:
 
 
 def table(rows: list[tuple[str, ...]]) -> str:
-    """Rows as a table of Markdown."""
+    """Rows as a Markdown table."""
     widths = [max(len(row[column]) for row in (HEAD, *rows)) for column in range(len(HEAD))]
     rule = [":" + "-" * (widths[0] - 1), *("-" * (width - 1) + ":" for width in widths[1:])]
 

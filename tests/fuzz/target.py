@@ -1,7 +1,7 @@
-"""What is fuzzed: a reader and its contract, as a function of bytes.
+"""Fuzz targets: a reader and its contract, as a function of bytes.
 
-A target hands any bytes to a reader and checks what it makes of them. It returns where the bytes
-are accepted or refused as the reader documents; anything else that comes out of it is a finding.
+A target gives bytes to a reader and checks the result. It returns if the reader accepts or refuses
+them as documented; any other error is a finding.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Target:
 
     @property
     def contract(self) -> str:
-        """What holds for any bytes, in a line."""
+        """The law that holds for any bytes, in one line."""
         return (self.read.__doc__ or "").strip().partition("\n")[0]
 
     def check(self, data: bytes) -> None:
@@ -76,7 +76,7 @@ def target(
     words: tuple[bytes, ...] = (),
     also: tuple[str, ...] = (),
 ) -> Callable[[Read], Read]:
-    """Make a target of a function, whose docstring states the contract."""
+    """Make a target of a function; its docstring states the contract."""
 
     def add(read: Read) -> Read:
         TARGETS[name] = Target(name, read, refusals, words, also)
@@ -87,7 +87,7 @@ def target(
 
 @functools.cache
 def scratch() -> Path:
-    """A folder for this run's files, in memory where there is such a place."""
+    """A folder for this run's files, in memory if possible."""
     shared = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None  # noqa: S108 - within it
     folder = Path(tempfile.mkdtemp(prefix="yehu-fuzz-", dir=shared))
     owner = os.getpid()
@@ -108,7 +108,7 @@ def written(data: bytes, name: str) -> Path:
 
 
 class Program:
-    """Bytes as choices, for targets that are told what to do; it ends in zeros."""
+    """Bytes as a sequence of choices; zeros follow their end."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
@@ -118,7 +118,7 @@ class Program:
         return self._place < len(self._data)
 
     def take(self, count: int) -> bytes:
-        """The next bytes, as many as there are."""
+        """The next bytes, at most those that are left."""
         taken = self._data[self._place : self._place + count]
         self._place += count
         return taken

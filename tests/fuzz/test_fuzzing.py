@@ -1,4 +1,4 @@
-"""Half a minute of fuzzing, and the fuzzer itself: it finds what breaks, and tells it once."""
+"""Some seconds of fuzzing, and the fuzzer itself: it reports each finding once."""
 
 from __future__ import annotations
 

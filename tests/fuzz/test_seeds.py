@@ -1,4 +1,4 @@
-"""Every reader keeps its contract for every seed: what once broke one breaks none again."""
+"""Every reader keeps its contract for every seed, including those that once broke it."""
 
 from __future__ import annotations
 

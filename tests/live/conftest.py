@@ -1,4 +1,4 @@
-"""A JACK server for each file of tests, a recorder in a process of its own, and `serve`.
+"""A JACK server for each file of tests, a recorder in another process, and `serve`.
 
 Run as a program, this file is that recorder.
 """
@@ -83,7 +83,7 @@ class Jackd:
         return self._process.pid
 
     def start(self, period: int = 128, *, rate: int = RATE, channels: int = 2) -> None:
-        """Start it, or start it anew where its card is to be another."""
+        """Start the server, or restart it with another card."""
         card = {"-p": period, "-r": rate, "-P": channels, "-C": 1}
         if self._process is not None and self._process.poll() is None and card == self._card:
             return
@@ -139,9 +139,9 @@ class Jackd:
 
 @contextlib.contextmanager
 def free_name() -> Iterator[str]:
-    """Give a server name that no other run of the tests has.
+    """A server name that no other run of the tests uses.
 
-    One of a few: JACK keeps room for eight names in all, of killed servers too.
+    There are only six: JACK has room for eight names, those of killed servers included.
     """
     import fcntl
 
@@ -175,7 +175,7 @@ def jackd() -> Iterator[Jackd]:
 
 
 class Recording:
-    """What a recorder heard: samples [shape=(channels, frames)], and each block's time."""
+    """A recorder's samples [shape=(channels, frames)], and the time of each block."""
 
     def __init__(self, path: Path) -> None:
         with np.load(path) as file:
@@ -185,13 +185,13 @@ class Recording:
 
     @property
     def is_whole(self) -> bool:
-        """Whether JACK called us for every block, and nobody was late."""
+        """Whether JACK called the recorder for every block, without an xrun."""
         frames, sizes = self.times[:, 0], self.times[:, 1]
         return self.xruns == 0 and bool((np.diff(frames) == sizes[:-1]).all())
 
 
 class Recorder:
-    """Records what the instrument's ports give, in a process of its own."""
+    """Records the instrument's ports, in another process."""
 
     def __init__(self, jackd: Jackd, folder: Path, channels: int = 2) -> None:
         self._folder = folder
@@ -257,7 +257,7 @@ def recorder(jackd, tmp_path) -> Iterator[Callable[..., Recorder]]:
 
 
 def record(server: str, channels: int) -> None:
-    """Be the recorder: orders in, words out."""
+    """Be the recorder: read orders from stdin, confirm each on stdout."""
     import jack
 
     for silence in (jack.set_error_function, jack.set_info_function):
@@ -384,7 +384,7 @@ class Serve:
                 self._told.notify_all()
 
     def said(self, pattern: str, within_s: float = 10.0, after: int = 0) -> re.Match[str]:
-        """Wait for a line that fits; the first of those after so many."""
+        """Wait for a line that matches; the first one after `after` lines."""
 
         def found() -> re.Match[str] | None:
             fitting = (re.search(pattern, line) for line in self.lines[after:])
@@ -397,14 +397,14 @@ class Serve:
         return match
 
     def osc(self) -> Osc:
-        """A client, once it serves."""
+        """A client of the server, once it listens."""
         port = int(self.said(r"OSC at [\d.]+:(\d+)", STARTED_WITHIN_S)[1])
         self.said("Ctrl-C ends")
         self._clients.append(Osc(port))
         return self._clients[-1]
 
     def family(self) -> set[int]:
-        """The processes it has started and that live, and those of before that still do."""
+        """All processes that it has started so far and that are alive."""
         for entry in Path("/proc").glob("[0-9]*/stat"):
             with contextlib.suppress(OSError):
                 fields = entry.read_text().rpartition(")")[2].split()
@@ -413,7 +413,7 @@ class Serve:
         return {pid for pid in self._family if _lives(pid)}
 
     def end(self, number: int = signal.SIGTERM) -> int:
-        """Let it end; return its exit code. Nothing it started may be left."""
+        """End it; return its exit code. No process that it started may be left."""
         self.family()
         self.process.send_signal(number)
         return self.wait()
@@ -446,7 +446,7 @@ def _lives(pid: int) -> bool:
 
 @pytest.fixture
 def serve(jackd) -> Iterator[Callable[..., Serve]]:
-    """Start ``yehu-server serve`` with options; OSC is at any free port by default."""
+    """Start ``yehu-server serve`` with options, with OSC at a free port by default."""
     with contextlib.ExitStack() as ending:
 
         def start(*words: object, environment: dict[str, str] | None = None) -> Serve:

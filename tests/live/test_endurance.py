@@ -1,6 +1,6 @@
-"""Dense MIDI and OSC and a busy Python, for some seconds: deadlines, and when events are heard.
+"""Deadlines, and the time of events, under some seconds of dense MIDI, OSC and a busy Python.
 
-``bench/endurance.py`` plays so for an hour.
+``bench/endurance.py`` does so for an hour.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def server_of(blocksize: int) -> Iterator[Server]:
 
 @contextlib.contextmanager
 def idle_stream(blocksize: int) -> Iterator[Instrument]:
-    """The same callback, with nothing to do."""
+    """The same callback without an event."""
     output = Output(OutputOptions(device=DEVICE, blocksize=blocksize), lambda _line: None)
     try:
         instrument = Instrument(output.find(), memory=output.memory.buffer)
@@ -64,7 +64,7 @@ def idle_stream(blocksize: int) -> Iterator[Instrument]:
 
 @contextlib.contextmanager
 def busy_python() -> Iterator[None]:
-    """A thread that has always something to do."""
+    """Keep a Python thread busy within the block."""
     ending = threading.Event()
 
     def work() -> None:
@@ -81,7 +81,7 @@ def busy_python() -> Iterator[None]:
 
 
 def quantile(loads: np.ndarray, share: float) -> float:
-    """The load that so large a share of callbacks stays below."""
+    """The load that this share of callbacks stays below."""
     bin_ = int(np.searchsorted(np.cumsum(loads), share * loads.sum()))
     return (bin_ + 1) / BINS_PER_DEADLINE
 
@@ -126,10 +126,10 @@ def test_under_load_the_callback_keeps_its_deadlines(jackd, until):
     assert dropped == 0
     assert playing["applied"] > 500 * seconds
     assert playing["callbacks"] > 100
-    # What the callback itself needs; preempted or not, it is the same.
+    # CPU time of the callback itself, whether it is preempted or not.
     assert playing["missed"] <= idles["missed"] + 2
     assert quantile(playing["loads"], 0.999) < 0.8
-    # When it is called is for JACK and the system, who were as kind to the idle stream.
+    # JACK and the system decide when it is called; they delayed the idle stream as well.
     assert playing["late_callbacks"] <= 3 * idles["late_callbacks"] + 60
     assert playing["underruns"] <= 3 * idles["underruns"] + 100
 
@@ -150,7 +150,7 @@ def test_an_event_is_heard_one_block_and_a_millisecond_after_its_arrival(jackd, 
             return handle(packet, peer, arrived_ns)
 
         server.handler.handle = witness
-        # It is longer only where JACK is not in time itself.
+        # The delay is longer only while JACK itself is late.
         until(lambda: server.player.delay <= shortest, 30.0, "the shortest delay")
         applied = {}
         client = subprocess.Popen(
@@ -172,7 +172,7 @@ def test_an_event_is_heard_one_block_and_a_millisecond_after_its_arrival(jackd, 
     waits, delays = np.array(heard).T
     assert len(waits) > 450
     assert (waits >= 0.0).all()
-    # The rhythm is kept to the frame; a system that holds up everybody may break it.
+    # The rhythm is kept to the frame, unless the system holds up all processes.
     assert np.median(np.abs(waits - delays)) < 2.0
     assert (waits - delays < 0.0005 * RATE).mean() > 0.9
 

@@ -1,4 +1,4 @@
-"""The live path through a real audio server that runs as fast as it can, and offline."""
+"""The live path through a freewheeling audio server gives the same samples as offline."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BLOCKS = [64, 100, 128, 333, 1024]
 
 
 def play(instrument: Instrument) -> None:
-    """Some notes with everything that moves, from FIRST on."""
+    """Schedule notes and controllers from frame FIRST on."""
     midi = MidiPlayer(Performer(instrument, seed=3), load("keyboard"))
     score = [
         (0, mido.Message("note_on", note=67, velocity=90)),

@@ -1,4 +1,4 @@
-"""Python stands still, and the sound goes on."""
+"""The sound goes on while Python stands still."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def bow(instrument: Instrument) -> None:
 
 
 def places(heard: np.ndarray, played: np.ndarray, period: int = BLOCK) -> np.ndarray:
-    """Where in what was played each period that was heard begins; -1 for nowhere."""
+    """The place in `played` where each period of `heard` begins; -1 for none."""
     at = {played[n : n + 8].tobytes(): n for n in range(len(played) - period)}
     found = []
     for start in range(0, len(heard) - period + 1, period):
@@ -45,7 +45,7 @@ def places(heard: np.ndarray, played: np.ndarray, period: int = BLOCK) -> np.nda
 
 
 def breaks(found: np.ndarray) -> int:
-    """Periods that do not follow on the one before."""
+    """Number of periods that do not continue the one before."""
     return int((np.diff(found) != BLOCK).sum())
 
 
@@ -88,7 +88,7 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     assert (found[half:] >= 0).mean() > 0.95  # nothing but what was played
 
 
-# The stream and the GIL in one process; what is printed is what the callback did meanwhile.
+# The stream and the GIL in one process; prints the callback's counters.
 SAME_PROCESS = """
 import ctypes, json, mmap, os
 from yehu_server.audio.devices import choose, load_portaudio, outputs
@@ -137,7 +137,7 @@ def test_the_gil_of_the_process_that_holds_the_stream_stops_nothing(jackd):
 
 
 def test_holding_the_gil_holds_python():
-    # What the tests above take for granted.
+    # The tests above rely on this.
     counts = 0
     ending = threading.Event()
 

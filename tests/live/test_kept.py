@@ -1,4 +1,4 @@
-"""Takes of ``yehu-server serve`` as a command: killed, interrupted, on a full disk."""
+"""Takes of ``yehu-server serve`` that is killed, interrupted, or out of disk space."""
 
 from __future__ import annotations
 

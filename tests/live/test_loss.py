@@ -42,7 +42,7 @@ def begun(serve, folder: Path, *words: object):
 
 
 def same_again(folder: Path) -> tuple[np.ndarray, np.ndarray]:
-    """What was recorded, and a replay of what was captured."""
+    """The recording, and a replay of the capture."""
     words = ["replay", str(folder / "take.jsonl"), "-o", str(folder / "again.wav"), "--quiet"]
     assert main(words) == 0
     files = (folder / "take.wav", folder / "again.wav")
@@ -50,7 +50,7 @@ def same_again(folder: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def wait_for_frames(osc, frames: int) -> dict:
-    """Play on for so many frames; the status after them."""
+    """Wait while frames are played; return the status."""
     start = osc.status()["frame"]
     deadline = time.monotonic() + 2.0 + 2.0 * frames / 48000
     while time.monotonic() < deadline:
@@ -92,7 +92,7 @@ def test_without_its_audio_server_it_says_so_and_plays_on(
     assert back["note"] == before["note"]
 
     def sounds() -> bool:
-        """Whether it is heard; by a new listener each time, as JACK drops one that was too slow."""
+        """Whether it is heard, by a new listener each time: JACK drops one that was too slow."""
         listener = recorder().connected()
         wait_for_frames(osc, 12_000)
         samples = listener.recording().samples[0, -4800:]
@@ -237,7 +237,7 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
 
 
 class Refusing:
-    """An audio process whose stream is there, but does not start."""
+    """An audio process whose stream opens but does not start."""
 
     def __init__(self, _module, heard, share=()) -> None:
         del share

@@ -1,4 +1,4 @@
-"""MIDI from other programs, through a real MIDI system: JACK's."""
+"""MIDI from other programs, through JACK's MIDI system."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Program:
 
 
 class Witness:
-    """A server on the silent clock that hears MIDI, and what it said and applied."""
+    """A server on the silent clock that hears MIDI; its messages and applied events."""
 
     def __init__(self, until: Callable, **midi: object) -> None:
         self._until = until
@@ -114,7 +114,7 @@ class Witness:
         self.player = self.server.player
 
     def hears(self, words: str, within_s: float = SOON_S) -> float:
-        """Wait until it said so for the last time since `forget`; when it did."""
+        """Wait for a line since `forget`; return when it last came."""
 
         def found() -> float | None:
             return next((at for at, line in list(self.said) if words in line), None)
@@ -140,7 +140,7 @@ class Witness:
         }
 
     def plays(self, pitch: float | None, program: Program, order: str) -> None:
-        """Send until it plays so: on a busy machine JACK loses some."""
+        """Send until it plays: on a busy machine JACK loses messages."""
 
         def played() -> bool:
             program.tell(order)
@@ -150,8 +150,7 @@ class Witness:
         self._until(played, 5.0, f"{order} to play {pitch}")
 
 
-# JACK without real-time rights is late now and then, and what is late is lost: hence periods
-# of a fiftieth of a second.
+# JACK without real-time rights is sometimes late and then loses messages: hence periods of 20 ms.
 @pytest.fixture(scope="module")
 def jack(jackd):
     jackd.start(PERIOD)
@@ -182,7 +181,7 @@ def witness(jack, until) -> Iterator[Callable[..., Witness]]:
 
 @pytest.fixture(scope="module")
 def listening(witness) -> Witness:
-    """A server that hears whatever comes."""
+    """A server that hears all ports."""
     return witness()
 
 
@@ -206,7 +205,7 @@ def test_the_default_mapping_reaches_the_instrument(keys, until):
     applied = {}
 
     def moves(data: str, address: str) -> float:
-        """Where a message moves a parameter to. On a busy machine JACK loses some: try again."""
+        """Send until a message moves a parameter; return where to. A busy JACK loses messages."""
         applied.clear()
 
         def moved() -> bool:
@@ -324,7 +323,7 @@ def test_a_keyboard_that_promised_to_speak_and_is_silent_is_let_go(keys):
         assert heard.player.pitch == 69.0
     time.sleep(0.6)
     assert heard.player.pitch is None
-    # Without a promise, it may be silent for long.
+    # Without active sensing it may be silent for long.
     heard.plays(67.0, keyboard, "send keyboard 90 43 60")
     time.sleep(0.6)
     assert heard.player.pitch == 67.0
@@ -334,7 +333,7 @@ def test_of_two_ports_with_one_name_the_one_that_stays_is_heard(listening, jackd
     heard = listening
 
     def plays(note: int) -> bool:
-        # Again and again: this sender is late now and then, and what is late is lost.
+        # Repeated, since this sender is sometimes late, and late messages are lost.
         twins.tell(f"send 90 {note:02x} 60")
         time.sleep(0.1)
         return heard.player.pitch == note
@@ -356,7 +355,7 @@ def test_of_two_ports_with_one_name_the_one_that_stays_is_heard(listening, jackd
 
 
 def noise(chance: random.Random) -> list[int]:
-    """Bytes of a message, or nearly so; but no system exclusive, see below."""
+    """Bytes of a message, whole or damaged, but no system exclusive: see below."""
     status = chance.choice([*range(0x80, 0xF0), *range(0xF1, 0x100), 0x90, 0x90, 0xB0, 0xE0])
     return [status, *(chance.randrange(0x80) for _ in range(chance.randrange(3)))]
 
@@ -370,7 +369,7 @@ def test_bytes_of_any_kind_over_the_wire_stop_nothing(keys, until):
     keyboard.tell("send keyboard f2 3a")  # a song position, cut short
 
     def is_silent() -> bool:
-        # Again and again: on a busy machine JACK loses some of what is sent.
+        # Repeated, since JACK loses messages on a busy machine.
         for channel in range(16):
             for control in (0x40, 0x78):  # the pedal up, all sound off
                 keyboard.tell(f"send keyboard b{channel:x} {control:02x} 00")
@@ -399,7 +398,7 @@ def test_a_system_exclusive_that_is_cut_short_makes_nobody_deaf(keys):
 
 
 def hear_noise(ports: MidiPorts, data: Callable[[], list[int]]) -> None:
-    """Let two ports say all kinds of things, and then be gone."""
+    """Send noise from two ports, and then close them."""
     chance = random.Random(9)
     names = ["one", "two"]
     for number in range(5000):
@@ -472,7 +471,7 @@ def test_ports_are_wanted_by_words_of_their_name(name, patterns, wanted):
 
 
 class Fresh:
-    """An input of RtMidi's that tells in which order it is used."""
+    """An RtMidi input that records the order of its calls."""
 
     def __init__(self, order: list[str]) -> None:
         self._order = order
@@ -502,7 +501,7 @@ def test_a_port_is_listened_to_before_it_is_open():
 
 
 class Closed(Fresh):
-    """An input that cannot be opened, as where another program has it for itself."""
+    """An input that cannot be opened, as one that another program owns."""
 
     def open_port(self, _number: int, name: str) -> None:
         raise rtmidi.SystemError(name)
@@ -581,7 +580,7 @@ def test_a_breath_controller_on_a_port_of_its_own_plays_the_keyboards_note(
     time.sleep(LISTENS_AFTER_S)
 
     def bows(order: str, *, bowed: bool) -> None:
-        """Send until the bow is drawn, or lifted: on a busy machine JACK loses some."""
+        """Send until the bow is drawn, or lifted: on a busy machine JACK loses messages."""
 
         def is_so() -> bool:
             sender.tell(order)
@@ -602,7 +601,7 @@ def test_a_breath_controller_on_a_port_of_its_own_plays_the_keyboards_note(
 
 
 def plays_on(osc, program: Program) -> bool:
-    """Send a note, and whether it plays."""
+    """Send a note; return whether it plays."""
     program.tell("send keyboard 90 45 60")
     time.sleep(0.1)
     return osc.status()["note"] > 68.0

@@ -1,4 +1,4 @@
-"""A sound server whose period is not the block size: rhythm is kept, and status tells both."""
+"""A sound server's period may differ from the block size: rhythm is kept, status tells both."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ os._exit(0)
 
 
 def ask_for(jackd, period: int) -> None:
-    """Change the period of a JACK server that runs."""
+    """Change the period of a running JACK server."""
     words = [sys.executable, "-c", ASK_FOR, jackd.name, str(period)]
     run = subprocess.run(words, env=jackd.environment, timeout=20.0, check=False)
     assert run.returncode == 0
 
 
 def share_late(osc) -> float:
-    """How many of some messages came too late for their frame."""
+    """Share of messages that came too late for their frame."""
     before = osc.status()
     for number in range(MESSAGES):
         osc.send("/finger/1/position", 0.1 + 1e-4 * (number % 50))
@@ -39,7 +39,7 @@ def share_late(osc) -> float:
 
 
 def settled(osc, until, period: int) -> dict:
-    """The status, once it tells of a period."""
+    """The status, once it shows the period."""
     until(lambda: osc.status()["period"] == period, 20.0, f"a period of {period}")
     status = osc.status()
     assert status["blocksize"] == BLOCK
@@ -47,7 +47,7 @@ def settled(osc, until, period: int) -> dict:
 
 
 def covered(osc, until, period: int) -> dict:
-    """The status, once the delay is longer than a period; the loop takes a moment to settle."""
+    """The status, once the delay exceeds a period; the loop takes a moment to settle."""
     settled(osc, until, period)
     length = 1e3 * period / 48000
     until(lambda: osc.status()["delay_ms"] > length, 20.0, f"a delay of more than {length} ms")
@@ -56,7 +56,7 @@ def covered(osc, until, period: int) -> dict:
 
 @pytest.fixture
 def player(jackd, serve):
-    """Starts a server on JACK of some period, and gives a client of it."""
+    """Start a server on JACK with some period; return a client of it."""
 
     def start(period: int, *words: object):
         jackd.start(period)
@@ -71,7 +71,7 @@ def player(jackd, serve):
 def test_rhythm_is_kept_where_the_sound_servers_period_is_longer_than_a_block(player, until):
     osc = player(1024)
     covered(osc, until, 1024)
-    # Of a delay of one block, half came too late. The system itself may hold us up now and then.
+    # With a delay of one block half came too late. The system itself may sometimes hold us up.
     assert share_late(osc) < 0.2
 
 

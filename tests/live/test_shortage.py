@@ -1,4 +1,4 @@
-"""Its helpers end while the system has no room for others; and it is stopped itself for a while."""
+"""Helpers that end while the system has no room for new ones; a server that is stopped."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def module_of(pid: int) -> str:
 
 
 def helpers(server) -> dict[str, int]:
-    """The processes it has started, by the names of their modules."""
+    """The server's helper processes, by module."""
     found = {}
     for pid in server.family():
         try:
@@ -34,7 +34,7 @@ def helpers(server) -> dict[str, int]:
 
 
 def allow_files(pid: int, files: int) -> int:
-    """Let a process have so many open files from now on; how many it could have."""
+    """Limit the open files of a process from now on; return its limit before."""
     soft, hard = resource.prlimit(pid, resource.RLIMIT_NOFILE)
     resource.prlimit(pid, resource.RLIMIT_NOFILE, (files, hard))
     return soft

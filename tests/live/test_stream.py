@@ -1,4 +1,4 @@
-"""``yehu-server serve`` as a command, on a real audio server: what is heard, files, ends."""
+"""``yehu-server serve`` as a command on a real audio server: sound, files, exit."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def first_sound(samples: np.ndarray) -> int:
 
 
 def play(osc, seconds: float) -> None:
-    """Notes and bends for a while."""
+    """Play notes and bends for some seconds."""
     end = time.monotonic() + seconds
     note = 0
     while time.monotonic() < end:
@@ -47,7 +47,7 @@ def take(path: Path) -> np.ndarray:
 
 
 def replayed(folder: Path) -> np.ndarray:
-    """A replay of what was captured."""
+    """A replay of the capture."""
     words = ["replay", str(folder / "take.jsonl"), "-o", str(folder / "again.wav"), "--quiet"]
     assert main(words) == 0
     return take(folder / "again.wav")
@@ -64,7 +64,7 @@ def files(folder: Path) -> tuple[object, ...]:
 def test_the_device_gets_what_is_recorded_on_every_channel(
     channels, block, jackd, serve, recorder, tmp_path
 ):
-    # JACK without real-time rights is late now and then: only what it says was whole counts.
+    # JACK without real-time rights is sometimes late: only whole recordings count.
     jackd.start(1024, channels=6)
     words = ("--midi-api", "none", "--channels", channels, "--blocksize", block)
     server = serve(*words, *files(tmp_path))
@@ -158,7 +158,7 @@ def test_a_killed_server_leaves_no_process_and_a_capture_that_can_be_replayed(
 
 
 def command(jackd, *words: object) -> subprocess.CompletedProcess:
-    """Run to the end."""
+    """Run a command to its end."""
     return subprocess.run(
         [sys.executable, "-c", COMMAND, *map(str, words)],
         env=jackd.environment | {"PYTHONPATH": str(ROOT)},
@@ -171,7 +171,7 @@ def command(jackd, *words: object) -> subprocess.CompletedProcess:
 
 
 def refused(jackd, folder: Path, *words: object) -> str:
-    """The one line with which a call is refused; nothing may be left behind."""
+    """Run a command that must be refused; return its one line. It may leave nothing behind."""
     files_before = sorted(folder.iterdir())
     run = command(jackd, "serve", "--no-http", *words)
     assert run.returncode == 2, run.stderr

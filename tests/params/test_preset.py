@@ -1,4 +1,4 @@
-"""Presets as text, and what lies between two."""
+"""Presets as text, and morphing between two."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Between the kernel's records (layout.py) and the reference's (reference.py)."""
+"""Conversions between the kernel's records (layout.py) and the reference's (reference.py)."""
 
 import math
 from typing import Any
@@ -12,7 +12,7 @@ from yehu_server.physics.string import follow_shape
 
 
 def reference_params(quantities: Quantities, rate: float) -> ref.RefParams:
-    """The same instrument in the reference's terms, its grids chosen by the reference."""
+    """The instrument as the reference's parameters; the reference chooses the grids."""
     strings = []
     for string in quantities.strings:
         A, EI = math.pi * string.r**2, string.E * math.pi * string.r**4 / 4.0
@@ -126,7 +126,7 @@ def step_kernel(model: Any, record: Any, controls: ref.RefControls, ledger: Any)
 def step_reference(
     params: ref.RefParams, state: ref.RefState, controls: ref.RefControls
 ) -> tuple[ref.RefState, dict[str, Any], ref.RefOutputs]:
-    """The same from the reference: its state, the same names, and all its outputs."""
+    """Advance the reference by one sample; return its state, the same names, and its outputs."""
     after, outputs = ref.step(params, state, controls)
     named = {
         "u_1": after.u[0],

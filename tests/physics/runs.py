@@ -1,4 +1,4 @@
-"""Run the kernel for a test, and measure what comes out. Nothing here knows what is right."""
+"""Run the kernel for a test, and measure its output; expectations are in the tests."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

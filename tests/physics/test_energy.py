@@ -1,4 +1,4 @@
-"""Where energy comes from and goes to: nothing appears, nothing vanishes.
+"""The energy balance: none appears, none vanishes.
 
 The ledger itself is checked against tests/reference.py in test_reference_step.py.
 """
@@ -15,7 +15,7 @@ X_C = YEHU.bridge_x
 
 
 def balanced(run):
-    """What holds in every run, whatever is played."""
+    """Check the laws that hold in every run."""
     assert run.state["lost"][0] == 0
     assert run.state["unconverged"][0] == 0
     assert np.isfinite(run.probes).all()

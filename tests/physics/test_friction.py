@@ -1,4 +1,4 @@
-"""The friction solver on its own: any problem a step may pose."""
+"""The friction solver alone, on any problem that a step may pose."""
 
 import math
 from collections import Counter
@@ -66,7 +66,7 @@ CASES = {
 
 @pytest.fixture(scope="module", params=CASES, ids=lambda name: name.replace(" ", "-"))
 def solved(request):
-    """Ten thousand random problems and what the solver made of them."""
+    """Ten thousand random problems and their solutions."""
     quantities, rate = CASES[request.param]
     model = kernel.prepare(quantities, rate)[0]
     pairs = [

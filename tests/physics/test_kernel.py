@@ -1,4 +1,4 @@
-"""The whole instrument: it speaks, it is one machine for any block, it survives."""
+"""The whole kernel: pitch, independence of block size, lost states."""
 
 from dataclasses import replace
 

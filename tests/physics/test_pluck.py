@@ -1,4 +1,4 @@
-"""A string pulled aside by a force: where it goes, what it costs, and that it sounds."""
+"""A string pulled aside by a force: its shape, its energy, its sound."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What a file may say about the instrument, and what is refused by name."""
+"""Instrument files: what they may hold, and what is refused by name."""
 
 import json
 import math

@@ -118,7 +118,7 @@ def natural_scales(expected, controls):
 
 
 def friction_regime(params, controls, outputs):
-    """What bow and string do: chi of (18) is 0 where the bristles hold."""
+    """Whether the bow is lifted, sticks (chi of (18) is 0) or slips, and on which string."""
     if outputs.bowed < 0:
         return "bow lifted"
     law = ref.Friction(params=params, F_N=abs(controls.F_N), xi=params.xi[outputs.bowed], z=0.0)
@@ -151,7 +151,7 @@ def compared(request):
 
 
 def test_random_steps_meet_every_kind_of_contact(compared):
-    """Or the next test would say little."""
+    """Otherwise the next test would prove little."""
     params, steps = compared
     met = Counter()
     for _, controls, _, _, outputs, _, _ in steps:
@@ -182,7 +182,7 @@ def test_one_step_from_any_state_is_the_references_to_rounding(compared):
 
 
 def test_one_row_of_the_ledger_is_the_references(compared):
-    """So that the ledger that other tests trust has an independent witness."""
+    """Other tests rely on the kernel's ledger; this one checks it independently."""
     params, steps = compared
     parts = {
         "loss_strings": "q_string",

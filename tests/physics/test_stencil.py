@@ -1,4 +1,4 @@
-"""Where a point force meets the grid: interpolation, spreading, and who is kept apart."""
+"""Point forces on the grid: interpolation, spreading, and the bounds of contact places."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Tension modulation: what a stretched string gains, and that it comes from nowhere else.
+"""Tension modulation: the tension that a stretched string gains.
 
 The energy balance and the single step are held with it in test_energy.py and
 test_reference_step.py.

@@ -1,4 +1,4 @@
-"""An instrument that only listens, a neck easy to reckon with, and a keyboard to play on."""
+"""An instrument that only records its events, a simple neck, and a keyboard to play on."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Move(NamedTuple):
 
 
 class Listener:
-    """Stands in for the instrument and keeps what it is told."""
+    """Stands in for the instrument; records the events it gets."""
 
     def __init__(self) -> None:
         self.moves: list[Move] = []
@@ -49,11 +49,11 @@ class Listener:
         return [move for move in self.moves if move.address == address]
 
     def __getitem__(self, address: str) -> float:
-        """Where a parameter goes, by the last word."""
+        """The last target of a parameter."""
         return self.of(address)[-1].value
 
     def where(self) -> tuple[str, float | None]:
-        """The string bowed, and how many semitones above it the finger stops it, if it does."""
+        """The bowed string, and the semitones above it of the finger that stops it, if any."""
         string = {1.0: "F", -1.0: "C", 0.0: "none"}[self["/bow/side"]]
         if self.press == 0.0:
             return string, None
@@ -61,7 +61,7 @@ class Listener:
 
     @property
     def finger(self) -> int | None:
-        """The finger that is down, by the last word."""
+        """The finger that is down."""
         down = [
             number
             for number in FINGERS
@@ -72,17 +72,17 @@ class Listener:
 
     @property
     def press(self) -> float:
-        """How hard the finger that is down presses (N)."""
+        """Press of the finger that is down (N)."""
         return 0.0 if self.finger is None else self[f"/finger/{self.finger}/press"]
 
     @property
     def place(self) -> float:
-        """Where it is (m)."""
+        """Place of the finger that is down (m)."""
         return self[f"/finger/{self.finger}/position"]
 
 
 class Ruler:
-    """A neck with a centimetre a semitone on both strings."""
+    """A neck with one centimetre per semitone on both strings."""
 
     OPEN = (65.0, 72.0)
 
@@ -98,7 +98,7 @@ class Ruler:
 
 
 class Midi:
-    """A keyboard: methods send messages, on channel 1 unless told."""
+    """A keyboard: methods send messages, by default on channel 1."""
 
     def __init__(self, player: MidiPlayer) -> None:
         self._player = player
@@ -128,7 +128,7 @@ class Midi:
 
 @pytest.fixture
 def listener_type() -> type[Listener]:
-    """For whoever needs many."""
+    """The class, for tests that need several."""
     return Listener
 
 
@@ -144,7 +144,7 @@ def ruler() -> Ruler:
 
 @pytest.fixture
 def player(listener, ruler) -> Performer:
-    """A player without chance."""
+    """A player without random variation."""
     performer = Performer(listener, ruler)
     performer.write("/playing/variation", 0.0)
     return performer

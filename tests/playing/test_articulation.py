@@ -1,4 +1,4 @@
-"""Dynamics, vibrato, tremolo, pizzicato, portamento: what the hands do with a player's wishes."""
+"""The player's hands in dynamics, vibrato, tremolo, pizzicato, portamento."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a source moves its target: spans, curves, tables, inversion, and back again."""
+"""From source to target and back: spans, curves, tables, inversion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How notes want to be bowed."""
+"""The bowing that each note needs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Playing without notes: the finger slides to a pitch, the bow is drawn by hand."""
+"""Playing without notes: a finger slid to a pitch, a bow drawn by hand."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def drawn_by_hand(pitches, seconds: float, evenness: float) -> np.ndarray:
 
 
 def test_by_hand_the_loudest_note_is_not_much_louder_than_the_softest():
-    """By hand nobody sees to it that each note is bowed as it likes: it is not as even as notes."""
+    """Notes are bowed as each needs; by hand nothing does that, so the loudness is less even."""
 
     def spread(evenness: float) -> float:
         sounds = [drawn_by_hand([pitch], 0.6, evenness) for pitch in (66, 73, 78)]
@@ -157,7 +157,7 @@ def test_by_hand_the_loudest_note_is_not_much_louder_than_the_softest():
 
 
 def test_a_slide_by_hand_is_evened_out_without_a_click():
-    """The balance is a gain, so that the two sounds are alike but for that gain."""
+    """The balance is a gain, so the two sounds differ by that gain only."""
     path = np.linspace(66.0, 88.0, 60)
     bare, even = (drawn_by_hand(path, 1.0, evenness) for evenness in (0.0, 1.0))
     heard = np.flatnonzero(np.abs(bare) > 1e-3)

@@ -1,4 +1,4 @@
-"""In tune: the calibration, and what is shipped of it."""
+"""Intonation: the calibration, and those that are shipped."""
 
 from __future__ import annotations
 

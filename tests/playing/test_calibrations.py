@@ -1,4 +1,4 @@
-"""A calibration is measured once and kept; one that is damaged or absurd is measured anew."""
+"""Calibrations are measured once and kept; a damaged or absurd one is measured again."""
 
 import errno
 import json
@@ -25,7 +25,7 @@ MEASURED = Calibration(
 
 
 class Kept:
-    """A folder of calibrations, and how often one was measured."""
+    """A folder of calibrations, and the number of measurements."""
 
     def __init__(self, folder) -> None:
         self.folder = folder

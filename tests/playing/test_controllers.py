@@ -1,4 +1,4 @@
-"""What MIDI controllers mean to the player: bend, pressure, wheels, and their reset."""
+"""The effect of MIDI controllers on the player: bend, pressure, wheels, and their reset."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long what arrives waits, so that it keeps its rhythm."""
+"""The delay of messages, which keeps their rhythm."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ HANDLING = 48  # frames
 
 
 class Device:
-    """An instrument that tells of a device what it is told to."""
+    """An instrument with the telemetry of a device that the test sets."""
 
     def __init__(self, fixed_ms: float | None = None) -> None:
         self._instrument = Instrument(RATE)
         self.delay = Delay(self._instrument, BLOCK, fixed_ms)
 
     def window(self, ahead: float, longest: int | None = None) -> int:
-        """Let a window pass; the delay after it."""
+        """Let a window pass; return the delay after it."""
         told = self._instrument._rig["published"]
         told["ahead_window"] += 1
         told["ahead"], told["longest"] = ahead, round(ahead) if longest is None else longest

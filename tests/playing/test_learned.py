@@ -1,4 +1,4 @@
-"""What is learned is kept in a file of the player, whole or not at all."""
+"""Learned binds are kept in a file of the user, whole or not at all."""
 
 from __future__ import annotations
 

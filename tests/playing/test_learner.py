@@ -1,4 +1,4 @@
-"""Finding out which source somebody moves."""
+"""Finding the source that the user moves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Several hands at one instrument, in the order of frames."""
+"""OSC, MIDI and direct writes to one instrument, in the order of frames."""
 
 from __future__ import annotations
 

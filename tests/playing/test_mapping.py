@@ -1,4 +1,4 @@
-"""Mapping files: what they may say, and how their errors read."""
+"""Mapping files: their entries, and the wording of errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mapping files: the line of each error, bases, and files written anew."""
+"""Mapping files: the line of each error, bases, and edited files."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ def test_lines_are_those_where_the_entries_are(parts, is_dos):
 
 
 def _ways(data, way=()):
-    """The entries of tables and of arrays of tables, but for what is within one line."""
+    """The paths of entries in tables and arrays of tables, except those within one line."""
     for name, value in data.items():
         yield (*way, name)
         if isinstance(value, dict) and "inline" not in value:

@@ -1,4 +1,4 @@
-"""What MIDI channel messages mean to the player: notes, the pedal, channel modes."""
+"""The effect of MIDI channel messages on the player: notes, pedal, channel modes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Binds of what the player does not move: output, body, strings."""
+"""Binds to parameters that the player does not move: output, body, strings."""
 
 from __future__ import annotations
 

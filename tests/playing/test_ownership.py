@@ -1,4 +1,4 @@
-"""Who owns the bow and the fingers: the player, or who writes to them directly."""
+"""Ownership of bow and fingers: the player's, or a direct write's."""
 
 from __future__ import annotations
 

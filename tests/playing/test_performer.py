@@ -1,4 +1,4 @@
-"""What a player does with notes: strings, fingers, strokes, variation, level."""
+"""The player's decisions for notes: strings, fingers, strokes, variation, level."""
 
 from __future__ import annotations
 

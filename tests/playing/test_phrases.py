@@ -1,4 +1,4 @@
-"""What phrases sound like: slurs, trills, slides, vibrato, tremolo, plucked notes, no clicks."""
+"""The sound of phrases: slurs, trills, slides, vibrato, tremolo, plucked notes, no clicks."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Stand:
 def heard(sound: np.ndarray, start_s: float, seconds: float) -> float:
     """Pitch (fractional MIDI note) of a part of a sound.
 
-    None is looked for below F4: both strings ring, and share longer periods.
+    The search begins at F4: both strings ring, and share longer periods.
     """
     part = sound[round(start_s * RATE) : round((start_s + seconds) * RATE)]
     frequency = frame_pitch(part, RATE, lo=330.0)

@@ -1,4 +1,4 @@
-"""Folders of presets, and what loading one does to the player."""
+"""Folders of presets, and loading one while the player plays."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def presets(tmp_path) -> Presets:
 
 @pytest.fixture
 def put(presets):
-    """Put a file into the player's own folder."""
+    """Write a file into the user's own folder."""
 
     def write(name: str, text: str) -> Path:
         presets.own.mkdir(exist_ok=True)

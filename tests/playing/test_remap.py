@@ -1,4 +1,4 @@
-"""A mapping that changes while notes sound."""
+"""A mapping replaced while notes sound."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def watch(path):
 
 
 def settled(watch: MappingWatch) -> Mapping | None:
-    """What comes of looking until the file has stood still."""
+    """The result of polling the file until it no longer changes."""
     first = watch.look()
     return first or watch.look()
 

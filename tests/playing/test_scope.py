@@ -1,4 +1,4 @@
-"""Whose notes follow a controller: those of its channel, or all of them."""
+"""The scope of a controller: the notes of its channel, or all notes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ KEYS, BREATH = 0, 1  # ports
 
 
 class Studio:
-    """Several boxes at one instrument; channels are counted from 1."""
+    """Several controllers at one instrument; channels are counted from 1."""
 
     def __init__(self, player: MidiPlayer) -> None:
         self.player = player
@@ -49,7 +49,7 @@ def make(player):
 
 @pytest.fixture
 def studio(make) -> Studio:
-    """What a volume pedal, aftertouch and a wheel are bound to, each for the notes of its own."""
+    """A volume pedal, aftertouch and a wheel, each bound for the notes of its channel."""
     return make(Bind("cc 7", VOLUME), Bind("pressure", PRESS), Bind("bend", BEND))
 
 

@@ -1,4 +1,4 @@
-"""Soft take-over: a controller moves its target only once it has come to where that is."""
+"""Soft take-over: a controller moves its target only after reaching its value."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def make(player):
 
 @pytest.fixture
 def at(player):
-    """Move a control, and see where the volume then is."""
+    """Move a control; return the volume."""
 
     def move(midi, *values: int, control: int = 1, channel: int = 1) -> float:
         for value in values:

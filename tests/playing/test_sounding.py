@@ -1,4 +1,4 @@
-"""What is heard when a player plays: notes that speak, in tune, and end."""
+"""The sound of notes: they speak, in tune, and end."""
 
 from __future__ import annotations
 

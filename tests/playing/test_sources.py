@@ -1,4 +1,4 @@
-"""Every source of a mapping, moved by real messages to both its ends."""
+"""Every source of a mapping, moved by MIDI messages to both its ends."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ VOLUME = "/playing/volume"
 
 @pytest.fixture
 def playing(player):
-    """A keyboard that moves what these binds say; MIDI, and the volume as it is."""
+    """Send MIDI to a player with these binds; return the volume."""
 
     def make(*binds: Bind, **options):
         midi = MidiPlayer(player, Mapping("test", binds, **options))

@@ -1,4 +1,4 @@
-"""Whatever comes in, in whatever order, no note sticks."""
+"""No note hangs, whatever messages come in whatever order."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ BOX = 2  # a port without keys
 
 
 class Keyboard:
-    """What should sound, reckoned apart: the key last struck of those held by hand or pedal."""
+    """An independent model of what sounds: the last key struck among those held."""
 
     def __init__(self) -> None:
         self.order: list[Key] = []
@@ -164,7 +164,7 @@ def test_the_last_key_struck_of_those_hand_or_pedal_hold_is_the_one_that_sounds(
 
 
 def boxes(seed: int) -> Iterator[tuple[int, mido.Message | None]]:
-    """Two keyboards, a box with pedals, and ports that go (None) and come back."""
+    """Two keyboards, a pedal box, and ports that disappear (None) and come back."""
     chance = random.Random(seed)
     for port in (0, 1):
         for velocity in (64, 0):
@@ -178,7 +178,7 @@ def boxes(seed: int) -> Iterator[tuple[int, mido.Message | None]]:
 
 
 class Boxes(Keyboard):
-    """The same, of several ports; the box's pedals hold the notes of both keyboards."""
+    """The same model for several ports; the pedal box holds the notes of both keyboards."""
 
     def take(self, port: int, message: mido.Message | None) -> None:
         if message is not None:

@@ -1,4 +1,4 @@
-"""Scala tunings: known scales, keyboard maps, and how errors read."""
+"""Scala tunings: known scales, keyboard maps, and the wording of errors."""
 
 from __future__ import annotations
 

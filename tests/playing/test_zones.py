@@ -1,4 +1,4 @@
-"""MPE: zones, and what member and master channels mean to the player."""
+"""MPE: zones, and the effect of member and master channels on the player."""
 
 from __future__ import annotations
 

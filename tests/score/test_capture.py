@@ -1,4 +1,4 @@
-"""Captures: written as things happen, read whatever happened."""
+"""Captures: written as events happen, readable whatever ends them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scores of scripts/make_examples.py: what they promise to those who build on them."""
+"""The scores of scripts/make_examples.py keep what their descriptions promise."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def of(score: Score, kind: str, control: int | None = None) -> list[ScoreEvent]:
 
 
 def with_sounding(score: Score) -> Iterator[tuple[ScoreEvent, list[tuple[int, int]]]]:
-    """Each event, and the notes (channel, note) that sound before it, the last one last."""
+    """Each event, with the notes (channel, note) that sound before it, the latest last."""
     sounding: list[tuple[int, int]] = []
     for event in score.events:
         yield event, list(sounding)
@@ -49,7 +49,7 @@ def with_sounding(score: Score) -> Iterator[tuple[ScoreEvent, list[tuple[int, in
 
 
 def steps(score: Score, kind: str, control: int | None = None) -> list[int]:
-    """How far a controller moves at a time while a note of its channel sounds.
+    """The steps of a controller while a note of its channel sounds.
 
     A move at the very begin of a note belongs to that note, not to the one before.
     """

@@ -1,4 +1,4 @@
-"""The reader of MIDI files, against files built byte by byte here."""
+"""The reader of MIDI files, on files built byte by byte."""
 
 from __future__ import annotations
 

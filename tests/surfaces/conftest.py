@@ -1,4 +1,4 @@
-"""The table as it is, and as it may become."""
+"""Two parameter tables: ours, and one with more rows."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ LARGER = (
 
 @pytest.fixture(params=[TABLE, LARGER], ids=["the table", "a larger table"])
 def any_table(request, monkeypatch):
-    """Surfaces are made from one of two tables."""
+    """Make surfaces from either table."""
     groups = layout.groups(request.param)
     monkeypatch.setattr(layout, "groups", lambda: groups)
     return request.param

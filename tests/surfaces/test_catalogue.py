@@ -1,4 +1,4 @@
-"""``yehu-server surfaces``, and the files that come along."""
+"""``yehu-server surfaces``, and the files that are shipped."""
 
 import subprocess
 import sys

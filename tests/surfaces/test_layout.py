@@ -1,4 +1,4 @@
-"""What all surfaces share."""
+"""The layout that all surfaces share."""
 
 from dataclasses import replace
 

@@ -11,7 +11,7 @@ from yehu_server.surfaces import max as max_patch
 
 
 class Patch:
-    """Boxes, and what their cords go to."""
+    """The boxes of a patch and their patch cords."""
 
     def __init__(self, data):
         patcher = json.loads(data)["patcher"]
@@ -33,7 +33,7 @@ class Patch:
         return box
 
     def after(self, box, outlet=0):
-        """The boxes that an outlet goes to, with their inlets."""
+        """The boxes that an outlet is connected to, with their inlets."""
         return [
             (self.boxes[target], inlet)
             for (source, out), (target, inlet) in self.cords

@@ -13,7 +13,7 @@ VOID = ("meta", "input", "br")
 
 
 class Reader(HTMLParser):
-    """Rows of cells, and whether every element is closed where it should be."""
+    """Collects rows of cells; checks that every element is closed."""
 
     def __init__(self):
         super().__init__()

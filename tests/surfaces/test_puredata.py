@@ -13,7 +13,7 @@ def lines_of_it():
 
 
 def sliders_of(lines):
-    """Their words, by the names they receive at."""
+    """The words of each slider, by its receive name."""
     words = (line.removesuffix(";").split() for line in lines if line.startswith("#X obj"))
     found = {word[12]: word for word in words if word[4] == "hsl"}
     assert len(found) == sum(" hsl " in line for line in lines)

@@ -18,7 +18,7 @@ def document():
 
 
 def sent(message):
-    """The address, the arguments as (kind, text, from, to), and what lets it go."""
+    """The address, the arguments as (kind, text, from, to), and the trigger."""
     assert message.send
     assert message.enabled
     address = "".join(part.value for part in message.path)
@@ -120,7 +120,7 @@ def test_the_layout_subscribes_by_itself(document):
 
 
 def controls(page):
-    """All that is seen on a page but groups, in the page's own frame."""
+    """All visible controls on a page except groups, in the page's frame."""
 
     def walk(control, x, y):
         for child in control.children:

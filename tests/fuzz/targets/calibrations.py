@@ -19,7 +19,7 @@ HOME = sys.modules[calibration_for.__module__]
 
 
 def asked() -> Calibration:
-    """The calibration of the cache, or what stands for one that is measured."""
+    """The calibration from the cache, or the one that stands for a measurement."""
     with (
         patch.object(HOME, "data_folder", lambda: scratch() / "cache"),
         patch.object(HOME, "calibration_key", lambda *_: "fuzzed"),
@@ -30,7 +30,7 @@ def asked() -> Calibration:
 
 @functools.cache
 def kept() -> tuple[Path, bytes]:
-    """Where a calibration is kept, and as what."""
+    """The file of a cached calibration, and its content."""
     folder = scratch() / "cache"
     folder.mkdir(exist_ok=True)
     asked()
@@ -43,10 +43,10 @@ WORDS = (b'"tensions": [', b'"a4": 440.0', b'"sharpening": [', b'"levels": [', b
 
 @target("calibration", words=WORDS)
 def calibration(data: bytes) -> None:
-    """A file of the cache that holds anything but what was written into it is not believed.
+    """A file of the cache that differs from what was written is not used.
 
-    Where the first byte is 0, the rest is changes to what is kept: three bytes for the place and
-    one that is put there.
+    If the first byte is 0, the rest changes bytes of the file: three bytes for a place, and one
+    to put there.
     """
     file, whole = kept()
     if data[:1] == b"\0":
@@ -61,7 +61,7 @@ def calibration(data: bytes) -> None:
 
 @target("calibration-data", words=WORDS)
 def calibration_data(data: bytes) -> None:
-    """What a file holds by its checksum is a whole calibration, or it is measured again."""
+    """A file with a right checksum holds a whole calibration, or it is measured again."""
     file, _ = kept()
     file.write_bytes(data)
     with patch.object(HOME, "read_sealed", lambda _path: data, create=True):

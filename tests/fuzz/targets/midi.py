@@ -1,4 +1,4 @@
-"""MIDI files, and what comes in at MIDI ports."""
+"""MIDI files, and messages from MIDI ports."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class MidiIn:
 
 @target("midi-messages", words=(b"\x33\x90\x43\x5a", b"\x33\xb0\x01\x7f", b"\x32\xd0\x40"))
 def midi_messages(data: bytes) -> None:
-    """Whatever ports send, the instrument hears finite values within range, and can be silenced.
+    """Any messages give the instrument finite values within range, and it can be silenced.
 
     The first byte chooses the mapping. Each message begins with a byte: its length in two bits,
     the port in two, and milliseconds since the one before.

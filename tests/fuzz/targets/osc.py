@@ -27,7 +27,7 @@ def messages(packet: bytes) -> list[Message]:
 
 
 def can_be_sent(argument: object) -> bool:
-    """Whether we might send it: floats go out in 32 bits."""
+    """Whether it can be sent: floats go out in 32 bits."""
     if isinstance(argument, float):
         return not 3e38 < abs(argument) < math.inf
     return isinstance(argument, str | bool)
@@ -74,7 +74,7 @@ def check_stream(stream: bytes, piece_bytes: int) -> None:
 
 
 def check_wrapping(begin: bytes, packets: Iterable[bytes]) -> None:
-    """What one end wraps, the other unwraps."""
+    """Packets that one end frames are those that the other reads."""
     here, there = Framing(), Framing()
     list(here.packets(begin))
     for packet in packets:
@@ -82,7 +82,7 @@ def check_wrapping(begin: bytes, packets: Iterable[bytes]) -> None:
 
 
 def check_framing(begin: bytes, data: bytes) -> None:
-    """Both ways, for a stream that begins so; the data's first byte says how it is cut."""
+    """Check framing both ways; the data's first byte says how the stream is cut."""
     check_stream(begin + data[1:], 1 + int.from_bytes(data[:1], "big"))
     content = data[1:MOST_WRAPPED_BYTES]
     check_wrapping(begin, [b"/" + content, b"#bundle\0" + content])

@@ -1,4 +1,4 @@
-"""What OSC messages do: the whole handler, on an instrument that only listens."""
+"""OSC messages to the whole handler, on an instrument that only listens."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Ear:
 
 
 class Desk:
-    """What the server does beside playing."""
+    """The handler's desk: status, recordings, tree changes."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
@@ -96,7 +96,7 @@ class Desk:
 
 @contextmanager
 def still_time() -> Iterator[Clock]:
-    """A clock that moves when told to, and nobody's settings."""
+    """A manual clock, and no user settings, within the block."""
     clock = Clock()
     home = scratch() / "config"
     shutil.rmtree(home, ignore_errors=True)
@@ -157,7 +157,7 @@ def packet(program: Program, now_s: float, depth: int = 3) -> bytes:
 
 @target("osc-calls")
 def osc_calls(data: bytes) -> None:
-    """Any messages are acted on or answered, no value leaves its range, and a panic ends all.
+    """Any message is acted on or answered, no value leaves its range, and a panic ends every note.
 
     The bytes are a program: packets of addresses and arguments, and pauses between them.
     """

@@ -146,12 +146,12 @@ MOST_WRITTEN = 4000  # characters; tomlkit is slow
 
 
 def meant(sheet: Sheet) -> Sheet:
-    """The same with what goes without saying left out: without a base there is no MPE."""
+    """The mapping without what is implied: without a base there is no MPE."""
     return sheet if sheet.base is not None else replace(sheet, mpe=sheet.mpe or None)
 
 
 def check(sheet: Sheet, path: Path, text: str) -> None:
-    """Its binds move their targets within range, and it reads the same when written."""
+    """Check that binds move their targets within range, and that it reads the same when written."""
     for address, value in sheet.start:
         assert find(address).lo <= value <= find(address).hi
     for bind in sheet.binds:
@@ -200,7 +200,7 @@ def mapping(data: bytes) -> None:
     ),
 )
 def mapping_json(data: bytes) -> None:
-    """The same of the JSON that ``mappings show`` prints."""
+    """JSON as ``mappings show`` prints it is a mapping under the same law."""
     path = written(data, "mapping.json")
     text = text_of(path)
     sheet = sheet_of(path, json_of(path, text))

@@ -1,4 +1,4 @@
-"""OSCQuery's HTTP and WebSockets, on a connection that is none."""
+"""OSCQuery's HTTP and WebSockets, on a connection in memory."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Connection(asyncio.Transport):
 
 
 class Defects(logging.Handler):
-    """Keeps the exceptions that a server logs to live on."""
+    """Keeps the exceptions that a server logs and survives."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -97,14 +97,14 @@ class Defects(logging.Handler):
             self.found.append(record.exc_info[1])
 
     def check(self) -> None:
-        """Raise the first."""
+        """Raise the first one."""
         found, self.found = self.found, []
         if found:
             raise found[0]
 
 
 class House:
-    """A web server and its loop, which never listens."""
+    """A web server and its loop, without a socket."""
 
     def __init__(self) -> None:
         self.loop = asyncio.new_event_loop()
@@ -133,7 +133,7 @@ class House:
         return runner.server
 
     def talk(self, *pieces: bytes) -> bytes:
-        """Let a client say this and hang up; what it was answered. Errors: of the server."""
+        """Send data as a client and close; return the answer. Errors: of the server."""
         before = self.web.traffic.failures
         answered = self.loop.run_until_complete(self._talk(pieces))
         self._clients.flush()
@@ -187,7 +187,7 @@ WORDS = (
 
 @target("http-request", words=WORDS)
 def http_request(data: bytes) -> None:
-    """Whatever a connection sends, it is answered without a failure, or waited for."""
+    """Any data is answered without a failure, or the server waits for more."""
     half = len(data) // 2
     answered = house().talk(data[:half], data[half:])
     assert not answered or answered.startswith(b"HTTP/")
@@ -241,7 +241,7 @@ def http_path(data: bytes) -> None:
     ),
 )
 def websocket(data: bytes) -> None:
-    """Whatever frames come, a WebSocket goes on or is closed, and ends with its connection."""
+    """After any frames a WebSocket goes on or is closed, and ends with its connection."""
     half = len(data) // 2
     answered = house().talk(HANDSHAKE, data[:half], data[half:])
     assert answered.startswith(b"HTTP/1.1 101")
@@ -261,7 +261,7 @@ def websocket(data: bytes) -> None:
     ),
 )
 def websocket_command(data: bytes) -> None:
-    """A text frame is a command for an address that there is, or a CommandError."""
+    """A text frame is a command for an existing address, or a CommandError."""
     command, address = web_sockets._read(data.decode(errors="replace"))
     assert command in {"LISTEN", "IGNORE"}
     assert address in LISTENABLE

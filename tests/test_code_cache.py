@@ -26,7 +26,7 @@ class Kept:
         monkeypatch.setattr(code_cache, "_troubles", set())
 
     def start(self, function=third_of) -> tuple[int, bool]:
-        """Call the function with 12, as after a start; return the result, and whether it was cached."""
+        """Call the function with 12, as after a start; the result, and whether it was cached."""
         native = jit.Native("int64(int64)", function)
         return native.call(12), native.compiled.cache_hits == 1
 

@@ -1,6 +1,6 @@
 """A client of OSCQuery independent of the package.
 
-HTTP by http.client; WebSockets (RFC 6455) and OSC 1.0 by hand.
+HTTP by http.client; WebSockets (RFC 6455) by hand.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import os
 import socket
 import struct
 from typing import Any, NamedTuple
+
+from wire import Heard, Wire
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0
@@ -49,52 +51,6 @@ def walk(node: dict[str, Any]):
     yield node["FULL_PATH"], node
     for child in node.get("CONTENTS", {}).values():
         yield from walk(child)
-
-
-class Heard(NamedTuple):
-    """An OSC message."""
-
-    address: str
-    arguments: list[Any]
-
-
-def packed(address: str, *arguments: float | str | None) -> bytes:
-    """An OSC message of floats, strings and nil."""
-
-    def text(text: str) -> bytes:
-        data = text.encode()
-        return data + b"\0" * (4 - len(data) % 4)
-
-    tags = "".join(
-        "s" if isinstance(one, str) else "N" if one is None else "f" for one in arguments
-    )
-    data = b"".join(
-        text(one) if isinstance(one, str) else b"" if one is None else struct.pack(">f", one)
-        for one in arguments
-    )
-    return text(address) + text("," + tags) + data
-
-
-def unpacked(packet: bytes) -> Heard:
-    """An OSC message; a bundle is an error."""
-    assert packet[:1] == b"/"
-
-    def text(at: int) -> tuple[str, int]:
-        end = packet.index(0, at)
-        return packet[at:end].decode(), end + 4 - (end - at) % 4
-
-    address, at = text(0)
-    tags, at = text(at)
-    arguments: list[Any] = []
-    for tag in tags[1:]:
-        if tag == "s":
-            value, at = text(at)
-        else:
-            (value,) = struct.unpack_from(">" + tag, packet, at)
-            at += struct.calcsize(">" + tag)
-        arguments.append(value)
-    assert at == len(packet)
-    return Heard(address, arguments)
 
 
 class Refused(Exception):  # noqa: N818 - it is no error
@@ -188,7 +144,7 @@ class WebSocket:
         self.command("IGNORE", path)
 
     def tell(self, address: str, *arguments: float | str | None) -> None:
-        self.send(BINARY, packed(address, *arguments))
+        self.send(BINARY, Wire.message(address, *arguments))
 
     def next(self, within_s: float = PATIENCE_S) -> Heard | dict[str, Any] | None:
         """The next message or command; None after the time."""
@@ -198,7 +154,7 @@ class WebSocket:
             except TimeoutError:
                 return None
             if kind == BINARY:
-                return unpacked(data)
+                return Wire.read(data)
             if kind == TEXT:
                 return json.loads(data)
             if kind == CLOSE:

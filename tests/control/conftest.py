@@ -1,23 +1,22 @@
-"""OSC as bytes, peers that only listen, a manual clock, and servers to play on."""
+"""A stage on a manual clock, and real servers with clients."""
 
 from __future__ import annotations
 
 import contextlib
 import logging
-import math
 import socket
 import struct
 import sys
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, ClassVar, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
+from wire import Ear, Heard, StillTime, Wire
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control import clients, osc, schedule
@@ -34,7 +33,6 @@ from yehu_server.server import ServeOptions, Server
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0  # for other threads, on a busy machine
 QUIET_S = 0.15  # nothing comes for so long: nothing comes
-SINCE_1900_S = 2_208_988_800
 ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: "silence"}
 
 
@@ -52,108 +50,6 @@ def target_of(instrument: Instrument, address: str) -> float:
     return float(instrument._rig["gesture"]["target"][0, SLOT[address]])
 
 
-# ---------------------------------------------------------------- bytes
-
-
-class Heard(NamedTuple):
-    """A message as a client reads it."""
-
-    address: str
-    arguments: list[Any]
-
-
-class Wire:
-    """OSC 1.0 in bytes, written and read without the package and without python-osc."""
-
-    NUMBERS: ClassVar = {
-        "i": ">i",
-        "f": ">f",
-        "h": ">q",
-        "d": ">d",
-        "t": ">Q",
-        "r": ">I",
-        "c": ">I",
-    }
-    BARE: ClassVar = {"T": True, "F": False, "N": None, "I": math.inf}
-
-    @staticmethod
-    def text(text: str) -> bytes:
-        data = text.encode()
-        return data + b"\0" * (4 - len(data) % 4)
-
-    @classmethod
-    def tag(cls, argument: Any) -> str:
-        if isinstance(argument, bool):
-            return "T" if argument else "F"
-        if isinstance(argument, int):
-            return "i" if -(2**31) <= argument < 2**31 else "h"
-        return {float: "f", str: "s", bytes: "b", type(None): "N"}[type(argument)]
-
-    @classmethod
-    def message(cls, address: str, *arguments: Any, tags: str | None = None) -> bytes:
-        """A message; its type tags are those given, or follow from the arguments."""
-        if tags is None:
-            tags = "".join(map(cls.tag, arguments))
-        data = bytearray(cls.text(address) + cls.text("," + tags))
-        left = deque(arguments)
-        for tag in tags:
-            if tag in cls.NUMBERS:
-                data += struct.pack(cls.NUMBERS[tag], left.popleft())
-            elif tag in "sS":
-                data += cls.text(left.popleft())
-            elif tag == "b":
-                blob = left.popleft()
-                data += struct.pack(">i", len(blob)) + blob + b"\0" * (-len(blob) % 4)
-            elif tag == "m":
-                data += bytes(left.popleft())
-            elif tag in "TFN" and left:
-                left.popleft()
-        return bytes(data)
-
-    @staticmethod
-    def bundle(at_s: float | None, *elements: bytes) -> bytes:
-        """A bundle for a time in seconds since 1970, or for at once."""
-        tag = 1
-        if at_s is not None:
-            whole = math.floor(at_s)
-            tag = (whole + SINCE_1900_S << 32) + round((at_s - whole) * 2**32)
-        sized = (struct.pack(">i", len(element)) + element for element in elements)
-        return b"#bundle\0" + struct.pack(">Q", tag) + b"".join(sized)
-
-    @classmethod
-    def read(cls, packet: bytes) -> Heard:
-        """Parse one message, strictly."""
-
-        def text(at: int) -> tuple[str, int]:
-            end = packet.index(0, at)
-            after = end + 4 - (end - at) % 4
-            assert not any(packet[end:after])
-            return packet[at:end].decode(), after
-
-        assert len(packet) % 4 == 0
-        address, at = text(0)
-        tags, at = text(at)
-        assert tags[0] == ","
-        arguments: list[Any] = []
-        for tag in tags[1:]:
-            if tag in cls.NUMBERS:
-                (value,) = struct.unpack_from(cls.NUMBERS[tag], packet, at)
-                at += struct.calcsize(cls.NUMBERS[tag])
-            elif tag == "s":
-                value, at = text(at)
-            elif tag == "b":
-                (size,) = struct.unpack_from(">i", packet, at)
-                value = packet[at + 4 : at + 4 + size]
-                at += 4 + size + -size % 4
-            elif tag in cls.BARE:
-                value = cls.BARE[tag]
-            else:
-                value, at = packet[at : at + 4], at + 4
-            arguments.append(value)
-        assert at == len(packet)
-        return Heard(address, arguments)
-
-
 @pytest.fixture(scope="session")
 def wire() -> type[Wire]:
     return Wire
@@ -168,70 +64,14 @@ def patience() -> Callable[..., Any]:
 # ---------------------------------------------------------------- peers
 
 
-class Ear:
-    """A peer who only listens."""
-
-    def __init__(self, port: int = 1) -> None:
-        self.port = port
-        self.packets: list[bytes] = []
-        self.others: dict[int, Ear] = {}
-
-    @property
-    def name(self) -> str:
-        return f"ear:{self.port}"
-
-    @property
-    def host(self) -> str:
-        return self.name
-
-    takes_more = True
-
-    def send(self, packet: bytes) -> None:
-        self.packets.append(packet)
-
-    def at(self, port: int) -> Ear:
-        return self.others.setdefault(port, Ear(port))
-
-    def heard(self) -> list[Heard]:
-        """The messages since the last call."""
-        packets, self.packets = self.packets, []
-        return [Wire.read(packet) for packet in packets]
-
-
-@pytest.fixture(scope="session")
-def ear_type() -> type[Ear]:
-    """The class, for tests that need several."""
-    return Ear
-
-
 @pytest.fixture
 def ear() -> Ear:
     return Ear()
 
 
-class StillTime:
-    """A clock that tests move by hand; stands in for the module ``time``."""
-
-    def __init__(self) -> None:
-        self.now = time.monotonic() + 100.0  # s; later than anything on the true clock
-        self.since_1970 = 1.7e9  # of the monotonic clock's zero
-
-    def monotonic(self) -> float:
-        return self.now
-
-    def monotonic_ns(self) -> int:
-        return round(1e9 * self.now)
-
-    def time(self) -> float:
-        return self.since_1970 + self.now
-
-    time_ns = None  # code under this clock may not use another
-    sleep = None
-
-
 @pytest.fixture
 def still_time(monkeypatch) -> StillTime:
-    clock = StillTime()
+    clock = StillTime(time.monotonic() + 100.0)  # later than anything on the true clock
     for module in (clients, schedule, osc, live):
         monkeypatch.setattr(module, "time", clock)
     return clock

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
+from wire import Ear
 
 from yehu_server.control.clients import (
     MOST_KNOWN,
@@ -74,8 +75,8 @@ def test_another_server_that_tells_us_its_values_is_not_answered_for_as_long(
 # ---------------------------------------------------------------- echoes
 
 
-def test_who_sets_something_is_told_its_value_once(clients, values, play, ear, ear_type):
-    other = ear_type(2)
+def test_who_sets_something_is_told_its_value_once(clients, values, play, ear):
+    other = Ear(2)
     values.now["/a"] = 0.5
     clients.echo(ear, ["/a"])
     play(100)
@@ -107,8 +108,8 @@ def test_there_is_nothing_to_wait_for_while_nobody_is_to_be_told(clients, play, 
     assert clients.wait_s() is None
 
 
-def test_many_who_set_something_at_once_are_all_told(clients, play, ear_type):
-    ears = [ear_type(port) for port in range(MOST_KNOWN + 100)]
+def test_many_who_set_something_at_once_are_all_told(clients, play):
+    ears = [Ear(port) for port in range(MOST_KNOWN + 100)]
     for ear in ears:
         clients.echo(ear, ["/a"])
     play(17)
@@ -117,10 +118,8 @@ def test_many_who_set_something_at_once_are_all_told(clients, play, ear_type):
     assert {len(ear.packets) for ear in ears} == {1}
 
 
-def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(
-    clients, values, play, ear_type
-):
-    ears = [ear_type(port) for port in range(40)]
+def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, values, play):
+    ears = [Ear(port) for port in range(40)]
     values.now = {f"/{number}": 0.0 for number in range(MOST_TOLD // 10)}
     for ear in ears:
         assert clients.subscribe(ear, 60.0)
@@ -151,9 +150,9 @@ def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, e
     assert told(ear) == [("/yehu/a", [49.0])]
 
 
-def test_only_so_many_are_remembered(clients, ear_type):
+def test_only_so_many_are_remembered(clients):
     for port in range(5 * MOST_KNOWN):
-        clients.complain(ear_type(port), "/x", "no")
+        clients.complain(Ear(port), "/x", "no")
         assert len(clients._clients) <= MOST_KNOWN
 
 
@@ -222,13 +221,10 @@ def test_a_subscription_is_renewed_and_not_doubled(clients, values, play, ear):
     assert told(ear) == [("/yehu/a", [1.0])]
 
 
-def test_one_host_leaves_places_for_others(clients, ear_type):
-    class Tenant(ear_type):
-        host = "192.0.2.1"
-
-    tenants = [Tenant(port) for port in range(MOST_OF_A_HOST + 1)]
+def test_one_host_leaves_places_for_others(clients):
+    tenants = [Ear(port, "192.0.2.1") for port in range(MOST_OF_A_HOST + 1)]
     assert [clients.subscribe(ear, 60.0) for ear in tenants].count(True) == MOST_OF_A_HOST
-    assert clients.subscribe(ear_type(7), 60.0)
+    assert clients.subscribe(Ear(7), 60.0)
     clients.unsubscribe(tenants[0])
     assert clients.subscribe(tenants[-1], 60.0)
 
@@ -252,10 +248,8 @@ def test_subscribers_of_no_time_get_all_values_once(clients, values, play, ear):
     assert told(ear) == [("/yehu/a", [1.0]), ("/yehu/b", [0.0]), ("/yehu/c", [0.0])]
 
 
-def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(
-    clients, play, ear_type
-):
-    ears = [ear_type(port) for port in range(MOST_SUBSCRIBERS + 1)]
+def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(clients, play):
+    ears = [Ear(port) for port in range(MOST_SUBSCRIBERS + 1)]
     assert all(clients.subscribe(ear, 1.0) for ear in ears[:-1])
     assert not clients.subscribe(ears[-1], 1.0)
     assert clients.subscribe(ears[0], 1.0)  # who has a place keeps it
@@ -265,14 +259,12 @@ def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(
     assert clients.subscribers == 0
 
 
-def test_subscribers_are_not_forgotten_for_the_many_who_pass_by(
-    clients, values, play, ear, ear_type
-):
+def test_subscribers_are_not_forgotten_for_the_many_who_pass_by(clients, values, play, ear):
     clients.subscribe(ear, 10.0)
     play(20)
     ear.heard()
     for port in range(2, 3 * MOST_KNOWN):
-        clients.complain(ear_type(port), "/x", "no")
+        clients.complain(Ear(port), "/x", "no")
     values.now["/a"] = 1.0
     play(20)
     assert told(ear) == [("/yehu/a", [1.0])]
@@ -280,9 +272,9 @@ def test_subscribers_are_not_forgotten_for_the_many_who_pass_by(
 
 @pytest.mark.parametrize("is_subscribed", [False, True])
 def test_a_peer_that_is_gone_when_it_is_told_leaves_the_others_in_peace(
-    clients, play, ear, ear_type, is_subscribed
+    clients, play, ear, is_subscribed
 ):
-    class Gone(ear_type):
+    class Gone(Ear):
         def send(self, _packet: bytes) -> None:
             clients.forget(self)
 
@@ -302,8 +294,8 @@ def test_errors_are_told_with_address_and_reason(clients, ear):
     assert told(ear) == [("/yehu/error", ["/yehu/nothing", "it is not there"])]
 
 
-def test_errors_are_told_rarely_to_who_makes_many(clients, play, ear, ear_type):
-    patient = ear_type(2)
+def test_errors_are_told_rarely_to_who_makes_many(clients, play, ear):
+    patient = Ear(2)
     play(10_000, lambda: clients.complain(ear, "/x", "no"))
     assert 100 <= len(ear.packets) <= 125
     assert clients.errors_sent == len(ear.packets)
@@ -377,11 +369,11 @@ def test_an_address_ignored_before_it_was_told_is_not_told(clients, play, ear):
     assert told(ear) == []
 
 
-def test_who_has_nothing_to_hear_is_forgotten(clients, play, ear, ear_type):
-    clients.subscribe(ear_type(2), 1.0)
-    clients.listen(ear_type(3), "/a")
+def test_who_has_nothing_to_hear_is_forgotten(clients, play, ear):
+    clients.subscribe(Ear(2), 1.0)
+    clients.listen(Ear(3), "/a")
     clients.echo(ear, ["/a"])
-    clients.complain(ear_type(4), "/x", "why")
+    clients.complain(Ear(4), "/x", "why")
     play(20)
     assert len(clients._clients) == 4
     play(4000)

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+from wire import Ear
 
 from yehu_server.control import preset_calls
 from yehu_server.control.preset_calls import SAVES_A_SECOND, SAVES_AT_ONCE
@@ -56,8 +57,8 @@ def test_a_load_is_heard_at_the_frame_of_its_time_tag_and_at_no_other(stage, wir
     assert stage.late() == 0
 
 
-def test_subscribers_hear_of_a_load(stage, ear_type):
-    other = ear_type(2)
+def test_subscribers_hear_of_a_load(stage):
+    other = Ear(2)
     stage.handler.clients.subscribe(other, 60.0)
     stage.ask("/ping")
     other.heard()

@@ -9,7 +9,8 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from web_client import BINARY, CLOSE, TEXT, Heard, Refused, WebSocket, ask, packed
+from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
+from wire import Heard, Wire
 
 from yehu_server.control.peers import MOST_UNSENT_BYTES, WebTraffic
 from yehu_server.control.web import MOST_CONNECTIONS, MOST_WEB_SOCKETS, SWEEP_S, WebOptions
@@ -265,7 +266,7 @@ def test_a_frame_that_is_too_long_ends_its_sender(web, connect):
 
 
 def test_a_frame_may_be_as_long_as_a_datagram(web):
-    web.send(BINARY, packed("/yehu/ping", "x" * 60_000))
+    web.send(BINARY, Wire.message("/yehu/ping", "x" * 60_000))
     assert len(web.wait_for("/yehu/pong")[0]) == 60_000
 
 
@@ -336,7 +337,7 @@ def test_what_one_said_last_is_done_before_it_is_forgotten(web_house, connect, p
 def test_twenty_who_come_and_go_at_random_leave_nothing_behind(web_house, port, patience):
     chance = random.Random(7)
     ending = time.monotonic() + 2.5
-    bystander = web_house.client()
+    bystander, osc = web_house.client(), (HOST, web_house.ports.port)
     slowest = 0.0
 
     def come_and_go(seed: int) -> None:
@@ -353,11 +354,11 @@ def test_twenty_who_come_and_go_at_random_leave_nothing_behind(web_house, port, 
                 web.close() if chance.random() < 0.5 else web.vanish()
             else:
                 client = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-                client.sendto(packed("/yehu/subscribe", 1.0), (HOST, web_house.ports.port))
-                client.sendto(packed(FORCE, chance.uniform(0.0, 5.0)), (HOST, web_house.ports.port))
+                client.sendto(Wire.message("/yehu/subscribe", 1.0), osc)
+                client.sendto(Wire.message(FORCE, chance.uniform(0.0, 5.0)), osc)
                 time.sleep(chance.uniform(0.0, 0.05))
                 if chance.random() < 0.3:
-                    client.sendto(packed("/yehu/unsubscribe"), (HOST, web_house.ports.port))
+                    client.sendto(Wire.message("/yehu/unsubscribe"), osc)
                 client.close()
 
     crowd = [threading.Thread(target=come_and_go, args=(seed,)) for seed in range(20)]

@@ -13,6 +13,7 @@ from unittest.mock import patch
 
 from fuzz.instrument import CALIBRATION, Instrument, check_values
 from fuzz.target import Program, scratch, target
+from wire import SINCE_1900_S, Ear, StillTime
 
 from yehu_server.control import clients, osc, schedule
 from yehu_server.control.calls import CALLS, PREFIX
@@ -26,7 +27,6 @@ from yehu_server.playing.presets import Presets
 from yehu_server.playing.style import Style
 
 MOST_PACKETS = 200
-SINCE_1900_S = 2_208_988_800
 ADDRESSES = [
     *("/yehu/*", "/yehu/*/*", "/yehu/bow/[a-z", "/*/note", "/", "/yehu/{,}", "/my/fader"),
     "/yehu/subscribed",  # as another server says
@@ -34,39 +34,6 @@ ADDRESSES = [
     *(PREFIX + param.address + form for param in TABLE for form in ("", UNIT)),
 ]
 NAMES = ["", "/bow/force", "/playing/dynamics", "/*/*", "/[", "../x", "mine", "vibrato", "é" * 9]
-
-
-class Clock:
-    """Stands in for the module ``time``."""
-
-    def __init__(self) -> None:
-        self.now = 1000.0
-
-    def monotonic(self) -> float:
-        return self.now
-
-    def monotonic_ns(self) -> int:
-        return round(1e9 * self.now)
-
-    def time(self) -> float:
-        return 1.7e9 + self.now
-
-
-class Ear:
-    """A peer who only listens."""
-
-    takes_more = True
-
-    def __init__(self, port: int = 1) -> None:
-        self.host, self.name = "ear", f"ear:{port}"
-        self.packets: list[bytes] = []
-        self.others: dict[int, Ear] = {}
-
-    def send(self, packet: bytes) -> None:
-        self.packets.append(packet)
-
-    def at(self, port: int) -> Ear:
-        return self.others.setdefault(port, Ear(port))
 
 
 class Desk:
@@ -95,9 +62,9 @@ class Desk:
 
 
 @contextmanager
-def still_time() -> Iterator[Clock]:
+def still_time() -> Iterator[StillTime]:
     """A manual clock, and no user settings, within the block."""
-    clock = Clock()
+    clock = StillTime(1000.0)
     home = scratch() / "config"
     shutil.rmtree(home, ignore_errors=True)
     with (
@@ -162,7 +129,7 @@ def osc_calls(data: bytes) -> None:
     The bytes are a program: packets of addresses and arguments, and pauses between them.
     """
     with still_time() as clock:
-        instrument, desk, ear = Instrument(), Desk(), Ear()
+        instrument, desk, ear = Instrument(), Desk(), Ear(host="ear")
         style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
         player = LivePlayer(instrument, style, calibration=CALIBRATION, delay_ms=3.0)
         handler = OscHandler(player, desk)

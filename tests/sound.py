@@ -7,6 +7,15 @@ import numpy as np
 from yehu_server.engine.instrument import Instrument
 
 
+def bow(instrument: Instrument, press: float = 0.0, frame: int = 0) -> None:
+    """Bow the F string, open or stopped at 10 cm."""
+    if press:
+        instrument.write("/finger/1/position", 0.1, frame=frame, ramp_ms=0.0)
+        instrument.write("/finger/1/press", press, frame=frame)
+    instrument.write("/bow/side", 1.0, frame=frame)
+    instrument.write("/bow/speed", 0.2, frame=frame, ramp_ms=40.0)
+
+
 def run(instrument: Instrument, frames: int, block: int = 0) -> np.ndarray:
     """The next frames of an instrument, in blocks of one size, or in one."""
     out = np.zeros(frames, np.float32)

@@ -9,7 +9,7 @@ import threading
 import numpy as np
 import pytest
 import soundfile
-from sound import run
+from sound import bow, run
 
 from yehu_server.audio import recorder, wav
 from yehu_server.audio.recorder import Recorder
@@ -22,8 +22,7 @@ RATE = 48000
 @pytest.fixture
 def instrument() -> Instrument:
     instrument = Instrument(float(RATE))
-    instrument.write("/bow/side", 1.0)
-    instrument.write("/bow/speed", 0.2)
+    bow(instrument)
     return instrument
 
 

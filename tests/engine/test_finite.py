@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from sound import bow, run
 
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
@@ -23,11 +24,8 @@ def fields(stage: str) -> list[str]:
 def playing() -> np.ndarray:
     """The rig of an instrument in the middle of a stopped note."""
     instrument = Instrument(44100)
-    instrument.write("/finger/1/position", 0.05)
-    instrument.write("/finger/1/press", 1.5)
-    instrument.write("/bow/side", 1.0)
-    instrument.write("/bow/speed", 0.2)
-    instrument.process(np.zeros(4410, np.float32))
+    bow(instrument, press=1.5)
+    run(instrument, 4410)
     return instrument._rig.copy()
 
 

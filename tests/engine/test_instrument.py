@@ -7,7 +7,7 @@ import random
 
 import numpy as np
 import pytest
-from sound import rms, run, run_for
+from sound import bow, rms, run, run_for
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
@@ -15,14 +15,6 @@ from yehu_server.params.table import ENGINE, TABLE
 from yehu_server.physics.quantities import Quantities, StringQuantities
 
 RATE = 44100
-
-
-def bow(instrument: Instrument, press: float = 0.0, frame: int = 0) -> None:
-    """Bow the F string, open or stopped at 10 cm."""
-    instrument.write("/finger/1/position", 0.1, frame=frame, ramp_ms=0.0)
-    instrument.write("/finger/1/press", press, frame=frame)
-    instrument.write("/bow/side", 1.0, frame=frame)
-    instrument.write("/bow/speed", 0.2, frame=frame, ramp_ms=40.0)
 
 
 def level(samples: np.ndarray) -> float:

@@ -13,6 +13,7 @@ import llvmlite.binding as llvm
 import numba
 import numpy as np
 import pytest
+from sound import bow
 
 from yehu_server import jit
 from yehu_server.engine import native
@@ -272,8 +273,7 @@ def test_on_arm_they_are_loads_that_acquire_and_stores_that_release(name, words)
 
 def bowed(**how: object) -> Instrument:
     instrument = Instrument(RATE, **how)
-    instrument.write("/bow/side", 1.0)
-    instrument.write("/bow/speed", 0.2)
+    bow(instrument)
     return instrument
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sound import bow, run
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.output import limit
@@ -59,11 +60,8 @@ def bowed(gain_db: float = 0.0, level: float = 1.0) -> np.ndarray:
     instrument = Instrument(RATE)
     instrument.write("/output/gain", gain_db, ramp_ms=0.0)
     instrument.write("/output/level", level, ramp_ms=0.0)
-    instrument.write("/bow/side", 1.0)
-    instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
-    out = np.zeros(RATE // 2, np.float32)
-    instrument.process(out)
-    return out
+    bow(instrument)
+    return run(instrument, RATE // 2)
 
 
 @pytest.fixture(scope="module")
@@ -93,11 +91,8 @@ def test_the_limiter_may_begin_lower_or_only_cut(soft):
         instrument = Instrument(RATE)
         instrument.write("/output/gain", 24.0, ramp_ms=0.0)
         instrument.write("/output/limiter", limiter_db, ramp_ms=0.0)
-        instrument.write("/bow/side", 1.0)
-        instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
-        out = np.zeros(RATE // 2, np.float32)
-        instrument.process(out)
-        return out
+        bow(instrument)
+        return run(instrument, RATE // 2)
 
     as_it_is = 10 ** (36 / 20) * soft.astype(float)
     np.testing.assert_allclose(loud(0.0), np.clip(as_it_is, -1.0, 1.0), atol=1e-5)
@@ -110,11 +105,8 @@ def test_the_bodys_gain_is_of_what_it_radiates_alone():
         instrument = Instrument(RATE)
         instrument.write("/body/gain", gain_db, ramp_ms=0.0)
         instrument.write("/body/blend", blend, ramp_ms=0.0)
-        instrument.write("/bow/side", 1.0)
-        instrument.write("/bow/speed", 0.2)
-        out = np.zeros(RATE // 2, np.float32)
-        instrument.process(out)
-        return out.astype(float)
+        bow(instrument)
+        return run(instrument, RATE // 2).astype(float)
 
     assert heard(-6.0, 0.0) == pytest.approx(10 ** (-6 / 20) * heard(0.0, 0.0), abs=1e-6)
     assert heard(-6.0, 1.0) == pytest.approx(heard(0.0, 1.0), abs=1e-6)
@@ -123,8 +115,7 @@ def test_the_bodys_gain_is_of_what_it_radiates_alone():
 def blended(blend: float) -> np.ndarray:
     instrument = Instrument(RATE)
     instrument.write("/body/blend", blend, ramp_ms=0.0)
-    instrument.write("/bow/side", 1.0)
-    instrument.write("/bow/speed", 0.2)
+    bow(instrument)
     out = np.zeros(RATE, np.float32)
     instrument.process(out)
     return out[RATE // 2 :].astype(float)

@@ -11,7 +11,7 @@ import numba
 import numpy as np
 import pytest
 from llvmlite import ir
-from sound import run
+from sound import bow, run
 
 from yehu_server.engine import processor
 from yehu_server.engine.instrument import Instrument
@@ -159,8 +159,7 @@ def denormals(instrument: Instrument) -> int:
 def ringing() -> Instrument:
     """An instrument that rings after a bow stroke."""
     instrument = Instrument(RATE)
-    instrument.write("/bow/side", 1.0)
-    instrument.write("/bow/speed", 0.2)
+    bow(instrument)
     assert np.abs(run(instrument, RATE // 4)).max() > 0.001
     instrument.write("/bow/side", 0.0, ramp_ms=0.0)
     instrument.write("/bow/speed", 0.0, ramp_ms=0.0)

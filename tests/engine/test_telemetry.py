@@ -34,10 +34,7 @@ OUTPUT_UNDERFLOW, OTHER_FLAGS = 4, [0, 1, 2, 8, 16]
 
 def bowed(rate: float = RATE) -> Instrument:
     instrument = Instrument(rate)
-    instrument.write("/finger/1/position", 0.1, ramp_ms=0.0)
-    instrument.write("/finger/1/press", 1.5)
-    instrument.write("/bow/side", 1.0)
-    instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
+    sound.bow(instrument, press=1.5)
     return instrument
 
 

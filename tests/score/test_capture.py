@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sound import bow
 
 from yehu_server.engine.gesture import SILENCE
 from yehu_server.engine.instrument import Instrument
@@ -122,8 +123,7 @@ def test_a_missing_file_and_a_missing_folder_are_told(tmp_path):
 def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
     live = Instrument(RATE)
     live.report_events()
-    live.write("/bow/side", 1.0)
-    live.write("/bow/speed", 0.2)
+    bow(live)
     played = np.zeros(30000, np.float32)
     for start in range(0, 30000, 100):
         if start == 10000:
@@ -140,8 +140,7 @@ def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
 def test_a_rest_in_mid_session_is_replayed(tmp_path):
     live = Instrument(RATE)
     live.report_events()
-    live.write("/bow/side", 1.0)
-    live.write("/bow/speed", 0.2)
+    bow(live)
     played = np.zeros(20000, np.float32)
     live.process(played[:9000])
     live._rig["meters"]["running"] = 1  # as if the process was killed inside a block

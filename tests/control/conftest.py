@@ -32,7 +32,7 @@ from yehu_server.server import ServeOptions, Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0  # for other threads, on a busy machine
-QUIET_S = 0.15  # nothing comes for so long: nothing comes
+QUIET_S = 0.15  # silence after which nothing more is expected
 ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: "silence"}
 
 
@@ -122,7 +122,7 @@ class Stage:
         self.instrument = Instrument(self.RATE, memory=bytearray(RIG_BYTES))
         self.instrument.report_events()
         self.instrument.frame_at = self._frame_at
-        self.pace = 1.0  # of the device, where 1 is the rate it promises
+        self.pace = 1.0  # of the device, relative to its nominal rate
         self._began = (clock.now, 0)
         self.player = live.LivePlayer(
             self.instrument, Style(), delay_ms=1e3 * block / self.RATE + 1.0

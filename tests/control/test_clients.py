@@ -62,7 +62,7 @@ def test_another_server_that_tells_us_its_values_is_not_answered_for_as_long(
         clients.complain(ear, "/x", "unknown")
         play(100)
     assert told(ear) == []
-    clients.subscribe(ear, 10.0)  # what it asks for it gets all the same
+    clients.subscribe(ear, 10.0)  # it still gets what it asks for
     values.now["/a"] = 1.0
     play(20)
     assert ("/yehu/a", [1.0]) in told(ear)
@@ -252,7 +252,7 @@ def test_there_is_room_for_so_many_subscribers_and_for_more_when_some_are_gone(c
     ears = [Ear(port) for port in range(MOST_SUBSCRIBERS + 1)]
     assert all(clients.subscribe(ear, 1.0) for ear in ears[:-1])
     assert not clients.subscribe(ears[-1], 1.0)
-    assert clients.subscribe(ears[0], 1.0)  # who has a place keeps it
+    assert clients.subscribe(ears[0], 1.0)  # a subscriber keeps its place
     clients.unsubscribe(ears[3])
     assert clients.subscribe(ears[-1], 1.0)
     play(1100)
@@ -301,7 +301,7 @@ def test_errors_are_told_rarely_to_who_makes_many(clients, play, ear):
     assert clients.errors_sent == len(ear.packets)
     assert clients.errors_sent + clients.errors_withheld == 10_000
     clients.complain(patient, "/x", "no")
-    assert len(patient.packets) == 1  # others are not made to wait
+    assert len(patient.packets) == 1  # others need not wait
     ear.heard()
     play(5000)
     clients.complain(ear, "/x", "no")

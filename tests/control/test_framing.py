@@ -36,7 +36,7 @@ def read(framing: Framing, *pieces: bytes) -> list[bytes]:
 
 FRAMINGS = [prefixed, slipped, slipped_bare]
 SOME = [b"/a\0\0", b"/" + END * 3 + ESC * 2, b"#bundle\0", b"/\xdb\xdc\xdb\xdd\0", b"/b" * 300]
-# The first byte tells the framing apart: of SLIP without a leading END, that of a packet.
+# The first byte tells the framing: SLIP without a leading END begins with that of a packet.
 osc_like = st.builds(lambda start, rest: start + rest, st.sampled_from([b"/", b"#"]), st.binary())
 awkward = st.lists(st.sampled_from([END, ESC, b"\xdc", b"\xdd", b"\0", b"/"])).map(b"".join)
 packets = st.lists(osc_like | awkward.map(lambda rest: b"/" + rest), max_size=8)
@@ -103,7 +103,7 @@ def test_a_stream_that_never_ends_a_packet_is_given_up(start):
     assert len(framing._received) <= 3 * MOST_BYTES
 
 
-STUN = bytes.fromhex("0003 0000 2112a442") + b"0123456789ab"  # what asks a TURN server for a place
+STUN = bytes.fromhex("0003 0000 2112a442") + b"0123456789ab"  # a TURN allocation request
 SAID_BY_OTHERS = [
     b"GET / HTTP/1.1\r\n\r\n",
     b"POST / HTTP/1.1\r\nContent-Length: 8\r\n\r\n\xc0/a\0\0\xc0",

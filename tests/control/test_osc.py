@@ -233,10 +233,10 @@ def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(st
     stage.pass_time(0.5)
     assert stage.ear.heard() == []
     stage.desk.names.append("take")
-    stage.tell("/playing/vibrato", 5.0)  # of which it did not ask
+    stage.tell("/playing/vibrato", 5.0)  # which it did not subscribe to
     stage.pass_time(0.3)
     heard = values(stage.ear.heard())
-    assert heard.pop("/yehu/playing/vibrato") == 5.0  # but is told what it sets
+    assert heard.pop("/yehu/playing/vibrato") == 5.0  # but is told of what it sets
     assert heard == {"/yehu/status/recording": "take"}
     assert stage.handler.clients.subscribers == 1
     stage.pass_time(2.0)
@@ -575,7 +575,7 @@ def test_after_panic_or_reset_nothing_is_left(stage, wire, order, end):
     assert stage.handler.waiting == 0
     stage.pass_time(0.05)
     assert not stage.pass_time(0.5).any()
-    stage.tell("/note/off", 67)  # what is let go later brings nothing back
+    stage.tell("/note/off", 67)  # letting go later brings nothing back
     assert not stage.pass_time(0.1).any()
     stage.tell("/note", 69, 90)
     assert rms(stage.pass_time(0.5)) > 1e-4
@@ -790,7 +790,7 @@ def test_a_message_is_heard_a_constant_time_after_it_came(hall, busy):
     delays = []
     with busy():
         for number in range(30):
-            # It follows the device's period, which a machine that is held up makes longer.
+            # The delay follows the device's period, which grows on a machine that is held up.
             delay = hall.player.delay
             before = hall.instrument.frame_at(time.monotonic_ns())
             client.tell("/bow/position", 0.1 + 0.001 * number)
@@ -798,7 +798,7 @@ def test_a_message_is_heard_a_constant_time_after_it_came(hall, busy):
             client.wait_for("/bow/position")
             moves = [frame for frame, address, _ in hall.settle() if address == "/bow/position"]
             delays.append((moves[0] - before, moves[0] - after, delay))
-    # On a machine that is busy some may be late; most are not.
+    # On a busy machine some may be late; most are not.
     on_time = [1 for most, least, delay in delays if least <= delay <= most + 1]
     assert len(on_time) > len(delays) // 2
 
@@ -978,7 +978,7 @@ def test_a_subscription_ends_by_itself(hall):
 @pytest.mark.parametrize("slip", [False, True], ids=["prefixed", "slip"])
 def test_a_subscriber_may_be_at_the_end_of_a_stream(hall, slip):
     stream, other = hall.stream(slip=slip), hall.client()
-    stream.tell("/subscribe", 30, 7400)  # over a stream there is only one way back
+    stream.tell("/subscribe", 30, 7400)  # over a stream answers go back by the stream alone
     assert stream.wait_for("/subscribed") == [30.0]
     assert len(stream.all()) == len(TABLE)
     other.tell("/playing/volume", 0.25)
@@ -1117,7 +1117,7 @@ def test_a_link_in_the_recordings_that_leads_out_is_not_written_through(
 
 def test_a_folder_that_cannot_be_reached_is_answered(make_hall, tmp_path):
     hall = make_hall()
-    hall.server.options.recordings = tmp_path / ("x" * 300)  # stands in for one without access
+    hall.server.options.recordings = tmp_path / ("x" * 300)  # stands in for a folder without access
     client = hall.client()
     client.tell("/record/start", "take")
     message = client.next(0.5)
@@ -1140,7 +1140,7 @@ def test_stopping_while_notes_and_clients_are_there_ends_all(make_hall):
     stream.tell("/note", 67, 90)
     stream.tell("/record/start", "take")
     stream.wait_for("/record/started")
-    hall.wait_frames(4800)  # the rest is up to the fixture: nothing may be left
+    hall.wait_frames(4800)  # the fixture checks that nothing is left
 
 
 def test_osc_is_the_prefix_of_all_that_is_said():

@@ -17,7 +17,7 @@ from yehu_server.surfaces import puredata
 PD = shutil.which("pd") or shutil.which("puredata")
 pytestmark = pytest.mark.skipif(not PD, reason="Pure Data is not here")
 
-WATCHED = "/yehu/playing/vibrato"  # nothing but us moves it
+WATCHED = "/yehu/playing/vibrato"  # only these tests move it
 
 
 class Desk:
@@ -104,7 +104,7 @@ def test_a_slider_follows_the_server_and_says_nothing_back(hall, patience, desk)
 def test_what_a_slider_has_moved_comes_back_to_all_that_show_it(patience, desk):
     desk.move(WATCHED, 25)
     patience(lambda: "watched: set 25" in desk.printed, "the echo")
-    # Shown at once by the patch itself, and by the server when the hand has come to rest.
+    # The patch itself shows it at once, the server when the slider rests.
     patience(lambda: desk.printed.count("watched: set 25") >= 2, "what the server tells")
 
 

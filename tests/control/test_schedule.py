@@ -80,7 +80,7 @@ class Device:
 
     def __init__(self, clock, pace: float = 1.0) -> None:
         self.pace = pace
-        self.stray = 0.0  # s; how wrong our idea of it is
+        self.stray = 0.0  # s; the error of the estimated time
         self._began = clock.now
         self.instrument = SimpleNamespace(rate=RATE, frame_at=self.frame_at)
 
@@ -123,7 +123,7 @@ def test_times_stay_within_a_millisecond_and_a_bit_for_minutes(still_time, pace)
             steps.append(number)
         before = frame
     drift_ms = 120.0 * abs(pace - 1.0) * 1e3
-    assert len(steps) <= drift_ms + 1.0  # only as often as it has led a millisecond away
+    assert len(steps) <= drift_ms + 1.0  # one for each millisecond of drift
 
 
 @pytest.mark.parametrize("step_s", [-3600.0, -0.01, 0.01, 3600.0])

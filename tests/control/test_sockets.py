@@ -27,7 +27,7 @@ from yehu_server.errors import DeviceError, ParameterError
 
 HOST = "127.0.0.1"
 BURST = 20_000
-PACKET_BYTES = 768  # a small one, as Linux counts it against the buffer
+PACKET_BYTES = 768  # of a small packet, as Linux accounts for it in the buffer
 SETTLE_S = 0.05
 
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells")
@@ -42,7 +42,7 @@ class Keeper:
         self.gone_peers: list[object] = []
         self.go_on = threading.Event()
         self.go_on.set()
-        self.is_slow = False  # then others are handled while it is held up
+        self.is_slow = False  # then it yields to others while it is held up
         self.hearing: list[object] = []
         self.ticks = 0
         self.takes_s = 0.0
@@ -182,7 +182,7 @@ def test_what_the_kernel_drops_is_counted(listen, client, keeper, patience):
     ports.start()
     patience(lambda: keeper.packets, "a packet")
     time.sleep(SETTLE_S)
-    sender.take(b"the last")  # the kernel tells of its drops with the next that arrives
+    sender.take(b"the last")  # the kernel reports drops with the next packet
     patience(lambda: b"the last" in keeper.bodies, "the last packet")
     assert ports.traffic.kernel_drops > 0
     assert ports.traffic.packets + ports.traffic.kernel_drops == 1001
@@ -270,7 +270,7 @@ def test_what_waits_in_memory_is_bounded_and_what_is_over_is_counted(
     for _ in range(5):
         other.take(b"y" * 16_000)
     patience(lambda: ports.traffic.packets == sent + 5, "all to be read")
-    assert 0.4 * sent < ports.traffic.excess < 0.6 * sent  # half of it is for others
+    assert 0.4 * sent < ports.traffic.excess < 0.6 * sent  # half of the room is for others
     assert ports._backlog.bytes < 0.6 * MOST_BYTES
     keeper.go_on.set()
     patience(lambda: ports._backlog.bytes == 0, "nothing to be left")
@@ -506,7 +506,7 @@ def test_who_is_silent_for_long_gives_its_place_to_who_comes_unless_it_listens(
     assert client(ports, "slip").has_ended()  # nobody is silent any more
 
 
-# What a browser sends for a page of http://evil.example, with OSC as its body.
+# A browser's POST for a page of http://evil.example, with OSC as its body.
 NOTE = pack("/yehu/note", 67.0, 90.0)
 POST = (
     b"POST / HTTP/1.1\r\nHost: 127.0.0.1:9000\r\nUser-Agent: curl/7.88.1\r\nAccept: */*\r\n"
@@ -676,14 +676,14 @@ def test_what_is_due_is_looked_after_however_much_is_to_be_read(listen, client, 
     count = min(BURST, ports.traffic.buffer_bytes // (2 * PACKET_BYTES))
     send_all(client(ports), numbered(count))
     gc.collect()
-    gc.disable()  # all that the test session holds takes long to go through
+    gc.disable()  # a collection of all the session's objects takes long
     try:
         ports.start()
         patience(lambda: len(keeper.packets) >= count, "all packets")
     finally:
         gc.enable()
     gaps = [after - before for before, after in itertools.pairwise(keeper.ticked_s)]
-    # In the thread's own time, of which a neighbour on the same core takes some: 5 ms at worst.
+    # In the thread's own CPU time, to which a neighbour on the same core adds up to 5 ms.
     assert max(gaps) < AHEAD_S
 
 

@@ -10,7 +10,7 @@ from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.playing.live import LivePlayer
 
-# Near what is measured, which takes seconds.
+# Near a measured calibration, which takes seconds to make.
 CALIBRATION = Calibration(
     440.0,
     (51.0, 64.0),

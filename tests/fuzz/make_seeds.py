@@ -131,7 +131,7 @@ def slip(*packets: bytes) -> bytes:
     return b"".join(b"\xc0" + packet + b"\xc0" for packet in escaped)
 
 
-# The first byte is the number of bytes that come at once; the target puts the framing's first byte.
+# The first byte is the number of bytes in each read; the target adds the framing's first byte.
 OSC_PREFIXED = {
     "two-packets": b"\x06" + prefixed(OSC_NOTE, BLOB),
     "byte-by-byte": b"\x00" + prefixed(OSC_NOTE),
@@ -148,8 +148,8 @@ OSC_SLIP = {
 }
 
 
-# Programs of the target's: each message is a kind (48 and the number of arguments), an address by
-# its number in two bytes, arguments, and a pause.
+# Programs for the target. Each message is a kind (48 plus the number of arguments), the number of
+# an address in two bytes, arguments, and a pause.
 def said(number: int, *arguments: bytes, pause_ms: int = 10) -> bytes:
     kind = 48 + len(arguments)
     return bytes([kind]) + struct.pack("<H", number) + b"".join(arguments) + bytes([pause_ms])

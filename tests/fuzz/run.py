@@ -41,7 +41,7 @@ class Outcome:
     executions: int
     covered: str
     findings: list[bytes]
-    log: str = ""  # of one that did not end as it should
+    log: str = ""  # of a target that ended unexpectedly
 
     @property
     def row(self) -> tuple[str, ...]:
@@ -139,7 +139,7 @@ def main() -> int:
     parser.add_argument("--list", action="store_true", help="tell the targets and their contracts")
     options = parser.parse_args()
 
-    logging.disable(logging.WARNING)  # what readers say of bad input
+    logging.disable(logging.WARNING)  # readers' warnings about bad input
     engine = engine_named(options.engine)
     load_targets(engine)
     for name in options.target:

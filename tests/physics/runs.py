@@ -27,7 +27,7 @@ PROBES = {
     "v_r": layout.RELATIVE_VELOCITY,
     "iterations": layout.ITERATIONS,
 }
-# What power comes in or is lost by, but for energy dropped within one sample.
+# Ways in and out of power, without the energy dropped within one sample.
 FLOWS = ("power_in", *(f"loss_{by}" for by in ("strings", "bridge", "finger", "hair", "friction")))
 
 Curves = Mapping[str, Any]  # F_N, v_b, x_b, hammer; x_f and press: one entry a finger

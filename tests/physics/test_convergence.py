@@ -17,7 +17,7 @@ from scipy.linalg import null_space
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities
 
-# The finger out of the way: nothing but strings and bridge.
+# The finger out of reach: only strings and bridge move.
 YEHU = replace(
     Quantities(),
     finger=replace(Quantities().finger, rest_height=0.05),

@@ -6,8 +6,8 @@ import numpy as np
 
 from yehu_server.physics.elementary import SLIGHT, power_of_2, sine_and_cosine, slowing
 
-# What a polynomial leaves, and the roundings of its last sums and products, half a unit each:
-# processors that fuse multiply and add leave some out. The other side is rounded too.
+# The error of a polynomial, and half a unit for each rounding of its last sums and products;
+# processors that fuse multiply and add have fewer. The C library rounds too.
 ROUNDING = 1e-15
 
 

@@ -22,7 +22,7 @@ def balanced(run):
     assert np.isfinite(run.ledger).all()
     # The balance closes to rounding ...
     assert np.abs(run["energy_error"]).max() <= 1e-9 * run.power
-    # ... and is blind to what follows, so each is looked at for itself.
+    # ... but does not see what follows, so each is checked by itself.
     assert run["loss_friction"].min() >= -1e-12 * max(1.0, run["loss_friction"].max())
     assert run["loss_finger"].min() >= -1e-8
     assert run["v_r_residual"].max() <= 1e-9
@@ -61,7 +61,7 @@ def performance(t):
 def test_ten_seconds_of_playing_create_and_lose_no_energy(rate):
     run = play(performance, 10.0, rate)
     balanced(run)
-    # It was playing: power came in, each kind of loss took some.
+    # It did play: power came in, and each kind of loss took some.
     assert run["power_in"].max() > 0.1
     for name in ("strings", "bridge", "finger", "hair", "friction"):
         assert run[f"loss_{name}"].max() > 1e-3, name
@@ -81,7 +81,7 @@ def test_steps_in_every_control_create_no_energy(rate):
 
     run = play(jumps, 4.0, rate)
     balanced(run)
-    # What the bristles and the potential held when they were let go is booked.
+    # The ledger has the energy of bristles and potentials that were reset.
     assert run["loss_bow_lift"].max() > 0.0
     assert run["loss_contact_reset"].max() > 0.0
 

@@ -51,7 +51,7 @@ def problems(count, seed, fastest=10.0):
         compliance = 10.0 ** rng.uniform(-1.0, math.log10(4.5))
         z_static = BOW.mu_S * F_N / BOW.epsilon_0
         z = z_static * rng.uniform(-1.0, 1.0) * rng.choice([1.0, 1.0, 1.0, 30.0])
-        # Of a law that was met elsewhere, at another speed and bow force.
+        # The tangent of a law at another speed and bow force.
         tangent = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), -(10.0 ** rng.uniform(0.0, 6.0))
         yield free, compliance, z, F_N, tangent, int(rng.integers(2))
 
@@ -108,7 +108,7 @@ def test_what_a_last_step_leaves_is_as_small_as_the_docstring_says():
     for string, F_N in ((0, 0.05), (0, 0.7), (1, 3.0)):
         z, tangent, sides = 0.0, NO_TANGENT, Counter()
         for n in range(4000):
-            # A string that slips and sticks, with some of its corners' roughness.
+            # A string that sticks and slips, with noise for its corners.
             free = 1.2 * F_N * math.cos(0.02 * n) ** 3 + 0.02 * rng.normal()
             _, z_bar, v_r, tangent, _, converged = solve_friction(
                 free, 1.2, z, F_N, tangent, model, string
@@ -163,7 +163,7 @@ def steady(velocity, F_N, string=0):
     model = kernel.prepare(YEHU, RATE)[0]
     z, tangent = 0.0, NO_TANGENT
     for _ in range(3000):
-        # A string that is all but held: whatever the force, the velocity nearly stays.
+        # A nearly rigid string: no force changes its velocity much.
         f_b, z_bar, v_r, tangent, *_ = solve_friction(
             velocity, 1e-5, z, F_N, tangent, model, string
         )

@@ -241,6 +241,6 @@ def test_a_state_that_blew_up_is_lost_too():
     kernel.advance(model, state, rows(200, 1, {}), probes, None)
     assert state["lost"][0] == 1
     assert np.abs(probes[:, layout.BRIDGE_FORCE]).max() < 1e6
-    # At rest from then on: but for the height of the finger, nothing is left to see.
+    # At rest from then on: every probe but the finger's height is zero.
     after = np.delete(probes[when_lost(probes) + 1 :], layout.FINGER_PROBES, axis=1)
     assert not after.any()

@@ -6,8 +6,8 @@ import pytest
 from yehu_server.physics.layout import INTERVALS, MODEL
 from yehu_server.physics.power import power, prepare_power
 
-# What seven roundings of 2^-53 come to at most: four in the powers of two, one each in the power
-# of a middle, in the product of these and in the sum. How many err the same way hangs on the
+# The sum of at most seven roundings of 2^-53: four in the powers of two, one each in the power of a
+# middle, in the product of these and in the sum. How many have the same sign depends on the
 # processor: 5.5e-16 with fused multiply-adds, 6.01e-16 without.
 ROUNDING = 8e-16
 

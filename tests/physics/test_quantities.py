@@ -15,7 +15,7 @@ from yehu_server.physics.quantities import Quantities, override, read_body
 YEHU = Quantities()
 BODY = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())
 
-# The table and [Yehu] table 1, typed once more.
+# [Yehu] table 1 and the published numbers, typed independently.
 MEASURED = {
     "string_1": {
         "L": 0.38,

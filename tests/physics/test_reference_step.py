@@ -74,7 +74,7 @@ def random_problem(params, rng):
     u_prev = tied(params, [u + 3e-6 * rng.normal(size=len(u)) for u in shapes], q_prev)
     at_finger = [ref.interpolate_cubic(params.strings[0], x) @ u[0][1:-1] for x in x_f]
     U = np.array(at_finger) + 2e-4 * rng.normal(size=fingers)
-    # Some fingers leave at up to metres a second and some hold little: theta < 1.
+    # Some fingers leave at metres a second and some potentials are small: theta < 1.
     left = rng.choice([2e-7, 2e-5], fingers) * np.abs(rng.normal(size=fingers))
     Psi = np.abs(rng.normal(size=(fingers, 2))) * rng.choice([1e-3, 1e-6])
     state = ref.RefState(
@@ -128,7 +128,7 @@ def friction_regime(params, controls, outputs):
 
 @pytest.fixture(
     scope="module",
-    # A stretch that counts a thousand times as much shows how tension and contacts meet.
+    # A thousandfold tension modulation shows its coupling with the contacts.
     params=[*((rate, 1.0) for rate in RATES), (44100.0, 0.0), (44100.0, 1000.0)],
     ids=lambda case: "{:.0f}-modulation-{:.0f}".format(*case),
 )
@@ -201,7 +201,7 @@ def test_one_row_of_the_ledger_is_the_references(compared):
         scale = max(abs(expected[name]) for name in parts.values())
         for name, theirs in parts.items():
             assert abs(found[name] - expected[theirs]) <= 1e-11 * scale, name
-        # The kernel keeps the energy before the step; here it started from none.
+        # The kernel keeps the energy of the step before, which is 0 here.
         flow = sum(found[name] for name in parts if name != "power_in") - found["power_in"]
         error = found["energy"] / params.k + flow - expected["h_before"] / params.k
         assert abs(error) <= 1e-11 * max(scale, expected["h_before"] / params.k)

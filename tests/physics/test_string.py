@@ -239,7 +239,7 @@ def test_a_string_that_is_retuned_is_as_one_made_so(rate):
     kernel.retune(model, state, 0, slacker.T, slacker.sigma_0, slacker.sigma_1)
     for field in layout.MODEL.names:
         np.testing.assert_allclose(model[field], made[field], rtol=1e-12, err_msg=field)
-    assert state["placed"] == 0  # contacts are to look anew how the string gives way
+    assert state["placed"] == 0  # contacts must compute the string's compliance again
 
 
 @both_strings

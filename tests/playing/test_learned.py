@@ -40,7 +40,7 @@ def test_what_is_learned_for_a_shipped_mapping_is_there_at_the_next_start(settin
     assert again == mapping
     assert moved_by(again, "cc 20") == ["/playing/vibrato_press"]
     assert set(again.binds) - {again.of("cc 20")[0]} <= set(load(name).binds)
-    assert moved_by(load(name), "cc 20") == []  # who renders is not told of it
+    assert moved_by(load(name), "cc 20") == []  # rendering does not use it
     assert load(f"mine/{name}") == mapping
 
 

@@ -216,7 +216,7 @@ def test_lines_are_those_where_the_entries_are(parts, is_dos):
     for way, line in lines.items():
         name = next(part for part in reversed(way) if isinstance(part, str))
         assert name in rows[line - 1] or json.dumps(name) in rows[line - 1]
-    # What stands at or below a line is what is cut off with it.
+    # Cutting at a line removes the entries at it and below.
     for way, line in lines.items():
         try:
             above = lines_of("\n".join(rows[: line - 1]))

@@ -105,8 +105,8 @@ def test_a_trill_alternates_between_two_notes(low):
     sound = stand.play(1.3)
     played = [low if n % 2 else low + 2 for n in range(8)]
     off = [heard(sound, t + 0.06, 0.04) - note for t, note in zip(times, played, strict=True)]
-    # The open string that has just been let go of bends some of these, and how it dies away
-    # hangs on rounding: by 10 cents on one processor, by 44 on another. A whole tone is meant.
+    # The open string, just released, bends some of these while it decays, by 10 cents on one
+    # processor and by 44 on another, as it depends on rounding. A whole tone is meant.
     assert np.median(np.abs(off)) < 0.15
     assert np.abs(off).max() < 0.8
 

@@ -65,7 +65,7 @@ def test_every_shipped_preset_says_what_it_is_and_has_a_program_of_its_own(prese
     assert all(preset.about and not preset.unknown for preset in found)
     programs = [preset.program for preset in found]
     assert sorted(programs) == list(range(1, len(found) + 1))
-    # All name the same parameters, so that each undoes what another did, and none is silent.
+    # All name the same parameters, so that each undoes another.
     assert len({frozenset(preset.values) for preset in found}) == 1
     assert not NOT_SAVED & set(found[0].values)
 
@@ -191,7 +191,7 @@ def test_a_folder_holds_so_many_presets_and_no_more(presets, put):
     with pytest.raises(PresetError, match=f"there are {MOST_OWN} presets of your own; delete one"):
         presets.save("one more", DEFAULTS)
     assert not (presets.own / "one more.toml").exists()
-    presets.save("mine 7", DEFAULTS)  # over one there is
+    presets.save("mine 7", DEFAULTS)  # an existing one
     presets.delete("mine 8")
     presets.save("one more", DEFAULTS)
 

@@ -14,7 +14,7 @@ from fuzz.target import scratch, target
 from yehu_server.playing.calibration import Calibration
 from yehu_server.playing.intonation import calibration_for
 
-RATE = 31_000.0  # not one that comes along
+RATE = 31_000.0  # no shipped calibration has it
 HOME = sys.modules[calibration_for.__module__]
 
 
@@ -56,7 +56,7 @@ def calibration(data: bytes) -> None:
         data = bytes(changed)
     file.write_bytes(data)
     assert asked() == CALIBRATION
-    assert file.read_bytes() == whole  # it is mended
+    assert file.read_bytes() == whole  # it is repaired
 
 
 @target("calibration-data", words=WORDS)

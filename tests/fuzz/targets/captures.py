@@ -33,7 +33,7 @@ def capture(data: bytes) -> None:
     """A capture has a length, its events are in range, and it can be written again."""
     path = written(data, "file.jsonl")
     taken = read_capture(path)
-    check_rate(taken.rate)  # these two are what replay begins with
+    check_rate(taken.rate)  # replay begins with these two checks
     first, second = taken.tensions
     override(Quantities(), {"string_1": {"T": first}, "string_2": {"T": second}})
     assert 0 <= taken.frames <= MOST_FRAMES  # replay sets a bound of its own: --max-duration

@@ -65,7 +65,7 @@ def check_stream(stream: bytes, piece_bytes: int) -> None:
     packets, is_refused = received(Framing(), pieces)
     whole, whole_is_refused = received(Framing(), [stream])
     assert is_refused == whole_is_refused
-    assert packets[: len(whole)] == whole  # of one that is refused, what came before may be lost
+    assert packets[: len(whole)] == whole  # a refused stream may lose the packets before the damage
     for packet in packets:
         try:
             messages(packet)

@@ -48,9 +48,15 @@ def machine(name: str) -> numba.core.codegen.CPUCodeLibrary:
         return jit.Native(call._signature, call._function).compiled._library
 
 
+def parsed(name: str) -> llvm.ModuleRef:
+    """The optimised code of a call, in a context of its own: LLVM's global one is never freed."""
+    return llvm.parse_assembly(machine(name).get_llvm_str(), llvm.create_context())
+
+
+@cache
 def parts(name: str) -> dict[str, str]:
     """The optimised code of each function and global of a call, by name."""
-    module = llvm.parse_assembly(machine(name).get_llvm_str())
+    module = parsed(name)
     return {part.name: str(part) for part in [*module.functions, *module.global_variables]}
 
 
@@ -147,9 +153,9 @@ def names(listing: str, name: str) -> set[str]:
 @cache
 def assembly(name: str, processor: str) -> str:
     """The assembly of a call for another x86-64 processor; this one need not be able to run it."""
-    module = llvm.parse_assembly(machine(name).get_llvm_str())
     target = llvm.Target.from_triple(llvm.get_process_triple())
-    return target.create_target_machine(cpu=processor, features="", opt=3).emit_assembly(module)
+    maker = target.create_target_machine(cpu=processor, features="", opt=3)
+    return maker.emit_assembly(parsed(name))
 
 
 @on_x86

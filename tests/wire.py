@@ -7,6 +7,8 @@ import struct
 from collections import deque
 from typing import Any, ClassVar, NamedTuple
 
+import numpy as np
+
 SINCE_1900_S = 2_208_988_800
 
 
@@ -107,6 +109,21 @@ class Wire:
             arguments.append(value)
         assert at == len(packet)
         return Heard(address, arguments)
+
+
+def f32(value: float) -> float:
+    """A number as it goes over the wire."""
+    return float(np.float32(value))
+
+
+def values(heard: list[Heard]) -> dict[str, Any]:
+    """The first argument of each address."""
+    return {message.address: message.arguments[0] for message in heard}
+
+
+def errors(heard: list[Heard]) -> list[str]:
+    """The addresses of the errors answered."""
+    return [message.arguments[0] for message in heard if message.address == "/yehu/error"]
 
 
 class Ear:

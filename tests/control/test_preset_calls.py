@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
-from wire import Ear
+from wire import Ear, f32
 
 from yehu_server.control import preset_calls
 from yehu_server.control.preset_calls import SAVES_A_SECOND, SAVES_AT_ONCE
@@ -24,10 +24,6 @@ def own(own_presets):
     yield own_presets
     for file in own_presets.iterdir():
         file.unlink()
-
-
-def f32(value: float) -> float:
-    return pytest.approx(value, rel=1e-6, abs=1e-6)
 
 
 def by_address(heard) -> dict[str, list]:

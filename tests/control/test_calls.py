@@ -1,0 +1,278 @@
+"""Calls by OSC: notes, bow, bend, panic, reset, release, ping."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sound import rms
+from wire import errors, f32, values
+
+from yehu_server.control import osc
+from yehu_server.control.calls import CALLS
+from yehu_server.params.table import TABLE
+
+
+def test_every_call_is_in_the_documentation():
+    text = (Path(__file__).parents[2] / "docs" / "osc.md").read_text()
+    assert [call.address for call in CALLS if f"`/yehu{call.address}" not in text] == []
+
+
+def test_every_call_is_described_and_every_described_call_is_there(stage):
+    of_parameters = {p.address for p in TABLE} | {f"{p.address}/unit" for p in TABLE}
+    assert {call.address for call in CALLS} == set(stage.handler._calls) - of_parameters
+
+
+def test_osc_is_the_prefix_of_all_that_is_said():
+    assert osc.PREFIX == "/yehu"
+
+
+def test_every_call_is_heard(hall):
+    client = hall.client()
+    assert hall.level() < 1e-6
+    client.tell("/note", 67.0, 90.0)
+    hall.wait_frames(9600)
+    assert hall.level() > 1e-3
+    client.tell("/note", 67.0, 0.0)
+    client.sync()
+    hall.settle()
+    assert hall.is_at_rest()
+    client.tell("/panic")
+    client.sync()
+    hall.settle()
+    assert hall.level() < 1e-9
+    client.tell("/pitch", 70.0)
+    client.tell("/bow", 0.25, 0.6)
+    client.sync()
+    hall.wait_frames(9600)
+    assert hall.level() > 1e-3
+    client.tell("/reset")
+    client.sync()
+    hall.settle()
+    assert hall.is_at_rest()
+    assert hall.level() < 1e-9
+    assert hall.is_well()
+
+
+# ---------------------------------------------------------------- notes, bow and finger
+
+
+def test_a_note_sounds_until_it_is_ended(stage):
+    stage.tell("/note", 67.0, 90.0)
+    assert stage.player.pitch == 67.0
+    assert rms(stage.pass_time(0.5)[-9600:]) > 1e-3
+    stage.tell("/note/off", 67.0)
+    assert stage.player.pitch is None
+    stage.pass_time(0.3)
+    assert stage.events[-1][1:] == ("/bow/side", 0.0)
+    assert rms(stage.pass_time(2.5)[-9600:]) < 1e-3
+
+
+@pytest.mark.parametrize("off", [("/note", 72.5, 0.0), ("/note", 72.5, False), ("/note/off", 72.5)])
+def test_a_note_between_the_keys_is_ended_as_any(stage, off):
+    stage.tell("/note", 72.5, 1)
+    assert stage.player.pitch == 72.5
+    stage.tell(*off)
+    assert stage.player.pitch is None
+
+
+def test_a_note_is_louder_the_harder_it_is_struck(stage_type):
+    pressures = []
+    for velocity in (1, 64, 127):
+        stage = stage_type()
+        stage.tell("/note", 67, velocity)
+        pressures.append(stage.player.value("/playing/pressure"))
+    assert pressures == sorted(set(pressures))
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        (67,),
+        (67, 90, 1),
+        ("67", 90),
+        (67, None),
+        (-1, 90),
+        (127.5, 90),
+        (67, -1),
+        (67, 127.5),
+        (math.nan, 90.0),
+        (67.0, math.nan),
+        (67.0, math.inf),
+    ],
+)
+def test_what_is_no_note_is_answered_and_plays_nothing(stage, arguments):
+    assert errors(stage.ask("/note", *arguments)) == ["/yehu/note"]
+    assert stage.player.pitch is None
+    stage.pass_time(0.05)
+    assert stage.frames("/bow/speed") == []
+
+
+def test_pitch_slides_the_sounding_note_steplessly(stage):
+    stage.tell("/note", 67, 90)
+    stage.pass_time(0.1)
+    stage.events.clear()
+    for pitch in np.linspace(67.1, 70.0, 30):
+        stage.tell("/pitch", float(pitch))
+        assert stage.player.pitch == pytest.approx(pitch, abs=1e-5)
+        stage.pass_time(0.01)
+    assert {address for _, address, _ in stage.events} == {
+        "/finger/1/position",
+        "/output/balance",
+        "/bow/speed",  # A4 wants it slow
+        "/bow/pressure",
+        "/bow/position",
+    }
+    places = [place for _, address, place in stage.events if address == "/finger/1/position"]
+    assert len(places) == 30
+    assert all(np.diff(places) > 0.0)
+    stage.tell("/note/off", 67)
+    assert stage.player.pitch is None
+
+
+def test_pitch_and_bow_alone_make_a_theremin(stage):
+    stage.tell("/pitch", 69.0)
+    landing = rms(stage.pass_time(0.1))
+    heard = values(stage.ask("/bow", 0.2, 0.6))
+    assert heard == {"/yehu/bow/speed": f32(0.2), "/yehu/bow/force": f32(0.6)}
+    assert stage.player.pitch == 69.0
+    assert rms(stage.pass_time(0.5)[-9600:]) > 5.0 * landing
+    stage.tell("/bow", 0.0, 0.0)
+    stage.pass_time(0.1)
+    assert stage.player.value("/bow/side") == 0.0
+    assert stage.player.pitch is None
+
+
+def test_the_bow_by_hand_is_kept_within_its_bounds(stage):
+    heard = values(stage.ask("/bow", -9, 99))
+    assert heard == {"/yehu/bow/speed": -2.0, "/yehu/bow/force": 5.0}
+
+
+@pytest.mark.parametrize(
+    "arguments", [(), (0.2,), (0.2, 0.5, 1.0), (0.2, "x"), (math.nan, 0.5), (0.2, math.inf)]
+)
+def test_what_is_no_stroke_is_answered_and_draws_nothing(stage, arguments):
+    assert errors(stage.ask("/bow", *arguments)) == ["/yehu/bow"]
+    assert stage.player.value("/bow/speed") == 0.0
+
+
+@pytest.mark.parametrize(
+    ("call", "address"), [("/bend", "/playing/bend"), ("/press", "/playing/press")]
+)
+def test_bend_and_press_are_parameters_too(stage, call, address):
+    assert values(stage.ask(call, 1.5)) == {"/yehu" + address: 1.5}
+    assert values(stage.ask(call, 1000)) == {
+        "/yehu" + address: {"/bend": 48.0, "/press": 6.0}[call]
+    }
+    assert errors(stage.ask(call, "x")) == ["/yehu" + call]
+
+
+def test_a_bend_is_heard_on_the_sounding_note(stage):
+    stage.tell("/note", 67, 90)
+    stage.tell("/bend", 2.0)
+    assert stage.player.pitch == 69.0
+    stage.tell("/bend", 0)
+    assert stage.player.pitch == 67.0
+
+
+def test_press_presses_the_finger_of_the_sounding_note(stage):
+    stage.tell("/note", 67, 90)
+    stage.tell("/press", 4.0)
+    stage.pass_time(0.05)
+    pressed = [value for _, address, value in stage.events if address == "/finger/1/press"]
+    assert pressed[-1] == 4.0
+
+
+def test_a_note_takes_back_what_was_written_directly(stage):
+    stage.tell("/note", 74, 90)
+    stage.tell("/bow/speed", 0.05)
+    stage.tell("/playing/speed", 0.3)
+    assert stage.player.value("/bow/speed") == f32(0.05)
+    stage.tell("/release")
+    stage.tell("/playing/speed", 0.4)
+    assert abs(stage.player.value("/bow/speed")) == pytest.approx(0.4)
+
+
+# ---------------------------------------------------------------- panic and reset
+
+
+MESS = [
+    ("/note", 67, 90),
+    ("/note", 72.25, 127),
+    ("/note", 80, 1),
+    ("/bow/speed", 0.4),
+    ("/bow/side", 1.0),
+    ("/finger/1/press", 4.0),
+    ("/bow", 0.3, 0.7),
+    ("/pitch", 77.3),
+    ("/note", 66, 64),
+    ("/bend", 3.0),
+    ("/playing/volume", 0.7),
+]
+
+
+@pytest.mark.parametrize("order", range(6))
+@pytest.mark.parametrize("end", ["/panic", "/reset"])
+def test_after_panic_or_reset_nothing_is_left(stage, wire, order, end):
+    mess = MESS[order:] + MESS[:order]
+    for address, *arguments in mess[: 5 + order]:
+        stage.tell(address, *arguments)
+        stage.pass_time(0.02)
+    stage.take(wire.bundle(stage.clock.time() + 0.3, wire.message("/yehu/note", 74, 90)))
+    stage.tell(end)
+    assert stage.player.pitch is None
+    assert stage.handler.waiting == 0
+    stage.pass_time(0.05)
+    assert not stage.pass_time(0.5).any()
+    stage.tell("/note/off", 67)  # letting go later brings nothing back
+    assert not stage.pass_time(0.1).any()
+    stage.tell("/note", 69, 90)
+    assert rms(stage.pass_time(0.5)) > 1e-4
+
+
+@pytest.mark.parametrize("end", ["/panic", "/reset"])
+def test_panic_and_reset_also_end_what_a_bundle_is_about_to_do(stage, wire, end):
+    stage.pass_time(0.05)
+    packets = [
+        wire.message("/yehu/bow/speed", 0.3),
+        wire.message("/yehu/bow/side", 1.0),
+        wire.message("/yehu/finger/1/press", 2.0),
+    ]
+    stage.take(wire.bundle(stage.clock.time() + 0.02, *packets))
+    stage.pass_time(0.012)
+    stage.tell(end)
+    stage.pass_time(0.2)
+    last = {address: value for _, address, value in stage.events}
+    assert (last["/bow/speed"], last["/bow/side"], last["/finger/1/press"]) == (0.0, 0.0, 0.0)
+
+
+# ---------------------------------------------------------------- ping
+
+
+@pytest.mark.parametrize(
+    ("tags", "arguments"),
+    [
+        ("", []),
+        ("ifs", [1, 0.5, "a"]),
+        ("TFN", [True, False, None]),
+        ("h", [2**62]),
+        ("b", [b"\0\1\2"]),
+        ("i", [-(2**31)]),
+    ],
+)
+def test_a_ping_comes_back_with_what_it_brought(house, tags, arguments):
+    client = house.client()
+    client.tell("/ping", *arguments, tags=tags)
+    assert client.wait_for("/pong") == arguments
+
+
+@pytest.mark.parametrize(
+    ("tags", "arguments"),
+    [("d", [1e300]), ("b", [b""]), ("t", [1]), ("[" * 3000 + "]" * 3000, [])],
+    ids=["double", "empty blob", "time tag", "deep"],
+)
+def test_a_ping_with_anything_is_answered_and_breaks_nothing(stage, tags, arguments):
+    assert stage.ask("/ping", *arguments, tags=tags)

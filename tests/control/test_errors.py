@@ -1,0 +1,104 @@
+"""Errors by OSC: unknown addresses, malformed packets, and how many errors are answered."""
+
+from __future__ import annotations
+
+import difflib
+import time
+
+import pytest
+from wire import errors
+
+from yehu_server.control import clients
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "/yehu",
+        "/yehu/",
+        "/yehu/bow",  # that takes two
+        "/yehu/bow/",
+        "/yehu/bow/forc",
+        "/yehu/bow/force/",
+        "/yehu//bow/force",
+        "/bow/force",
+        "/yehubow/force",
+        "/YEHU/bow/force",
+        "/yehu/bow/force ",
+        "/",
+        "//",
+        "/yehu/bow/fôrce",
+        "/ÿehu/" + "x" * 300,
+    ],
+)
+def test_an_unknown_address_is_answered_and_changes_nothing(house, wire, address):
+    client = house.client()
+    before, counted = house.player.values(), house.handler.counts.errors
+    client.take(wire.message(address, 0.123))
+    assert client.wait_for("/error")[0] == address
+    assert house.player.values() == before
+    assert house.handler.counts.errors == counted + 1
+    assert house.is_well()
+
+
+def test_a_near_name_is_suggested(house):
+    client = house.client()
+    client.tell("/bow/forc", 0.5)
+    assert "/bow/force" in client.wait_for("/error")[1]
+
+
+@pytest.mark.parametrize(
+    "packet",
+    [b"", b"\0", b"hello", b"/yehu/bow/force", b"/yehu/bow/force\0,i\0\0\0", b"#bundle\0\0"],
+    ids=repr,
+)
+def test_a_malformed_packet_is_counted_and_answered(house, packet):
+    client = house.client()
+    counted = house.handler.counts.malformed
+    client.take(packet)
+    assert "malformed" in client.wait_for("/error")[1]
+    assert house.handler.counts.malformed == counted + 1
+
+
+def test_one_who_makes_many_errors_is_told_of_few(house):
+    client, patient = house.client(), house.client()
+    counted = house.handler.counts.errors
+    started = time.monotonic()
+    for _ in range(2000):
+        client.tell("/nothing")
+    client.sync()
+    took = time.monotonic() - started
+    heard = errors(client.all())
+    assert house.handler.counts.errors == counted + 2000
+    assert len(heard) <= clients.ERRORS_AT_ONCE + clients.ERRORS_A_SECOND * (took + 1.0)
+    patient.tell("/nothing")
+    assert patient.wait_for("/error")
+
+
+def test_an_address_of_any_length_is_answered(house):
+    client = house.client()
+    client.tell("/" + "x" * 16_000)
+    assert client.next(0.5)
+
+
+@pytest.mark.parametrize(
+    "call",
+    ["/get", "/preset/load", "/preset/save", "/preset/delete", "/learn", "/unlearn", "/bow/force"],
+)
+def test_an_error_is_of_bounded_length_and_keeps_its_reason(stage, call):
+    (refused,) = stage.ask(call, "x" * 60_000)
+    address, reason = refused.arguments
+    assert address == "/yehu" + call
+    assert len(reason) < 1100
+    assert any(word in reason for word in ("unknown", "plain name", "expected a number"))
+
+
+def test_near_names_are_looked_for_only_where_they_are_told(stage, monkeypatch):
+    looked = []
+    monkeypatch.setattr(
+        difflib, "get_close_matches", lambda *words, **_: looked.append(words) or []
+    )
+    for number in range(500):
+        stage.tell(f"/bow/forc{number}", 1.0)
+    assert len(errors(stage.ear.heard())) == clients.ERRORS_AT_ONCE
+    assert len(looked) <= 2 * clients.ERRORS_AT_ONCE

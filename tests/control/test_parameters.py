@@ -1,0 +1,208 @@
+"""Parameters by OSC: set, echoed, asked for, by pattern, and what is refused."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import pytest
+from wire import errors, f32, values
+
+from yehu_server.control import clients
+from yehu_server.params.spec import Place
+from yehu_server.params.table import TABLE
+
+INFINITE = [math.nan, math.inf, -math.inf]
+
+
+def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(stage):
+    for param in TABLE:
+        third = param.lo + (param.hi - param.lo) / 3.0
+        for sent, accepted in (
+            *((param.hi, param.hi), (param.lo, param.lo), (third, third)),
+            *((1e30, param.hi), (-1e30, param.lo), (param.default, param.default)),
+        ):
+            told = [("/yehu" + param.address, [f32(accepted)])]
+            assert stage.ask(param.address, sent) == told
+            assert stage.ask("/get", param.address) == told
+        if param.place is Place.ENGINE:
+            stage.pass_time(0.02)
+            assert stage.target(param.address) == pytest.approx(param.default, rel=1e-6)
+
+
+def test_every_parameter_also_answers_as_zero_to_one(stage):
+    for param in TABLE:
+        at = param.address + "/unit"
+        for sent, accepted in ((1.0, 1.0), (0.0, 0.0), (0.25, 0.25), (7.0, 1.0), (-7.0, 0.0)):
+            told = [("/yehu" + at, [pytest.approx(accepted, abs=1e-6)])]
+            assert stage.ask(at, sent) == told
+            assert stage.ask("/get", at) == told
+            assert stage.player.value(param.address) == param.from_unit(accepted)
+
+
+NUMBERS = [
+    *((1, "i"), (-3, "i"), (2**31 - 1, "i"), (2**62, "h")),
+    *((0.37, "f"), (0.37, "d"), (-1e300, "d"), (True, "T"), (False, "F")),
+]
+
+
+def test_every_parameter_takes_ints_doubles_and_truth(stage):
+    for param in TABLE:
+        for value, tags in NUMBERS:
+            stage.tell(param.address, value, tags=tags)
+            sent = f32(value) if tags == "f" else float(value)
+            assert stage.player.value(param.address) == min(max(sent, param.lo), param.hi)
+
+
+NO_NUMBERS = [
+    *(((), None), ((0.5, 0.5), None), (("0.5",), None), ((b"0.5",), None), ((None,), None)),
+    *(((value,), None) for value in INFINITE),
+    ((0.5,), "[f]"),
+]
+
+
+def test_what_no_parameter_can_take_is_answered_and_changes_nothing(stage):
+    before = stage.player.values()
+    for param in TABLE:
+        stage.clock.now += clients.FORGIVEN_S
+        for arguments, tags in NO_NUMBERS:
+            (refused,) = stage.ask(param.address, *arguments, tags=tags)
+            assert refused.address == "/yehu/error"
+            address, reason = refused.arguments
+            assert address == "/yehu" + param.address
+            assert reason
+    assert stage.player.values() == before
+
+
+@pytest.mark.parametrize(("value", "tags"), NUMBERS)
+def test_a_number_of_any_type_comes_over_the_wire(house, value, tags):
+    client = house.client()
+    accepted = f32(min(max(value, 0.0), 5.0))
+    client.tell("/bow/force", value, tags=tags)
+    assert client.wait_for("/bow/force") == [accepted]
+    assert client.value("/bow/force") == accepted
+    assert client.value("/bow/force/unit") == pytest.approx(accepted / 5.0)
+    house.settle()
+    assert house.target("/bow/force") == pytest.approx(accepted, rel=1e-6)
+    assert house.is_well()
+
+
+@pytest.mark.parametrize(("arguments", "tags"), NO_NUMBERS)
+def test_what_is_no_number_is_refused_over_the_wire(house, arguments, tags):
+    client = house.client()
+    before = house.player.values()
+    client.tell("/bow/force", *arguments, tags=tags)
+    assert client.wait_for("/error")[0] == "/yehu/bow/force"
+    client.sync()
+    assert house.player.values() == before
+    assert house.is_well()
+
+
+def test_reset_puts_every_parameter_back_and_tells(stage):
+    for param in TABLE:
+        stage.tell(param.address, param.lo)
+    heard = values(stage.ask("/reset"))
+    assert heard == {"/yehu" + param.address: f32(param.default) for param in TABLE}
+    stage.pass_time(0.1)
+    for param in TABLE:
+        assert stage.player.value(param.address) == param.default
+        moves = [value for _, address, value in stage.events if address == param.address]
+        if param.place is Place.ENGINE and param.lo != param.default:
+            assert moves[-1] == param.default
+
+
+def test_parameters_are_listed_with_all_that_a_client_needs(house):
+    client = house.client()
+    client.tell("/params")
+    heard = list(itertools.takewhile(lambda m: m.address == "/yehu/param", iter(client.next, 0)))
+    assert [message.arguments for message in heard] == [
+        [
+            "/yehu" + param.address,
+            f32(house.player.value(param.address)),
+            *map(f32, (param.lo, param.hi, param.default)),
+            param.unit,
+            param.doc,
+        ]
+        for param in TABLE
+    ]
+
+
+# ---------------------------------------------------------------- asking for values
+
+
+@pytest.mark.parametrize("asked", ["/bow/force", "/yehu/bow/force"])
+def test_a_value_is_asked_for_with_or_without_the_prefix(stage, asked):
+    stage.tell("/bow/force", 0.75)
+    assert stage.ask("/get", asked)[0] == ("/yehu/bow/force", [0.75])
+
+
+def test_values_are_asked_for_by_pattern(stage):
+    heard = stage.ask("/get", "/finger/[1-2]/p*")
+    assert {message.address for message in heard} == {
+        "/yehu/finger/1/position",
+        "/yehu/finger/1/press",
+        "/yehu/finger/2/position",
+        "/yehu/finger/2/press",
+    }
+
+
+@pytest.mark.parametrize("arguments", [(), (1,), ("/bow/force", "/bow/side"), (b"/bow/force",)])
+def test_what_cannot_be_asked_for_is_answered(stage, arguments):
+    assert errors(stage.ask("/get", *arguments)) == ["/yehu/get"]
+
+
+@pytest.mark.parametrize("asked", ["", "/nothing", "/note", "/z*", "/yehu"])
+def test_what_is_not_there_is_answered(stage, asked):
+    assert errors(stage.ask("/get", asked)) == ["/yehu/get"]
+
+
+@pytest.mark.parametrize("asked", ["/bow/[fs", "/bow/{force,side", "[", "{"])
+def test_an_unclosed_bracket_that_is_asked_for_is_answered(stage, asked):
+    assert errors(stage.ask("/get", asked)) == ["/yehu/get"]
+
+
+def test_a_pattern_that_is_too_long_to_ask_for_is_answered(stage):
+    assert errors(stage.ask("/get", "/bow/" + "*" * 5000)) == ["/yehu/get"]
+
+
+# ---------------------------------------------------------------- patterns
+
+
+def test_a_pattern_sets_all_that_it_fits(stage):
+    heard = values(stage.ask("/bow/{force,position}", 0.3))
+    assert heard == {"/yehu/bow/force": f32(0.3), "/yehu/bow/position": f32(0.3)}
+    heard = values(stage.ask("/*/speed", 0.25))
+    assert heard == {"/yehu/bow/speed": 0.25, "/yehu/playing/speed": 0.25}
+    heard = values(stage.ask("/finger/?/pre[a-z]s", 2.0))
+    assert heard == {f"/yehu/finger/{number}/press": 2.0 for number in (1, 2, 3, 4)}
+
+
+@pytest.mark.parametrize("address", ["/bow/[z]*", "/nothing*", "/bow*", "/?", "/bow/[", "/bow/{a"])
+def test_a_pattern_that_fits_nothing_is_answered(stage, address):
+    assert errors(stage.ask(address, 1.0)) == ["/yehu" + address]
+
+
+def test_a_pattern_reaches_the_prefix_too(stage, wire):
+    stage.take(wire.message("/*/bow/force", 0.75))
+    assert stage.player.value("/bow/force") == 0.75
+
+
+@pytest.mark.parametrize("start", ["/[ab]", "/a*bc", "/{ab}", "/a?cd", "/**/b"])
+def test_a_pattern_that_does_not_fit_the_prefix_does_nothing(stage, wire, start):
+    stage.take(wire.message(start + "/bow/force", 0.75))
+    assert stage.player.value("/bow/force") == 0.5
+
+
+def test_a_pattern_that_is_too_long_is_answered(stage):
+    assert errors(stage.ask("/" + "*" * 300, 1.0))
+
+
+@pytest.mark.parametrize("pattern", ["/{note,bend}", "/[nb]*"])
+def test_of_a_pattern_one_that_refuses_does_not_hinder_the_others(stage, pattern):
+    stage.tell(pattern, 1.5)
+    assert stage.player.value("/playing/bend") == 1.5
+
+
+def test_of_a_pattern_one_that_refuses_is_told(stage):
+    assert errors(stage.ask("/b{end,ow}", 1.5)) == ["/yehu/b{end,ow}"]
+    assert stage.player.value("/playing/bend") == 1.5

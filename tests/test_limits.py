@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from commands import COMMAND
 
 resource = pytest.importorskip("resource", reason="there is no such limit on Windows")
 
@@ -15,7 +16,6 @@ from yehu_server.cli.serve import FILES_NEEDED  # noqa: E402
 from yehu_server.errors import YehuError  # noqa: E402
 from yehu_server.limits import MOST_FILES, allow_files  # noqa: E402
 
-COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
 ROOT = Path(__file__).resolve().parents[1]
 
 

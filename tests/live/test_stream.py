@@ -15,11 +15,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import soundfile
+from commands import COMMAND
 
 from yehu_server.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
 RATE = 48000
 DEVICE = "system, JACK Audio Connection Kit"
 TRIES = 4

@@ -121,9 +121,9 @@ def gradient(_model: Any, eta: Any) -> Any:
     return 900.0 * eta
 
 
-def measure(_m: Any, s: Any, probe: Any) -> None:
+def measure(_m: Any, state: Any, probe: Any) -> None:
     """Probes, radiation, and the watch for a lost state."""
-    probe[0] = s.f_c[0]
+    probe[0] = state.work.f_c[0]
 
 
 def radiate(_model: Any, _s: Any, bridge_force: Any) -> Any:
@@ -131,17 +131,19 @@ def radiate(_model: Any, _s: Any, bridge_force: Any) -> Any:
     return bridge_force
 
 
-def move(_model: Any, s: Any, u_next: Any, _touching: Any, _bowed: Any) -> None:
-    """What moves the strings by forces and tension; with it goes the wait of a step's beginning."""
+def move_strings(
+    _model: Any, _s: Any, _c: Any, w: Any, u_next: Any, _near: Any, _bowed: Any
+) -> None:
+    """Moving the strings by forces and tension; without it a step begins without a wait."""
     for i in range(layout.STRINGS):
-        u_next[i, 5] -= 1e-9 * s.f_c[i]
+        u_next[i, 5] -= 1e-9 * w.f_c[i]
 
 
 PARTS = {
     part.__name__: (part, module)
     for part, module in (
         (solve_friction, kernel),
-        (move, kernel),
+        (move_strings, kernel),
         (measure, kernel),
         (radiate, kernel),
         (gradient, finger),
@@ -153,14 +155,16 @@ def leave_out(name: str) -> None:
     """Replace a part in this process, before anything is compiled."""
     jit.IS_CACHED = False
     part, module = PARTS[name]
-    again: list[tuple[Any, str]] = [(kernel, "measure"), (kernel, "step"), (kernel, "advance")]
+    again: list[tuple[Any, str]] = [
+        (kernel, name) for name in ("measure", "solve_contacts", "step", "advance")
+    ]
     if module is finger:
-        again = [(finger, "meet_fingers"), *again]
+        again = [(finger, "advance_fingers"), *again]
     setattr(module, name, jit.compiled(part))
     for where, function in again:
         if function != name:
             setattr(where, function, jit.compiled(getattr(where, function).py_func))
-    vars(kernel)["meet_fingers"] = vars(finger)["meet_fingers"]
+    vars(kernel)["advance_fingers"] = vars(finger)["advance_fingers"]
 
 
 def main() -> None:

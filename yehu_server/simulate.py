@@ -85,7 +85,7 @@ def simulate(
     if gesture.pluck is not None:
         pluck = gesture.pluck
         pluck_string(model, state, pluck.string - 1, pluck.position, pluck.amplitude)
-    state["stored"] = stored_energy(m, state[0], 0, 2)
+    state["motion"]["stored"] = stored_energy(m, state[0]["motion"], 0, 2)
 
     controls = gesture.control_rows()
     probes = np.zeros((frames, layout.probe_columns(1)))
@@ -94,7 +94,7 @@ def simulate(
     hop = strings_every or CHUNK
     for start in range(0, frames, hop):
         if strings_every:
-            now = state["u"][0, int(state["level"][0])]
+            now = state["motion"]["u"][0, int(state["motion"]["level"][0])]
             for i in range(STRINGS):
                 kept[i].append(now[i, GHOST : GHOST + int(m["N"][i]) + 1].copy())
         part = slice(start, min(start + hop, frames))

@@ -153,10 +153,10 @@ def test_silence_puts_the_model_to_rest():
     instrument.silence()
     run_for(instrument, 0.006)
     state = instrument._rig["state"][0]
-    assert not state["u"].any()
-    assert not state["q"].any()
-    assert not state["zeta"].any()
-    assert (state["U"][:, 0] == 0.5e-3).all()  # the finger at its rest height (m)
+    assert not state["motion"]["u"].any()
+    assert not state["motion"]["q"].any()
+    assert not state["motion"]["zeta"].any()
+    assert (state["motion"]["U"][:, 0] == 0.5e-3).all()  # the finger at its rest height (m)
 
 
 def test_silence_asked_for_twice_comes_no_later():
@@ -193,7 +193,7 @@ def test_a_resting_finger_makes_no_sound_of_its_own():
 
 def spoil(instrument: Instrument, where: str, value: float) -> None:
     """Lose a part of the state, as far as it moves."""
-    part = instrument._rig["state"][where]
+    part = instrument._rig["state"]["motion"][where]
     part[...] = np.where(part == 0.0, part, value)
 
 

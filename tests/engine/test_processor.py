@@ -152,7 +152,7 @@ def denormals(instrument: Instrument) -> int:
     state = instrument._rig["state"][0]
     return sum(
         int(((part != 0.0) & (np.abs(part) < SMALLEST)).sum())
-        for part in (np.asarray(state[name]) for name in MOVING)
+        for part in (np.asarray(state["motion"][name]) for name in MOVING)
     )
 
 
@@ -168,8 +168,8 @@ def ringing() -> Instrument:
 
 
 def scale(instrument: Instrument, factor: float) -> None:
-    for name in (*MOVING, "bend"):
-        instrument._rig["state"][name] *= factor
+    for name in (*MOVING, "Delta_u"):
+        instrument._rig["state"]["motion"][name] *= factor
 
 
 @knows_how
@@ -177,12 +177,12 @@ def test_a_string_of_denormals_is_at_rest_after_one_turn_of_its_levels():
     instrument = Instrument(RATE)
     model, state = instrument._rig["model"][0], instrument._rig["state"]
     for i in range(2):
-        state["u"][0, :, i, GHOST + 1 : GHOST + model["N"][i]] = 0.5 * SMALLEST
-    state["q"][0, :, : model["modes"]] = -0.25 * SMALLEST
+        state["motion"]["u"][0, :, i, GHOST + 1 : GHOST + model["N"][i]] = 0.5 * SMALLEST
+    state["motion"]["q"][0, :, : model["modes"]] = -0.25 * SMALLEST
     assert denormals(instrument) > 50
     run(instrument, 4)
     for name in MOVING:
-        assert not np.asarray(state[name]).any()
+        assert not np.asarray(state["motion"][name]).any()
 
 
 @knows_how
@@ -194,7 +194,7 @@ def test_a_string_that_dies_away_never_holds_a_denormal():
     for _ in range(150):
         run(instrument, RATE // 10)
         assert denormals(instrument) == 0
-        sizes.append(float(np.abs(instrument._rig["state"]["u"]).max()))
+        sizes.append(float(np.abs(instrument._rig["state"]["motion"]["u"]).max()))
     assert sizes[0] > 1e-300  # it rang at first
     # And it came to where denormals would be. There its rounding keeps it from dying altogether,
     # at 60 to 500 times the smallest normal number: that hangs on the processor.

@@ -103,7 +103,7 @@ def test_shapes_are_the_strings_as_they_were_when_the_window_closed(rate):
     while instrument.meters()["window"] == before:
         run(instrument, CHUNK)
     model, state = instrument._rig["model"][0], instrument._rig["state"][0]
-    now = state["u"][state["level"]]
+    now = state["motion"]["u"][state["motion"]["level"]]
     shapes = instrument.meters()["shapes"]
     assert shapes.shape == (STRINGS, SHAPE_POINTS)
     for i in range(STRINGS):
@@ -557,7 +557,7 @@ def test_meters_of_a_new_instrument_are_empty():
 def test_lost_states_and_events_are_told():
     instrument = bowed()
     run(instrument, 4096)
-    instrument._rig["state"]["u"] = np.nan
+    instrument._rig["state"]["motion"]["u"] = np.nan
     instrument.post(0, 0, 0.1, 0)  # for a frame that has passed
     instrument.post(10**9, 0, 0.1, 0)
     run(instrument, 64)

@@ -8,7 +8,7 @@ import reference as ref
 
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.string import follow_shape
+from yehu_server.physics.string import set_Delta_u
 
 
 def reference_params(quantities: Quantities, rate: float) -> ref.RefParams:
@@ -63,7 +63,7 @@ def reference_params(quantities: Quantities, rate: float) -> ref.RefParams:
 def kernel_state(model: Any, state: ref.RefState) -> Any:
     """The kernel's record of a reference state."""
     record = kernel.at_rest(model)
-    s = record[0]
+    s = record[0]["motion"]
     level = 1  # any of the three would do
     prev = (level + 2) % layout.LEVELS
     s["level"] = level
@@ -73,7 +73,7 @@ def kernel_state(model: Any, state: ref.RefState) -> Any:
             points = s["u"][at, i]
             points[layout.GHOST : layout.GHOST + N + 1] = u
             points[0], points[N + 2] = -points[2], -points[N]
-    follow_shape(model[0], s)
+    set_Delta_u(model[0], s)
     modes, fingers = len(state.q), len(state.U)
     s["q"][level, :modes], s["q"][prev, :modes] = state.q, state.q_prev
     s["zeta"][level], s["zeta"][prev] = state.zeta, state.zeta_prev
@@ -98,7 +98,7 @@ def step_kernel(model: Any, record: Any, controls: ref.RefControls, ledger: Any)
     fingers = len(controls.x_f)
     probe = np.zeros((1, layout.probe_columns(fingers)))
     kernel.advance(model, record, control_row(controls), probe, ledger)
-    s = record[0]
+    s = record[0]["motion"]
     now = int(s["level"])
     N = model["N"][0]
     first = layout.GHOST

@@ -9,7 +9,7 @@ import numpy as np
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.energy import stored_energy
 from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.string import follow_shape
+from yehu_server.physics.string import set_Delta_u
 
 COLUMNS = {
     "F_N": layout.F_N,
@@ -94,8 +94,10 @@ def play(
     controls = rows(frames, fingers, curves)
     probes = np.zeros((frames, layout.probe_columns(fingers)))
     book = np.zeros((frames if ledger else 0, len(layout.LEDGER)))
-    level = int(state["level"][0])
-    state["stored"] = stored_energy(model[0], state[0], level, (level + 2) % layout.LEVELS)
+    level = int(state["motion"]["level"][0])
+    state["motion"]["stored"] = stored_energy(
+        model[0], state[0]["motion"], level, (level + 2) % layout.LEVELS
+    )
     kernel.advance(model, state, controls, probes, book if ledger else None)
     return Run(rate, model, state, controls, probes, book)
 
@@ -104,11 +106,11 @@ def shaped(model: Any, string: int, shape: Callable[[Any], Any]) -> Any:
     """A state at rest but for one string, displaced to shape(x) (m) and about to be let go."""
     state = kernel.at_rest(model)
     N, h = int(model["N"][0, string]), float(model["h"][0, string])
-    u = state["u"][0, :, string, :]
+    u = state["motion"]["u"][0, :, string, :]
     u[:, layout.GHOST : layout.GHOST + N + 1] = shape(np.arange(N + 1) * h)
     u[:, layout.GHOST] = u[:, layout.GHOST + N] = 0.0
     u[:, 0], u[:, N + 2] = -u[:, 2], -u[:, N]
-    follow_shape(model[0], state[0])
+    set_Delta_u(model[0], state[0]["motion"])
     return state
 
 

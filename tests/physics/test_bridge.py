@@ -128,7 +128,7 @@ def test_without_the_weight_of_strings_the_whole_model_moves_as_the_modes_do():
 def test_a_plucked_string_moves_the_other_through_the_bridge(string):
     model = kernel.prepare(YEHU, 44100.0)
     run = play({}, 0.02, state=shaped(model, string, bump(0.02, 0.26, 3e-4)))
-    other = run.state["u"][0, int(run.state["level"][0]), 1 - string]
+    other = run.state["motion"]["u"][0, int(run.state["motion"]["level"][0]), 1 - string]
     assert 1e-7 < np.abs(other).max() < 3e-4
     assert run["constraint_residual"].max() <= 1e-15
 

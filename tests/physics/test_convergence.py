@@ -90,9 +90,13 @@ def simulated_shapes(rate):
         both = []
         for i in range(layout.STRINGS):
             N = int(model["N"][0, i])
-            u = state["u"][0, int(state["level"][0]), i, layout.GHOST : layout.GHOST + N + 1]
+            u = state["motion"]["u"][
+                0, int(state["motion"]["level"][0]), i, layout.GHOST : layout.GHOST + N + 1
+            ]
             # The last sample rarely falls on the millisecond: go on by its velocity.
-            before = state["u"][0, (int(state["level"][0]) + 2) % 3, i][1 : N + 2]
+            before = state["motion"]["u"][0, (int(state["motion"]["level"][0]) + 2) % 3, i][
+                1 : N + 2
+            ]
             u = u + (u - before) * (time * rate - done)
             both.append(CubicSpline(np.linspace(0.0, L, N + 1), u)(PLACES))
         shapes.append(np.concatenate(both))

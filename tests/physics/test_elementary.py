@@ -4,7 +4,12 @@ import math
 
 import numpy as np
 
-from yehu_server.physics.elementary import SLIGHT, power_of_2, sine_and_cosine, slowing
+from yehu_server.physics.elementary import (
+    SLIGHT,
+    one_minus_inverse_root,
+    power_of_2,
+    sine_and_cosine,
+)
 
 # The error of a polynomial, and half a unit for each rounding of its last sums and products;
 # processors that fuse multiply and add have fewer. The C library rounds too.
@@ -25,13 +30,13 @@ def test_powers_of_two_are_the_c_librarys():
     assert power_of_2(-3.0) == 0.125
 
 
-def test_a_slight_slowing_is_exact_as_well():
+def test_a_slight_argument_is_exact_as_well():
     t = 10.0 ** np.linspace(-20.0, 6.0, 20_001)
-    found = np.array([slowing(value) for value in t])
+    found = np.array([one_minus_inverse_root(value) for value in t])
     root = np.sqrt(1.0 + t)
     assert np.abs(found / (t / (root * (1.0 + root))) - 1.0).max() <= ROUNDING
     assert t.min() < SLIGHT < t.max()
-    assert slowing(0.0) == 0.0
+    assert one_minus_inverse_root(0.0) == 0.0
 
 
 def test_what_is_far_below_is_as_good_as_nothing():

@@ -9,7 +9,7 @@ from physics.runs import bump, play, rows, shaped
 from pitch import cents, pitch_of
 
 from yehu_server.physics import kernel, layout
-from yehu_server.physics.finger import gradient, limited
+from yehu_server.physics.finger import gradient, limited_gradient
 from yehu_server.physics.quantities import Quantities
 
 YEHU = Quantities()
@@ -35,13 +35,15 @@ def sounding(run):
 
 def penetration(run, j=0):
     """eta of a finger on both strings, read from the grid at the end of a run (m)."""
-    s, now = run.state[0], int(run.state["level"][0])
+    s, now = run.state[0], int(run.state["motion"]["level"][0])
     eta = []
     for i in range(layout.STRINGS):
         p = layout.STRINGS * j + i
-        at = layout.GHOST + int(s["first"][p])
-        eta.append(float(s["weights"][p] @ s["u"][now, i, at : at + layout.STENCIL]))
-    return np.array(eta) - float(s["U"][now, j])
+        at = layout.GHOST + int(s["contacts"]["first"][p])
+        eta.append(
+            float(s["contacts"]["weights"][p] @ s["motion"]["u"][now, i, at : at + layout.STENCIL])
+        )
+    return np.array(eta) - float(s["motion"]["U"][now, j])
 
 
 # --- pressing -----------------------------------------------------------------------------
@@ -102,7 +104,7 @@ def test_a_harder_press_raises_the_pitch_as_it_stretches_the_strings(modulation,
 def test_a_lifted_finger_in_the_air_returns_as_a_critically_damped_spring():
     model = kernel.prepare(YEHU, RATE)
     state = kernel.at_rest(model)
-    state["U"][:] = FINGER.rest_height + 3e-3
+    state["motion"]["U"][:] = FINGER.rest_height + 3e-3
     U = play({}, 0.05, state=state).finger(0)[:, 0] - FINGER.rest_height
     turn = FINGER.omega_lift * K * np.arange(1, len(U) + 1)
     assert np.abs(U - 3e-3 * (1.0 + turn) * np.exp(-turn)).max() < 0.005 * 3e-3
@@ -159,10 +161,10 @@ def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
         was_still = np.zeros((len(t), 2), bool)
         for n in range(len(t)):
             if is_reminded:
-                state["still"] = 0
+                state["motion"]["resting"] = 0
             part = slice(n, n + 1)
             kernel.advance(model, state, table[part], probes[part], None)
-            was_still[n] = state["still"][0, :2]
+            was_still[n] = state["motion"]["resting"][0, :2]
         found.append((probes, was_still))
     (probes, was_still), (again, _) = found
     hit = np.abs(probes[:, layout.FINGER_PROBES + 1]) > 0.0
@@ -184,7 +186,7 @@ def test_the_gradient_never_lets_the_mean_potential_go_negative():
     for _ in range(5000):
         Psi, eta = 10.0 ** rng.uniform(-8.0, 0.0), 10.0 ** rng.uniform(-7.0, -3.0)
         travel = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-9.0, -2.0)
-        g = limited(gradient(model, eta), Psi, travel)
+        g = limited_gradient(gradient(model, eta), Psi, travel)
         full = math.sqrt(FINGER.K_f * (FINGER.alpha + 1.0) / 2.0 * eta ** (FINGER.alpha - 1.0))
         if Psi + full * travel / 4.0 >= 0.0:
             assert g == pytest.approx(full, rel=1e-12)

@@ -9,7 +9,12 @@ import pytest
 from physics.runs import play
 
 from yehu_server.physics import kernel
-from yehu_server.physics.friction import MAX_ITERATIONS, imbalance, most_sudden, solve_friction
+from yehu_server.physics.friction import (
+    MAX_ITERATIONS,
+    bound_third_derivative,
+    bristle_residual,
+    solve_friction,
+)
 from yehu_server.physics.quantities import Quantities
 
 YEHU = Quantities()
@@ -40,7 +45,7 @@ def damping(v_r, F_N, bow):
 
 
 def problems(count, seed, fastest=10.0):
-    """free (m/s), compliance (m/s/N), z (m), F_N (N), tangent, string.
+    """free (m/s), mobility (m/s/N), z (m), F_N (N), tangent, string.
 
     A gesture's bow moves at 10 m/s at most; z may be left far above z_ss by a dropped force.
     """
@@ -48,12 +53,12 @@ def problems(count, seed, fastest=10.0):
     for _ in range(count):
         F_N = 10.0 ** rng.uniform(-3.0, math.log10(5.0))
         free = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-6.0, math.log10(fastest))
-        compliance = 10.0 ** rng.uniform(-1.0, math.log10(4.5))
+        mobility = 10.0 ** rng.uniform(-1.0, math.log10(4.5))
         z_static = BOW.mu_S * F_N / BOW.epsilon_0
         z = z_static * rng.uniform(-1.0, 1.0) * rng.choice([1.0, 1.0, 1.0, 30.0])
         # The tangent of a law at another speed and bow force.
         tangent = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), -(10.0 ** rng.uniform(0.0, 6.0))
-        yield free, compliance, z, F_N, tangent, int(rng.integers(2))
+        yield free, mobility, z, F_N, tangent, int(rng.integers(2))
 
 
 CASES = {
@@ -90,12 +95,12 @@ def test_the_solver_says_converged_in_all_but_one_of_a_thousand(solved):
 def test_what_is_called_converged_satisfies_both_equations(solved):
     """(49) in m/s, and (52)'s second row in m/s; the law from this file."""
     bow, k, pairs = solved
-    for (free, compliance, z, F_N, _, string), (f_b, z_bar, v_r, *_, converged) in pairs:
+    for (free, mobility, z, F_N, _, string), (f_b, z_bar, v_r, *_, converged) in pairs:
         r = 2.0 * (z_bar - z) / k
         scale = max(1.0, abs(v_r), abs(r), abs(free))
         force = bow.epsilon_0 * z_bar + damping(v_r, F_N, bow) * r
         assert abs(f_b - force) <= 1e-12 * max(1.0, abs(force))
-        assert abs(free - compliance * f_b - v_r) <= 1e-11 * scale
+        assert abs(free - mobility * f_b - v_r) <= 1e-11 * scale
         if converged:
             law = elastoplastic_law(v_r, z_bar, F_N, string, bow)
             assert abs(law - r) <= 1e-9 * scale
@@ -126,14 +131,14 @@ def test_what_a_last_step_leaves_is_as_small_as_the_docstring_says():
 def test_at_absurd_speeds_the_answer_stays_finite_and_within_coulombs_law():
     """Up to 1 km/s. Rounding of free - v_r then hides the bristles: `converged` may be false."""
     model = kernel.prepare(YEHU, RATE)[0]
-    for free, compliance, z, F_N, tangent, string in problems(5000, seed=16, fastest=1000.0):
+    for free, mobility, z, F_N, tangent, string in problems(5000, seed=16, fastest=1000.0):
         within = min(abs(z), BOW.mu_S * F_N / BOW.epsilon_0)
-        answer = solve_friction(free, compliance, within, F_N, tangent, model, string)
+        answer = solve_friction(free, mobility, within, F_N, tangent, model, string)
         f_b, _, v_r, _, iterations, _ = answer
         assert math.isfinite(f_b)
         assert math.isfinite(v_r)
         assert iterations < MAX_ITERATIONS
-        assert abs(free - compliance * f_b - v_r) <= 1e-12 * max(1.0, abs(free))
+        assert abs(free - mobility * f_b - v_r) <= 1e-12 * max(1.0, abs(free))
         # epsilon_1 |v_r| <= mu_C F_N, eq. (25), so friction is below twice the static one.
         assert abs(f_b) <= 2.0 * BOW.mu_S * F_N * (1.0 + 1e-6)
 
@@ -148,13 +153,13 @@ def test_friction_takes_energy_and_never_gives_any(solved):
 
 
 def test_where_the_start_is_does_not_change_the_answer():
-    """With one solution: 1.34 compliance epsilon_0 k/2 < 1."""
+    """With one solution: 1.34 mobility epsilon_0 k/2 < 1."""
     model = kernel.prepare(YEHU, RATE)[0]
     limit = 1.0 / (1.34 * BOW.epsilon_0 / (2.0 * RATE))
-    for free, compliance, z, F_N, tangent, string in problems(2000, seed=14):
-        if compliance < limit:
-            one = solve_friction(free, compliance, z, F_N, tangent, model, string)
-            two = solve_friction(free, compliance, z, F_N, NO_TANGENT, model, string)
+    for free, mobility, z, F_N, tangent, string in problems(2000, seed=14):
+        if mobility < limit:
+            one = solve_friction(free, mobility, z, F_N, tangent, model, string)
+            two = solve_friction(free, mobility, z, F_N, NO_TANGENT, model, string)
             assert abs(one[0] - two[0]) <= 1e-11 * max(1.0, abs(one[0]))
 
 
@@ -219,9 +224,9 @@ def test_the_derivatives_of_the_law_are_its_slopes():
 
         def off(v, z_bar=z_bar, turn=turn, v_r=v_r, z_ba=z_ba, reach=reach):
             path = z_bar + turn * (v - v_r), turn
-            return imbalance(v, path, (0.3 + 2.0 * v, 2.0), z_ba, reach, model)
+            return bristle_residual(v, path, (0.3 + 2.0 * v, 2.0), z_ba, reach, model)
 
-        residual, slope, curve, by_z, room, closing = off(v_r)
+        residual, slope, curve, by_z, room, room_slope = off(v_r)
         law = elastoplastic_law(v_r, z_bar, F_N, string, BOW)
         assert residual == pytest.approx(law - 0.3 - 2.0 * v_r, abs=1e-14)
         dv, dz = 1e-6 * BOW.v_s, 1e-6 * reach
@@ -239,7 +244,9 @@ def test_the_derivatives_of_the_law_are_its_slopes():
         assert by_z * reach == pytest.approx(slope_z * reach, rel=1e-5, abs=1e-6)
         if by_z != 0.0:
             assert room == pytest.approx(z_static(v_r, reach) - abs(z_bar), abs=1e-12 * reach)
-            assert closing == pytest.approx((more[4] - less[4]) / (2.0 * dv), rel=1e-5, abs=1e-10)
+            assert room_slope == pytest.approx(
+                (more[4] - less[4]) / (2.0 * dv), rel=1e-5, abs=1e-10
+            )
             compared += 1
     assert compared > 300
 
@@ -249,24 +256,26 @@ def test_nothing_in_the_law_is_more_sudden_than_the_solver_takes_it_to_be():
     model = kernel.prepare(YEHU, RATE)[0]
     rng = np.random.default_rng(18)
     compared = 0
-    for _, compliance, z, F_N, _, string in problems(4000, seed=19):
+    for _, mobility, z, F_N, _, string in problems(4000, seed=19):
         reach = F_N / BOW.epsilon_0
         z_ba = BOW.xi[string] * BOW.mu_C * reach
         limit = max(1.2 * BOW.mu_S * reach, abs(z))
         v_r = rng.uniform(-1.0, 1.0) * 10.0 ** rng.uniform(-2.0, 0.5)
         z_bar = math.copysign(z_ba + rng.uniform(0.0, 1.0) * (limit - z_ba), v_r)
-        turn = -1.0 / (compliance * model["stiffness"])
+        turn = -1.0 / (mobility * model["bristle_stiffness"])
 
         def off(v, z_bar=z_bar, turn=turn, v_r=v_r, z_ba=z_ba, reach=reach):
-            return imbalance(v, (z_bar + turn * (v - v_r), turn), (0.0, 0.0), z_ba, reach, model)
+            return bristle_residual(
+                v, (z_bar + turn * (v - v_r), turn), (0.0, 0.0), z_ba, reach, model
+            )
 
-        dv = 1e-4 / model["sharpness"][string] * compliance * F_N
+        dv = 1e-4 / model["chi_slope"][string] * mobility * F_N
         less, here, more = off(v_r - dv), off(v_r), off(v_r + dv)
         kinds = {(at[3] == 0.0, at[4] > 0.0) for at in (less, here, more)}
         if len(kinds) == 1 and here[3] != 0.0:
-            per_v, jolt = most_sudden(model, string, compliance, F_N, limit)
+            per_v, jerk = bound_third_derivative(model, string, mobility, F_N, limit)
             third = 2.0 * (more[2] - less[2]) / (2.0 * dv)
-            assert abs(third) <= 6.0 * jolt * (1.0 + abs(v_r) * per_v)
+            assert abs(third) <= 6.0 * jerk * (1.0 + abs(v_r) * per_v)
             compared += 1
     assert compared > 1000
 

@@ -47,10 +47,10 @@ def test_bowing_the_other_way_gives_the_mirrored_sound():
 def test_the_sign_of_the_bow_force_chooses_the_string():
     for sign, string in ((1.0, 0), (-1.0, 1)):
         state = play({"F_N": 0.7 * sign, "v_b": 0.3}, 0.01, ledger=False).state[0]
-        amplitude = np.abs(state["u"]).max(axis=(0, 2))
+        amplitude = np.abs(state["motion"]["u"]).max(axis=(0, 2))
         assert amplitude[string] > 10.0 * amplitude[1 - string]
-        assert state["z"][1 - string] == 0.0
-        assert state["z"][string] != 0.0
+        assert state["motion"]["z"][1 - string] == 0.0
+        assert state["motion"]["z"][string] != 0.0
 
 
 def test_a_bow_force_below_the_lift_force_is_a_lifted_bow():
@@ -165,8 +165,8 @@ def put(name, index, level=None):
     """Write a NaN into one place of a state; `level` counts from now, back in time."""
 
     def write(state):
-        at = index if level is None else ((int(state["level"][0]) - level) % 3, *index)
-        state[name][(0, *at)] = np.nan
+        at = index if level is None else ((int(state["motion"]["level"][0]) - level) % 3, *index)
+        state["motion"][name][(0, *at)] = np.nan
 
     return write
 
@@ -212,7 +212,7 @@ def test_a_nan_anywhere_is_noticed_counted_and_cleared(lost):
     assert where < 20
     assert not np.delete(probes[where], layout.ITERATIONS).any()
     for name in ("u", "q", "zeta", "z", "U", "Psi", "s_1", "s_2", "history"):
-        assert np.isfinite(state[name]).all(), name
+        assert np.isfinite(state["motion"][name]).all(), name
 
 
 def test_a_nan_never_reaches_the_sound(lost):

@@ -14,8 +14,8 @@ PULL = {"pluck": 1.0, "x_pluck": 0.2}
 
 
 def shape(run, string):
-    now, N = int(run.state["level"][0]), int(run.model["N"][0, string])
-    return run.state["u"][0, now, string, layout.GHOST : layout.GHOST + N + 1]
+    now, N = int(run.state["motion"]["level"][0]), int(run.model["N"][0, string])
+    return run.state["motion"]["u"][0, now, string, layout.GHOST : layout.GHOST + N + 1]
 
 
 @pytest.mark.parametrize("string", [0, 1], ids=["F4", "C5"])

@@ -9,7 +9,7 @@ import pytest
 
 from yehu_server.errors import ParameterError
 from yehu_server.physics.grid import check_rate, intervals
-from yehu_server.physics.layout import MAX_NODES
+from yehu_server.physics.layout import MAX_INTERVALS
 from yehu_server.physics.quantities import Quantities, override, read_body
 
 YEHU = Quantities()
@@ -236,5 +236,5 @@ def test_a_string_too_short_or_too_fine_for_its_grid_is_refused():
     with pytest.raises(ParameterError, match="grid intervals"):
         intervals(stiff.string_1, 1.0 / 22050.0)
     slack = override(YEHU, {"string_1": {"L": 1.0, "T": 1.0, "E": 0.0, "sigma_1": 0.0}})
-    with pytest.raises(ParameterError, match=str(MAX_NODES)):
+    with pytest.raises(ParameterError, match=str(MAX_INTERVALS)):
         intervals(slack.string_1, 1.0 / 192000.0)

@@ -41,8 +41,8 @@ def measured_response(frequency_hz):
 def impulse_response(model, frames):
     """Pressure after a bridge force of 1 N for one sample, by the run-time filter."""
     state = kernel.at_rest(model)
-    model, state = model[0], state[0]
-    return np.array([radiate(model, state, 1.0 if n == 0 else 0.0) for n in range(frames)])
+    model, motion = model[0], state[0]["motion"]
+    return np.array([radiate(model, motion, 1.0 if n == 0 else 0.0) for n in range(frames)])
 
 
 @pytest.fixture(scope="module", params=RATES, ids=lambda rate: f"{rate:.0f}")

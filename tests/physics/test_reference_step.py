@@ -266,9 +266,11 @@ def test_the_first_200_samples_of_a_start_are_the_references(F_N, fingers):
     size = np.abs(forces).max(axis=0)
     assert np.all(size > 0.0)
     assert np.all(np.abs(found - forces).max(axis=0) <= 1e-8 * size)
-    now = int(record["level"][0])
+    now = int(record["motion"]["level"][0])
     for i in range(layout.STRINGS):
-        end = record["u"][0, now, i, layout.GHOST : layout.GHOST + params.strings[i].N + 1]
+        end = record["motion"]["u"][
+            0, now, i, layout.GHOST : layout.GHOST + params.strings[i].N + 1
+        ]
         assert np.abs(end - state.u[i]).max() <= 1e-8 * np.abs(state.u[i]).max()
 
 

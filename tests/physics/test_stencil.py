@@ -12,7 +12,7 @@ from yehu_server.physics.quantities import Quantities, override
 from yehu_server.physics.stencil import overlap, place_cubic, place_linear, read, spread
 
 YEHU = Quantities()
-GRIDS = st.integers(min_value=12, max_value=layout.MAX_NODES)
+GRIDS = st.integers(min_value=12, max_value=layout.MAX_INTERVALS)
 
 
 def on_grid(values):
@@ -105,9 +105,9 @@ def test_overlap_is_what_one_contact_reads_of_the_other(contact, fraction, place
 
 def contact_place(state, p):
     """Where a contact is on its string, in nodes: the centre of its weights."""
-    s = state[0]
-    weights = s["weights"][p]
-    return float(s["first"][p] + weights @ np.arange(layout.STENCIL))
+    c = state[0]["contacts"]
+    weights = c["weights"][p]
+    return float(c["first"][p] + weights @ np.arange(layout.STENCIL))
 
 
 @settings(max_examples=30)
@@ -129,7 +129,8 @@ def test_a_finger_keeps_one_node_from_the_ends(x_f):
         expected = min(max(x_f / h, 1.0), N - 1.0)
         nodes = np.arange(N + 1.0)
         curve = on_grid(nodes * (N - nodes) * (nodes + 3.0))
-        found = read(curve, int(run.state["first"][0, i]), run.state["weights"][0, i])
+        c = run.state["contacts"]
+        found = read(curve, int(c["first"][0, i]), c["weights"][0, i])
         assert found == pytest.approx(expected * (N - expected) * (expected + 3.0), rel=1e-9)
 
 

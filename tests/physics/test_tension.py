@@ -24,19 +24,21 @@ def test_a_pressed_string_is_tighter_by_its_stretch(press):
     state, model = run.state[0], run.model[0]
     for i, string in enumerate(YEHU.strings):
         N = int(model["N"][i])
-        u = state["u"][int(state["level"]), i, layout.GHOST : layout.GHOST + N + 1]
+        u = state["motion"]["u"][
+            int(state["motion"]["level"]), i, layout.GHOST : layout.GHOST + N + 1
+        ]
         stretch = np.sum(np.diff(u) ** 2) / model["h"][i]
         expected = string.EA / (2.0 * string.L) * stretch
         assert expected > 0.0
-        T_more = state["slack"][i] * model["h"][i] / model["spread"][i]
+        T_more = state["work"]["tau"][i] * model["h"][i] / model["spread"][i]
         assert T_more == pytest.approx(expected, rel=1e-3)
 
 
 def test_without_it_nothing_of_it_is_left():
     plain = replace(YEHU, tension_modulation=0.0)
     run = play({"press": [3.0], "x_f": [0.1]}, 0.2, ledger=False, quantities=plain)
-    for name in ("slack", "give"):
-        assert not run.state[name].any(), name
+    for name in ("tau", "K_tt"):
+        assert not run.state["work"][name].any(), name
 
 
 def test_a_wide_vibration_is_sharper_than_a_narrow_one():

@@ -213,7 +213,7 @@ def play(rig: Any, out: Array) -> None:
         if silenced:
             kernel.come_to_rest(model[0], state[0])
             fall_silent(o)
-        close_window(t, model[0], state[0])
+        close_window(t, model[0], state[0].motion)
         done += frames
 
 

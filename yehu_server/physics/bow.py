@@ -1,8 +1,8 @@
 """The bow: which string it is on, its hair, and the velocity the friction law sees.
 
-[Yehu] eqs. (47)-(50) and (60). Differs: C_h carries 4 k^2; s and the factor of f_b are
-read from the strings as they stand after the bridge has closed, so that they also hold
-where the bow is within reach of the bridge or of a finger.
+[Yehu] eqs. (47)-(50) and (60). Differs: C_h carries 4 k^2; s and the factor of f_b
+are taken after tension, bridge and fingers are eliminated, so that they also hold
+where the bow shares nodes with the bridge or a finger.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from yehu_server.physics.stencil import read
 
 Array = Any
 
-FRICTION_REACH = 4.0  # times mu_S F_N
+FRICTION_MARGIN = 4.0  # times mu_S F_N
 
 
 def prepare_bow(model: np.void, quantities: Quantities) -> None:
@@ -27,9 +27,9 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
     for name in ("epsilon_0", "epsilon_1", "v_s", "mu_C", "mu_S", "xi", "lift_force"):
         model[name] = getattr(bow, name)
     stiffness = bow.epsilon_0 + 2.0 * bow.epsilon_1 / k
-    model["stiffness"], model["per_v_s"] = stiffness, 1.0 / bow.v_s
+    model["bristle_stiffness"], model["per_v_s"] = stiffness, 1.0 / bow.v_s
     breakaway = bow.mu_C * (1.0 - np.array(bow.xi))
-    model["sharpness"] = np.pi * bow.epsilon_0 / (stiffness * breakaway)
+    model["chi_slope"] = np.pi * bow.epsilon_0 / (stiffness * breakaway)
     M_h, K_h, R_h = bow.M_h, bow.K_h, bow.R_h
     model["M_h"], model["K_h"], model["R_h"] = M_h, K_h, R_h
     Lambda = 4.0 * M_h + k**2 * K_h + 2.0 * k * R_h
@@ -39,35 +39,35 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
 
 
 def friction_bound(model: np.void) -> float:
-    """How near friction may come to having several solutions: below 1 it has one.
+    """Return a number that is below 1 where the friction equation has one solution only.
 
-    The worst case, the bow exactly on a node; a sufficient bound, where bristles are not
-    stretched far beyond what the bow force sustains. Source: docs/physics.md.
+    For the worst case, the bow exactly on a node. It is a sufficient bound, as long as bristles
+    are not stretched far beyond what the bow force sustains. Source: docs/physics.md.
     """
     k = model["k"]
-    compliance = (model["spread"].max() + model["C_h"]) / (2.0 * k)
-    return float(1.34 * compliance * model["epsilon_0"] * k / 2.0)
+    mobility = (model["spread"].max() + model["C_h"]) / (2.0 * k)
+    return float(1.34 * mobility * model["epsilon_0"] * k / 2.0)
 
 
 @compiled
-def most_friction(model: Any, F_N: float) -> float:
-    """More than bristles and their damping can hold (N)."""
-    return float(FRICTION_REACH * model.mu_S * abs(F_N))
+def friction_limit(model: Any, F_N: float) -> float:
+    """Return a force that bristles and their damping never reach (N)."""
+    return float(FRICTION_MARGIN * model.mu_S * abs(F_N))
 
 
 @compiled
-def choose_string(model: Any, s: Any, F_N: float) -> tuple[int, bool]:
+def choose_string(model: Any, s: Any, c: Any, w: Any, F_N: float) -> tuple[int, bool]:
     """Return the string under the bow, by the sign of the force, and whether it is bowed.
 
-    Bristles that let go drop what they stored; the energy is booked as a loss.
+    Bristles off the string lose their deflection; its energy is booked as a loss.
     """
     bowed = abs(F_N) >= model.lift_force
-    string = s.string[BOW]
+    string = c.string[BOW]
     if bowed:
         string = 0 if F_N > 0.0 else 1
     for i in range(STRINGS):
         if s.z[i] != 0.0 and not (bowed and i == string):
-            s.dropped_z += 0.5 * model.epsilon_0 * s.z[i] * s.z[i]
+            w.dropped_z += 0.5 * model.epsilon_0 * s.z[i] * s.z[i]
             s.z[i] = 0.0
     return string, bowed
 
@@ -81,9 +81,9 @@ def advance_hair(model: Any, zeta_next: Array, zeta: Array, zeta_prev: Array) ->
 
 @compiled
 def hair_velocity(
-    model: Any, s: Any, reading: float, u_prev: Array, zeta_next: Array, zeta_prev: Array
+    model: Any, c: Any, u_b: float, u_prev: Array, zeta_next: Array, zeta_prev: Array
 ) -> float:
-    """I_b delta_t. u + delta_t. zeta at the bow, where `reading` (m) is I_b u^{n+1} (m/s)."""
-    i = s.string[BOW]
-    travel = reading - read(u_prev[i], s.first[BOW], s.weights[BOW])
+    """Return I_b delta_t. u + delta_t. zeta (m/s), where `u_b` (m) is I_b u^{n+1}."""
+    i = c.string[BOW]
+    travel = u_b - read(u_prev[i], c.first[BOW], c.weights[BOW])
     return float(0.5 * model.rate * (travel + zeta_next[i] - zeta_prev[i]))

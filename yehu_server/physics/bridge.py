@@ -15,7 +15,7 @@ from yehu_server.jit import compiled
 from yehu_server.physics.layout import MAX_MODES, STRINGS, whole_vectors
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.stencil import place_cubic, read
-from yehu_server.physics.tension import tighten
+from yehu_server.physics.tension import eliminate_tension
 
 Array = Any
 
@@ -55,12 +55,12 @@ def prepare_bridge(model: np.void, quantities: Quantities) -> None:
             )
         weights = model["bridge_weights"][i]
         model["bridge_first"][i] = place_cubic(position, int(model["N"][i]), weights)
-    weigh_bridge(model)
+    set_bridge_compliance(model)
 
 
 @compiled
-def weigh_bridge(model: Any) -> None:
-    """Write S_c of eq. (43): how modes and strings give way. Real time: safe."""
+def set_bridge_compliance(model: Any) -> None:
+    """Write S_c of eq. (43), the compliance between modes and strings (m/N). Real time: safe."""
     model.S_c[:] = model.C_q_sum
     for i in range(STRINGS):
         weights = model.bridge_weights[i]
@@ -79,49 +79,50 @@ def advance_bridge(model: Any, q_next: Array, q: Array, q_prev: Array, f_hammer:
 
 
 @compiled
-def close_bridge(model: Any, s: Any, u_next: Array, Q: float) -> None:
-    """Let tension and bridge hold both strings at n+1, as if nothing else touched them.
+def eliminate_tension_and_bridge(model: Any, s: Any, w: Any, u_next: Array, Q: float) -> None:
+    """Eliminate tau and f_c of both strings: solve them as if no contact touched the strings.
 
-    Everything after this meets strings that already follow the bridge. Written are the coupling
-    forces ``s.f_c`` (N), the slack of each string, and how these answer to more forces. A newton
-    on string j where Delta u^n is b metres leaves ``give[i, j] b`` of slack on string i, and adds
-    ``tug[j, i] b`` to its f_c; one at the bridge ``tug[i, j]`` and ``S_c_inverse[i, j]``.
+    Writes ``w.tau`` and ``w.f_c`` (N) so solved, and the inverse of their joint system, by which
+    they respond to contacts (see `contacts.response`): K_tt to the sum of forces times Delta u^n
+    under them, K_cc to a gap at the bridge, K_tc from one to the other.
     Source: [Yehu] eqs. (43)-(45); tension.py.
     """
-    slack_0, give_0, stretched_0 = tighten(model, s, 0)
-    slack_1, give_1, stretched_1 = tighten(model, s, 1)
-    bend_0 = read(s.bend[0], model.bridge_first[0], model.bridge_weights[0])
-    bend_1 = read(s.bend[1], model.bridge_first[1], model.bridge_weights[1])
-    gap_0 = Q - read(u_next[0], model.bridge_first[0], model.bridge_weights[0]) - slack_0 * bend_0
-    gap_1 = Q - read(u_next[1], model.bridge_first[1], model.bridge_weights[1]) - slack_1 * bend_1
+    first, weights = model.bridge_first, model.bridge_weights
+    tau_1, tau_per_sum_1, pivot_1 = eliminate_tension(model, w, 0)
+    tau_2, tau_per_sum_2, pivot_2 = eliminate_tension(model, w, 1)
+    Delta_1 = read(s.Delta_u[0], first[0], weights[0])
+    Delta_2 = read(s.Delta_u[1], first[1], weights[1])
+    gap_1 = Q - read(u_next[0], first[0], weights[0]) - tau_1 * Delta_1
+    gap_2 = Q - read(u_next[1], first[1], weights[1]) - tau_2 * Delta_2
 
-    # S_c, whose own entries give way as tension does. Its rows are taken times `stretched`, so
+    # S_c, its diagonal lowered by tension. Its rows are multiplied by the pivots, so
     # that no division waits for another.
-    b = model.S_c[0, 1]
-    a = model.S_c[0, 0] * stretched_0 - model.taut[0] * model.spread[0] * bend_0 * bend_0
-    d = model.S_c[1, 1] * stretched_1 - model.taut[1] * model.spread[1] * bend_1 * bend_1
-    both = stretched_0 * stretched_1
-    per_determinant = 1.0 / (a * d - b * b * both)
-    S_00, S_11 = d * stretched_0 * per_determinant, a * stretched_1 * per_determinant
-    S_01 = -b * both * per_determinant
-    s.S_c_inverse[0, 0], s.S_c_inverse[0, 1] = S_00, S_01
-    s.S_c_inverse[1, 0], s.S_c_inverse[1, 1] = S_01, S_11
-    f_0, f_1 = S_00 * gap_0 + S_01 * gap_1, S_01 * gap_0 + S_11 * gap_1
-    s.f_c[0], s.f_c[1] = f_0, f_1
+    S_11 = model.S_c[0, 0] * pivot_1 - model.tension_gain[0] * model.spread[0] * Delta_1 * Delta_1
+    S_22 = model.S_c[1, 1] * pivot_2 - model.tension_gain[1] * model.spread[1] * Delta_2 * Delta_2
+    S_12 = model.S_c[0, 1]
+    pivots = pivot_1 * pivot_2
+    per_determinant = 1.0 / (S_11 * S_22 - S_12 * S_12 * pivots)
+    K_11, K_22 = S_22 * pivot_1 * per_determinant, S_11 * pivot_2 * per_determinant
+    K_12 = -S_12 * pivots * per_determinant
+    w.K_cc[0, 0], w.K_cc[0, 1] = K_11, K_12
+    w.K_cc[1, 0], w.K_cc[1, 1] = K_12, K_22
+    f_1, f_2 = K_11 * gap_1 + K_12 * gap_2, K_12 * gap_1 + K_22 * gap_2
+    w.f_c[0], w.f_c[1] = f_1, f_2
 
-    lead_0, lead_1 = give_0 * bend_0, give_1 * bend_1
-    s.slack[0], s.slack[1] = slack_0 - lead_0 * f_0, slack_1 - lead_1 * f_1
-    s.tug[0, 0], s.tug[0, 1] = -lead_0 * S_00, -lead_0 * S_01
-    s.tug[1, 0], s.tug[1, 1] = -lead_1 * S_01, -lead_1 * S_11
-    s.give[0, 0], s.give[1, 1] = give_0 + lead_0 * lead_0 * S_00, give_1 + lead_1 * lead_1 * S_11
-    s.give[0, 1] = s.give[1, 0] = lead_0 * S_01 * lead_1
+    lead_1, lead_2 = tau_per_sum_1 * Delta_1, tau_per_sum_2 * Delta_2  # tau per newton of f_c
+    w.tau[0], w.tau[1] = tau_1 - lead_1 * f_1, tau_2 - lead_2 * f_2
+    w.K_tc[0, 0], w.K_tc[0, 1] = -lead_1 * K_11, -lead_1 * K_12
+    w.K_tc[1, 0], w.K_tc[1, 1] = -lead_2 * K_12, -lead_2 * K_22
+    w.K_tt[0, 0] = tau_per_sum_1 + lead_1 * lead_1 * K_11
+    w.K_tt[1, 1] = tau_per_sum_2 + lead_2 * lead_2 * K_22
+    w.K_tt[0, 1] = w.K_tt[1, 0] = lead_1 * K_12 * lead_2
 
 
 @compiled
-def finish_bridge(model: Any, q_next: Array, q_prev: Array, f_c: Array) -> float:
-    """Let the strings' forces move the modes, the last term of eq. (59).
+def move_modes(model: Any, q_next: Array, q_prev: Array, f_c: Array) -> float:
+    """Move the modes by the strings' forces, the last term of eq. (59).
 
-    Returns how far the bridge came in two samples (m).
+    Returns how far the bridge moved in two samples (m).
     """
     total = f_c[0] + f_c[1]
     travel = 0.0

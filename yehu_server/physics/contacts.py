@@ -1,10 +1,15 @@
-"""Where bow and fingers touch the strings, and how each contact feels the others.
+"""Where bow and fingers touch the strings, and how a force at one contact moves another.
 
-With A_s diagonal, a force at q moves the reading at p by ``G[p, q] = I_p J_q / A_s``,
-less what the bridge, tied to the string, takes back, and what the string's tension does
-(tension.py). Where no nodes are shared and tension is constant G is diagonal and the paper's
-formulas (43), (45), (50) hold as printed; elsewhere they do not, and the contacts are solved
-jointly (decisions/0003).
+Tension and bridge are eliminated before the contacts (bridge.py). From then on a contact's force
+moves the string under it, and through tension and bridge all other contacts. G[p, q], the
+compliance between two contacts, is
+
+    G[p, q] = I_p J_q / A_s - (I_p Delta u^n) tau_q - (I_p J_c / A_s) f_c,q,
+
+where tau_q and f_c,q are the `response` of tension and bridge to one newton at q. Where no node is
+shared and tension is constant, G is diagonal, and the paper's formulas (43), (45), (50) hold
+as printed; elsewhere they do not, and contacts are solved jointly (decisions/0003).
+Derivation: docs/derivation.md, section 3.
 """
 
 from __future__ import annotations
@@ -23,122 +28,122 @@ from yehu_server.physics.layout import (
     X_B,
 )
 from yehu_server.physics.stencil import overlap, place_cubic, place_linear, read, spread
-from yehu_server.physics.tension import take_up_slack
+from yehu_server.physics.tension import move_by_tension
 
 Array = Any
-Reply = tuple[float, float, float, float]
+Response = tuple[float, float, float, float]
 
 
 @compiled
-def place_contacts(model: Any, s: Any, control: Array, bowed_string: int) -> bool:
-    """Move bow and fingers to where a row of controls has them; return whether any moved.
+def place_contacts(model: Any, c: Any, control: Array, bowed_string: int) -> bool:
+    """Move bow and fingers to the places in a row of controls; return whether any moved.
 
     The bow keeps one node away from the bridge and from the loop, a finger one node
-    away from the ends. Work is done only for what moved.
+    away from the ends. Only what moved is worked out anew.
     Real time: safe.
     """
     moved = False
     x_b = control[X_B]
-    if s.placed == 0 or s.x[BOW] != x_b or s.string[BOW] != bowed_string:
+    if c.placed == 0 or c.x[BOW] != x_b or c.string[BOW] != bowed_string:
         i, moved = bowed_string, True
-        s.x[BOW], s.string[BOW] = x_b, i
+        c.x[BOW], c.string[BOW] = x_b, i
         h = model.h[i]
         position = max(1.0, min(x_b / h, model.bridge_x / h - 1.0))
-        s.first[BOW] = place_linear(position, model.N[i], s.weights[BOW])
-        meet_bridge(model, s, BOW)
+        c.first[BOW] = place_linear(position, model.N[i], c.weights[BOW])
+        set_compliances(model, c, BOW)
     for j in range(model.fingers):
         x_f = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j]
-        if s.placed == 0 or s.x[STRINGS * j] != x_f:
+        if c.placed == 0 or c.x[STRINGS * j] != x_f:
             moved = True
             for i in range(STRINGS):
                 p = STRINGS * j + i
-                s.x[p], s.string[p] = x_f, i
+                c.x[p], c.string[p] = x_f, i
                 position = max(1.0, min(x_f / model.h[i], model.N[i] - 1.0))
-                s.first[p] = place_cubic(position, model.N[i], s.weights[p])
-                meet_bridge(model, s, p)
+                c.first[p] = place_cubic(position, model.N[i], c.weights[p])
+                set_compliances(model, c, p)
     if moved:
-        sort_fingers(model, s)
-    s.placed = 1
+        sort_fingers(model, c)
+    c.placed = 1
     return moved
 
 
 @compiled
-def sort_fingers(model: Any, s: Any) -> None:
-    """Note the fingers' order along the strings."""
+def sort_fingers(model: Any, c: Any) -> None:
+    """Write the fingers' order along the strings, from the loop to the bridge."""
     for j in range(model.fingers):
         k = j
-        while k > 0 and s.x[STRINGS * s.order[k - 1]] > s.x[STRINGS * j]:
-            s.order[k] = s.order[k - 1]
+        while k > 0 and c.x[STRINGS * c.order[k - 1]] > c.x[STRINGS * j]:
+            c.order[k] = c.order[k - 1]
             k -= 1
-        s.order[k] = j
+        c.order[k] = j
 
 
 @compiled
-def meet_bridge(model: Any, s: Any, p: int) -> None:
-    """Note how far a contact yields to itself, and which nodes it shares with the bridge."""
-    i = s.string[p]
-    first, weights = s.first[p], s.weights[p]
-    s.yields[p] = model.spread[i] * overlap(first, weights, first, weights)
-    s.shared_with_bridge[p] = model.spread[i] * overlap(
+def set_compliances(model: Any, c: Any, p: int) -> None:
+    """Write I_p J_p / A_s and I_c J_p / A_s: how a newton at `p` moves its string there (m/N)."""
+    i = c.string[p]
+    first, weights = c.first[p], c.weights[p]
+    c.self_compliance[p] = model.spread[i] * overlap(first, weights, first, weights)
+    c.bridge_coupling[p] = model.spread[i] * overlap(
         model.bridge_first[i], model.bridge_weights[i], first, weights
     )
 
 
 @compiled
-def feel(s: Any, u_next: Array, p: int) -> float:
-    """Return where contact `p` would find its string at n+1 but for the contacts' forces (m)."""
-    i = s.string[p]
-    reading = read(u_next[i], s.first[p], s.weights[p])
-    return float(reading + s.slack[i] * s.bend_at[p] + s.shared_with_bridge[p] * s.f_c[i])
+def free_displacement(c: Any, w: Any, u_next: Array, p: int) -> float:
+    """Return I_p u^{n+1} as it would be without the forces of bow and fingers (m)."""
+    i = c.string[p]
+    free = read(u_next[i], c.first[p], c.weights[p])
+    return float(free + w.tau[i] * w.Delta_u_at[p] + c.bridge_coupling[p] * w.f_c[i])
 
 
 @compiled
-def reply(s: Any, q: int) -> Reply:
-    """Return what a newton at contact `q` does to both strings' slack (1/N) and f_c (1)."""
-    i = s.string[q]
-    bend, shared = s.bend_at[q], s.shared_with_bridge[q]
+def response(c: Any, w: Any, q: int) -> Response:
+    """Return how tau (1/N) and f_c (1) of both strings respond to one newton at contact `q`."""
+    i = c.string[q]
+    Delta_u, coupling = w.Delta_u_at[q], c.bridge_coupling[q]
     return (
-        s.give[0, i] * bend + s.tug[0, i] * shared,
-        s.give[1, i] * bend + s.tug[1, i] * shared,
-        s.tug[i, 0] * bend + s.S_c_inverse[0, i] * shared,
-        s.tug[i, 1] * bend + s.S_c_inverse[1, i] * shared,
+        w.K_tt[0, i] * Delta_u + w.K_tc[0, i] * coupling,
+        w.K_tt[1, i] * Delta_u + w.K_tc[1, i] * coupling,
+        w.K_tc[i, 0] * Delta_u + w.K_cc[0, i] * coupling,
+        w.K_tc[i, 1] * Delta_u + w.K_cc[1, i] * coupling,
     )
 
 
 @compiled
-def answer(model: Any, s: Any, p: int, q: int, of_q: Reply) -> float:
-    """G[p, q]: how far the reading at `p` gives way to a newton at `q`, whose `reply` is known.
+def compliance(model: Any, c: Any, w: Any, p: int, q: int, to_q: Response) -> float:
+    """Return G[p, q] (m/N): the displacement at `p` per newton at `q`, away from the force.
 
-    In m/N. ``s.bend_at`` of both must be this step's.
+    `to_q` is the `response` to one newton at `q`; ``Delta_u_at`` of both must be this step's.
     """
-    i = s.string[p]
-    slack, pull = (of_q[0], of_q[2]) if i == 0 else (of_q[1], of_q[3])
-    G = -s.bend_at[p] * slack - s.shared_with_bridge[p] * pull
+    i = c.string[p]
+    tau, f_c = (to_q[0], to_q[2]) if i == 0 else (to_q[1], to_q[3])
+    G = -w.Delta_u_at[p] * tau - c.bridge_coupling[p] * f_c
     if p == q:
-        G += s.yields[p]
-    elif s.string[q] == i:
-        G += model.spread[i] * overlap(s.first[p], s.weights[p], s.first[q], s.weights[q])
+        G += c.self_compliance[p]
+    elif c.string[q] == i:
+        G += model.spread[i] * overlap(c.first[p], c.weights[p], c.first[q], c.weights[q])
     return float(G)
 
 
 @compiled
-def is_apart(s: Any, p: int, q: int) -> bool:
-    """Whether two contacts share no node."""
-    distance = np.int64(s.first[p]) - np.int64(s.first[q])
-    return bool(s.string[p] != s.string[q] or distance <= -STENCIL or distance >= STENCIL)
+def share_no_node(c: Any, p: int, q: int) -> bool:
+    """Whether two contacts touch no common node."""
+    distance = np.int64(c.first[p]) - np.int64(c.first[q])
+    return bool(c.string[p] != c.string[q] or distance <= -STENCIL or distance >= STENCIL)
 
 
 @compiled
-def move(model: Any, s: Any, u_next: Array, near: int, bowed: bool) -> None:
-    """Let the strings go where all forces, known by now, move them: eqs. (30) and (59)."""
-    take_up_slack(model, s, u_next)
+def move_strings(model: Any, s: Any, c: Any, w: Any, u_next: Array, near: int, bowed: bool) -> None:
+    """Add the displacement of all forces, known by now, to u^{n+1}: eqs. (30) and (59)."""
+    move_by_tension(model, s, w, u_next)
     for i in range(STRINGS):
-        force = model.spread[i] * s.f_c[i]
+        force = model.spread[i] * w.f_c[i]
         spread(u_next[i], model.bridge_first[i], model.bridge_weights[i], force)
-    for c in range(near):
+    for a in range(near):
         for i in range(STRINGS):
-            p = STRINGS * s.near[c] + i
-            spread(u_next[i], s.first[p], s.weights[p], -model.spread[i] * s.f_f[p])
+            p = STRINGS * c.near[a] + i
+            spread(u_next[i], c.first[p], c.weights[p], -model.spread[i] * w.f_f[p])
     if bowed:
-        i = s.string[BOW]
-        spread(u_next[i], s.first[BOW], s.weights[BOW], -model.spread[i] * s.f_b)
+        i = c.string[BOW]
+        spread(u_next[i], c.first[BOW], c.weights[BOW], -model.spread[i] * s.f_b)

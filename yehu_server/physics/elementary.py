@@ -1,7 +1,7 @@
-"""Sine, cosine and powers of two for what the model asks of them, without a call.
+"""Sine, cosine and powers of two over the ranges that the model needs, without a call.
 
-A call of the C library's makes the processor put away all it holds, and takes any argument.
-Polynomials here are summed in pairs, so that their terms need not wait for each other.
+Calling the C library makes the processor save its registers, and handles any argument.
+Polynomials here are summed in pairs, so that terms can be computed in parallel.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def power_of_2(x: float) -> float:
 
 
 @compiled
-def slowing(t: float) -> float:
+def one_minus_inverse_root(t: float) -> float:
     """1 - 1 / sqrt(1 + t) for t >= 0, to rounding of the result. Real time: safe."""
     if t < SLIGHT:
         t_2 = t * t

@@ -37,7 +37,7 @@ def string_energy(model: Any, i: int, u_next: Array, u: Array) -> float:
     return float(
         0.5 * model.rho_A[i] * h * kinetic
         + 0.5 * model.T[i] * slope / h
-        + 0.5 * model.stretch[i] * slope**2 / h
+        + 0.5 * model.stretch_stiffness[i] * slope**2 / h
         + 0.5 * model.EI[i] * bend / h**3
         - 0.5 * model.sigma_1[i] * k * model.rho_A[i] * loss / h
     )
@@ -83,13 +83,13 @@ def stored_energy(model: Any, s: Any, next_: int, now: int) -> float:
 
 
 @compiled
-def book(model: Any, s: Any, control: Array, row: Array) -> None:
+def book(model: Any, s: Any, c: Any, w: Any, control: Array, row: Array) -> None:
     """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete."""
     k = model.k
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     # Read back from the grid, not taken from the solver.
-    at_bow = read(s.u[next_, s.string[BOW]], s.first[BOW], s.weights[BOW])
-    v_r = hair_velocity(model, s, at_bow, s.u[prev], s.zeta[next_], s.zeta[prev]) - control[V_B]
+    u_b = read(s.u[next_, c.string[BOW]], c.first[BOW], c.weights[BOW])
+    v_r = hair_velocity(model, c, u_b, s.u[prev], s.zeta[next_], s.zeta[prev]) - control[V_B]
 
     strings, hair, bridge, finger = 0.0, 0.0, 0.0, 0.0
     for i in range(STRINGS):
@@ -102,19 +102,19 @@ def book(model: Any, s: Any, control: Array, row: Array) -> None:
         bridge_velocity += velocity
         Q += s.q[next_, m]
     power = control[F_HAMMER] * bridge_velocity - s.f_b * control[V_B]
-    power += pluck_power(model, s, control, s.u[next_], s.u[prev])
+    power += pluck_power(model, c, control, s.u[next_], s.u[prev])
     for j in range(model.fingers):
-        power += s.f_ext[j] * (s.U[next_, j] - s.U[prev, j]) / (2.0 * k)
+        power += w.f_ext[j] * (s.U[next_, j] - s.U[prev, j]) / (2.0 * k)
         for i in range(STRINGS):
             p = STRINGS * j + i
-            if s.g[p] != 0.0:
-                travel = read(s.u[next_, i], s.first[p], s.weights[p]) - s.U[next_, j]
-                travel -= s.eta_prev[p]
+            if w.g[p] != 0.0:
+                travel = read(s.u[next_, i], c.first[p], c.weights[p]) - s.U[next_, j]
+                travel -= w.eta_prev[p]
                 # Psi stands at n + 1/2 by now; the law uses it at n - 1/2.
-                Psi = s.Psi[p] - 0.5 * s.g[p] * travel
-                finger += model.beta * s.g[p] * Psi * (travel / (2.0 * k)) ** 2
-    friction = s.f_b * v_r - model.epsilon_0 * s.z_bar * s.r
-    lifted, reset = s.dropped_z / k, s.dropped_Psi / k
+                Psi = s.Psi[p] - 0.5 * w.g[p] * travel
+                finger += model.beta * w.g[p] * Psi * (travel / (2.0 * k)) ** 2
+    friction = s.f_b * v_r - model.epsilon_0 * w.z_bar * w.r
+    lifted, reset = w.dropped_z / k, w.dropped_Psi / k
 
     stored = stored_energy(model, s, next_, now)
     losses = strings + bridge + finger + hair + friction + lifted + reset

@@ -29,13 +29,13 @@ def prepare_fingers(model: np.void, quantities: Quantities) -> None:
         model[name] = getattr(finger, name)
     model["C_f"] = model["k"] ** 2 / finger.M_f
     ghat_1 = math.sqrt(0.5 * finger.K_f * (finger.alpha + 1.0))
-    prepare_power(model, ghat_1, 0.5 * (finger.alpha - 1.0))
+    prepare_power(model["ghat"], ghat_1, 0.5 * (finger.alpha - 1.0))
     model["K_lift"] = finger.M_f * finger.omega_lift**2
     model["R_lift"] = 2.0 * finger.M_f * finger.omega_lift  # critical damping
 
 
 @compiled
-def advance_finger(model: Any, s: Any, j: int, press: float, now: int, prev: int) -> float:
+def advance_finger(model: Any, s: Any, w: Any, j: int, press: float, now: int, prev: int) -> float:
     """Return U* of eq. (58), the finger's height free of contacts (m).
 
     A press (N) above zero drives the finger down; without one the hand lifts it with
@@ -43,29 +43,29 @@ def advance_finger(model: Any, s: Any, j: int, press: float, now: int, prev: int
     """
     U, U_prev = s.U[now, j], s.U[prev, j]
     if press > 0.0:
-        s.f_ext[j] = -press
+        w.f_ext[j] = -press
     else:
-        s.f_ext[j] = model.K_lift * (model.rest_height - U)
-        s.f_ext[j] -= model.R_lift * model.rate * (U - U_prev)
-    return float(2.0 * U - U_prev + model.C_f * s.f_ext[j])
+        w.f_ext[j] = model.K_lift * (model.rest_height - U)
+        w.f_ext[j] -= model.R_lift * model.rate * (U - U_prev)
+    return float(2.0 * U - U_prev + model.C_f * w.f_ext[j])
 
 
 @compiled
-def reset_contact(s: Any, p: int, eta: float) -> None:
-    """Drop a quadratised potential that no penetration backs, and book its energy."""
+def reset_contact(s: Any, w: Any, p: int, eta: float) -> None:
+    """Drop a quadratised potential without penetration, and book its energy."""
     if s.Psi[p] != 0.0 and (eta <= 0.0 or s.Psi[p] < 0.0):
-        s.dropped_Psi += 0.5 * s.Psi[p] * s.Psi[p]
+        w.dropped_Psi += 0.5 * s.Psi[p] * s.Psi[p]
         s.Psi[p] = 0.0
 
 
 @compiled
 def gradient(model: Any, eta: float) -> float:
     """Return ghat of eq. (33) at a penetration (m) above zero."""
-    return power(model, eta)
+    return power(model.ghat, eta)
 
 
 @compiled
-def limited(ghat: float, Psi: float, travel: float) -> float:
+def limited_gradient(ghat: float, Psi: float, travel: float) -> float:
     """Return g = theta ghat of eqs. (33) and (34).
 
     Parameters
@@ -81,87 +81,85 @@ def limited(ghat: float, Psi: float, travel: float) -> float:
 
 
 @compiled
-def meet_fingers(model: Any, s: Any, control: Array, next_: int, now: int, prev: int) -> int:
-    """Let the fingers move, free of contacts, and list those that may touch a string.
+def advance_fingers(
+    model: Any, s: Any, c: Any, w: Any, control: Array, next_: int, now: int, prev: int
+) -> int:
+    """Advance the fingers free of contacts; list those that may touch a string in ``c.near``.
 
-    Returns how many: ``s.near`` has them. What concerns them and is known at n is written here.
+    Returns their number. Writes what is known at n of their contacts: ghat, eta^{n-1}, Delta u^n.
     """
-    near, s.are_near = 0, 0
-    x_f, reading_1, reading_2 = -1.0, 0.0, 0.0
+    near, c.near_set = 0, 0
+    x_f, u_1, u_2 = -1.0, 0.0, 0.0
     for k in range(model.fingers):
-        j = s.order[k]
+        j = c.order[k]
         press = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j + 1]
         U = s.U[now, j]
-        if s.still[j] and press <= 0.0:
+        if s.resting[j] and press <= 0.0:
             p, q = STRINGS * j, STRINGS * j + 1
-            if s.x[p] != x_f:  # those that are up wait at one place
-                x_f = s.x[p]
-                reading_1 = read(s.u[now, 0], s.first[p], s.weights[p])
-                reading_2 = read(s.u[now, 1], s.first[q], s.weights[q])
-            if reading_1 <= U and reading_2 <= U:
+            if c.x[p] != x_f:  # fingers at rest mostly wait at one place
+                x_f = c.x[p]
+                u_1 = read(s.u[now, 0], c.first[p], c.weights[p])
+                u_2 = read(s.u[now, 1], c.first[q], c.weights[q])
+            if u_1 <= U and u_2 <= U:
                 s.U[next_, j] = U
                 continue
-        s.U[next_, j] = advance_finger(model, s, j, press, now, prev)
+        s.U[next_, j] = advance_finger(model, s, w, j, press, now, prev)
         is_near = False
         for i in range(STRINGS):
             p = STRINGS * j + i
-            first, weights = s.first[p], s.weights[p]
+            first, weights = c.first[p], c.weights[p]
             eta = read(s.u[now, i], first, weights) - U
-            reset_contact(s, p, eta)
+            reset_contact(s, w, p, eta)
             ghat = 0.0
             if eta > 0.0:
                 is_near = True
                 ghat = gradient(model, eta)
                 # The same I_f at all three times, so that the energy closes as x_f moves.
-                eta_prev = read(s.u[prev, i], first, weights) - s.U[prev, j]
-                s.bend_at[p], s.eta_prev[p] = read(s.bend[i], first, weights), eta_prev
-            s.g[p], s.ghat[p], s.f_f[p] = ghat, ghat, 0.0
-        s.still[j] = 0
+                w.eta_prev[p] = read(s.u[prev, i], first, weights) - s.U[prev, j]
+                w.Delta_u_at[p] = read(s.Delta_u[i], first, weights)
+            w.g[p], w.ghat[p], w.f_f[p] = ghat, ghat, 0.0
+        s.resting[j] = 0
         if is_near:
-            s.near[near] = j
-            s.are_near |= 1 << j
+            c.near[near] = j
+            c.near_set |= 1 << j
             near += 1
         elif press <= 0.0 and s.U[next_, j] == U and s.U[prev, j] == U:
-            s.still[j] = 1
+            s.resting[j] = 1
     return near
 
 
 @compiled
-def may_leave(s: Any, p: int, f_b: float, doubt: float) -> bool:
-    """Whether theta of eq. (34) may be below 1: with a friction force `f_b`, or `doubt` beside it.
-
-    Both in N.
-    """
-    at_bow = s.at_bow[p]
-    travel = s.travel[p] - at_bow * f_b - abs(at_bow) * doubt
-    return bool(4.0 * s.Psi[p] + s.ghat[p] * travel < 0.0)
+def may_detach(s: Any, w: Any, p: int, f_b: float, margin: float) -> bool:
+    """Whether theta of eq. (34) may be below 1 for friction within `margin` of `f_b` (N)."""
+    G = w.bow_compliance[p]
+    travel = w.travel[p] - G * f_b - abs(G) * margin
+    return bool(4.0 * s.Psi[p] + w.ghat[p] * travel < 0.0)
 
 
 @compiled
-def limit_fingers(s: Any, near: int, f_b: float) -> None:
-    """Find theta of every contact for a friction force (N), so that ``s.g`` is that of eq. (34)."""
-    for c in range(near):
+def limit_gradients(s: Any, c: Any, w: Any, near: int, f_b: float) -> None:
+    """Write g = theta ghat of eq. (34) of every contact, for a friction force (N)."""
+    for a in range(near):
         for i in range(STRINGS):
-            p = STRINGS * s.near[c] + i
-            s.g[p] = limited(s.ghat[p], s.Psi[p], s.travel[p] - s.at_bow[p] * f_b)
+            p = STRINGS * c.near[a] + i
+            w.g[p] = limited_gradient(w.ghat[p], s.Psi[p], w.travel[p] - w.bow_compliance[p] * f_b)
 
 
 @compiled
-def stiffness(model: Any, s: Any, p: int) -> float:
-    """Return A_f of eq. (35): what a contact's force grows by with its travel (N/m)."""
-    g = s.g[p]
+def contact_stiffness(model: Any, s: Any, w: Any, p: int) -> float:
+    """Return A_f of eq. (35): how a contact's force grows with its travel (N/m)."""
+    g = w.g[p]
     return float(0.25 * g * g + 0.5 * model.rate * model.beta * g * s.Psi[p])
 
 
 @compiled
-def settle(model: Any, s: Any, next_: int, p: int, f_f: float) -> None:
-    """Let a contact's force, known by now, move its finger; advance Psi.
+def advance_contact(model: Any, s: Any, w: Any, next_: int, p: int, f_f: float) -> None:
+    """Move a finger by a contact's force, known by now (N), and advance Psi: eqs. (33), (36).
 
-    By eq. (35) the force is A_f times the contact's travel, plus g Psi: so that is the travel of
-    eq. (33).
+    By eq. (35) the force is A_f times the contact's travel, plus g Psi; eq. (33) takes the travel.
     """
-    s.f_f[p] = f_f
+    w.f_f[p] = f_f
     s.U[next_, p // STRINGS] += model.C_f * f_f
-    g, Psi = s.g[p], s.Psi[p]
+    g, Psi = w.g[p], s.Psi[p]
     if g > 0.0:
         s.Psi[p] += 0.5 * (f_f - g * Psi) / (0.25 * g + 0.5 * model.rate * model.beta * Psi)

@@ -1,8 +1,9 @@
 """Elasto-plastic friction between hair and string: [Yehu] eqs. (13)-(20), (25), (46)-(53).
 
-Differs: instead of a Newton iteration in two unknowns, which blows up under an
-alternating bow force, one scalar equation in the relative velocity is solved inside a
+Differs: instead of a Newton iteration in two unknowns, which diverges under an
+alternating bow force, one scalar equation in the relative velocity is solved within a
 bracket (decisions/0001).
+Derivation: docs/derivation.md, section 6.
 """
 
 from __future__ import annotations
@@ -11,27 +12,29 @@ import math
 from typing import Any
 
 from yehu_server.jit import compiled
-from yehu_server.physics.elementary import power_of_2, sine_and_cosine, slowing
+from yehu_server.physics.elementary import one_minus_inverse_root, power_of_2, sine_and_cosine
 
 TOLERANCE = 2e-13  # m/s, on the residual of the bristle velocity
 MAX_ITERATIONS = 100
 PER_LN_2 = 1.0 / math.log(2.0)
 
+Tangent = tuple[float, float, float]
+
 
 @compiled
-def bristles_hold(v_r: float, z_bar: float, z_ba: float) -> bool:
-    """Whether chi = 0: bristles move as the hair does. Eqs. (18), (19)."""
+def is_elastic(v_r: float, z_bar: float, z_ba: float) -> bool:
+    """Whether chi = 0: bristles do not slip, and move as the hair does. Eqs. (18), (19)."""
     return v_r * z_bar <= 0.0 or abs(z_bar) <= z_ba
 
 
 @compiled
-def imbalance(
+def bristle_residual(
     v_r: float,
     z_bar: tuple[float, float],
     z_dot: tuple[float, float],
     z_ba: float,
-    reach: float,
-    bow: Any,
+    deflection_at_1: float,
+    m: Any,
 ) -> tuple[float, float, float, float, float, float]:
     """Return how far the law's dz/dt is from another one, and how that changes with v_r.
 
@@ -42,9 +45,9 @@ def imbalance(
     z_bar, z_dot : (m, s), (m/s, 1)
         Average bristle deflection and the other dz/dt, each with its derivative by v_r, which
         is taken for constant.
-    z_ba, reach : float, m
-        Breakaway deflection, and F_N / epsilon_0: the deflection at a friction of one.
-    bow : record
+    z_ba, deflection_at_1 : float, m
+        Breakaway deflection, and F_N / epsilon_0: the deflection at a friction coefficient of one.
+    m : record
         The model, for mu_C, mu_S, v_s.
 
     Returns
@@ -53,75 +56,150 @@ def imbalance(
         r - z_dot, its first and half its second derivative by v_r.
     by_z : float, 1/s
         The partial derivative of r by z_bar.
-    room, closing : float, m and s
-        |z_ss| - |z_bar|, at zero of which the curve leaps, and its derivative by v_r.
+    room, room_slope : float, m and s
+        |z_ss| - |z_bar|, at zero of which the curve has a corner, and its derivative by v_r.
 
     Real time: safe. Source: [Yehu] eqs. (16)-(20).
     """
-    z, turn = z_bar
-    other, turn_other = z_dot
-    if bristles_hold(v_r, z, z_ba):
-        return v_r - other, 1.0 - turn_other, 0.0, 0.0, 1.0, 0.0
+    z, dz = z_bar
+    other, dother = z_dot
+    if is_elastic(v_r, z, z_ba):
+        return v_r - other, 1.0 - dother, 0.0, 0.0, 1.0, 0.0
     side = math.copysign(1.0, z)  # and of v_r
-    deflection, turn = abs(z), side * turn
-    steepness = bow.per_v_s * bow.per_v_s
-    stribeck = reach * (bow.mu_S - bow.mu_C) * power_of_2(v_r * v_r * (-PER_LN_2 * steepness))
-    z_ss = reach * bow.mu_C + stribeck  # |z_ss|, eq. (17)
+    deflection, dz = abs(z), side * dz
+    steepness = m.per_v_s * m.per_v_s
+    gap = m.mu_S - m.mu_C
+    stribeck = deflection_at_1 * gap * power_of_2(v_r * v_r * (-PER_LN_2 * steepness))
+    z_ss = deflection_at_1 * m.mu_C + stribeck  # |z_ss|, eq. (17)
     fall = -2.0 * v_r * steepness
     dz_ss, ddz_ss = fall * stribeck, (fall * fall - 2.0 * steepness) * stribeck
     per_z_ss = 1.0 / z_ss
-    w = deflection * per_z_ss
-    dw = (turn - w * dz_ss) * per_z_ss
-    ddw = (-2.0 * dw * dz_ss - w * ddz_ss) * per_z_ss
-    room, closing = z_ss - deflection, dz_ss - turn
+    ratio = deflection * per_z_ss
+    dratio = (dz - ratio * dz_ss) * per_z_ss
+    ddratio = (-2.0 * dratio * dz_ss - ratio * ddz_ss) * per_z_ss
+    room, room_slope = z_ss - deflection, dz_ss - dz
     per_width, sine, cosine, dangle, ddangle = 0.0, 1.0, 0.0, 0.0, 0.0
     if room > 0.0:
-        per_width = 1.0 / (stribeck + (reach * bow.mu_C - z_ba))
-        place = (deflection - 0.5 * (z_ss + z_ba)) * per_width
-        sine, cosine = sine_and_cosine(place)
-        part = place + 0.5  # of the way from breakaway to z_ss
-        dangle = math.pi * (turn - part * dz_ss) * per_width
+        per_width = 1.0 / (stribeck + (deflection_at_1 * m.mu_C - z_ba))
+        half_turns = (deflection - 0.5 * (z_ss + z_ba)) * per_width
+        sine, cosine = sine_and_cosine(half_turns)
+        part = half_turns + 0.5  # 0 at breakaway, 1 at z_ss
+        dangle = math.pi * (dz - part * dz_ss) * per_width
         ddangle = (-math.pi * part * ddz_ss - 2.0 * dangle * dz_ss) * per_width
-    # Eq. (20): chi = (1 + sine)/2. All that does not wait for sine and cosine is done apart.
+    # Eq. (20): chi = rise/2. What does not depend on sine and cosine is grouped apart.
     rise = 1.0 + sine
-    half, dhalf = 0.5 * (v_r * w), 0.5 * (w + v_r * dw)  # of v_r |z_bar / z_ss|
-    swing = half * dangle
+    half, dhalf = 0.5 * (v_r * ratio), 0.5 * (ratio + v_r * dratio)  # of v_r |z_bar / z_ss|
+    turn = half * dangle
     residual = (v_r - other) - half * rise
-    slope = (1.0 - turn_other - swing * cosine) - dhalf * rise
-    curve = -0.5 * (swing * dangle) - (dangle * dhalf + 0.5 * (half * ddangle)) * cosine
-    curve += 0.5 * (swing * dangle - dw - 0.5 * (v_r * ddw)) * rise
-    by_z = -0.5 * abs(v_r) * (math.pi * w * per_width * cosine + per_z_ss * rise)
-    return residual, slope, curve, by_z, room, closing
+    slope = (1.0 - dother - turn * cosine) - dhalf * rise
+    curve = -0.5 * (turn * dangle) - (dangle * dhalf + 0.5 * (half * ddangle)) * cosine
+    curve += 0.5 * (turn * dangle - dratio - 0.5 * (v_r * ddratio)) * rise
+    by_z = -0.5 * abs(v_r) * (math.pi * ratio * per_width * cosine + per_z_ss * rise)
+    return residual, slope, curve, by_z, room, room_slope
 
 
 @compiled
-def most_sudden(
-    bow: Any, string: int, compliance: float, F_N: float, limit: float
+def bound_third_derivative(
+    m: Any, string: int, mobility: float, F_N: float, limit: float
 ) -> tuple[float, float]:
-    """Bound the third derivative of r as a solve goes through it: 6 jolt (1 + |v_r| per_v).
+    """Bound the third derivative of r along a solve by 6 jerk (1 + |v_r| per_v).
 
     The law changes nowhere faster than chi does over the breakaway and z_ss over v_s.
-    Returns: per_v (s/m), jolt (s^2/m^2), where |z_bar| is below `limit` (m).
+    Returns: per_v (s/m), jerk (s^2/m^2), where |z_bar| is below `limit` (m).
     """
     per_F_N = 1.0 / F_N
-    per_v = bow.sharpness[string] * per_F_N * (1.0 / compliance) + 2.0 * bow.per_v_s
-    w = limit * bow.epsilon_0 / bow.mu_C * per_F_N  # the most of |z_bar / z_ss|
-    return per_v, (1.0 + w) * per_v * per_v / 6.0
+    per_v = m.chi_slope[string] * per_F_N * (1.0 / mobility) + 2.0 * m.per_v_s
+    ratio = limit * m.epsilon_0 / m.mu_C * per_F_N  # the largest |z_bar / z_ss|
+    return per_v, (1.0 + ratio) * per_v * per_v / 6.0
+
+
+@compiled
+def solve_elastic(
+    free: float, mobility: float, z: float, z_ba: float, per_gamma: float, m: Any
+) -> tuple[bool, bool, float, float, float, float]:
+    """Solve friction as if bristles did not slip (chi = 0).
+
+    That is linear but for epsilon_1(v_r), which takes one more step where it decreases slightly.
+
+    Returns
+    -------
+    is_elastic, is_exact : bool
+        Whether bristles do not slip at the linear solution, and whether one step was enough.
+    f_b, z_bar, v_r : float, N, m, m/s
+        The solution, where it is exact.
+    start : float, m/s
+        The linear solution.
+    """
+    half_k = 0.5 * m.k
+    per_mobility = 1.0 / mobility
+    load = free - mobility * m.epsilon_0 * z
+    divisor = 1.0 + mobility * m.bristle_stiffness * half_k  # load / v_r
+    per_divisor = 1.0 / divisor
+    start = load * per_divisor
+    if not is_elastic(load, divisor * z + load * half_k, divisor * z_ba):
+        return False, False, 0.0, 0.0, 0.0, start
+    damped = mobility * m.epsilon_1 * per_divisor
+    lost = one_minus_inverse_root((load * (per_divisor * per_gamma)) ** 2)
+    v_r = start + start * damped * lost
+    f_b = (free - start) * per_mobility - start * (damped * per_mobility) * lost
+    z_bar = z + v_r * half_k
+    # What is left is below 4 |v_r| damped^2: a hundredth of the tolerance is as good as exact.
+    damped *= lost
+    exact = 400.0 * abs(start) * damped * damped <= TOLERANCE and is_elastic(v_r, z_bar, z_ba)
+    return True, exact, f_b, z_bar, v_r, start
+
+
+@compiled
+def start_at_tangent(free: float, mobility: float, z: float, tangent: Tangent, m: Any) -> float:
+    """Return the v_r (m/s) at which the last step's tangent of the law meets this step's line."""
+    rate = 2.0 * m.rate
+    t_0, t_v, t_z = tangent
+    per_z = m.bristle_stiffness / (rate - t_z)
+    v_r = free + mobility * (rate * m.epsilon_1 * z - per_z * (t_0 + rate * z))
+    return float(v_r * (1.0 / (1.0 + mobility * (per_z * t_v))))
+
+
+@compiled
+def bracket(
+    free: float, mobility: float, z: float, deflection_at_1: float, m: Any
+) -> tuple[float, float, float]:
+    """Return velocities (m/s) between which the equation changes sign, and |z_bar| there (m)."""
+    epsilon_0, damping = m.epsilon_0, 2.0 * m.rate * m.epsilon_1
+    limit = max(1.2 * m.mu_S * deflection_at_1, abs(z))
+    low = free - mobility * (epsilon_0 * limit + damping * (limit - z))
+    high = free + mobility * (epsilon_0 * limit + damping * (limit + z))
+    return low, high, limit
+
+
+@compiled
+def eliminate_z_bar(
+    v_r: float, at_rest: float, per_mobility: float, per_gamma_2: float, m: Any
+) -> tuple[float, float]:
+    """Return z_bar - z (m) and its derivative by v_r (s), from eqs. (25), (46), (49).
+
+    `at_rest` (N) is the friction force at v_r = 0 less the bristles' spring force epsilon_0 z.
+    """
+    damping = 2.0 * m.rate * m.epsilon_1
+    lost = one_minus_inverse_root(v_r * v_r * per_gamma_2)
+    per_stiffness = 1.0 / (m.bristle_stiffness - damping * lost)
+    moved = (at_rest - v_r * per_mobility) * per_stiffness
+    dlost = (1.0 - lost) ** 3 * per_gamma_2 * v_r
+    return moved, (moved * damping * dlost - per_mobility) * per_stiffness
 
 
 @compiled
 def solve_friction(
     free: float,
-    compliance: float,
+    mobility: float,
     z: float,
     F_N: float,
-    tangent: tuple[float, float, float],
-    bow: Any,
+    tangent: Tangent,
+    m: Any,
     string: int,
-) -> tuple[float, float, float, tuple[float, float, float], int, bool]:
+) -> tuple[float, float, float, Tangent, int, bool]:
     """Find the friction force of one step.
 
-    Eliminating z_bar from v_r = free - compliance * f_b, eqs. (46) and (49), leaves one
+    Eliminating z_bar from v_r = free - mobility * f_b, eqs. (46) and (49), leaves one
     equation, r(v_r, z_bar(v_r)) = 2 (z_bar - z)/k. Its left side minus its right one
     changes sign between the velocities at which |z_bar| reaches
     max(1.2 mu_S F_N / epsilon_0, |z|), so Halley's method is kept between them.
@@ -130,15 +208,15 @@ def solve_friction(
     ----------
     free : float, m/s
         Relative velocity without friction, s - v_b of eq. (49).
-    compliance : float, m/s/N
+    mobility : float, m/s/N
         The factor of f_b in eq. (49).
     z : float, m
         Bristle deflection half a step ago.
     F_N : float, N
         Normal force, positive.
     tangent : (m/s, 1, 1/s)
-        Where to start: the law r = t_0 + t_v v_r + t_z z_bar, as the last solution touched it.
-    bow, string
+        Where to start: the law r = t_0 + t_v v_r + t_z z_bar, linearised at the last solution.
+    m, string
         The model's record, and which string is bowed (0 or 1).
 
     Returns
@@ -147,74 +225,47 @@ def solve_friction(
     tangent : (m/s, 1, 1/s)
         For the next step.
     iterations : int
-        How often the law was worked out.
+        Number of evaluations of the law.
     converged : bool
         Whether the residual is below 2e-13 m/s (relative above 1 m/s), or below 2e-10 where
         the bracket is down to neighbouring numbers.
 
     Real time: safe; at most 100 evaluations of the law.
     """
-    epsilon_0, stiffness = bow.epsilon_0, bow.stiffness
-    rate, half_k = 2.0 * bow.rate, 0.5 * bow.k
-    damping = rate * bow.epsilon_1
-    per_F_N = 1.0 / F_N
-    per_gamma = bow.epsilon_1 / bow.mu_C * per_F_N
+    rate = 2.0 * m.rate
+    per_F_N, per_mobility = 1.0 / F_N, 1.0 / mobility
+    per_gamma = m.epsilon_1 / m.mu_C * per_F_N  # gamma of eq. (25)
     per_gamma_2 = per_gamma * per_gamma
-    reach = F_N / epsilon_0
-    z_ba = bow.xi[string] * bow.mu_C * reach
-    per_compliance = 1.0 / compliance
+    deflection_at_1 = F_N / m.epsilon_0
+    z_ba = m.xi[string] * m.mu_C * deflection_at_1
 
-    # Bristles that hold are linear but for epsilon_1(v_r), which takes one more step where it
-    # falls off only slightly.
-    pulled = free - compliance * epsilon_0 * z
-    firmness = 1.0 + compliance * stiffness * half_k  # pulled / v_r
-    per_firmness = 1.0 / firmness
-    v_r = pulled * per_firmness
-    if bristles_hold(pulled, firmness * z + pulled * half_k, firmness * z_ba):
-        excess = compliance * bow.epsilon_1 * per_firmness
-        slow = slowing((pulled * (per_firmness * per_gamma)) ** 2)
-        step = v_r + v_r * excess * slow
-        f_b = (free - v_r) * per_compliance - v_r * (excess * per_compliance) * slow
-        z_bar = z + step * half_k
-        # That leaves less than 4 |v_r| excess^2: a hundredth of the tolerance is as good as exact.
-        excess *= slow
-        if 400.0 * abs(v_r) * excess * excess <= TOLERANCE and bristles_hold(step, z_bar, z_ba):
-            return f_b, z_bar, step, (0.0, 1.0, 0.0), 1, True
-    else:
-        t_0, t_v, t_z = tangent
-        per_z = stiffness / (rate - t_z)
-        v_r = free + compliance * (damping * z - per_z * (t_0 + rate * z))
-        v_r *= 1.0 / (1.0 + compliance * (per_z * t_v))
-    limit = max(1.2 * bow.mu_S * reach, abs(z))
-    low = free - compliance * (epsilon_0 * limit + damping * (limit - z))
-    high = free + compliance * (epsilon_0 * limit + damping * (limit + z))
-    v_r = min(max(v_r, low), high)
+    elastic, exact, f_b, z_bar, v_r, start = solve_elastic(free, mobility, z, z_ba, per_gamma, m)
+    if exact:
+        return f_b, z_bar, v_r, (0.0, 1.0, 0.0), 1, True
+    if not elastic:
+        start = start_at_tangent(free, mobility, z, tangent, m)
+    low, high, limit = bracket(free, mobility, z, deflection_at_1, m)
+    v_r = min(max(start, low), high)
 
-    per_v, jolt = most_sudden(bow, string, compliance, F_N, limit)
-    # Half the most that epsilon_1(v_r) makes of the second derivative of z_bar, times rate.
+    per_v, jerk = bound_third_derivative(m, string, mobility, F_N, limit)
+    # Half the largest part of epsilon_1(v_r) in the second derivative of z_bar, times rate.
     fastest = max(high, -low)
-    sag = damping * rate * (limit + per_compliance * fastest / epsilon_0)
-    sag *= per_gamma_2 / epsilon_0
+    sag = rate * m.epsilon_1 * rate * (limit + per_mobility * fastest / m.epsilon_0)
+    sag *= per_gamma_2 / m.epsilon_0
 
     iterations = 0
     converged = False
-    f_b, z_bar, r, slope, by_z, turn = 0.0, z, 0.0, 1.0, 0.0, 0.0
-    at_rest = free * per_compliance - epsilon_0 * z
+    f_b, z_bar, r, slope, by_z, dz = 0.0, z, 0.0, 1.0, 0.0, 0.0
+    at_rest = free * per_mobility - m.epsilon_0 * z
     while True:
         iterations += 1
-        # Eqs. (25) and (46): z_bar - z is what the bristles' spring leaves of f_b, times ease.
-        slow = slowing(v_r * v_r * per_gamma_2)
-        ease = 1.0 / (stiffness - damping * slow)
-        left = at_rest - v_r * per_compliance
-        moved = left * ease
+        moved, dz = eliminate_z_bar(v_r, at_rest, per_mobility, per_gamma_2, m)
         z_bar = z + moved
-        dslow = (1.0 - slow) ** 3 * per_gamma_2 * v_r
-        turn = (moved * damping * dslow - per_compliance) * ease
         r = rate * moved
-        residual, slope, curve, by_z, room, closing = imbalance(
-            v_r, (z_bar, turn), (r, rate * turn), z_ba, reach, bow
+        residual, slope, curve, by_z, room, room_slope = bristle_residual(
+            v_r, (z_bar, dz), (r, rate * dz), z_ba, deflection_at_1, m
         )
-        f_b = (free - v_r) * per_compliance  # eq. (49)
+        f_b = (free - v_r) * per_mobility  # eq. (49)
         if abs(residual) <= TOLERANCE * max(1.0, abs(r)):
             converged = True
             break
@@ -224,30 +275,31 @@ def solve_friction(
             high = v_r
         else:
             low = v_r
-        steep_2 = slope * slope
-        way = -residual * slope / max(steep_2 - residual * curve, 0.5 * steep_2)
-        step = v_r + way
-        is_inside = low < step < high
-        missed = curve * curve * abs(residual)
-        missed += (jolt * (1.0 + abs(v_r) * per_v) * abs(way) + sag) * steep_2
-        missed *= way * way
-        if is_inside and missed <= TOLERANCE * steep_2 and room * (room + closing * way) > 0.0:
-            held = bristles_hold(v_r, z_bar, z_ba)
-            v_r, z_bar = step, z_bar + way * turn
-            if bristles_hold(v_r, z_bar, z_ba) == held:  # else a corner of the law is between
-                f_b -= way * per_compliance
+        # Halley's step, and a bound on the residual that it leaves.
+        slope_2 = slope * slope
+        step = -residual * slope / max(slope_2 - residual * curve, 0.5 * slope_2)
+        reached = v_r + step
+        is_inside = low < reached < high
+        left = curve * curve * abs(residual)
+        left += (jerk * (1.0 + abs(v_r) * per_v) * abs(step) + sag) * slope_2
+        left *= step * step
+        if is_inside and left <= TOLERANCE * slope_2 and room * (room + room_slope * step) > 0.0:
+            was_elastic = is_elastic(v_r, z_bar, z_ba)
+            v_r, z_bar = reached, z_bar + step * dz
+            if is_elastic(v_r, z_bar, z_ba) == was_elastic:  # else a corner of the law is between
+                f_b -= step * per_mobility
                 converged = True
                 break
             continue
-        # Where the law is steep Halley's method can creep: then halve, so that a step
+        # Where the law is steep Halley's method can be slow: then bisect, so that a solve
         # always ends well before MAX_ITERATIONS.
-        creeping = iterations > 12 and iterations % 2 == 0
-        if creeping or not is_inside:
-            step = 0.5 * (low + high)
-            if not low < step < high:  # the bracket is down to neighbouring floats
+        is_slow = iterations > 12 and iterations % 2 == 0
+        if is_slow or not is_inside:
+            reached = 0.5 * (low + high)
+            if not low < reached < high:  # the bracket is down to neighbouring floats
                 converged = abs(residual) <= 1e3 * TOLERANCE * max(1.0, abs(r))
                 break
-        v_r = step
-    by_v = slope + (rate - by_z) * turn
+        v_r = reached
+    by_v = slope + (rate - by_z) * dz
     tangent = rate * (z_bar - z) - by_v * v_r - by_z * z_bar, by_v, by_z
     return f_b, z_bar, v_r, tangent, iterations, converged

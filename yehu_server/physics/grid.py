@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from yehu_server.errors import ParameterError
-from yehu_server.physics.layout import MAX_NODES
+from yehu_server.physics.layout import MAX_INTERVALS
 from yehu_server.physics.quantities import StringQuantities
 
 LOWEST_RATE, HIGHEST_RATE = 22050.0, 192000.0  # Hz
@@ -32,10 +32,10 @@ def intervals(string: StringQuantities, k: float, headroom: float = 1.0) -> int:
     Errors: ParameterError where the string gets too few or too many nodes.
     """
     N = math.floor(string.L / least_spacing(string, k, headroom))
-    if not 12 <= N <= MAX_NODES:
+    if not 12 <= N <= MAX_INTERVALS:
         raise ParameterError(
             f"a string of {string.L} m needs {N} grid intervals at {1.0 / k:.0f} Hz; "
-            f"12 to {MAX_NODES} are possible"
+            f"12 to {MAX_INTERVALS} are possible"
         )
     return N
 

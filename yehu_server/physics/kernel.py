@@ -1,9 +1,9 @@
 """The model's time loop: one step of the scheme after another.
 
-[Yehu] section 3.7, in the order that lets contacts share nodes: strings and modes move
-freely, tension and bridge close over them, the fingers press, the bow draws, all that moved is
-moved. The strings come first, since nothing they need waits for the contacts; what fingers resist
-is worked out while they move.
+[Yehu] section 3.7, in an order that lets contacts share nodes. Strings and modes advance without
+contact forces; tension and bridge are eliminated, then the fingers; friction is solved for the bow;
+the fingers' forces follow, and all forces move what they act on. docs/derivation.md derives each
+part.
 """
 
 from __future__ import annotations
@@ -15,32 +15,36 @@ from yehu_server.jit import compiled
 from yehu_server.physics.bow import (
     advance_hair,
     choose_string,
+    friction_limit,
     hair_velocity,
-    most_friction,
     prepare_bow,
 )
 from yehu_server.physics.bridge import (
     advance_bridge,
-    close_bridge,
-    finish_bridge,
+    eliminate_tension_and_bridge,
+    move_modes,
     prepare_bridge,
-    weigh_bridge,
+    set_bridge_compliance,
 )
-from yehu_server.physics.closing import (
-    close_fingers,
-    feel_fingers,
-    note_neighbours,
-    push_fingers,
-    weigh_fingers,
+from yehu_server.physics.contacts import (
+    Response,
+    compliance,
+    free_displacement,
+    move_strings,
+    place_contacts,
+    response,
 )
-from yehu_server.physics.contacts import answer, feel, move, place_contacts, reply
+from yehu_server.physics.elimination import (
+    Symmetric,
+    back_substitute_fingers,
+    eliminate_fingers,
+    factor_fingers,
+    find_shared_nodes,
+    find_travel,
+)
 from yehu_server.physics.energy import book
-from yehu_server.physics.finger import (
-    limit_fingers,
-    meet_fingers,
-    prepare_fingers,
-)
-from yehu_server.physics.friction import solve_friction
+from yehu_server.physics.finger import advance_fingers, limit_gradients, prepare_fingers
+from yehu_server.physics.friction import Tangent, solve_friction
 from yehu_server.physics.layout import (
     BOW,
     BRIDGE_FORCE,
@@ -63,7 +67,7 @@ from yehu_server.physics.layout import (
     V_B,
     new_record,
 )
-from yehu_server.physics.pluck import pull_aside
+from yehu_server.physics.pluck import pluck
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
 from yehu_server.physics.stencil import read
@@ -71,10 +75,10 @@ from yehu_server.physics.string import (
     advance_strings,
     most_loss,
     prepare_strings,
+    set_string_weights,
     support,
-    weigh_string,
 )
-from yehu_server.physics.tension import prepare_tension, weigh_tension
+from yehu_server.physics.tension import prepare_tension, set_tension_gain
 
 Array = Any
 
@@ -108,7 +112,7 @@ def at_rest(model: Any) -> Any:
     Returns: ndarray [shape=(1,), dtype=layout.STATE].
     """
     state = new_record(STATE)
-    state["U"][:] = model["rest_height"][0]
+    state["motion"]["U"][:] = model["rest_height"][0]
     return state
 
 
@@ -120,24 +124,25 @@ def retune(model: Array, state: Array, i: int, T: float, sigma_0: float, sigma_1
     with as much of sigma_1 as it then bears.
     Real time: safe.
     """
-    m, s = model[0], state[0]
-    weigh_string(m, i, T, sigma_0, min(sigma_1, most_loss(m, i, T)))
-    weigh_tension(m, i)
-    weigh_bridge(m)
-    s.placed = 0  # contacts keep how much a string gives way
+    m = model[0]
+    set_string_weights(m, i, T, sigma_0, min(sigma_1, most_loss(m, i, T)))
+    set_tension_gain(m, i)
+    set_bridge_compliance(m)
+    state[0].contacts.placed = 0  # their compliances depend on the tension
 
 
 @compiled
-def come_to_rest(model: Any, s: Any) -> None:
+def come_to_rest(model: Any, state: Any) -> None:
     """Put a state back to rest in place, keeping its counters. Real time: safe."""
+    s, c, w = state.motion, state.contacts, state.work
     s.u[:], s.q[:], s.zeta[:], s.z[:] = 0.0, 0.0, 0.0, 0.0
     s.U[:], s.Psi[:] = model.rest_height, 0.0
     s.v_r, s.f_b, s.stored = 0.0, 0.0, 0.0
     s.s_1[:], s.s_2[:], s.history[:] = 0.0, 0.0, 0.0
-    s.slack[:], s.give[:], s.bend[:], s.tangent[:] = 0.0, 0.0, 0.0, 0.0
-    s.bend_at[:], s.eta_prev[:] = 0.0, 0.0
-    s.placed = 0
-    s.x[:], s.still[:] = 0.0, 0
+    s.Delta_u[:], s.tangent[:], s.resting[:] = 0.0, 0.0, 0
+    c.placed, c.x[:] = 0, 0.0
+    # Read where a contact has no stiffness: zero times a number that is not finite is none.
+    w.tau[:], w.K_tt[:], w.Delta_u_at[:], w.eta_prev[:] = 0.0, 0.0, 0.0, 0.0
 
 
 @compiled
@@ -166,101 +171,136 @@ def advance(
     Source: [Yehu] section 3.7.
     """
     m, s = model[0], state[0]
-    now, next_, prev = int(s.level), (s.level + 1) % LEVELS, (s.level + 2) % LEVELS
+    now = int(s.motion.level)
+    next_, prev = (now + 1) % LEVELS, (now + 2) % LEVELS
     for n in range(controls.shape[0]):
         step(m, s, controls[n], next_, now, prev)
-        s.level = next_
+        s.motion.level = next_
         if ledger is not None and n < ledger.shape[0]:
-            book(m, s, controls[n], ledger[n])
+            book(m, s.motion, s.contacts, s.work, controls[n], ledger[n])
         measure(m, s, probes[n])
         next_, now, prev = prev, next_, now
 
 
 @compiled
-def step(m: Any, s: Any, control: Array, next_: int, now: int, prev: int) -> None:
+def step(m: Any, state: Any, control: Array, next_: int, now: int, prev: int) -> None:
     """Advance strings, bridge, bow and fingers by one sample. See `advance`."""
+    s, c, w = state.motion, state.contacts, state.work
     u_next, u, u_prev = s.u[next_], s.u[now], s.u[prev]
-    half_rate = 0.5 * m.rate  # of delta_t.
-    s.dropped_z, s.dropped_Psi = 0.0, 0.0
+    w.dropped_z, w.dropped_Psi = 0.0, 0.0
 
     # Strings and modes free of contacts, eq. (58), then tied together, eqs. (43)-(45).
-    advance_strings(m, s, u_next, u, u_prev)
-    pull_aside(m, s, control, u_next)
+    advance_strings(m, s, w, u_next, u, u_prev)
+    pluck(m, s, c, w, control, u_next)
     q_sum = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
-    close_bridge(m, s, u_next, q_sum)
+    eliminate_tension_and_bridge(m, s, w, u_next, q_sum)
 
-    string, bowed = choose_string(m, s, control[F_N])
-    moved, were_near = place_contacts(m, s, control, string), s.are_near
-    near = meet_fingers(m, s, control, next_, now, prev)
-    if moved or s.are_near != were_near:
-        note_neighbours(m, s, near)
-    Q = weigh_fingers(m, s, near)
+    # Where the contacts are; fingers free of forces, eq. (58). Factored while the strings move.
+    string, bowed = choose_string(m, s, c, w, control[F_N])
+    moved, were_near = place_contacts(m, c, control, string), c.near_set
+    near = advance_fingers(m, s, c, w, control, next_, now, prev)
+    if moved or c.near_set != were_near:
+        find_shared_nodes(m, c, near)
+    Q = factor_fingers(m, s, c, w, near)
 
-    # The bow, eqs. (46)-(53), and the fingers, eqs. (33)-(40), from where they would be.
-    s.bend_at[BOW] = read(s.bend[string], s.first[BOW], s.weights[BOW])
-    of_bow = reply(s, BOW)
+    # The bow, eqs. (46)-(53), and the fingers, eqs. (33)-(40).
+    w.Delta_u_at[BOW] = read(s.Delta_u[string], c.first[BOW], c.weights[BOW])
+    to_bow = response(c, w, BOW)
     advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
-    at_bow = feel(s, u_next, BOW)
-    free = hair_velocity(m, s, at_bow, u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
-    compliance = half_rate * (answer(m, s, BOW, BOW, of_bow) + m.C_h)
-    F_N_abs = abs(control[F_N])
-    f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
-    tangent = s.tangent[0], s.tangent[1], s.tangent[2]
+    u_b = free_displacement(c, w, u_next, BOW)
+    free = hair_velocity(m, c, u_b, u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
+    mobility = 0.5 * m.rate * (compliance(m, c, w, BOW, BOW, to_bow) + m.C_h)
     for i in range(STRINGS):
-        s.slack_per_newton[i], s.f_c_per_newton[i] = of_bow[i], of_bow[STRINGS + i]
-    if near > 0:
-        # theta depends on the friction force, and that on the contacts. Mostly theta is 1 for
-        # any friction; else it is found with that of a string which no finger touches.
-        f_b, doubt = (s.f_b, abs(s.f_b) + most_friction(m, control[F_N])) if bowed else (0.0, 0.0)
-        if feel_fingers(m, s, u_next, next_, near, of_bow, f_b, doubt):
-            if bowed:
-                f_b, _, _, tangent, iterations, _ = solve_friction(
-                    free, compliance, s.z[string], F_N_abs, tangent, m, string
-                )
-            limit_fingers(s, near, f_b)
-            Q = weigh_fingers(m, s, near)
-        taken, taken_per_newton = close_fingers(m, s, near, Q, of_bow)
-        free -= half_rate * taken
-        compliance -= half_rate * taken_per_newton
-        f_b, v_r = 0.0, free
-    if bowed:
-        f_b, z_bar, v_r, tangent, again, converged = solve_friction(
-            free, compliance, s.z[string], F_N_abs, tangent, m, string
-        )
-        iterations += again
-    for i in range(STRINGS):
-        s.slack[i] += s.slack_per_newton[i] * f_b
-        s.f_c[i] += s.f_c_per_newton[i] * f_b
-    push_fingers(m, s, next_, near, f_b)
+        w.tau_per_newton[i], w.f_c_per_newton[i] = to_bow[i], to_bow[STRINGS + i]
+    solve_contacts(m, state, control, u_next, next_, near, Q, to_bow, bowed, free, mobility)
 
-    # What the forces leave behind: eqs. (30), (59), (60), and z at n + 1/2.
-    s.zeta[next_, string] -= m.C_h * f_b
-    s.z_bar, s.r = 0.0, 0.0
-    if bowed:
-        s.z_bar, s.r = z_bar, m.rate * 2.0 * (z_bar - s.z[string])
-        s.z[string] = 2.0 * z_bar - s.z[string]
-        s.unconverged += 0 if converged else 1
-    s.f_b, s.v_r, s.iterations = f_b, v_r, iterations
-    s.tangent[0], s.tangent[1], s.tangent[2] = tangent
-    move(m, s, u_next, near, bowed)
-    s.bridge_travel = finish_bridge(m, s.q[next_], s.q[prev], s.f_c)
+    # All that the forces move: eqs. (30), (59), (60).
+    s.zeta[next_, string] -= m.C_h * s.f_b
+    move_strings(m, s, c, w, u_next, near, bowed)
+    w.bridge_travel = move_modes(m, s.q[next_], s.q[prev], w.f_c)
     for i in range(STRINGS):
         support(u_next[i], m.N[i])
 
 
 @compiled
-def measure(m: Any, s: Any, probe: Array) -> None:
+def solve_contacts(
+    m: Any,
+    state: Any,
+    control: Array,
+    u_next: Array,
+    next_: int,
+    near: int,
+    Q: Symmetric,
+    to_bow: Response,
+    bowed: bool,
+    free: float,
+    mobility: float,
+) -> None:
+    """Solve the forces of fingers and bow; advance the fingers and the bristles.
+
+    Parameters
+    ----------
+    near : int
+        Number of fingers that may touch a string.
+    Q, to_bow
+        Of `factor_fingers`, and of `response` to the bow.
+    free : float, m/s
+        Velocity of hair on string without friction and without fingers.
+    mobility : float, m/s/N
+        How much a newton of friction slows it, without fingers.
+    """
+    s, c, w = state.motion, state.contacts, state.work
+    string, force = c.string[BOW], abs(control[F_N])
+    tangent: Tangent = (s.tangent[0], s.tangent[1], s.tangent[2])
+    f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
+    if near > 0:
+        # theta depends on the friction force, and that on the contacts. Mostly theta is 1 for
+        # any friction; else it is found with the friction on a string that no finger touches.
+        f_b, margin = (s.f_b, abs(s.f_b) + friction_limit(m, force)) if bowed else (0.0, 0.0)
+        if find_travel(m, s, c, w, u_next, next_, near, to_bow, f_b, margin):
+            if bowed:
+                f_b, _, _, tangent, iterations, _ = solve_friction(
+                    free, mobility, s.z[string], force, tangent, m, string
+                )
+            limit_gradients(s, c, w, near, f_b)
+            Q = factor_fingers(m, s, c, w, near)
+        displacement, stiffening = eliminate_fingers(m, s, c, w, near, Q, to_bow)
+        free -= 0.5 * m.rate * displacement
+        mobility -= 0.5 * m.rate * stiffening
+        f_b, v_r = 0.0, free
+    if bowed:
+        f_b, z_bar, v_r, tangent, again, converged = solve_friction(
+            free, mobility, s.z[string], force, tangent, m, string
+        )
+        iterations += again
+    for i in range(STRINGS):
+        w.tau[i] += w.tau_per_newton[i] * f_b
+        w.f_c[i] += w.f_c_per_newton[i] * f_b
+    back_substitute_fingers(m, s, c, w, next_, near, f_b)
+
+    w.z_bar, w.r = 0.0, 0.0
+    if bowed:  # z is then at n + 1/2
+        w.z_bar, w.r = z_bar, m.rate * 2.0 * (z_bar - s.z[string])
+        s.z[string] = 2.0 * z_bar - s.z[string]
+        state.unconverged += 0 if converged else 1
+    s.f_b, s.v_r, w.iterations = f_b, v_r, iterations
+    s.tangent[0], s.tangent[1], s.tangent[2] = tangent
+
+
+@compiled
+def measure(m: Any, state: Any, probe: Array) -> None:
     """Write the probes of one sample, and catch a lost state."""
+    s, w = state.motion, state.work
     next_, now = s.level, (s.level + 2) % LEVELS
-    bridge_force = s.f_c[0] + s.f_c[1]
+    bridge_force = w.f_c[0] + w.f_c[1]
     probe[BRIDGE_FORCE] = bridge_force
-    probe[BRIDGE_FORCE_1], probe[BRIDGE_FORCE_2] = s.f_c[0], s.f_c[1]
-    probe[BRIDGE_VELOCITY] = 0.5 * m.rate * s.bridge_travel
+    probe[BRIDGE_FORCE_1], probe[BRIDGE_FORCE_2] = w.f_c[0], w.f_c[1]
+    probe[BRIDGE_VELOCITY] = 0.5 * m.rate * w.bridge_travel
     probe[PRESSURE] = radiate(m, s, bridge_force)
     probe[FRICTION_FORCE] = s.f_b
     probe[RELATIVE_VELOCITY] = s.v_r
-    probe[ITERATIONS] = s.iterations
-    size = abs(s.bridge_travel)  # of whatever one bad number would reach first
+    probe[ITERATIONS] = w.iterations
+    size = abs(w.bridge_travel)  # of all that one number which is not finite reaches first
     for column in range(FINGER_PROBES):
         size += abs(probe[column])
     for i in range(STRINGS):
@@ -271,10 +311,10 @@ def measure(m: Any, s: Any, probe: Array) -> None:
         size += abs(s.U[now, j])
         for i in range(STRINGS):
             p = STRINGS * j + i
-            probe[at + 1 + i] = s.f_f[p]
-            size += abs(s.f_f[p]) + abs(s.Psi[p])
+            probe[at + 1 + i] = w.f_f[p]
+            size += abs(w.f_f[p]) + abs(s.Psi[p])
     if not size < LOST_SIZE:  # also true of NaN
-        come_to_rest(m, s)
-        s.lost += 1
+        come_to_rest(m, state)
+        state.lost += 1
         probe[:] = 0.0
         probe[ITERATIONS] = -1.0

@@ -1,10 +1,14 @@
 """Where the model's coefficients and state live in memory.
 
 One record each, with room for the largest grid, so that every sample rate runs the
-same compiled code and a single address reaches everything. ``model`` is written once
-per sample rate; ``state`` is what a step changes, and all zeros but the finger
-heights is an instrument at rest. What serves as an index is unsigned: one that might be
-negative costs a comparison at every use, and keeps loops from becoming vectors.
+same compiled code and a single address reaches everything. MODEL is written once
+per sample rate; STATE is what a step changes: ``motion`` is the state of the instrument,
+``contacts`` is where bow and fingers touch the strings, ``work`` holds the intermediate results of
+one step. An instrument at rest is all zeros but for the fingers' heights. docs/notation.md
+has each field's symbol, unit and equation.
+
+Indices are unsigned: a negative one costs a comparison at every use, and keeps loops from
+becoming vectors.
 """
 
 from __future__ import annotations
@@ -14,12 +18,13 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
+from yehu_server.physics.power import TABLES
 
 STRINGS = 2
-MAX_NODES = 512  # grid intervals of one string; 0.38 m of silk at 192 kHz takes about 130
+MAX_INTERVALS = 512  # of one string's grid; 0.38 m of silk at 192 kHz take about 130
 GHOST = 1  # points before l = 0, so that the stencil of D4 needs no special case
 VECTOR = 8  # numbers worked on at once: two vectors of AVX2, one of AVX-512
-POINTS = MAX_NODES + 2 * VECTOR
+POINTS = MAX_INTERVALS + 2 * VECTOR
 LEVELS = 3  # u[n+1], u[n], u[n-1], taking turns
 MAX_MODES = 16
 MAX_SECTIONS = 32
@@ -28,23 +33,22 @@ MAX_FINGERS = 4
 STENCIL = 4  # nodes that one contact touches (cubic interpolation)
 MAX_CONTACTS = MAX_FINGERS * STRINGS + 1  # finger j on string i is contact 2 j + i
 BOW = MAX_CONTACTS - 1
-# Tables of a power, power.py
-EXPONENTS = 2048  # of all floats
-INTERVAL_BITS = 7
-INTERVALS = 1 << INTERVAL_BITS
-POWER_TERMS = 5
-
 LINE_BYTES = 64  # of the processor's cache: vectors within one are read and written at once
 
 
 def lined_up(fields: list[Any]) -> np.dtype[Any]:
-    """A record in which the first node of each string begins a cache line, if the record does."""
+    """A record in which nested records, and the first node of each string, begin a cache line.
+
+    They do if the record itself does.
+    """
     kinds = {name: kind for name, (kind, *_) in (np.dtype(fields, align=True).fields or {}).items()}
     offsets, end = [], 0
     for kind in kinds.values():
         unit, ahead = kind.alignment, 0
         if kind.shape[-1:] == (POINTS,):
             unit, ahead = LINE_BYTES, (GHOST + 1) * kind.base.itemsize
+        elif kind.names:
+            unit = LINE_BYTES
         offsets.append(-(-(end + ahead) // unit) * unit - ahead)
         end = offsets[-1] + kind.itemsize
     return np.dtype(
@@ -76,14 +80,14 @@ MODEL = lined_up(
         ("B", np.float64, (STRINGS, 3)),
         ("C", np.float64, (STRINGS, 2)),
         ("spread", np.float64, STRINGS),
-        ("inside", np.float64, (STRINGS, POINTS)),  # 1 between the ends, 0 there and beyond
+        ("inside", np.float64, (STRINGS, POINTS)),
         ("rho_A", np.float64, STRINGS),
         ("T", np.float64, STRINGS),
         ("EI", np.float64, STRINGS),
         ("sigma_0", np.float64, STRINGS),
         ("sigma_1", np.float64, STRINGS),
-        ("stretch", np.float64, STRINGS),  # EA / (4 L h), tension.py
-        ("taut", np.float64, STRINGS),  # the same, in what a string moves by it
+        ("stretch_stiffness", np.float64, STRINGS),
+        ("tension_gain", np.float64, STRINGS),
         # bridge, eqs. (41)-(45)
         ("bridge_x", np.float64),
         ("bridge_first", np.uint16, STRINGS),
@@ -105,9 +109,9 @@ MODEL = lined_up(
         ("mu_S", np.float64),
         ("xi", np.float64, STRINGS),
         ("lift_force", np.float64),
-        ("stiffness", np.float64),  # epsilon_0 + 2 epsilon_1 / k
+        ("bristle_stiffness", np.float64),
         ("per_v_s", np.float64),
-        ("sharpness", np.float64, STRINGS),  # friction.py: N, of chi's curve over f_b
+        ("chi_slope", np.float64, STRINGS),
         ("M_h", np.float64),
         ("K_h", np.float64),
         ("R_h", np.float64),
@@ -129,87 +133,105 @@ MODEL = lined_up(
         ("a_2", np.float64, MAX_SECTIONS),
         ("taps", np.float64, MAX_TAPS),
         ("last_tap", np.int64),
-        # ghat of eq. (33), a power of the penetration, by tables (power.py)
-        ("power_series", np.float64, POWER_TERMS),
-        ("power_of_twos", np.float64, EXPONENTS),
-        ("per_middle", np.float64, INTERVALS),
-        ("power_of_middle", np.float64, INTERVALS),
+        # ghat of eq. (33), a power of the penetration
+        ("ghat", TABLES),
     ]
 )
 
-STATE = lined_up(
+MOTION = lined_up(
     [
         ("level", np.uint8),  # which of the LEVELS is "now"
         ("u", np.float64, (LEVELS, STRINGS, POINTS)),
+        ("Delta_u", np.float64, (STRINGS, POINTS)),
         ("q", np.float64, (LEVELS, MAX_MODES)),
         ("zeta", np.float64, (LEVELS, STRINGS)),
         ("z", np.float64, STRINGS),
+        ("f_b", np.float64),
         ("v_r", np.float64),
+        ("tangent", np.float64, 3),
         ("U", np.float64, (LEVELS, MAX_FINGERS)),
         ("Psi", np.float64, MAX_CONTACTS),
-        # where the contacts are, and how each answers to the others (contacts.py)
+        ("resting", np.uint8, MAX_FINGERS),
+        # radiation filter
+        ("s_1", np.float64, MAX_SECTIONS),
+        ("s_2", np.float64, MAX_SECTIONS),
+        ("history", np.float64, MAX_TAPS),
+        # the energy ledger
+        ("stored", np.float64),
+    ]
+)
+
+CONTACTS = lined_up(
+    [
         ("placed", np.int64),
         ("x", np.float64, MAX_CONTACTS),
         ("string", np.uint8, MAX_CONTACTS),
         ("first", np.uint16, MAX_CONTACTS),
         ("weights", np.float64, (MAX_CONTACTS, STENCIL)),
-        ("yields", np.float64, MAX_CONTACTS),
-        ("shared_with_bridge", np.float64, MAX_CONTACTS),
-        ("at_bow", np.float64, MAX_CONTACTS),
-        # the bridge, and tension modulation (tension.py), in the current step
-        ("S_c_inverse", np.float64, (STRINGS, STRINGS)),
-        ("bend", np.float64, (STRINGS, POINTS)),  # Delta u^n; as a step begins, Delta u^{n-1}
-        ("bend_at", np.float64, MAX_CONTACTS),
-        ("square", np.float64, STRINGS),  # <Delta u, Delta u>, and <Delta u, u* + u^{n-1}>
-        ("along", np.float64, STRINGS),
-        ("slack", np.float64, STRINGS),
-        ("give", np.float64, (STRINGS, STRINGS)),
-        ("tug", np.float64, (STRINGS, STRINGS)),
-        # where a string is pulled aside (pluck.py)
+        ("self_compliance", np.float64, MAX_CONTACTS),
+        ("bridge_coupling", np.float64, MAX_CONTACTS),
+        # fingers: from the loop to the bridge, and those of them that may touch a string
+        ("order", np.uint8, MAX_FINGERS),
+        ("near", np.uint8, MAX_FINGERS),
+        ("near_set", np.int64),
+        ("is_chain", np.uint8),
+        ("meets_previous", np.uint8, MAX_FINGERS),
+        ("previous_coupling", np.float64, (MAX_FINGERS, STRINGS)),
+        # where a string is plucked
         ("x_pluck", np.float64),
         ("pluck_string", np.uint8),
         ("pluck_first", np.uint16),
         ("pluck_weights", np.float64, STENCIL),
-        # forces of the current step, and scratch of the contact solve
+    ]
+)
+
+WORK = lined_up(
+    [
+        # tension and bridge
+        ("Delta_u_squared", np.float64, STRINGS),
+        ("Delta_u_travel", np.float64, STRINGS),
+        ("Delta_u_at", np.float64, MAX_CONTACTS),
+        ("K_cc", np.float64, (STRINGS, STRINGS)),
+        ("K_tc", np.float64, (STRINGS, STRINGS)),
+        ("K_tt", np.float64, (STRINGS, STRINGS)),
+        ("tau", np.float64, STRINGS),
         ("f_c", np.float64, STRINGS),
-        ("f_b", np.float64),
-        ("z_bar", np.float64),
-        ("r", np.float64),
-        ("tangent", np.float64, 3),
-        ("bridge_travel", np.float64),
-        ("iterations", np.int64),
-        ("f_f", np.float64, MAX_CONTACTS),
+        ("tau_per_newton", np.float64, STRINGS),
+        ("f_c_per_newton", np.float64, STRINGS),
+        # fingers
         ("f_ext", np.float64, MAX_FINGERS),
-        ("order", np.uint8, MAX_FINGERS),  # fingers from the loop to the bridge
-        ("still", np.uint8, MAX_FINGERS),  # which are up, out of reach, and have come to rest
-        ("near", np.uint8, MAX_FINGERS),  # which may touch, in that order
-        ("are_near", np.int64),  # one bit for each
-        ("clear", np.uint8),  # whether they meet their neighbours at most,
-        ("meets", np.uint8, MAX_FINGERS),  # whether the one before,
-        ("shared", np.float64, (MAX_FINGERS, STRINGS)),  # and how far it moves them (m/N)
-        ("g", np.float64, MAX_CONTACTS),
         ("ghat", np.float64, MAX_CONTACTS),
+        ("g", np.float64, MAX_CONTACTS),
         ("eta_prev", np.float64, MAX_CONTACTS),
         ("travel", np.float64, MAX_CONTACTS),
-        ("W", np.float64, (MAX_FINGERS, 3)),  # closing.py
-        ("slackens", np.float64, (MAX_FINGERS, STRINGS, STRINGS)),
-        ("held", np.float64, MAX_CONTACTS),
-        ("slackened", np.float64, STRINGS),
-        ("slack_per_newton", np.float64, STRINGS),
-        ("f_c_per_newton", np.float64, STRINGS),
-        ("touching", np.uint8, MAX_CONTACTS),  # contacts of which each feels each
-        ("contacts", np.int64),
+        ("bow_compliance", np.float64, MAX_CONTACTS),
+        ("f_f", np.float64, MAX_CONTACTS),
+        # fingers eliminated as a chain
+        ("W", np.float64, (MAX_FINGERS, 3)),
+        ("f_0", np.float64, MAX_CONTACTS),
+        ("Delta_u_chain", np.float64, (MAX_FINGERS, STRINGS, STRINGS)),
+        ("tau_fingers", np.float64, STRINGS),
+        # contacts eliminated jointly
+        ("touching", np.uint8, MAX_CONTACTS),
+        ("touching_count", np.int64),
         ("A_f", np.float64, MAX_CONTACTS),
         ("d", np.float64, MAX_CONTACTS),
         ("G", np.float64, (MAX_CONTACTS, MAX_CONTACTS)),
-        # energy given up since the last sample (J), and stored at the last one
+        # for probes and the ledger
+        ("bridge_travel", np.float64),
+        ("z_bar", np.float64),
+        ("r", np.float64),
+        ("iterations", np.int64),
         ("dropped_z", np.float64),
         ("dropped_Psi", np.float64),
-        ("stored", np.float64),
-        # radiation filter
-        ("s_1", np.float64, MAX_SECTIONS),
-        ("s_2", np.float64, MAX_SECTIONS),
-        ("history", np.float64, MAX_TAPS),
+    ]
+)
+
+STATE = lined_up(
+    [
+        ("motion", MOTION),
+        ("contacts", CONTACTS),
+        ("work", WORK),
         # counters, which outlive a lost state
         ("unconverged", np.int64),
         ("lost", np.int64),
@@ -248,9 +270,9 @@ def probe_columns(fingers: int) -> int:
 
 @compiled
 def whole_vectors(count: int) -> int:
-    """Room for so many numbers in whole vectors: loops over these leave no single ones over.
+    """Round a count up to whole vectors.
 
-    Those that finish a loop over vectors one by one cost as much as all of it.
+    A loop over the numbers left over, one by one, costs as much as the loop over vectors.
     """
     return (count + VECTOR - 1) & -VECTOR
 

@@ -9,36 +9,36 @@ import numpy as np
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import F_PLUCK, GHOST, POINTS, X_PLUCK
 from yehu_server.physics.stencil import place_cubic, read, spread
-from yehu_server.physics.string import follow_shape, support
+from yehu_server.physics.string import set_Delta_u, support
 
 Array = Any
 
 
 @compiled
-def pull_aside(model: Any, s: Any, control: Array, u_next: Array) -> None:
-    """Pull a string aside, towards the finger's side; the force's sign chooses which. Eq. (30)."""
+def pluck(model: Any, s: Any, c: Any, w: Any, control: Array, u_next: Array) -> None:
+    """Apply the plucking force to the string that its sign chooses. Eq. (30)."""
     force = control[F_PLUCK]
     if force == 0.0:
         return
     i = 0 if force > 0.0 else 1
     x = control[X_PLUCK]
-    if x != s.x_pluck or i != s.pluck_string:
-        s.x_pluck, s.pluck_string = x, i
+    if x != c.x_pluck or i != c.pluck_string:
+        c.x_pluck, c.pluck_string = x, i
         position = max(1.0, min(x / model.h[i], model.N[i] - 1.0))
-        s.pluck_first = place_cubic(position, model.N[i], s.pluck_weights)
+        c.pluck_first = place_cubic(position, model.N[i], c.pluck_weights)
     moved = model.spread[i] * abs(force)
-    spread(u_next[i], s.pluck_first, s.pluck_weights, moved)
-    s.along[i] += moved * read(s.bend[i], s.pluck_first, s.pluck_weights)
+    spread(u_next[i], c.pluck_first, c.pluck_weights, moved)
+    w.Delta_u_travel[i] += moved * read(s.Delta_u[i], c.pluck_first, c.pluck_weights)
 
 
 @compiled
-def pluck_power(model: Any, s: Any, control: Array, u_next: Array, u_prev: Array) -> float:
-    """Work that the plucking force does in a step (W)."""
+def pluck_power(model: Any, c: Any, control: Array, u_next: Array, u_prev: Array) -> float:
+    """Return the power of the plucking force (W)."""
     if control[F_PLUCK] == 0.0:
         return 0.0
-    i = s.pluck_string
-    travel = read(u_next[i], s.pluck_first, s.pluck_weights)
-    travel -= read(u_prev[i], s.pluck_first, s.pluck_weights)
+    i = c.pluck_string
+    travel = read(u_next[i], c.pluck_first, c.pluck_weights)
+    travel -= read(u_prev[i], c.pluck_first, c.pluck_weights)
     return float(abs(control[F_PLUCK]) * travel / (2.0 * model.k))
 
 
@@ -53,7 +53,7 @@ def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: flo
     The nodes at the bridge are moved by what it takes to leave the bridge at rest, so
     that the constraint of [Yehu] eq. (12) holds from the first sample.
     """
-    m, s = model[0], state[0]
+    m, s = model[0], state[0]["motion"]
     intervals, h = int(m["N"][i]), float(m["h"][i])
     x, x_c = np.arange(intervals + 1) * h, float(m["bridge_x"])
     foot = (0.0, x_c) if position < x_c else (x_c, intervals * h)
@@ -66,4 +66,4 @@ def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: flo
     u[GHOST + first : GHOST + first + len(weights)] -= weights * at_bridge
     support(u, intervals)
     s["u"][:, i, :] = u
-    follow_shape(m, s)
+    set_Delta_u(m, s)

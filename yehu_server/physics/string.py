@@ -21,14 +21,14 @@ def prepare_strings(model: np.void, quantities: Quantities) -> None:
         model["N"][i], model["h"][i] = N, string.L / N
         model["inside"][i, GHOST + 1 : GHOST + N] = 1.0
         model["rho_A"][i], model["EI"][i] = string.rho_A, string.EI
-        weigh_string(model, i, string.T, string.sigma_0, string.sigma_1)
+        set_string_weights(model, i, string.T, string.sigma_0, string.sigma_1)
 
 
 @compiled
-def weigh_string(model: Any, i: int, T: float, sigma_0: float, sigma_1: float) -> None:
+def set_string_weights(model: Any, i: int, T: float, sigma_0: float, sigma_1: float) -> None:
     """Write the scheme's weights for a tension (N) and losses, both sides divided by A_s.
 
-    The grid stays: it must bear the tension (see `most_loss`).
+    The grid stays as it is, and must be stable at the tension (see `most_loss`).
     Real time: safe. Source: [Yehu] eqs. (27), (31), (32).
     """
     k, h, rho_A, EI = model.k, model.h[i], model.rho_A[i], model.EI[i]
@@ -48,7 +48,7 @@ def weigh_string(model: Any, i: int, T: float, sigma_0: float, sigma_1: float) -
 
 @compiled
 def most_loss(model: Any, i: int, T: float) -> float:
-    """The largest sigma_1 (m^2/s) that a string's grid bears at a tension (N): eq. (57) for it."""
+    """Return the largest sigma_1 (m^2/s) that is stable at a tension (N), by eq. (57)."""
     k, h_squared = model.k, model.h[i] ** 2
     rho_A = model.rho_A[i]
     kappa_squared = model.EI[i] / rho_A
@@ -58,32 +58,46 @@ def most_loss(model: Any, i: int, T: float) -> float:
 
 @compiled
 def advance_node(
-    u_next: Array, u: Array, u_prev: Array, bend: Array, inside: Array, at: int, B: Array, C: Array
+    u_next: Array,
+    u: Array,
+    u_prev: Array,
+    Delta_u: Array,
+    inside: Array,
+    at: int,
+    B: Array,
+    C: Array,
 ) -> tuple[float, float]:
-    """Advance one node; return what it adds to the two sums of `advance_nodes`."""
+    """Advance one node; return its terms of the two sums of `advance_nodes`."""
     beside = u[at - 1] + u[at + 1]
     star = B[0] * u[at] + B[1] * beside + B[2] * (u[at - 2] + u[at + 2])
-    star += (C[0] + 2.0 * C[1]) * u_prev[at] + C[1] * bend[at]
+    star += (C[0] + 2.0 * C[1]) * u_prev[at] + C[1] * Delta_u[at]
     delta = (beside - 2.0 * u[at]) * inside[at]
-    u_next[at], bend[at] = star * inside[at], delta
+    u_next[at], Delta_u[at] = star * inside[at], delta
     return delta * delta, delta * (star + u_prev[at])
 
 
 @compiled
 def advance_nodes(
-    u_next: Array, u: Array, u_prev: Array, bend: Array, inside: Array, N: int, B: Array, C: Array
+    u_next: Array,
+    u: Array,
+    u_prev: Array,
+    Delta_u: Array,
+    inside: Array,
+    N: int,
+    B: Array,
+    C: Array,
 ) -> tuple[float, float, float, float]:
     """Advance two stiff strings by one sample, free of contact forces: u* of eq. (58).
 
-    Both in one loop, so that the sums of one need not wait for those of the other.
+    Both in one loop, so that the sums of both are computed in parallel.
 
     Parameters
     ----------
     u_next, u, u_prev : ndarray [shape=(STRINGS, POINTS), m]
         Displacement one sample ahead, now and one sample ago, with one ghost node at
         each end, and zeros beyond.
-    bend : ndarray [shape=(STRINGS, POINTS), m]
-        The second difference of u_prev; written: Delta u, that of now.
+    Delta_u : ndarray [shape=(STRINGS, POINTS), m]
+        The second difference of u_prev; written: that of u.
     inside : ndarray [shape=(STRINGS, POINTS)]
         One between the ends of a string, zero there and beyond.
     N : int
@@ -95,29 +109,33 @@ def advance_nodes(
 
     Returns
     -------
-    square_1, along_1, square_2, along_2 : float, m^2
+    squared_1, travel_1, squared_2, travel_2 : float, m^2
         <Delta u, Delta u> and <Delta u, u* + u_prev> over the nodes, for tension.py.
 
     Real time: safe; no allocation, linear in N.
     Source: [Yehu] eq. (32) with simple supports, eq. (3).
     """
-    square_1, along_1, square_2, along_2 = 0.0, 0.0, 0.0, 0.0
+    squared_1, travel_1, squared_2, travel_2 = 0.0, 0.0, 0.0, 0.0
     for l in range(whole_vectors(N - 1)):
         at = GHOST + 1 + l
-        square, along = advance_node(u_next[0], u[0], u_prev[0], bend[0], inside[0], at, B[0], C[0])
-        square_1 += square
-        along_1 += along
-        square, along = advance_node(u_next[1], u[1], u_prev[1], bend[1], inside[1], at, B[1], C[1])
-        square_2 += square
-        along_2 += along
-    return square_1, along_1, square_2, along_2
+        squared, travel = advance_node(
+            u_next[0], u[0], u_prev[0], Delta_u[0], inside[0], at, B[0], C[0]
+        )
+        squared_1 += squared
+        travel_1 += travel
+        squared, travel = advance_node(
+            u_next[1], u[1], u_prev[1], Delta_u[1], inside[1], at, B[1], C[1]
+        )
+        squared_2 += squared
+        travel_2 += travel
+    return squared_1, travel_1, squared_2, travel_2
 
 
-def follow_shape(model: np.void, s: np.void) -> None:
-    """Make a state whose shapes were set from outside whole: what a step keeps of the last one."""
+def set_Delta_u(model: np.void, s: np.void) -> None:
+    """Write Delta u^{n-1} into a motion whose displacements were set from outside."""
     u_prev = s["u"][(int(s["level"]) + 2) % LEVELS]
     delta = u_prev[:, :-2] - 2.0 * u_prev[:, 1:-1] + u_prev[:, 2:]
-    s["bend"][:, 1:-1] = delta * model["inside"][:, 1:-1]
+    s["Delta_u"][:, 1:-1] = delta * model["inside"][:, 1:-1]
 
 
 @compiled
@@ -128,9 +146,10 @@ def support(u: Array, N: int) -> None:
 
 
 @compiled
-def advance_strings(model: Any, s: Any, u_next: Array, u: Array, u_prev: Array) -> None:
-    """Both strings, free of contact forces: arrays of shape (2, points)."""
+def advance_strings(model: Any, s: Any, w: Any, u_next: Array, u: Array, u_prev: Array) -> None:
+    """Advance both strings, free of contact forces: arrays of shape (2, points)."""
     N = max(model.N[0], model.N[1])
-    s.square[0], s.along[0], s.square[1], s.along[1] = advance_nodes(
-        u_next, u, u_prev, s.bend, model.inside, N, model.B, model.C
+    squared, travel = w.Delta_u_squared, w.Delta_u_travel
+    squared[0], travel[0], squared[1], travel[1] = advance_nodes(
+        u_next, u, u_prev, s.Delta_u, model.inside, N, model.B, model.C
     )

@@ -1,14 +1,18 @@
-"""Tension modulation: a string that is stretched is tighter, T + EA/(2 L) int u_x^2 dx.
+"""Tension modulation: a stretched string is tighter, by EA/(2 L) int u_x^2 dx.
 
-Pressing a silk string, which no fingerboard stops, raises its pitch this way. The potential
-is quadratised as the contacts' are, and the whole change of the string is its second
-difference Delta u^n times one scalar:
+This is how pressing a silk string, which no fingerboard stops, raises its pitch. The potential
+is quadratised as the contacts' are. The change of tension
 
-    T' = EA/(4 L) (<delta_x+ u^{n+1}, delta_x+ u^n> + <delta_x+ u^n, delta_x+ u^{n-1}>),
+    T' = EA/(4 L) (<delta_x+ u^{n+1}, delta_x+ u^n> + <delta_x+ u^n, delta_x+ u^{n-1}>)
 
-implicit, with one solution. A force on the string changes T', and T' moves the whole string,
-which every reading of u^{n+1} before the step's end takes in (contacts.py).
-Source: [Bilbao] section 8.1; docs/physics.md.
+is implicit, and has one solution. It moves the whole string by one multiple, tau, of the second
+difference Delta u^n:
+
+    tau = spread/h T' = -gain <Delta u^n, u^{n+1} + u^{n-1}>,
+
+so that every force on the string changes tau, and tau every displacement that is read before
+the step's end (contacts.py).
+Source: [Bilbao] section 8.1; docs/physics.md. Derivation: docs/derivation.md, section 2.
 """
 
 from __future__ import annotations
@@ -28,41 +32,41 @@ def prepare_tension(model: np.void, quantities: Quantities) -> None:
     """Write EA/(4 L h) of both strings into `model`; their grids must be there."""
     for i, string in enumerate(quantities.strings):
         EA = quantities.tension_modulation * string.EA
-        model["stretch"][i] = EA / (4.0 * string.L * model["h"][i])
-        weigh_tension(model, i)
+        model["stretch_stiffness"][i] = EA / (4.0 * string.L * model["h"][i])
+        set_tension_gain(model, i)
 
 
 @compiled
-def weigh_tension(model: Any, i: int) -> None:
-    """Write what a string moves by its change of tension. Real time: safe."""
-    model.taut[i] = model.stretch[i] * model.spread[i] / model.h[i]
+def set_tension_gain(model: Any, i: int) -> None:
+    """Write tau per <Delta u^n, u> (1/m^2). Real time: safe."""
+    model.tension_gain[i] = model.stretch_stiffness[i] * model.spread[i] / model.h[i]
 
 
 @compiled
-def tighten(model: Any, s: Any, i: int) -> tuple[float, float, float]:
-    """Let a string stretch over a step free of other forces.
+def eliminate_tension(model: Any, w: Any, i: int) -> tuple[float, float, float]:
+    """Eliminate a string's tau.
 
     Returns
     -------
-    slack : float
-        What of Delta u^n u^{n+1} still lacks.
-    give : float, 1/(N m)
-        How much more slack a newton leaves for each metre of Delta u^n under it.
-    stretched : float
-        1 + taut <Delta u, Delta u>, which both have been divided by.
+    tau : float
+        What it is without other forces.
+    tau_per_sum : float, 1/(N m)
+        How it responds to the sum of the forces on the string times Delta u^n under them.
+    pivot : float
+        1 + gain <Delta u^n, Delta u^n>, by which both have been divided.
     """
-    stretched = 1.0 + model.taut[i] * s.square[i]
-    weight = model.taut[i] / stretched
-    return -s.along[i] * weight, model.spread[i] * weight, stretched
+    pivot = 1.0 + model.tension_gain[i] * w.Delta_u_squared[i]
+    weight = model.tension_gain[i] / pivot
+    return -w.Delta_u_travel[i] * weight, model.spread[i] * weight, pivot
 
 
 @compiled
-def take_up_slack(model: Any, s: Any, u_next: Array) -> None:
-    """Move the strings by what their change of tension, slack h / spread (N), is by now."""
-    slack_1, slack_2 = s.slack[0], s.slack[1]
-    if slack_1 == 0.0 and slack_2 == 0.0:
+def move_by_tension(model: Any, s: Any, w: Any, u_next: Array) -> None:
+    """Add tau Delta u^n to both strings."""
+    tau_1, tau_2 = w.tau[0], w.tau[1]
+    if tau_1 == 0.0 and tau_2 == 0.0:
         return
     for l in range(whole_vectors(max(model.N[0], model.N[1]) - 1)):
         at = GHOST + 1 + l
-        u_next[0, at] += slack_1 * s.bend[0, at]
-        u_next[1, at] += slack_2 * s.bend[1, at]
+        u_next[0, at] += tau_1 * s.Delta_u[0, at]
+        u_next[1, at] += tau_2 * s.Delta_u[1, at]

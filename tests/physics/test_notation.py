@@ -1,6 +1,7 @@
 """docs/notation.md lists every field of the model's records."""
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -41,3 +42,8 @@ def test_the_functions_that_the_derivation_names_exist():
     defined = set(re.findall(r"^def (\w+)", source, re.MULTILINE))
     fields = {name for kind in (layout.MODEL, layout.CONTACTS, layout.WORK) for name in kind.names}
     assert named - defined - fields == set()
+
+
+def test_the_types_of_the_records_are_those_of_the_layout():
+    script = runpy.run_path(str(NOTATION.parents[1] / "scripts" / "records.py"))
+    assert script["TARGET"].read_text(encoding="utf-8") == script["module"]()

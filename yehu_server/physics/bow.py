@@ -7,16 +7,13 @@ where the bow shares nodes with the bridge or a finger.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import BOW, STRINGS
 from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.records import Array, Contacts, Model, Motion, Work
 from yehu_server.physics.stencil import read
-
-Array = Any
 
 FRICTION_MARGIN = 4.0  # times mu_S F_N
 
@@ -50,13 +47,13 @@ def friction_bound(model: np.void) -> float:
 
 
 @compiled
-def friction_limit(model: Any, F_N: float) -> float:
+def friction_limit(model: Model, F_N: float) -> float:
     """Return a force that bristles and their damping never reach (N)."""
     return float(FRICTION_MARGIN * model.mu_S * abs(F_N))
 
 
 @compiled
-def choose_string(model: Any, s: Any, c: Any, w: Any, F_N: float) -> tuple[int, bool]:
+def choose_string(model: Model, s: Motion, c: Contacts, w: Work, F_N: float) -> tuple[int, bool]:
     """Return the string under the bow, by the sign of the force, and whether it is bowed.
 
     Bristles off the string lose their deflection; its energy is booked as a loss.
@@ -73,7 +70,7 @@ def choose_string(model: Any, s: Any, c: Any, w: Any, F_N: float) -> tuple[int, 
 
 
 @compiled
-def advance_hair(model: Any, zeta_next: Array, zeta: Array, zeta_prev: Array) -> None:
+def advance_hair(model: Model, zeta_next: Array, zeta: Array, zeta_prev: Array) -> None:
     """Advance the hair of both strings, free of friction: eq. (60)."""
     for i in range(STRINGS):
         zeta_next[i] = model.A_h * zeta[i] + model.B_h * zeta_prev[i]
@@ -81,7 +78,7 @@ def advance_hair(model: Any, zeta_next: Array, zeta: Array, zeta_prev: Array) ->
 
 @compiled
 def hair_velocity(
-    model: Any, c: Any, u_b: float, u_prev: Array, zeta_next: Array, zeta_prev: Array
+    model: Model, c: Contacts, u_b: float, u_prev: Array, zeta_next: Array, zeta_prev: Array
 ) -> float:
     """Return I_b delta_t. u + delta_t. zeta (m/s), where `u_b` (m) is I_b u^{n+1}."""
     i = c.string[BOW]

@@ -14,13 +14,12 @@ from yehu_server.errors import ParameterError
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import MAX_MODES, STRINGS, whole_vectors
 from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.records import Array, Model, Motion, Work
 from yehu_server.physics.stencil import place_cubic, read
 from yehu_server.physics.tension import eliminate_tension
 
-Array = Any
 
-
-def prepare_bridge(model: np.void, quantities: Quantities) -> None:
+def prepare_bridge(model: Any, quantities: Quantities) -> None:
     """Write the bridge's coefficients into `model`; the strings' must be there.
 
     Errors: ParameterError where the body has too many modes, or one above Nyquist.
@@ -59,7 +58,7 @@ def prepare_bridge(model: np.void, quantities: Quantities) -> None:
 
 
 @compiled
-def set_bridge_compliance(model: Any) -> None:
+def set_bridge_compliance(model: Model) -> None:
     """Write S_c of eq. (43), the compliance between modes and strings (m/N). Real time: safe."""
     model.S_c[:] = model.C_q_sum
     for i in range(STRINGS):
@@ -69,7 +68,7 @@ def set_bridge_compliance(model: Any) -> None:
 
 
 @compiled
-def advance_bridge(model: Any, q_next: Array, q: Array, q_prev: Array, f_hammer: float) -> float:
+def advance_bridge(model: Model, q_next: Array, q: Array, q_prev: Array, f_hammer: float) -> float:
     """Advance the modes, free of string forces; return their sum Q* (m). Eq. (42)."""
     total = 0.0
     for m in range(whole_vectors(model.modes)):
@@ -79,7 +78,7 @@ def advance_bridge(model: Any, q_next: Array, q: Array, q_prev: Array, f_hammer:
 
 
 @compiled
-def eliminate_tension_and_bridge(model: Any, s: Any, w: Any, u_next: Array, Q: float) -> None:
+def eliminate_tension_and_bridge(model: Model, s: Motion, w: Work, u_next: Array, Q: float) -> None:
     """Eliminate tau and f_c of both strings: solve them as if no contact touched the strings.
 
     Writes ``w.tau`` and ``w.f_c`` (N) so solved, and the inverse of their joint system, by which
@@ -119,7 +118,7 @@ def eliminate_tension_and_bridge(model: Any, s: Any, w: Any, u_next: Array, Q: f
 
 
 @compiled
-def move_modes(model: Any, q_next: Array, q_prev: Array, f_c: Array) -> float:
+def move_modes(model: Model, q_next: Array, q_prev: Array, f_c: Array) -> float:
     """Move the modes by the strings' forces, the last term of eq. (59).
 
     Returns how far the bridge moved in two samples (m).

@@ -14,8 +14,6 @@ Derivation: docs/derivation.md, section 3.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from yehu_server.jit import compiled
@@ -27,15 +25,15 @@ from yehu_server.physics.layout import (
     STRINGS,
     X_B,
 )
+from yehu_server.physics.records import Array, Contacts, Model, Motion, Work
 from yehu_server.physics.stencil import overlap, place_cubic, place_linear, read, spread
 from yehu_server.physics.tension import move_by_tension
 
-Array = Any
 Response = tuple[float, float, float, float]
 
 
 @compiled
-def place_contacts(model: Any, c: Any, control: Array, bowed_string: int) -> bool:
+def place_contacts(model: Model, c: Contacts, control: Array, bowed_string: int) -> bool:
     """Move bow and fingers to the places in a row of controls; return whether any moved.
 
     The bow keeps one node away from the bridge and from the loop, a finger one node
@@ -68,7 +66,7 @@ def place_contacts(model: Any, c: Any, control: Array, bowed_string: int) -> boo
 
 
 @compiled
-def sort_fingers(model: Any, c: Any) -> None:
+def sort_fingers(model: Model, c: Contacts) -> None:
     """Write the fingers' order along the strings, from the loop to the bridge."""
     for j in range(model.fingers):
         k = j
@@ -79,7 +77,7 @@ def sort_fingers(model: Any, c: Any) -> None:
 
 
 @compiled
-def set_compliances(model: Any, c: Any, p: int) -> None:
+def set_compliances(model: Model, c: Contacts, p: int) -> None:
     """Write I_p J_p / A_s and I_c J_p / A_s: how a newton at `p` moves its string there (m/N)."""
     i = c.string[p]
     first, weights = c.first[p], c.weights[p]
@@ -90,7 +88,7 @@ def set_compliances(model: Any, c: Any, p: int) -> None:
 
 
 @compiled
-def free_displacement(c: Any, w: Any, u_next: Array, p: int) -> float:
+def free_displacement(c: Contacts, w: Work, u_next: Array, p: int) -> float:
     """Return I_p u^{n+1} as it would be without the forces of bow and fingers (m)."""
     i = c.string[p]
     free = read(u_next[i], c.first[p], c.weights[p])
@@ -98,7 +96,7 @@ def free_displacement(c: Any, w: Any, u_next: Array, p: int) -> float:
 
 
 @compiled
-def response(c: Any, w: Any, q: int) -> Response:
+def response(c: Contacts, w: Work, q: int) -> Response:
     """Return how tau (1/N) and f_c (1) of both strings respond to one newton at contact `q`."""
     i = c.string[q]
     Delta_u, coupling = w.Delta_u_at[q], c.bridge_coupling[q]
@@ -111,7 +109,7 @@ def response(c: Any, w: Any, q: int) -> Response:
 
 
 @compiled
-def compliance(model: Any, c: Any, w: Any, p: int, q: int, to_q: Response) -> float:
+def compliance(model: Model, c: Contacts, w: Work, p: int, q: int, to_q: Response) -> float:
     """Return G[p, q] (m/N): the displacement at `p` per newton at `q`, away from the force.
 
     `to_q` is the `response` to one newton at `q`; ``Delta_u_at`` of both must be this step's.
@@ -127,14 +125,16 @@ def compliance(model: Any, c: Any, w: Any, p: int, q: int, to_q: Response) -> fl
 
 
 @compiled
-def share_no_node(c: Any, p: int, q: int) -> bool:
+def share_no_node(c: Contacts, p: int, q: int) -> bool:
     """Whether two contacts touch no common node."""
     distance = np.int64(c.first[p]) - np.int64(c.first[q])
     return bool(c.string[p] != c.string[q] or distance <= -STENCIL or distance >= STENCIL)
 
 
 @compiled
-def move_strings(model: Any, s: Any, c: Any, w: Any, u_next: Array, near: int, bowed: bool) -> None:
+def move_strings(
+    model: Model, s: Motion, c: Contacts, w: Work, u_next: Array, near: int, bowed: bool
+) -> None:
     """Add the displacement of all forces, known by now, to u^{n+1}: eqs. (30) and (59)."""
     move_by_tension(model, s, w, u_next)
     for i in range(STRINGS):

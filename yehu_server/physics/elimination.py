@@ -16,8 +16,6 @@ Derivation: docs/derivation.md, sections 4 and 5.
 
 from __future__ import annotations
 
-from typing import Any
-
 from yehu_server.jit import compiled
 from yehu_server.physics.contacts import (
     Response,
@@ -28,15 +26,15 @@ from yehu_server.physics.contacts import (
 )
 from yehu_server.physics.finger import advance_contact, contact_stiffness, may_detach
 from yehu_server.physics.layout import BOW, STRINGS
+from yehu_server.physics.records import Array, Contacts, Model, Motion, Work
 from yehu_server.physics.stencil import overlap
 
-Array = Any
 Symmetric = tuple[float, float, float]  # entries 11, 12, 22
 Matrix = tuple[float, float, float, float]  # entries 11, 12, 21, 22
 
 
 @compiled
-def find_shared_nodes(model: Any, c: Any, near: int) -> None:
+def find_shared_nodes(model: Model, c: Contacts, near: int) -> None:
     """Write which fingers share nodes with the one before, and whether they share no others."""
     c.is_chain = 1
     for a in range(near):
@@ -58,10 +56,10 @@ def find_shared_nodes(model: Any, c: Any, near: int) -> None:
 
 @compiled
 def find_travel(
-    model: Any,
-    s: Any,
-    c: Any,
-    w: Any,
+    model: Model,
+    s: Motion,
+    c: Contacts,
+    w: Work,
     u_next: Array,
     next_: int,
     near: int,
@@ -88,7 +86,7 @@ def find_travel(
 
 @compiled
 def eliminate_fingers(
-    model: Any, s: Any, c: Any, w: Any, near: int, Q: Symmetric, to_bow: Response
+    model: Model, s: Motion, c: Contacts, w: Work, near: int, Q: Symmetric, to_bow: Response
 ) -> tuple[float, float]:
     """Eliminate the forces of all fingers, until only the bow's is unknown.
 
@@ -106,7 +104,7 @@ def eliminate_fingers(
 
 @compiled
 def back_substitute_fingers(
-    model: Any, s: Any, c: Any, w: Any, next_: int, near: int, f_b: float
+    model: Model, s: Motion, c: Contacts, w: Work, next_: int, near: int, f_b: float
 ) -> None:
     """Find the forces of the fingers from the friction force (N); advance them by it."""
     if c.is_chain:
@@ -136,7 +134,7 @@ def pivot_block(
 
 
 @compiled
-def factor_fingers(model: Any, s: Any, c: Any, w: Any, near: int) -> Symmetric:
+def factor_fingers(model: Model, s: Motion, c: Contacts, w: Work, near: int) -> Symmetric:
     """Factor the chain of fingers, block by block, from eq. (35) for both forces of each.
 
     A finger's forces are then W times what its contacts travel, plus ``f_0``; plus W times
@@ -179,7 +177,7 @@ def factor_fingers(model: Any, s: Any, c: Any, w: Any, near: int) -> Symmetric:
 
 @compiled
 def eliminate_chain(
-    c: Any, w: Any, near: int, Q: Symmetric, to_bow: Response
+    c: Contacts, w: Work, near: int, Q: Symmetric, to_bow: Response
 ) -> tuple[float, float]:
     """Eliminate fingers factored by `factor_fingers`; returns as `eliminate_fingers` does.
 
@@ -191,7 +189,7 @@ def eliminate_chain(
 
 
 @compiled
-def substitute_forward(c: Any, w: Any, near: int) -> tuple[float, float]:
+def substitute_forward(c: Contacts, w: Work, near: int) -> tuple[float, float]:
     """Write each finger's forces as they are for tau = 0; return the sums B^T f (N m)."""
     sum_1, sum_2 = 0.0, 0.0
     f_p, f_q = 0.0, 0.0
@@ -226,7 +224,7 @@ def inverse_of_sums(Q: Symmetric, K_11: float, K_12: float, K_22: float) -> Matr
 
 @compiled
 def close_sums(
-    w: Any, Q: Symmetric, inverse: Matrix, sum_1: float, sum_2: float, to_bow: Response
+    w: Work, Q: Symmetric, inverse: Matrix, sum_1: float, sum_2: float, to_bow: Response
 ) -> tuple[float, float]:
     """Let tension and bridge follow the fingers' sums; returns as `eliminate_fingers` does."""
     Q_11, Q_12, Q_22 = Q
@@ -250,7 +248,7 @@ def close_sums(
 
 @compiled
 def back_substitute_chain(
-    model: Any, s: Any, c: Any, w: Any, next_: int, near: int, f_b: float
+    model: Model, s: Motion, c: Contacts, w: Work, next_: int, near: int, f_b: float
 ) -> None:
     """Find the forces of fingers eliminated by `eliminate_chain`, from the last to the first."""
     tau_1 = w.tau_fingers[0] + w.tau_per_newton[0] * f_b
@@ -274,7 +272,7 @@ def back_substitute_chain(
 
 
 @compiled
-def assemble_contacts(model: Any, s: Any, c: Any, w: Any, near: int) -> None:
+def assemble_contacts(model: Model, s: Motion, c: Contacts, w: Work, near: int) -> None:
     """Write the system of all contacts that press: A_f, the right-hand side d, and G.
 
     The last column of G is the compliance between each contact and the bow.
@@ -302,7 +300,9 @@ def assemble_contacts(model: Any, s: Any, c: Any, w: Any, near: int) -> None:
 
 
 @compiled
-def eliminate_jointly(model: Any, s: Any, c: Any, w: Any, near: int) -> tuple[float, float]:
+def eliminate_jointly(
+    model: Model, s: Motion, c: Contacts, w: Work, near: int
+) -> tuple[float, float]:
     """Eliminate contacts one after the other; returns as `eliminate_fingers` does.
 
     1 + A G, with A diagonal and G positive definite, needs no pivoting.
@@ -326,7 +326,9 @@ def eliminate_jointly(model: Any, s: Any, c: Any, w: Any, near: int) -> tuple[fl
 
 
 @compiled
-def back_substitute_jointly(model: Any, s: Any, c: Any, w: Any, next_: int, f_b: float) -> None:
+def back_substitute_jointly(
+    model: Model, s: Motion, c: Contacts, w: Work, next_: int, f_b: float
+) -> None:
     """Find the forces of contacts eliminated by `eliminate_jointly`, from the last to the first."""
     count = w.touching_count
     for row in range(count - 1, -1, -1):

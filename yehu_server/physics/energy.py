@@ -7,19 +7,16 @@ to convergence, which other tests hold.
 
 from __future__ import annotations
 
-from typing import Any
-
 from yehu_server.jit import compiled
 from yehu_server.physics.bow import hair_velocity
 from yehu_server.physics.layout import BOW, F_HAMMER, F_N, GHOST, LEVELS, MAX_MODES, STRINGS, V_B
 from yehu_server.physics.pluck import pluck_power
+from yehu_server.physics.records import Array, Contacts, Model, Motion, Work
 from yehu_server.physics.stencil import read
-
-Array = Any
 
 
 @compiled
-def string_energy(model: Any, i: int, u_next: Array, u: Array) -> float:
+def string_energy(model: Model, i: int, u_next: Array, u: Array) -> float:
     """h_s of eq. (55a) for string `i` (J): kinetic, tension and its modulation, stiffness."""
     k, h, N = model.k, model.h[i], model.N[i]
     kinetic, slope, bend, loss = 0.0, 0.0, 0.0, 0.0
@@ -44,7 +41,7 @@ def string_energy(model: Any, i: int, u_next: Array, u: Array) -> float:
 
 
 @compiled
-def string_loss(model: Any, i: int, u_next: Array, u_prev: Array) -> float:
+def string_loss(model: Model, i: int, u_next: Array, u_prev: Array) -> float:
     """q_s of eq. (56b) for string `i` (W)."""
     h, N = model.h[i], model.N[i]
     straight, sloped = 0.0, 0.0
@@ -60,7 +57,7 @@ def string_loss(model: Any, i: int, u_next: Array, u_prev: Array) -> float:
 
 
 @compiled
-def stored_energy(model: Any, s: Any, next_: int, now: int) -> float:
+def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
     """Total of eqs. (55a)-(55e) at n + 1/2 (J)."""
     k = model.k
     total = 0.0
@@ -83,7 +80,7 @@ def stored_energy(model: Any, s: Any, next_: int, now: int) -> float:
 
 
 @compiled
-def book(model: Any, s: Any, c: Any, w: Any, control: Array, row: Array) -> None:
+def book(model: Model, s: Motion, c: Contacts, w: Work, control: Array, row: Array) -> None:
     """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete."""
     k = model.k
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS

@@ -9,7 +9,6 @@ without press returns to its rest height.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -17,9 +16,8 @@ from yehu_server.jit import compiled
 from yehu_server.physics.layout import CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS
 from yehu_server.physics.power import power, prepare_power
 from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.records import Array, Contacts, Model, Motion, Work
 from yehu_server.physics.stencil import read
-
-Array = Any
 
 
 def prepare_fingers(model: np.void, quantities: Quantities) -> None:
@@ -35,7 +33,9 @@ def prepare_fingers(model: np.void, quantities: Quantities) -> None:
 
 
 @compiled
-def advance_finger(model: Any, s: Any, w: Any, j: int, press: float, now: int, prev: int) -> float:
+def advance_finger(
+    model: Model, s: Motion, w: Work, j: int, press: float, now: int, prev: int
+) -> float:
     """Return U* of eq. (58), the finger's height free of contacts (m).
 
     A press (N) above zero drives the finger down; without one the hand lifts it with
@@ -51,7 +51,7 @@ def advance_finger(model: Any, s: Any, w: Any, j: int, press: float, now: int, p
 
 
 @compiled
-def reset_contact(s: Any, w: Any, p: int, eta: float) -> None:
+def reset_contact(s: Motion, w: Work, p: int, eta: float) -> None:
     """Drop a quadratised potential without penetration, and book its energy."""
     if s.Psi[p] != 0.0 and (eta <= 0.0 or s.Psi[p] < 0.0):
         w.dropped_Psi += 0.5 * s.Psi[p] * s.Psi[p]
@@ -59,7 +59,7 @@ def reset_contact(s: Any, w: Any, p: int, eta: float) -> None:
 
 
 @compiled
-def gradient(model: Any, eta: float) -> float:
+def gradient(model: Model, eta: float) -> float:
     """Return ghat of eq. (33) at a penetration (m) above zero."""
     return power(model.ghat, eta)
 
@@ -82,7 +82,7 @@ def limited_gradient(ghat: float, Psi: float, travel: float) -> float:
 
 @compiled
 def advance_fingers(
-    model: Any, s: Any, c: Any, w: Any, control: Array, next_: int, now: int, prev: int
+    model: Model, s: Motion, c: Contacts, w: Work, control: Array, next_: int, now: int, prev: int
 ) -> int:
     """Advance the fingers free of contacts; list those that may touch a string in ``c.near``.
 
@@ -129,7 +129,7 @@ def advance_fingers(
 
 
 @compiled
-def may_detach(s: Any, w: Any, p: int, f_b: float, margin: float) -> bool:
+def may_detach(s: Motion, w: Work, p: int, f_b: float, margin: float) -> bool:
     """Whether theta of eq. (34) may be below 1 for friction within `margin` of `f_b` (N)."""
     G = w.bow_compliance[p]
     travel = w.travel[p] - G * f_b - abs(G) * margin
@@ -137,7 +137,7 @@ def may_detach(s: Any, w: Any, p: int, f_b: float, margin: float) -> bool:
 
 
 @compiled
-def limit_gradients(s: Any, c: Any, w: Any, near: int, f_b: float) -> None:
+def limit_gradients(s: Motion, c: Contacts, w: Work, near: int, f_b: float) -> None:
     """Write g = theta ghat of eq. (34) of every contact, for a friction force (N)."""
     for a in range(near):
         for i in range(STRINGS):
@@ -146,14 +146,14 @@ def limit_gradients(s: Any, c: Any, w: Any, near: int, f_b: float) -> None:
 
 
 @compiled
-def contact_stiffness(model: Any, s: Any, w: Any, p: int) -> float:
+def contact_stiffness(model: Model, s: Motion, w: Work, p: int) -> float:
     """Return A_f of eq. (35): how a contact's force grows with its travel (N/m)."""
     g = w.g[p]
     return float(0.25 * g * g + 0.5 * model.rate * model.beta * g * s.Psi[p])
 
 
 @compiled
-def advance_contact(model: Any, s: Any, w: Any, next_: int, p: int, f_f: float) -> None:
+def advance_contact(model: Model, s: Motion, w: Work, next_: int, p: int, f_f: float) -> None:
     """Move a finger by a contact's force, known by now (N), and advance Psi: eqs. (33), (36).
 
     By eq. (35) the force is A_f times the contact's travel, plus g Psi; eq. (33) takes the travel.

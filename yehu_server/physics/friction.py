@@ -9,10 +9,10 @@ Derivation: docs/derivation.md, section 6.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from yehu_server.jit import compiled
 from yehu_server.physics.elementary import one_minus_inverse_root, power_of_2, sine_and_cosine
+from yehu_server.physics.records import Model
 
 TOLERANCE = 2e-13  # m/s, on the residual of the bristle velocity
 MAX_ITERATIONS = 100
@@ -34,7 +34,7 @@ def bristle_residual(
     z_dot: tuple[float, float],
     z_ba: float,
     deflection_at_1: float,
-    m: Any,
+    m: Model,
 ) -> tuple[float, float, float, float, float, float]:
     """Return how far the law's dz/dt is from another one, and how that changes with v_r.
 
@@ -100,7 +100,7 @@ def bristle_residual(
 
 @compiled
 def bound_third_derivative(
-    m: Any, string: int, mobility: float, F_N: float, limit: float
+    m: Model, string: int, mobility: float, F_N: float, limit: float
 ) -> tuple[float, float]:
     """Bound the third derivative of r along a solve by 6 jerk (1 + |v_r| per_v).
 
@@ -115,7 +115,7 @@ def bound_third_derivative(
 
 @compiled
 def solve_elastic(
-    free: float, mobility: float, z: float, z_ba: float, per_gamma: float, m: Any
+    free: float, mobility: float, z: float, z_ba: float, per_gamma: float, m: Model
 ) -> tuple[bool, bool, float, float, float, float]:
     """Solve friction as if bristles did not slip (chi = 0).
 
@@ -150,7 +150,7 @@ def solve_elastic(
 
 
 @compiled
-def start_at_tangent(free: float, mobility: float, z: float, tangent: Tangent, m: Any) -> float:
+def start_at_tangent(free: float, mobility: float, z: float, tangent: Tangent, m: Model) -> float:
     """Return the v_r (m/s) at which the last step's tangent of the law meets this step's line."""
     rate = 2.0 * m.rate
     t_0, t_v, t_z = tangent
@@ -161,7 +161,7 @@ def start_at_tangent(free: float, mobility: float, z: float, tangent: Tangent, m
 
 @compiled
 def bracket(
-    free: float, mobility: float, z: float, deflection_at_1: float, m: Any
+    free: float, mobility: float, z: float, deflection_at_1: float, m: Model
 ) -> tuple[float, float, float]:
     """Return velocities (m/s) between which the equation changes sign, and |z_bar| there (m)."""
     epsilon_0, damping = m.epsilon_0, 2.0 * m.rate * m.epsilon_1
@@ -173,7 +173,7 @@ def bracket(
 
 @compiled
 def eliminate_z_bar(
-    v_r: float, at_rest: float, per_mobility: float, per_gamma_2: float, m: Any
+    v_r: float, at_rest: float, per_mobility: float, per_gamma_2: float, m: Model
 ) -> tuple[float, float]:
     """Return z_bar - z (m) and its derivative by v_r (s), from eqs. (25), (46), (49).
 
@@ -194,7 +194,7 @@ def solve_friction(
     z: float,
     F_N: float,
     tangent: Tangent,
-    m: Any,
+    m: Model,
     string: int,
 ) -> tuple[float, float, float, Tangent, int, bool]:
     """Find the friction force of one step.

@@ -70,6 +70,7 @@ from yehu_server.physics.layout import (
 from yehu_server.physics.pluck import pluck
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import prepare_radiation, radiate
+from yehu_server.physics.records import Array, Model, Records, State
 from yehu_server.physics.stencil import read
 from yehu_server.physics.string import (
     advance_strings,
@@ -79,8 +80,6 @@ from yehu_server.physics.string import (
     support,
 )
 from yehu_server.physics.tension import prepare_tension, set_tension_gain
-
-Array = Any
 
 LOST_SIZE = 1e6  # N, m/s, m: nothing of a sound state comes near
 
@@ -117,7 +116,9 @@ def at_rest(model: Any) -> Any:
 
 
 @compiled
-def retune(model: Array, state: Array, i: int, T: float, sigma_0: float, sigma_1: float) -> None:
+def retune(
+    model: Records, state: Records, i: int, T: float, sigma_0: float, sigma_1: float
+) -> None:
     """Give a sounding string another tension (N) and other losses; nothing else changes.
 
     The grid was made for the tension of `prepare` and its headroom: up to there it is stable,
@@ -132,7 +133,7 @@ def retune(model: Array, state: Array, i: int, T: float, sigma_0: float, sigma_1
 
 
 @compiled
-def come_to_rest(model: Any, state: Any) -> None:
+def come_to_rest(model: Model, state: State) -> None:
     """Put a state back to rest in place, keeping its counters. Real time: safe."""
     s, c, w = state.motion, state.contacts, state.work
     s.u[:], s.q[:], s.zeta[:], s.z[:] = 0.0, 0.0, 0.0, 0.0
@@ -147,7 +148,7 @@ def come_to_rest(model: Any, state: Any) -> None:
 
 @compiled
 def advance(
-    model: Array, state: Array, controls: Array, probes: Array, ledger: Array | None
+    model: Records, state: Records, controls: Array, probes: Array, ledger: Array | None
 ) -> None:
     """Run the model over one row of controls a sample.
 
@@ -183,7 +184,7 @@ def advance(
 
 
 @compiled
-def step(m: Any, state: Any, control: Array, next_: int, now: int, prev: int) -> None:
+def step(m: Model, state: State, control: Array, next_: int, now: int, prev: int) -> None:
     """Advance strings, bridge, bow and fingers by one sample. See `advance`."""
     s, c, w = state.motion, state.contacts, state.work
     u_next, u, u_prev = s.u[next_], s.u[now], s.u[prev]
@@ -224,8 +225,8 @@ def step(m: Any, state: Any, control: Array, next_: int, now: int, prev: int) ->
 
 @compiled
 def solve_contacts(
-    m: Any,
-    state: Any,
+    m: Model,
+    state: State,
     control: Array,
     u_next: Array,
     next_: int,
@@ -288,7 +289,7 @@ def solve_contacts(
 
 
 @compiled
-def measure(m: Any, state: Any, probe: Array) -> None:
+def measure(m: Model, state: State, probe: Array) -> None:
     """Write the probes of one sample, and catch a lost state."""
     s, w = state.motion, state.work
     next_, now = s.level, (s.level + 2) % LEVELS

@@ -8,14 +8,13 @@ import numpy as np
 
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import F_PLUCK, GHOST, POINTS, X_PLUCK
+from yehu_server.physics.records import Array, Contacts, Model, Motion, Work
 from yehu_server.physics.stencil import place_cubic, read, spread
 from yehu_server.physics.string import set_Delta_u, support
 
-Array = Any
-
 
 @compiled
-def pluck(model: Any, s: Any, c: Any, w: Any, control: Array, u_next: Array) -> None:
+def pluck(model: Model, s: Motion, c: Contacts, w: Work, control: Array, u_next: Array) -> None:
     """Apply the plucking force to the string that its sign chooses. Eq. (30)."""
     force = control[F_PLUCK]
     if force == 0.0:
@@ -32,7 +31,7 @@ def pluck(model: Any, s: Any, c: Any, w: Any, control: Array, u_next: Array) -> 
 
 
 @compiled
-def pluck_power(model: Any, c: Any, control: Array, u_next: Array, u_prev: Array) -> float:
+def pluck_power(model: Model, c: Contacts, control: Array, u_next: Array, u_prev: Array) -> float:
     """Return the power of the plucking force (W)."""
     if control[F_PLUCK] == 0.0:
         return 0.0

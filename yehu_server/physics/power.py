@@ -8,12 +8,11 @@ of one, part = midpoint (1 + t) with a t so small that a few terms of the binomi
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from yehu_server.jit import compiled
 from yehu_server.physics.elementary import EXPONENT_OF_1, MANTISSA_BITS
+from yehu_server.physics.records import Tables
 
 EXPONENTS = 2048  # of all floats
 INTERVAL_BITS = 7
@@ -50,7 +49,7 @@ def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
 
 
 @compiled
-def power(tables: Any, x: float) -> float:
+def power(tables: Tables, x: float) -> float:
     """Return the power that `prepare_power` made tables for, of a positive number, to 7e-16.
 
     Below 1e-120 and above 1e120 it is about what it is there. Real time: safe.

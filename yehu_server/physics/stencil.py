@@ -7,14 +7,11 @@ Source: [Bilbao] section 5.2.4; [Yehu] eq. (28).
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import GHOST, STENCIL
-
-Array = Any
+from yehu_server.physics.records import Array
 
 
 @compiled

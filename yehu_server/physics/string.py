@@ -10,11 +10,10 @@ from yehu_server.jit import compiled
 from yehu_server.physics.grid import intervals
 from yehu_server.physics.layout import GHOST, LEVELS, whole_vectors
 from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.records import Array, Model, Motion, Work
 
-Array = Any
 
-
-def prepare_strings(model: np.void, quantities: Quantities) -> None:
+def prepare_strings(model: Any, quantities: Quantities) -> None:
     """Write the strings' grids and coefficients into `model`. Source: [Yehu] eq. (57)."""
     for i, string in enumerate(quantities.strings):
         N = intervals(string, model["k"], quantities.tension_headroom)
@@ -25,7 +24,7 @@ def prepare_strings(model: np.void, quantities: Quantities) -> None:
 
 
 @compiled
-def set_string_weights(model: Any, i: int, T: float, sigma_0: float, sigma_1: float) -> None:
+def set_string_weights(model: Model, i: int, T: float, sigma_0: float, sigma_1: float) -> None:
     """Write the scheme's weights for a tension (N) and losses, both sides divided by A_s.
 
     The grid stays as it is, and must be stable at the tension (see `most_loss`).
@@ -47,7 +46,7 @@ def set_string_weights(model: Any, i: int, T: float, sigma_0: float, sigma_1: fl
 
 
 @compiled
-def most_loss(model: Any, i: int, T: float) -> float:
+def most_loss(model: Model, i: int, T: float) -> float:
     """Return the largest sigma_1 (m^2/s) that is stable at a tension (N), by eq. (57)."""
     k, h_squared = model.k, model.h[i] ** 2
     rho_A = model.rho_A[i]
@@ -146,7 +145,9 @@ def support(u: Array, N: int) -> None:
 
 
 @compiled
-def advance_strings(model: Any, s: Any, w: Any, u_next: Array, u: Array, u_prev: Array) -> None:
+def advance_strings(
+    model: Model, s: Motion, w: Work, u_next: Array, u: Array, u_prev: Array
+) -> None:
     """Advance both strings, free of contact forces: arrays of shape (2, points)."""
     N = max(model.N[0], model.N[1])
     squared, travel = w.Delta_u_squared, w.Delta_u_travel

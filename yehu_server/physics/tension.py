@@ -19,16 +19,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import GHOST, whole_vectors
 from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.records import Array, Model, Motion, Work
 
-Array = Any
 
-
-def prepare_tension(model: np.void, quantities: Quantities) -> None:
+def prepare_tension(model: Any, quantities: Quantities) -> None:
     """Write EA/(4 L h) of both strings into `model`; their grids must be there."""
     for i, string in enumerate(quantities.strings):
         EA = quantities.tension_modulation * string.EA
@@ -37,13 +34,13 @@ def prepare_tension(model: np.void, quantities: Quantities) -> None:
 
 
 @compiled
-def set_tension_gain(model: Any, i: int) -> None:
+def set_tension_gain(model: Model, i: int) -> None:
     """Write tau per <Delta u^n, u> (1/m^2). Real time: safe."""
     model.tension_gain[i] = model.stretch_stiffness[i] * model.spread[i] / model.h[i]
 
 
 @compiled
-def eliminate_tension(model: Any, w: Any, i: int) -> tuple[float, float, float]:
+def eliminate_tension(model: Model, w: Work, i: int) -> tuple[float, float, float]:
     """Eliminate a string's tau.
 
     Returns
@@ -61,7 +58,7 @@ def eliminate_tension(model: Any, w: Any, i: int) -> tuple[float, float, float]:
 
 
 @compiled
-def move_by_tension(model: Any, s: Any, w: Any, u_next: Array) -> None:
+def move_by_tension(model: Model, s: Motion, w: Work, u_next: Array) -> None:
     """Add tau Delta u^n to both strings."""
     tau_1, tau_2 = w.tau[0], w.tau[1]
     if tau_1 == 0.0 and tau_2 == 0.0:

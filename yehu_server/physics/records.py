@@ -1,0 +1,177 @@
+"""Types of the model's records; written by scripts/records.py from layout.py.
+
+A record of an array of layout.MODEL or layout.STATE has these attributes in compiled code.
+docs/notation.md has their symbols and units.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Records = NDArray[np.void]  # of layout.MODEL or layout.STATE
+
+
+class Tables(Protocol):
+    """Tables of one power, power.py."""
+
+    series: Array
+    of_twos: Array
+    per_midpoint: Array
+    of_midpoint: Array
+
+
+class Model(Protocol):
+    """Coefficients of one sample rate."""
+
+    k: float
+    rate: float
+    fingers: int
+    N: NDArray[np.uint16]
+    h: Array
+    B: Array
+    C: Array
+    spread: Array
+    inside: Array
+    rho_A: Array
+    T: Array
+    EI: Array
+    sigma_0: Array
+    sigma_1: Array
+    stretch_stiffness: Array
+    tension_gain: Array
+    bridge_x: float
+    bridge_first: NDArray[np.uint16]
+    bridge_weights: Array
+    modes: int
+    M_m: Array
+    K_m: Array
+    R_m: Array
+    A_q: Array
+    B_q: Array
+    C_q: Array
+    C_q_sum: float
+    S_c: Array
+    epsilon_0: float
+    epsilon_1: float
+    v_s: float
+    mu_C: float
+    mu_S: float
+    xi: Array
+    lift_force: float
+    bristle_stiffness: float
+    per_v_s: float
+    chi_slope: Array
+    M_h: float
+    K_h: float
+    R_h: float
+    A_h: float
+    B_h: float
+    C_h: float
+    M_f: float
+    C_f: float
+    K_f: float
+    beta: float
+    rest_height: float
+    K_lift: float
+    R_lift: float
+    b_0: Array
+    b_1: Array
+    a_1: Array
+    a_2: Array
+    taps: Array
+    last_tap: int
+    ghat: Tables
+
+
+class Motion(Protocol):
+    """The state of the instrument."""
+
+    level: int
+    u: Array
+    Delta_u: Array
+    q: Array
+    zeta: Array
+    z: Array
+    f_b: float
+    v_r: float
+    tangent: Array
+    U: Array
+    Psi: Array
+    resting: NDArray[np.uint8]
+    s_1: Array
+    s_2: Array
+    history: Array
+    stored: float
+
+
+class Contacts(Protocol):
+    """Where bow and fingers touch the strings."""
+
+    placed: int
+    x: Array
+    string: NDArray[np.uint8]
+    first: NDArray[np.uint16]
+    weights: Array
+    self_compliance: Array
+    bridge_coupling: Array
+    order: NDArray[np.uint8]
+    near: NDArray[np.uint8]
+    near_set: int
+    is_chain: int
+    meets_previous: NDArray[np.uint8]
+    previous_coupling: Array
+    x_pluck: float
+    pluck_string: int
+    pluck_first: int
+    pluck_weights: Array
+
+
+class Work(Protocol):
+    """Intermediate results of one step."""
+
+    Delta_u_squared: Array
+    Delta_u_travel: Array
+    Delta_u_at: Array
+    K_cc: Array
+    K_tc: Array
+    K_tt: Array
+    tau: Array
+    f_c: Array
+    tau_per_newton: Array
+    f_c_per_newton: Array
+    f_ext: Array
+    ghat: Array
+    g: Array
+    eta_prev: Array
+    travel: Array
+    bow_compliance: Array
+    f_f: Array
+    W: Array
+    f_0: Array
+    Delta_u_chain: Array
+    tau_fingers: Array
+    touching: NDArray[np.uint8]
+    touching_count: int
+    A_f: Array
+    d: Array
+    G: Array
+    bridge_travel: float
+    z_bar: float
+    r: float
+    iterations: int
+    dropped_z: float
+    dropped_Psi: float
+
+
+class State(Protocol):
+    """All that a step changes."""
+
+    motion: Motion
+    contacts: Contacts
+    work: Work
+    unconverged: int
+    lost: int

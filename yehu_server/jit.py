@@ -23,6 +23,11 @@ from platformdirs import user_cache_dir
 
 from yehu_server.code_cache import CodeCache
 from yehu_server.code_key import key_of
+from yehu_server.errors import YehuError
+
+# NUMBA_DISABLE_JIT=1: what would be compiled runs as plain Python, under a debugger or coverage.
+# The model does (physics/); the audio callback cannot, and says so.
+IS_PLAIN = bool(numba.config.DISABLE_JIT)
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -95,6 +100,8 @@ class Restricted(Compiler):  # type: ignore[misc]
 
 
 def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
+    if IS_PLAIN:
+        return function
     # Without forced inlining, arrays cross calls as ten words each: a fifth of the time. A wrapper
     # for callbacks in C, which `Native` makes where it is wanted, would be compiled with all of
     # what it calls: a third of the time that a first start takes.
@@ -134,6 +141,8 @@ class Native:
 
     @cached_property
     def _made(self) -> Any:
+        if IS_PLAIN:
+            raise YehuError("NUMBA_DISABLE_JIT: only the model runs uncompiled, not the engine")
         signature = sigutils.normalize_signature(self._signature)
         options = {"nopython": True, "error_model": "numpy", "fastmath": FASTMATH}
         return _cached(CFunc(self._function, signature, {}, options), self._function)

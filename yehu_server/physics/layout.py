@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.jit import compiled
+from yehu_server.jit import IS_PLAIN, compiled
+from yehu_server.physics.plain import with_attributes
 from yehu_server.physics.power import TABLES
 
 STRINGS = 2
@@ -66,7 +67,7 @@ def new_record(kind: np.dtype[Any]) -> Any:
     """One record, all zeros [shape=(1,)], at the beginning of a cache line."""
     room = np.zeros(kind.itemsize + LINE_BYTES, np.uint8)
     start = -room.ctypes.data % LINE_BYTES
-    return room[start : start + kind.itemsize].view(kind)
+    return room[start : start + kind.itemsize].view(with_attributes(kind) if IS_PLAIN else kind)
 
 
 MODEL = lined_up(
@@ -274,7 +275,7 @@ def whole_vectors(count: int) -> int:
 
     A loop over the numbers left over, one by one, costs as much as the loop over vectors.
     """
-    return (count + VECTOR - 1) & -VECTOR
+    return int((np.int64(count) + VECTOR - 1) & -VECTOR)
 
 
 # Columns of the energy ledger: J, then W, then two residuals (m/s and m).

@@ -1,0 +1,35 @@
+"""Records for a model that runs as plain Python (``NUMBA_DISABLE_JIT=1``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+class Record(np.record):  # type: ignore[misc]  # NumPy's stubs call it final
+    """A record whose fields are attributes, as they are in compiled code.
+
+    numpy.record prefers its own attributes, such as the transpose ``T``, to fields.
+    """
+
+    def __getattribute__(self, name: str) -> Any:
+        if name in (np.record.__getattribute__(self, "dtype").names or ()):
+            return self[name]
+        return super().__getattribute__(name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self[name] = value
+
+
+def with_attributes(kind: np.dtype[Any]) -> np.dtype[Any]:
+    """Return a record type whose records, and those nested in them, are `Record`."""
+    fields = dict(kind.fields or {})
+    formats = [with_attributes(field) if field.names else field for field, *_ in fields.values()]
+    spec: Any = {
+        "names": list(fields),
+        "formats": formats,
+        "offsets": [offset for _, offset, *_ in fields.values()],
+        "itemsize": kind.itemsize,
+    }
+    return np.dtype((Record, np.dtype(spec)))

@@ -81,6 +81,6 @@ def test_a_track_follows_a_glide():
 
 
 def test_where_no_later_period_is_like_the_first_the_first_one_stays():
-    """A likeness that only falls has no later peak; its slope must not be taken for one."""
+    """A correlation that only falls has no later peak; its slope must not be taken for one."""
     falling = 0.8 + 0.2 * np.exp(-np.arange(200) / 50.0)
     assert pitch._refine(falling, 13.77) == 13.77

@@ -1,1 +1,1 @@
-"""Measuring sounds: how high they are and how loud. numpy only."""
+"""Measures pitch and level of sounds. Needs numpy only."""

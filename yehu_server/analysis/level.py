@@ -1,4 +1,4 @@
-"""How loud a sound is."""
+"""A-weighted level of a sound."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SILENCE_DB = -200.0
 
 
 def a_weighting(frequencies_hz: Array) -> Array:
-    """Amplitude factor of the A curve, 1 at 1 kHz. Source: [IEC61672]."""
+    """Return the amplitude factor of A weighting, 1 at 1 kHz. Source: [IEC61672]."""
     f2 = np.asarray(frequencies_hz, np.float64) ** 2
     curve = (12194.0**2 * f2 * f2) / (
         (f2 + 20.6**2) * np.sqrt((f2 + 107.7**2) * (f2 + 737.9**2)) * (f2 + 12194.0**2)
@@ -22,7 +22,7 @@ def a_weighting(frequencies_hz: Array) -> Array:
 
 
 def a_weighted_db(samples: Array, rate: float) -> float:
-    """Root mean square level (dB of full scale) of a steady sound, as loud as the ear has it."""
+    """Return the A-weighted root mean square level (dB of full scale) of a steady sound."""
     x = np.asarray(samples, np.float64)
     spectrum = np.fft.rfft(x * np.hanning(len(x)))
     power = np.abs(spectrum * a_weighting(np.fft.rfftfreq(len(x), 1.0 / rate))) ** 2

@@ -1,7 +1,7 @@
-"""How high a sound is, from its likeness to itself a period later.
+"""Pitch of a sound, by autocorrelation.
 
-Source: [McLeod], the normalised square difference; each peak of it is refined at ever more
-periods, where a given error in place is a smaller one in pitch.
+Source: [McLeod], the normalised square difference. Its peak is refined at ever more periods,
+where an error of the lag is a smaller error of the pitch.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ import numpy as np
 Array = Any
 
 LOWEST_HZ, HIGHEST_HZ = 120.0, 2400.0
-CLEAR = 0.8  # likeness (1: the same again) under which there is no pitch
-NEARLY_BEST = 0.93  # the first peak this near to the best is the period, not a multiple of it
+CLEAR = 0.8  # autocorrelation (1: the same again) under which there is no pitch
+NEARLY_BEST = 0.93  # the first peak this near to the highest is the period, not a multiple of it
 
 
 NOTE_NAMES = ("C", "C#", "D", "D#", "E", "F", "F#", "G", "G#", "A", "A#", "B")
 
 
 def note_name(pitch: float) -> str:
-    """A fractional MIDI note, such as ``A4+12`` (cents)."""
+    """Return the name of a fractional MIDI note, such as ``A4+12`` (cents)."""
     nearest = round(pitch)
     cents = round(100.0 * (pitch - nearest))
     name = NOTE_NAMES[nearest % 12] + str(nearest // 12 - 1)
@@ -30,12 +30,12 @@ def note_name(pitch: float) -> str:
 
 
 def cents(frequency_hz: float, reference_hz: float) -> float:
-    """How far a frequency lies above another."""
+    """Return how far a frequency lies above another (cents)."""
     return 1200.0 * math.log2(frequency_hz / reference_hz)
 
 
-def likeness(samples: Array, longest: int) -> Array:
-    """How like a sound is to itself, delayed by each lag up to `longest`.
+def autocorrelation(samples: Array, longest: int) -> Array:
+    """Return the normalised autocorrelation of a sound at each lag up to `longest` (frames).
 
     Returns: ndarray [shape=(longest,)], 1 where it is the same again, 0 where unrelated.
     """
@@ -50,12 +50,12 @@ def likeness(samples: Array, longest: int) -> Array:
 
 
 def pitch_hz(samples: Array, rate: float, lo: float = LOWEST_HZ, hi: float = HIGHEST_HZ) -> float:
-    """Fundamental frequency (Hz) of a steady sound; NaN where it has none.
+    """Return the fundamental frequency (Hz) of a steady sound; NaN where it has none.
 
     Parameters
     ----------
     samples : ndarray [shape=(frames,)]
-        Two periods of `lo` at least; more make it surer.
+        At least two periods of `lo`; more are more reliable.
     """
     x = np.asarray(samples, np.float64)
     x = x - x.mean()
@@ -63,7 +63,7 @@ def pitch_hz(samples: Array, rate: float, lo: float = LOWEST_HZ, hi: float = HIG
     first, last = int(rate / hi), min(int(rate / lo) + 2, longest - 2)
     if last <= first or not np.any(x):
         return math.nan
-    like = likeness(x, longest)
+    like = autocorrelation(x, longest)
     peaks = _peaks(like[: last + 1], max(first, 1))
     if len(peaks) == 0 or like[peaks].max() < CLEAR:
         return math.nan
@@ -78,7 +78,7 @@ def _peaks(like: Array, first: int) -> Array:
 
 
 def _vertex(like: Array, near: int) -> float:
-    """Where a parabola through three values has its top."""
+    """Return the place of the maximum of a parabola through three values."""
     left, here, right = like[near - 1 : near + 2]
     bend = left - 2.0 * here + right
     return near if bend == 0.0 else float(near + 0.5 * (left - right) / bend)

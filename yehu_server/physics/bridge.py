@@ -22,7 +22,10 @@ from yehu_server.physics.tension import eliminate_tension
 def prepare_bridge(model: Any, quantities: Quantities) -> None:
     """Write the bridge's coefficients into `model`; the strings' must be there.
 
-    Errors: ParameterError where the body has too many modes, or one above Nyquist.
+    Raises
+    ------
+    ParameterError
+        Where the body has too many modes, or one above Nyquist.
     """
     k = model["k"]
     body = quantities.body

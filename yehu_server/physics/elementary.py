@@ -16,9 +16,9 @@ MANTISSA_BITS = 52
 EXPONENT_OF_1 = 1023
 LEAST_EXPONENT = -900
 R_1, R_2, R_3, R_4, R_5 = 1.0 / 2.0, -3.0 / 8.0, 5.0 / 16.0, -35.0 / 128.0, 63.0 / 256.0
-SLIGHT = 1e-3  # up to where a few terms of a series are as good as the function
+SLIGHT = 1e-3  # below it a few terms of the series are exact to rounding
 
-# The polynomials whose largest error is least: of sin(pi x) / x and cos(pi x) in x^2, for x
+# Minimax polynomials of sin(pi x) / x and cos(pi x) in x^2, for x
 # from -1/2 to 1/2 (off by 4e-16 and 2e-15), and of 2^x there (3e-18).
 S_0, S_1, S_2, S_3 = 3.1415926535897927, -5.1677127800497855, 2.5501640398618677, -0.599264528825224
 S_4, S_5 = 0.08214587881631043, -0.007370364326530415
@@ -50,7 +50,7 @@ def sine_and_cosine(half_turns: float) -> tuple[float, float]:
 
 @compiled
 def power_of_2(x: float) -> float:
-    """2 to the power of `x`, up to 1000; below -900 it counts as that.
+    """Return 2 to the power of `x`, up to 1000; 2 to the power of -900 below that.
 
     To 4e-16. Real time: safe.
     """

@@ -1,4 +1,4 @@
-"""The grid of one string: as fine as stability lets it be."""
+"""The grid of one string: the finest that is stable."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ def least_spacing(string: StringQuantities, k: float, headroom: float = 1.0) -> 
 def intervals(string: StringQuantities, k: float, headroom: float = 1.0) -> int:
     """Return N, the number of grid intervals of a string; its spacing is then L/N.
 
-    Errors: ParameterError where the string gets too few or too many nodes.
+    Raises
+    ------
+    ParameterError
+        Where the string gets too few or too many nodes.
     """
     N = math.floor(string.L / least_spacing(string, k, headroom))
     if not 12 <= N <= MAX_INTERVALS:
@@ -41,7 +44,13 @@ def intervals(string: StringQuantities, k: float, headroom: float = 1.0) -> int:
 
 
 def check_rate(rate: float) -> None:
-    """Refuse a sample rate (Hz) outside 22,050 to 192,000. Errors: ParameterError."""
+    """Refuse a sample rate (Hz) outside 22,050 to 192,000.
+
+    Raises
+    ------
+    ParameterError
+        With the range.
+    """
     if not LOWEST_RATE <= rate <= HIGHEST_RATE:
         raise ParameterError(
             f"sample rate: {rate} Hz is not within {LOWEST_RATE:g} to {HIGHEST_RATE:g} Hz"

@@ -81,14 +81,18 @@ from yehu_server.physics.string import (
 )
 from yehu_server.physics.tension import prepare_tension, set_tension_gain
 
-LOST_SIZE = 1e6  # N, m/s, m: nothing of a sound state comes near
+LOST_SIZE = 1e6  # N, m/s, m: far above any value of a sound state
 
 
 def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
     """Derive every coefficient of the model for one sample rate.
 
     Returns: ndarray [shape=(1,), dtype=layout.MODEL].
-    Errors: ParameterError where the quantities make no stable model at this rate.
+
+    Raises
+    ------
+    ParameterError
+        Where the quantities make no stable model at this rate.
     """
     if not 1 <= fingers <= MAX_FINGERS:
         raise ParameterError(f"fingers: 1 to {MAX_FINGERS}, not {fingers}")

@@ -111,8 +111,12 @@ class Body:
 def read_body(path: Path = BODY_FILE) -> Body:
     """Read a body file.
 
-    Errors: ParameterError when it is missing, malformed, or not passive or stable.
     Source: the format is described in docs/physics.md; figures [YehuData].
+
+    Raises
+    ------
+    ParameterError
+        When it is missing, malformed, or not passive or stable.
     """
     try:
         data = parse_json(read_text(path, MAX_SETTINGS_BYTES))
@@ -163,7 +167,7 @@ def measured_body() -> Body:
 
 @dataclass(frozen=True)
 class Quantities:
-    """Everything the model needs to know of one instrument.
+    """All quantities of one instrument.
 
     String 1 (F4) is ``string_1``; bow force above zero bows it. ``tension_headroom``
     is the highest factor that tuning or tension modulation may put on a tension:
@@ -210,7 +214,10 @@ def override(base: Quantities, changes: Mapping[str, Any], folder: Path = Path()
     folder : Path
         Where a relative body file is looked for.
 
-    Errors: ParameterError for an unknown name, a wrong type, a value out of bounds.
+    Raises
+    ------
+    ParameterError
+        For an unknown name, a wrong type, a value out of bounds.
     """
     return cast("Quantities", _override_section(base, changes, "instrument", folder))
 
@@ -262,7 +269,10 @@ def _short(value: float) -> str:
 def read_quantities(path: Path) -> Quantities:
     """Read an instrument file (TOML, or JSON by its ending) of quantities to change.
 
-    Errors: ParameterError, naming the file.
+    Raises
+    ------
+    ParameterError
+        Naming the file.
     """
     try:
         text = read_text(path, MAX_SETTINGS_BYTES)

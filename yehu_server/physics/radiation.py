@@ -25,7 +25,10 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 def prepare_radiation(model: np.void, body: Body) -> None:
     """Write the filter into `model`, as measured or re-fitted for its sample rate.
 
-    Errors: ParameterError where the body has too many sections.
+    Raises
+    ------
+    ParameterError
+        Where the body has too many sections.
     """
     if len(body.sections) > MAX_SECTIONS:
         raise ParameterError(
@@ -105,7 +108,7 @@ def refit(body: Body, rate: float) -> tuple[Floats, Floats]:
         )
         solution /= size
         error_db = 20.0 * np.log10(np.abs(columns @ solution) / reference)
-        # Below the band's edge every tenth of a dB counts; above, only what sticks out.
+        # Below the band's edge every tenth of a dB counts; above, only what exceeds it.
         excess = np.where(is_above, np.maximum(error_db, 0.0) / 2.0, np.abs(error_db) / 0.1)
         weight = weight * np.sqrt(1.0 + excess)
     n = len(a_1)

@@ -45,13 +45,13 @@ def place_cubic(position: float, N: int, weights: Array) -> int:
 
 @compiled
 def place_linear(position: float, N: int, weights: Array) -> int:
-    """The same with linear interpolation between two nodes."""
+    """As `place_cubic`, with linear interpolation between two nodes."""
     return _place(position, N, weights, False)
 
 
 @compiled
 def read(u: Array, first: int, weights: Array) -> float:
-    """I u: the displacement at a contact (m)."""
+    """Return I u, the displacement at a contact (m)."""
     total = 0.0
     for j in range(STENCIL):
         total += weights[j] * u[GHOST + first + j]
@@ -60,14 +60,14 @@ def read(u: Array, first: int, weights: Array) -> float:
 
 @compiled
 def spread(u: Array, first: int, weights: Array, amount: float) -> None:
-    """u += J * amount * h: add a force's displacement around a contact."""
+    """Add J * amount * h to u: a force's displacement around a contact."""
     for j in range(STENCIL):
         u[GHOST + first + j] += weights[j] * amount
 
 
 @compiled
 def overlap(first_p: int, weights_p: Array, first_q: int, weights_q: Array) -> float:
-    """h I_p J_q: how much of a force at q is felt at p; zero where no node is shared."""
+    """Return h I_p J_q; zero where no node is shared."""
     shift = np.int64(first_p) - np.int64(first_q)
     total = 0.0
     if -STENCIL < shift < STENCIL:

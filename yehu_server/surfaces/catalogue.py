@@ -1,4 +1,4 @@
-"""The surfaces there are, writing them into a folder, and whether those there are fresh."""
+"""The list of surfaces; writes them into a folder and tells which files there are out of date."""
 
 from __future__ import annotations
 
@@ -39,7 +39,13 @@ SURFACES = (
 
 
 def chosen(names: Sequence[str]) -> list[Surface]:
-    """Surfaces by the names of their files; all where none is named. Errors: OutputError."""
+    """Return surfaces by the names of their files; all where none is named.
+
+    Raises
+    ------
+    OutputError
+        Where a name is not known.
+    """
     known = {surface.name: surface for surface in SURFACES}
     for name in names:
         if name not in known:
@@ -48,7 +54,13 @@ def chosen(names: Sequence[str]) -> list[Surface]:
 
 
 def write(surface: Surface, folder: Path, server: Address = DEFAULT_SERVER) -> Path:
-    """Write a surface's file, over an older one; return its path. Errors: OutputError."""
+    """Write a surface's file, replacing an older one; return its path.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written.
+    """
     target = folder / surface.name
     data = surface.make(server)
     with replacing(target) as partial:
@@ -57,7 +69,7 @@ def write(surface: Surface, folder: Path, server: Address = DEFAULT_SERVER) -> P
 
 
 def is_fresh(surface: Surface, folder: Path, server: Address = DEFAULT_SERVER) -> bool:
-    """Whether a folder has the file as it would be written now."""
+    """Whether a folder holds the file as it would be written now."""
     try:
         there = surface.content((folder / surface.name).read_bytes())
     except (OSError, zlib.error):

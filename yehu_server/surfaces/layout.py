@@ -1,4 +1,4 @@
-"""What all surfaces share: groups of parameters, the two pads, the keys, how they subscribe."""
+"""What all surfaces share: groups of parameters, two pads, keys, and the subscription."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.fingering import HIGHEST_NOTE, LOWEST_NOTE
 
-FIRST_GROUP = "playing"  # what most players want under their hands
+FIRST_GROUP = "playing"  # used most
 BLACK = (1, 3, 6, 8, 10)
 
 VELOCITY = 90
 # A subscription outlives one message that UDP loses.
 SUBSCRIBED_S, SUBSCRIBE_EVERY_S = 60, 25
-# As hard as the pad bows; the fader of /bow/force goes on from there.
+# The pad's strongest bow force; the fader of /bow/force has the whole range.
 HARDEST_N = 2.0
 
 
@@ -31,7 +31,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Axis:
-    """One direction of a pad: what moves along it, in `unit`."""
+    """One axis of a pad: the parameter it moves, in `unit`."""
 
     name: str
     lo: float
@@ -41,12 +41,12 @@ class Axis:
 
     @property
     def at(self) -> float:
-        """Where the pad starts, as 0 to 1."""
+        """The pad's first position, 0 to 1."""
         return (self.start - self.lo) / (self.hi - self.lo)
 
     @property
     def text(self) -> str:
-        """The axis in words."""
+        """The axis' label."""
         return f"{self.name} {self.lo:g} to {self.hi:g} {self.unit}"
 
 
@@ -63,7 +63,7 @@ class Key:
 
     @property
     def is_black(self) -> bool:
-        """Whether it would be a black key of a piano."""
+        """Whether it is a black key of a piano."""
         return self.note % 12 in BLACK
 
 
@@ -91,5 +91,5 @@ def label(param: Param) -> str:
 
 
 def full(address: str) -> str:
-    """An address as OSC has it."""
+    """Return a parameter's OSC address."""
     return PREFIX + address

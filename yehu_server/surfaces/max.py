@@ -1,4 +1,4 @@
-"""The Max patch: it opens as a panel (presentation); behind it lie the cords, in the same order.
+"""The Max patch: it opens in presentation mode; patching mode shows its cords.
 
 Dials send and take real values at their addresses.
 """
@@ -18,8 +18,8 @@ from yehu_server.params.spec import Param
 from yehu_server.surfaces import layout
 from yehu_server.surfaces.layout import Axis, Group, full
 
-PORT = 7400  # where the patch hears what the server tells
-# While a dial is moved nothing is shown, lest the echo of where it was pull it back.
+PORT = 7400  # at which the patch receives values from the server
+# While a dial is moved it ignores the server, whose echo would move it back.
 QUIET_MS = 250
 
 COLUMNS = 10
@@ -36,7 +36,7 @@ Place = tuple[float, float]
 
 
 class Panel:
-    """A patcher whose boxes have a place behind, and some one in front."""
+    """A patcher: each box has a place in patching mode, some also one in presentation mode."""
 
     def __init__(self) -> None:
         self.patcher = Patcher(
@@ -47,7 +47,10 @@ class Panel:
     def add(
         self, kind: str, at: Place, shown: tuple[float, ...] | None = None, **attributes: Any
     ) -> Box:
-        """Add an object, a ``comment ...`` or a ``message ...``; `shown` is its place in front."""
+        """Add an object, a ``comment ...`` or a ``message ...``.
+
+        `shown` is its place in presentation mode.
+        """
         word, _, rest = kind.partition(" ")
         self._boxes += 1
         attributes["id"] = f"obj-{self._boxes}"
@@ -95,7 +98,7 @@ def make(server: Address) -> bytes:
 
 
 def _shelves(groups: Sequence[Group]) -> Iterator[tuple[Group, int, int]]:
-    """Each group's row and column: beside the one before it where there is room."""
+    """Return each group's row and column: beside the one before it where there is room."""
     row, column, rows = 0, 0, 0
     for group in groups:
         count = len(group.params)
@@ -107,7 +110,7 @@ def _shelves(groups: Sequence[Group]) -> Iterator[tuple[Group, int, int]]:
 
 
 def _network(panel: Panel, server: Address) -> None:
-    """From the panel to the server, and back unless a dial is being moved."""
+    """Add what sends to the server, and what shows its values unless a dial is being moved."""
     host, port = server
     begin = panel.add("loadbang", (16, 16))
     metro = panel.add(f"metro {1000 * layout.SUBSCRIBE_EVERY_S}", (16, 76))
@@ -136,7 +139,7 @@ def _network(panel: Panel, server: Address) -> None:
 
 
 def _hands(panel: Panel) -> None:
-    """Left hand, right hand, keys, buttons."""
+    """Add two pads, keys and buttons."""
     half = (COLUMNS * CELL[0] - MARGIN) / 2
     send = panel.add("s yehu.out", (16, 560))
     pitch = panel.add(f"prepend {full('/pitch')}", (16, 500))
@@ -157,7 +160,7 @@ def _hands(panel: Panel) -> None:
 
 
 def _pad(panel: Panel, name: str, axes: tuple[Axis, Axis], x: float, width: float) -> Iterator[Box]:
-    """A pad; what comes out of it, across and up."""
+    """Add a pad; return its outlets, across and up."""
     top = 2 * MARGIN + LINE
     title = f"comment {name}: {axes[0].text} across, {axes[1].text} up"
     panel.add(title, (x, 230), (x, top, width, LINE))
@@ -180,7 +183,7 @@ def _pad(panel: Panel, name: str, axes: tuple[Axis, Axis], x: float, width: floa
 
 
 def _keys(panel: Panel, send: Box) -> None:
-    """A key down begins its note and its end ends it: the keyboard is set to a touch screen's."""
+    """Add a keyboard in touch-screen mode: pressing a key begins its note, releasing it ends it."""
     first, last = layout.KEYS[0].note, layout.KEYS[-1].note
     keys = panel.add(
         "kslider",
@@ -199,7 +202,7 @@ def _keys(panel: Panel, send: Box) -> None:
 
 
 def _dial(panel: Panel, param: Param, at: Place, shown: Place) -> None:
-    """A dial: what it sends, and how it is set without sending."""
+    """Add a dial, what it sends, and what sets it without sending."""
     x, y = at
     address = full(param.address)
     unit = "" if param.unit == "1" else f" {param.unit}"

@@ -1,4 +1,4 @@
-"""One page to read about every parameter and call, on a phone too; it needs nothing else."""
+"""An HTML page that documents every parameter and call; it loads nothing else."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def _section(title: str, heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]
     body = [
         "<tr>"
         + "".join(
-            # On a phone the address and the meaning speak for themselves.
+            # A phone has room for address and meaning only.
             f"<td>{cell}</td>"
             if name in ("address", "meaning")
             else f'<td data-head="{name}">{cell}</td>'

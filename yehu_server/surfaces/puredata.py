@@ -18,18 +18,18 @@ MOVED = ".moved"
 KEY, END, LIFT, RELEASE, PANIC = (
     f"yehu.{name}" for name in ("key", "end", "lift", "release", "panic")
 )
-# While a slider is moved nothing is shown, lest the echo of where it was pull it back.
+# While a slider is moved it ignores the server, whose echo would move it back.
 QUIET_MS = 250
 
 COLUMNS = 2
 ROW, COLUMN = 22, 560
 NAME, SLIDER, NUMBER = 140, 160, 64  # widths
 TOP = 120  # of the sliders
-COLOURS = "-262144 -1 -1"  # white behind, black before, as every Pd reads it
+COLOURS = "-262144 -1 -1"  # white background, black foreground, in the form that every Pd reads
 
 
 class Canvas:
-    """A patch, or a part of one, as lines of Pd's own format."""
+    """A patch or subpatch, as lines of Pd's own format."""
 
     def __init__(self, width: int, height: int, name: str | None = None) -> None:
         end = "12;" if name is None else f"{name} 0;"
@@ -93,7 +93,7 @@ def make(server: Address) -> bytes:
 
 
 def _columns(groups: Sequence[Group]) -> list[list[Group]]:
-    """Share groups out, in order, so that the columns are about equally long."""
+    """Divide groups, in order, into columns of about equal length."""
     ends = list(accumulate(len(group.params) + 2 for group in groups))
     columns: list[list[Group]] = [[] for _ in range(COLUMNS)]
     for group, end in zip(groups, ends, strict=True):
@@ -103,7 +103,7 @@ def _columns(groups: Sequence[Group]) -> list[list[Group]]:
 
 
 def _play(patch: Canvas) -> None:
-    """Keys and what else is clicked."""
+    """Add keys and buttons."""
     keys = layout.KEYS
     patch.text(20, 10, f"keys {keys[0].name} to {keys[-1].name}")
     patch.object(
@@ -120,7 +120,7 @@ def _play(patch: Canvas) -> None:
 
 
 def _slider(patch: Canvas, param: Param, x: int, y: int) -> None:
-    """Name, slider, number and range of one parameter."""
+    """Add name, slider, number and range of one parameter."""
     address = full(param.address)
     sent = address + MOVED
     is_log = int(param.curve is Curve.EXP)
@@ -136,11 +136,11 @@ def _slider(patch: Canvas, param: Param, x: int, y: int) -> None:
     patch.text(x + NAME + SLIDER + 14 + NUMBER, y, param.range_text)
 
 
-# -- what is behind ------------------------------------------------------------------------------
+# -- subpatches ----------------------------------------------------------------------------------
 
 
 def _wires(server: Address) -> Canvas:
-    """Everything to and from the server."""
+    """Add what sends to the server and receives from it."""
     wires = Canvas(1000, 700, "wires")
     host, port = server
     begin = wires.object(20, 20, "loadbang")
@@ -164,7 +164,7 @@ def _wires(server: Address) -> Canvas:
 
 
 def _defaults() -> str:
-    """A message that puts every slider where its parameter begins."""
+    """Return a message that sets every slider to its parameter's default."""
     return " ".join(
         f"\\; {full(param.address)} set {param.default:g}"
         for group in layout.groups()
@@ -177,7 +177,7 @@ def _format(address: str) -> str:
 
 
 def _sliders(wires: Canvas, send: int) -> int:
-    """From sliders to packets; return what bangs when one is moved."""
+    """Add what makes packets of moved sliders; return what bangs when one is moved."""
     packet = wires.object(20, 170, "t b a")
     wires.connect(packet, send, outlet=1)
     params = [param for group in layout.groups() for param in group.params]
@@ -192,7 +192,7 @@ def _sliders(wires: Canvas, send: int) -> int:
 
 
 def _calls(wires: Canvas, send: int) -> None:
-    """Keys, which slur, and what else is clicked."""
+    """Add what keys, which slur, and buttons send."""
     key = wires.object(20, 420, f"r {KEY}")
     note = wires.object(20, 445, f"+ {layout.KEYS[0].note}")
     change = wires.object(20, 470, "change -1")
@@ -228,7 +228,7 @@ def _calls(wires: Canvas, send: int) -> None:
 
 
 def _answers(wires: Canvas, net: int, moved: int, subscribe: int) -> None:
-    """From packets to sliders: the address is the name of the one to set."""
+    """Add what sets sliders from packets: a slider's name is its parameter's address."""
     gate = wires.object(300, 260, "spigot 1")
     both = wires.object(300, 285, "t l l")
     words = wires.object(300, 310, "oscparse")

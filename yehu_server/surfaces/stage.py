@@ -53,7 +53,7 @@ def _subscribing() -> str:
 
 
 def _hands() -> Widget:
-    """Left hand, right hand, keys."""
+    """Add two pads and keys."""
     pitch, press, bow, note = map(full, ("/pitch", "/press", "/bow", "/note"))
     string = _pad("string", layout.STRING_PITCH, layout.STRING_PRESS, "1%") | {
         "bypass": True,

@@ -76,13 +76,19 @@ FORMULAS = {
 
 
 def make(server: Address) -> bytes:
-    """Write the layout as a .tosc file; whose server it plays is set in TouchOSC."""
+    """Return the layout as a .tosc file; the server's address is set in TouchOSC."""
     del server
     return zlib.compress(document().dumps().encode("utf-8"), 9)
 
 
 def content(data: bytes) -> bytes:
-    """What a .tosc file holds: the same with every version of zlib. Errors: zlib.error."""
+    """Return the text of a .tosc file, which is the same with every version of zlib.
+
+    Raises
+    ------
+    zlib.error
+        Where it is damaged.
+    """
     stream = zlib.decompressobj()
     text = stream.decompress(data)
     if not stream.eof or stream.unused_data:
@@ -91,7 +97,7 @@ def content(data: bytes) -> bytes:
 
 
 def document() -> py2tosc.Document:
-    """Lay everything out."""
+    """Return the whole layout."""
     pages = [_hands(), *(page for group in layout.groups() for page in _pages(group))]
     pager = py2tosc.pager(
         name="pages", frame=(0, BAR, WIDTH, HEIGHT - BAR), tabbar_size=TABS, children=pages
@@ -110,13 +116,13 @@ def document() -> py2tosc.Document:
 
 
 def _identify(control: Control, path: str) -> None:
-    """Give controls the same ids each time."""
+    """Number the controls' ids, so that they are the same each time."""
     control.id = str(uuid.uuid5(uuid.NAMESPACE_URL, path))
     for child in control.children:
         _identify(child, f"{path}/{child.get('name')}")
 
 
-# -- what is on all pages ------------------------------------------------------------------------
+# -- parts of all pages ---------------------------------------------------------------------------
 
 
 def _bar() -> Iterator[Control]:
@@ -132,11 +138,11 @@ def _bar() -> Iterator[Control]:
         yield _label(f"{name} label", (x, GAP, 150, BAR - 2 * GAP), name, text_size=16)
 
 
-# -- the page to play on -------------------------------------------------------------------------
+# -- the page of pads and keys----------------------------------------------------------------------
 
 
 def _hands() -> Control:
-    """Left hand, right hand, keys."""
+    """Add two pads and keys."""
     width, height = PAGE
     pad_height = height - KEYS_HEIGHT - 2 * LINE - 4 * GAP
     half = (width - 3 * GAP) / 2
@@ -180,7 +186,7 @@ def _hands() -> Control:
 
 
 def _key(key: Key, x: float, top: float, width: float) -> Iterator[Control]:
-    """A key: its velocity at the press, and 0 when it is let go."""
+    """Add a key, which sends its velocity when pressed and 0 when released."""
     velocity = Partial(PartialType.VALUE, Conversion.FLOAT, "x", 0.0, layout.VELOCITY)
     yield py2tosc.button(
         name=key.name,
@@ -203,7 +209,7 @@ def _pages(group: Group) -> Iterator[Control]:
 
 
 def _strips(params: Sequence[Param]) -> list[Control]:
-    """Faders in rows, from the top left."""
+    """Add faders in rows, from the top left."""
     rows = 1 if len(params) <= COLUMNS else ROWS
     width, height = PAGE[0] / COLUMNS, PAGE[1] / rows
     return [
@@ -213,7 +219,7 @@ def _strips(params: Sequence[Param]) -> list[Control]:
 
 
 def _strip(param: Param, frame: tuple[float, float, float, float]) -> Control:
-    """Name, fader, value and range of one parameter."""
+    """Add name, fader, value and range of one parameter."""
     *_, width, height = frame
     inner = width - 2 * GAP
     script = SHOW.format(lo=param.lo, hi=param.hi, formula=FORMULAS[param.curve])

@@ -25,8 +25,8 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
         model[name] = getattr(bow, name)
     stiffness = bow.epsilon_0 + 2.0 * bow.epsilon_1 / k
     model["bristle_stiffness"], model["per_v_s"] = stiffness, 1.0 / bow.v_s
-    breakaway = bow.mu_C * (1.0 - np.array(bow.xi))
-    model["chi_slope"] = np.pi * bow.epsilon_0 / (stiffness * breakaway)
+    presliding_range = bow.mu_C * (1.0 - np.array(bow.xi))  # from z_ba to kinetic friction
+    model["chi_slope"] = np.pi / presliding_range
     M_h, K_h, R_h = bow.M_h, bow.K_h, bow.R_h
     model["M_h"], model["K_h"], model["R_h"] = M_h, K_h, R_h
     Lambda = 4.0 * M_h + k**2 * K_h + 2.0 * k * R_h
@@ -48,7 +48,10 @@ def friction_bound(model: np.void) -> float:
 
 @compiled
 def friction_limit(model: Model, F_N: float) -> float:
-    """Return a force that bristles and their damping never reach (N)."""
+    """Return a friction force (N) beyond what a bow force sustains.
+
+    Bristles that a larger bow force has bent may exceed it for some steps.
+    """
     return float(FRICTION_MARGIN * model.mu_S * abs(F_N))
 
 
@@ -77,10 +80,13 @@ def advance_hair(model: Model, zeta_next: Array, zeta: Array, zeta_prev: Array) 
 
 
 @compiled
-def hair_velocity(
+def contact_velocity(
     model: Model, c: Contacts, u_b: float, u_prev: Array, zeta_next: Array, zeta_prev: Array
 ) -> float:
-    """Return I_b delta_t. u + delta_t. zeta (m/s), where `u_b` (m) is I_b u^{n+1}."""
+    """Return I_b delta_t. u + delta_t. zeta (m/s), where `u_b` (m) is I_b u^{n+1}.
+
+    Less the bow's velocity it is v_r, the velocity of the string relative to the hair.
+    """
     i = c.string[BOW]
     travel = u_b - read(u_prev[i], c.first[BOW], c.weights[BOW])
     return float(0.5 * model.rate * (travel + zeta_next[i] - zeta_prev[i]))

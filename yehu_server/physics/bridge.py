@@ -1,6 +1,7 @@
 """The bridge: a bank of measured modes to which both strings are tied.
 
-[Yehu] eqs. (10)-(12) and (41)-(45), (59). Differs: C_q carries 4 k^2, and the modes'
+[Yehu] eqs. (10)-(12) and (41)-(45), (59). Differs: cubic interpolation at the bridge; C_q carries
+4 k^2, and the modes'
 stiffness is pre-warped so that each rings at its measured frequency (decisions/0002).
 """
 
@@ -62,7 +63,7 @@ def prepare_bridge(model: Any, quantities: Quantities) -> None:
 
 @compiled
 def set_bridge_compliance(model: Model) -> None:
-    """Write S_c of eq. (43), the compliance between modes and strings (m/N). Real time: safe."""
+    """Write S_c of eq. (45), the compliance between modes and strings (m/N). Real time: safe."""
     model.S_c[:] = model.C_q_sum
     for i in range(STRINGS):
         weights = model.bridge_weights[i]
@@ -97,8 +98,8 @@ def eliminate_tension_and_bridge(model: Model, s: Motion, w: Work, u_next: Array
     gap_1 = Q - read(u_next[0], first[0], weights[0]) - tau_1 * Delta_1
     gap_2 = Q - read(u_next[1], first[1], weights[1]) - tau_2 * Delta_2
 
-    # S_c, its diagonal lowered by tension. Its rows are multiplied by the pivots, so
-    # that no division waits for another.
+    # S_c, its diagonal lowered by tension, each row multiplied by its pivot (S_12 below by both),
+    # so that no division waits for another.
     S_11 = model.S_c[0, 0] * pivot_1 - model.tension_gain[0] * model.spread[0] * Delta_1 * Delta_1
     S_22 = model.S_c[1, 1] * pivot_2 - model.tension_gain[1] * model.spread[1] * Delta_2 * Delta_2
     S_12 = model.S_c[0, 1]
@@ -111,13 +112,13 @@ def eliminate_tension_and_bridge(model: Model, s: Motion, w: Work, u_next: Array
     f_1, f_2 = K_11 * gap_1 + K_12 * gap_2, K_12 * gap_1 + K_22 * gap_2
     w.f_c[0], w.f_c[1] = f_1, f_2
 
-    lead_1, lead_2 = tau_per_sum_1 * Delta_1, tau_per_sum_2 * Delta_2  # tau per newton of f_c
-    w.tau[0], w.tau[1] = tau_1 - lead_1 * f_1, tau_2 - lead_2 * f_2
-    w.K_tc[0, 0], w.K_tc[0, 1] = -lead_1 * K_11, -lead_1 * K_12
-    w.K_tc[1, 0], w.K_tc[1, 1] = -lead_2 * K_12, -lead_2 * K_22
-    w.K_tt[0, 0] = tau_per_sum_1 + lead_1 * lead_1 * K_11
-    w.K_tt[1, 1] = tau_per_sum_2 + lead_2 * lead_2 * K_22
-    w.K_tt[0, 1] = w.K_tt[1, 0] = lead_1 * K_12 * lead_2
+    lambda_1, lambda_2 = tau_per_sum_1 * Delta_1, tau_per_sum_2 * Delta_2  # -d tau / d f_c
+    w.tau[0], w.tau[1] = tau_1 - lambda_1 * f_1, tau_2 - lambda_2 * f_2
+    w.K_tc[0, 0], w.K_tc[0, 1] = -lambda_1 * K_11, -lambda_1 * K_12
+    w.K_tc[1, 0], w.K_tc[1, 1] = -lambda_2 * K_12, -lambda_2 * K_22
+    w.K_tt[0, 0] = tau_per_sum_1 + lambda_1 * lambda_1 * K_11
+    w.K_tt[1, 1] = tau_per_sum_2 + lambda_2 * lambda_2 * K_22
+    w.K_tt[0, 1] = w.K_tt[1, 0] = lambda_1 * K_12 * lambda_2
 
 
 @compiled

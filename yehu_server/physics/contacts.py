@@ -109,13 +109,13 @@ def response(c: Contacts, w: Work, q: int) -> Response:
 
 
 @compiled
-def compliance(model: Model, c: Contacts, w: Work, p: int, q: int, to_q: Response) -> float:
-    """Return G[p, q] (m/N): the displacement at `p` per newton at `q`, away from the force.
+def compliance(model: Model, c: Contacts, w: Work, p: int, q: int, q_response: Response) -> float:
+    """Return G[p, q] (m/N): -d(I_p u^{n+1}) / d f_q.
 
-    `to_q` is the `response` to one newton at `q`; ``Delta_u_at`` of both must be this step's.
+    `q_response` is the `response` to one newton at `q`; ``Delta_u_at`` of both must be this step's.
     """
     i = c.string[p]
-    tau, f_c = (to_q[0], to_q[2]) if i == 0 else (to_q[1], to_q[3])
+    tau, f_c = (q_response[0], q_response[2]) if i == 0 else (q_response[1], q_response[3])
     G = -w.Delta_u_at[p] * tau - c.bridge_coupling[p] * f_c
     if p == q:
         G += c.self_compliance[p]
@@ -135,7 +135,7 @@ def share_no_node(c: Contacts, p: int, q: int) -> bool:
 def move_strings(
     model: Model, s: Motion, c: Contacts, w: Work, u_next: Array, near: int, bowed: bool
 ) -> None:
-    """Add the displacement of all forces, known by now, to u^{n+1}: eqs. (30) and (59)."""
+    """Add the displacement of all forces, known by now, to u^{n+1}: eq. (30)."""
     move_by_tension(model, s, w, u_next)
     for i in range(STRINGS):
         force = model.spread[i] * w.f_c[i]

@@ -1,9 +1,9 @@
-"""Elimination of the fingers' forces, until only the bow's is unknown: [Yehu] eqs. (37)-(40).
+"""Elimination of the fingers' forces, until only the bow's is unknown.
 
-The contacts of one step are one linear system, (1 + A G) f = A travel + g Psi, whose right-hand
-side still depends on the friction force f_b. Fingers are eliminated first; friction is solved
-with the Schur complement that is left (friction.py); the fingers' forces follow by back
-substitution.
+The fingers' contacts are one linear system, (1 + A G) f = A travel + g Psi, G including the
+finger's own displacement C_f; its right-hand side still depends on the friction force f_b.
+Fingers are eliminated first, in place of [Yehu] eqs. (37)-(40); friction is solved with the Schur
+complement that is left (friction.py); the fingers' forces follow by back substitution.
 
 There are two ways through it. Mostly a finger shares nodes with its neighbours at most: apart
 from those, fingers act on each other only through tension and bridge, that is through two sums,
@@ -63,7 +63,7 @@ def find_travel(
     u_next: Array,
     next_: int,
     near: int,
-    to_bow: Response,
+    bow_response: Response,
     f_b: float,
     margin: float,
 ) -> bool:
@@ -76,9 +76,9 @@ def find_travel(
         for i in range(STRINGS):
             p = STRINGS * c.near[a] + i
             if c.is_chain:
-                w.bow_compliance[p] = -w.Delta_u_at[p] * to_bow[i]
+                w.bow_compliance[p] = -w.Delta_u_at[p] * bow_response[i]
             else:
-                w.bow_compliance[p] = compliance(model, c, w, p, BOW, to_bow)
+                w.bow_compliance[p] = compliance(model, c, w, p, BOW, bow_response)
             w.travel[p] = free_displacement(c, w, u_next, p) - s.U[next_, c.near[a]] - w.eta_prev[p]
             detaching |= may_detach(s, w, p, f_b, margin)
     return detaching
@@ -86,7 +86,7 @@ def find_travel(
 
 @compiled
 def eliminate_fingers(
-    model: Model, s: Motion, c: Contacts, w: Work, near: int, Q: Symmetric, to_bow: Response
+    model: Model, s: Motion, c: Contacts, w: Work, near: int, Q: Symmetric, bow_response: Response
 ) -> tuple[float, float]:
     """Eliminate the forces of all fingers, until only the bow's is unknown.
 
@@ -98,7 +98,7 @@ def eliminate_fingers(
         By how much they lower the compliance under the bow.
     """
     if c.is_chain:
-        return eliminate_chain(c, w, near, Q, to_bow)
+        return eliminate_chain(c, w, near, Q, bow_response)
     return eliminate_jointly(model, s, c, w, near)
 
 
@@ -139,10 +139,10 @@ def factor_fingers(model: Model, s: Motion, c: Contacts, w: Work, near: int) -> 
 
     A finger's forces are then W times what its contacts travel, plus ``f_0``; plus W times
     ``Delta_u_chain`` times tau, less W times ``previous_coupling`` times the next finger's
-    forces. This depends on u^n alone.
+    forces. While theta is 1 all of this is known before the strings' update.
 
-    Returns Q = B^T W B (N m), B being Delta u^n under the fingers: how the sums B^T f of each
-    string respond to tau.
+    Returns Q (N m), the sum of B^T W B over the fingers, B being Delta u^n under a finger with the
+    ones before it eliminated: how the sums B^T f of each string respond to tau.
     """
     C_f = model.C_f
     Q_11, Q_12, Q_22 = 0.0, 0.0, 0.0
@@ -177,7 +177,7 @@ def factor_fingers(model: Model, s: Motion, c: Contacts, w: Work, near: int) -> 
 
 @compiled
 def eliminate_chain(
-    c: Contacts, w: Work, near: int, Q: Symmetric, to_bow: Response
+    c: Contacts, w: Work, near: int, Q: Symmetric, bow_response: Response
 ) -> tuple[float, float]:
     """Eliminate fingers factored by `factor_fingers`; returns as `eliminate_fingers` does.
 
@@ -185,12 +185,12 @@ def eliminate_chain(
     """
     sum_1, sum_2 = substitute_forward(c, w, near)
     inverse = inverse_of_sums(Q, w.K_tt[0, 0], w.K_tt[0, 1], w.K_tt[1, 1])
-    return close_sums(w, Q, inverse, sum_1, sum_2, to_bow)
+    return close_sums(w, Q, inverse, sum_1, sum_2, bow_response)
 
 
 @compiled
 def substitute_forward(c: Contacts, w: Work, near: int) -> tuple[float, float]:
-    """Write each finger's forces as they are for tau = 0; return the sums B^T f (N m)."""
+    """Forward substitution of the fingers' forces for no change of tau; return the sums (N m)."""
     sum_1, sum_2 = 0.0, 0.0
     f_p, f_q = 0.0, 0.0
     for a in range(near):
@@ -209,7 +209,7 @@ def substitute_forward(c: Contacts, w: Work, near: int) -> tuple[float, float]:
 
 @compiled
 def inverse_of_sums(Q: Symmetric, K_11: float, K_12: float, K_22: float) -> Matrix:
-    """Return (1 - Q K_tt)^-1, which turns sums for tau = 0 into those with tension following."""
+    """Return (1 - Q K_tt)^-1, which lets tension follow the sums."""
     Q_11, Q_12, Q_22 = Q
     a_11, a_12 = 1.0 - (Q_11 * K_11 + Q_12 * K_12), Q_11 * K_12 + Q_12 * K_22
     a_21, a_22 = Q_12 * K_11 + Q_22 * K_12, 1.0 - (Q_12 * K_12 + Q_22 * K_22)
@@ -224,26 +224,32 @@ def inverse_of_sums(Q: Symmetric, K_11: float, K_12: float, K_22: float) -> Matr
 
 @compiled
 def close_sums(
-    w: Work, Q: Symmetric, inverse: Matrix, sum_1: float, sum_2: float, to_bow: Response
+    w: Work, Q: Symmetric, inverse: Matrix, sum_1: float, sum_2: float, bow_response: Response
 ) -> tuple[float, float]:
     """Let tension and bridge follow the fingers' sums; returns as `eliminate_fingers` does."""
     Q_11, Q_12, Q_22 = Q
     i_11, i_12, i_21, i_22 = inverse
     K_11, K_12, K_22 = w.K_tt[0, 0], w.K_tt[0, 1], w.K_tt[1, 1]
-    bow_1, bow_2 = to_bow[0], to_bow[1]
-    more_1, more_2 = Q_11 * bow_1 + Q_12 * bow_2, Q_12 * bow_1 + Q_22 * bow_2  # for each newton
+    bow_1, bow_2 = bow_response[0], bow_response[1]
+    sum_1_per_f_b, sum_2_per_f_b = (
+        Q_11 * bow_1 + Q_12 * bow_2,
+        Q_12 * bow_1 + Q_22 * bow_2,
+    )  # for each newton
     sum_1, sum_2 = i_11 * sum_1 + i_12 * sum_2, i_22 * sum_2 + i_21 * sum_1
-    more_1, more_2 = i_11 * more_1 + i_12 * more_2, i_22 * more_2 + i_21 * more_1
+    sum_1_per_f_b, sum_2_per_f_b = (
+        i_11 * sum_1_per_f_b + i_12 * sum_2_per_f_b,
+        i_22 * sum_2_per_f_b + i_21 * sum_1_per_f_b,
+    )
     tau_1, tau_2 = K_11 * sum_1 + K_12 * sum_2, K_12 * sum_1 + K_22 * sum_2
     w.tau_fingers[0], w.tau_fingers[1] = tau_1, tau_2
     w.tau[0] += tau_1
     w.tau[1] += tau_2
-    w.tau_per_newton[0] += K_11 * more_1 + K_12 * more_2
-    w.tau_per_newton[1] += K_12 * more_1 + K_22 * more_2
+    w.tau_per_newton[0] += K_11 * sum_1_per_f_b + K_12 * sum_2_per_f_b
+    w.tau_per_newton[1] += K_12 * sum_1_per_f_b + K_22 * sum_2_per_f_b
     for i in range(STRINGS):
         w.f_c[i] += w.K_tc[0, i] * sum_1 + w.K_tc[1, i] * sum_2
-        w.f_c_per_newton[i] += w.K_tc[0, i] * more_1 + w.K_tc[1, i] * more_2
-    return -(bow_1 * sum_1 + bow_2 * sum_2), bow_1 * more_1 + bow_2 * more_2
+        w.f_c_per_newton[i] += w.K_tc[0, i] * sum_1_per_f_b + w.K_tc[1, i] * sum_2_per_f_b
+    return -(bow_1 * sum_1 + bow_2 * sum_2), bow_1 * sum_1_per_f_b + bow_2 * sum_2_per_f_b
 
 
 @compiled
@@ -289,10 +295,10 @@ def assemble_contacts(model: Model, s: Motion, c: Contacts, w: Work, near: int) 
     w.touching_count = count
     for row in range(count):
         p = w.touching[row]
-        to_p = response(c, w, p)
+        p_response = response(c, w, p)
         for column in range(row + 1):
             q = w.touching[column]
-            G = compliance(model, c, w, q, p, to_p)
+            G = compliance(model, c, w, q, p, p_response)
             if p // STRINGS == q // STRINGS:
                 G += model.C_f
             w.G[column, row] = G
@@ -309,7 +315,7 @@ def eliminate_jointly(
     """
     assemble_contacts(model, s, c, w, near)
     count = w.touching_count
-    displacement, stiffening = 0.0, 0.0
+    displacement, compliance_reduction = 0.0, 0.0
     for row in range(count):
         per_pivot = 1.0 / (1.0 + w.A_f[row] * w.G[row, row])
         d, A_f = w.d[row] * per_pivot, w.A_f[row] * per_pivot
@@ -321,8 +327,8 @@ def eliminate_jointly(
                 w.G[other, column] -= A_f * G * w.G[row, column]
         G = w.G[row, count]
         displacement += G * d
-        stiffening += G * G * A_f
-    return displacement, stiffening
+        compliance_reduction += G * G * A_f
+    return displacement, compliance_reduction
 
 
 @compiled
@@ -338,7 +344,7 @@ def back_substitute_jointly(
             displacement += w.G[row, other] * w.f_f[w.touching[other]]
         f_f = w.d[row] - w.A_f[row] * displacement
         advance_contact(model, s, w, next_, p, f_f)
-        to_p = response(c, w, p)
+        p_response = response(c, w, p)
         for i in range(STRINGS):
-            w.tau[i] += to_p[i] * f_f
-            w.f_c[i] += to_p[STRINGS + i] * f_f
+            w.tau[i] += p_response[i] * f_f
+            w.f_c[i] += p_response[STRINGS + i] * f_f

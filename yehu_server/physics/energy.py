@@ -8,7 +8,7 @@ to convergence, which other tests hold.
 from __future__ import annotations
 
 from yehu_server.jit import compiled
-from yehu_server.physics.bow import hair_velocity
+from yehu_server.physics.bow import contact_velocity
 from yehu_server.physics.layout import BOW, F_HAMMER, F_N, GHOST, LEVELS, MAX_MODES, STRINGS, V_B
 from yehu_server.physics.pluck import pluck_power
 from yehu_server.physics.records import Array, Contacts, Model, Motion, Work
@@ -86,7 +86,7 @@ def book(model: Model, s: Motion, c: Contacts, w: Work, control: Array, row: Arr
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     # Read back from the grid, not taken from the solver.
     u_b = read(s.u[next_, c.string[BOW]], c.first[BOW], c.weights[BOW])
-    v_r = hair_velocity(model, c, u_b, s.u[prev], s.zeta[next_], s.zeta[prev]) - control[V_B]
+    v_r = contact_velocity(model, c, u_b, s.u[prev], s.zeta[next_], s.zeta[prev]) - control[V_B]
 
     strings, hair, bridge, finger = 0.0, 0.0, 0.0, 0.0
     for i in range(STRINGS):

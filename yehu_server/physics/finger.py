@@ -73,7 +73,7 @@ def limited_gradient(ghat: float, Psi: float, travel: float) -> float:
     Psi : float, sqrt(J)
         Not negative, and zero where nothing is penetrated.
     travel : float, m
-        eta* - eta^{n-1}, the change of penetration over two steps without contacts.
+        eta* - eta^{n-1}, the change of penetration over two steps without the fingers' forces.
     """
     if 4.0 * Psi + ghat * travel < 0.0:
         return -4.0 * Psi / travel
@@ -90,8 +90,8 @@ def advance_fingers(
     """
     near, c.near_set = 0, 0
     x_f, u_1, u_2 = -1.0, 0.0, 0.0
-    for k in range(model.fingers):
-        j = c.order[k]
+    for place in range(model.fingers):
+        j = c.order[place]
         press = control[FINGER_CONTROLS + CONTROLS_PER_FINGER * j + 1]
         U = s.U[now, j]
         if s.resting[j] and press <= 0.0:

@@ -1,6 +1,6 @@
-"""Elasto-plastic friction between hair and string: [Yehu] eqs. (13)-(20), (25), (46)-(53).
+"""Elasto-plastic friction between hair and string: [Yehu] eqs. (13)-(20), (25), (46)-(49).
 
-Differs: instead of a Newton iteration in two unknowns, which diverges under an
+Differs: instead of the Newton iteration in two unknowns of (51)-(53), which diverges under an
 alternating bow force, one scalar equation in the relative velocity is solved within a
 bracket (decisions/0001).
 Derivation: docs/derivation.md, section 6.
@@ -56,7 +56,7 @@ def bristle_residual(
         r - z_dot, its first and half its second derivative by v_r.
     by_z : float, 1/s
         The partial derivative of r by z_bar.
-    room, room_slope : float, m and s
+    below_z_ss, below_z_ss_slope : float, m, s
         |z_ss| - |z_bar|, at zero of which the curve has a corner, and its derivative by v_r.
 
     Real time: safe. Source: [Yehu] eqs. (16)-(20).
@@ -68,18 +68,21 @@ def bristle_residual(
     side = math.copysign(1.0, z)  # and of v_r
     deflection, dz = abs(z), side * dz
     steepness = m.per_v_s * m.per_v_s
-    gap = m.mu_S - m.mu_C
-    stribeck = deflection_at_1 * gap * power_of_2(v_r * v_r * (-PER_LN_2 * steepness))
+    mu_range = m.mu_S - m.mu_C
+    stribeck = deflection_at_1 * mu_range * power_of_2(v_r * v_r * (-PER_LN_2 * steepness))
     z_ss = deflection_at_1 * m.mu_C + stribeck  # |z_ss|, eq. (17)
-    fall = -2.0 * v_r * steepness
-    dz_ss, ddz_ss = fall * stribeck, (fall * fall - 2.0 * steepness) * stribeck
+    dlog_stribeck = -2.0 * v_r * steepness
+    dz_ss, ddz_ss = (
+        dlog_stribeck * stribeck,
+        (dlog_stribeck * dlog_stribeck - 2.0 * steepness) * stribeck,
+    )
     per_z_ss = 1.0 / z_ss
     ratio = deflection * per_z_ss
     dratio = (dz - ratio * dz_ss) * per_z_ss
     ddratio = (-2.0 * dratio * dz_ss - ratio * ddz_ss) * per_z_ss
-    room, room_slope = z_ss - deflection, dz_ss - dz
+    below_z_ss, below_z_ss_slope = z_ss - deflection, dz_ss - dz
     per_width, sine, cosine, dangle, ddangle = 0.0, 1.0, 0.0, 0.0, 0.0
-    if room > 0.0:
+    if below_z_ss > 0.0:
         per_width = 1.0 / (stribeck + (deflection_at_1 * m.mu_C - z_ba))
         half_turns = (deflection - 0.5 * (z_ss + z_ba)) * per_width
         sine, cosine = sine_and_cosine(half_turns)
@@ -95,7 +98,7 @@ def bristle_residual(
     curve = -0.5 * (turn * dangle) - (dangle * dhalf + 0.5 * (half * ddangle)) * cosine
     curve += 0.5 * (turn * dangle - dratio - 0.5 * (v_r * ddratio)) * rise
     by_z = -0.5 * abs(v_r) * (math.pi * ratio * per_width * cosine + per_z_ss * rise)
-    return residual, slope, curve, by_z, room, room_slope
+    return residual, slope, curve, by_z, below_z_ss, below_z_ss_slope
 
 
 @compiled
@@ -139,31 +142,35 @@ def solve_elastic(
     if not is_elastic(load, divisor * z + load * half_k, divisor * z_ba):
         return False, False, 0.0, 0.0, 0.0, start
     damped = mobility * m.epsilon_1 * per_divisor
-    lost = one_minus_inverse_root((load * (per_divisor * per_gamma)) ** 2)
-    v_r = start + start * damped * lost
-    f_b = (free - start) * per_mobility - start * (damped * per_mobility) * lost
+    damping_lost = one_minus_inverse_root((load * (per_divisor * per_gamma)) ** 2)
+    v_r = start + start * damped * damping_lost
+    f_b = (free - start) * per_mobility - start * (damped * per_mobility) * damping_lost
     z_bar = z + v_r * half_k
     # What is left is below 4 |v_r| damped^2: a hundredth of the tolerance is as good as exact.
-    damped *= lost
+    damped *= damping_lost
     exact = 400.0 * abs(start) * damped * damped <= TOLERANCE and is_elastic(v_r, z_bar, z_ba)
     return True, exact, f_b, z_bar, v_r, start
 
 
 @compiled
 def start_at_tangent(free: float, mobility: float, z: float, tangent: Tangent, m: Model) -> float:
-    """Return the v_r (m/s) at which the last step's tangent of the law meets this step's line."""
-    rate = 2.0 * m.rate
+    """Return the v_r (m/s) where the last step's tangent of the law meets this step's eq. (49)."""
+    two_per_k = 2.0 * m.rate
     t_0, t_v, t_z = tangent
-    per_z = m.bristle_stiffness / (rate - t_z)
-    v_r = free + mobility * (rate * m.epsilon_1 * z - per_z * (t_0 + rate * z))
-    return float(v_r * (1.0 / (1.0 + mobility * (per_z * t_v))))
+    f_b_per_r = m.bristle_stiffness / (two_per_k - t_z)
+    v_r = free + mobility * (two_per_k * m.epsilon_1 * z - f_b_per_r * (t_0 + two_per_k * z))
+    return float(v_r * (1.0 / (1.0 + mobility * (f_b_per_r * t_v))))
 
 
 @compiled
 def bracket(
     free: float, mobility: float, z: float, deflection_at_1: float, m: Model
 ) -> tuple[float, float, float]:
-    """Return velocities (m/s) between which the equation changes sign, and |z_bar| there (m)."""
+    """Return velocities (m/s) between which the equation changes sign, and a limit (m).
+
+    |z_bar| reaches that limit at both; it exceeds it where epsilon_1 falls off with v_r, by 0.06 %
+    with the measured epsilon_1.
+    """
     epsilon_0, damping = m.epsilon_0, 2.0 * m.rate * m.epsilon_1
     limit = max(1.2 * m.mu_S * deflection_at_1, abs(z))
     low = free - mobility * (epsilon_0 * limit + damping * (limit - z))
@@ -173,18 +180,18 @@ def bracket(
 
 @compiled
 def eliminate_z_bar(
-    v_r: float, at_rest: float, per_mobility: float, per_gamma_2: float, m: Model
+    v_r: float, force_at_rest: float, per_mobility: float, per_gamma_2: float, m: Model
 ) -> tuple[float, float]:
     """Return z_bar - z (m) and its derivative by v_r (s), from eqs. (25), (46), (49).
 
-    `at_rest` (N) is the friction force at v_r = 0 less the bristles' spring force epsilon_0 z.
+    `force_at_rest` (N) is f_b of (49) at v_r = 0, less the bristles' spring force epsilon_0 z.
     """
     damping = 2.0 * m.rate * m.epsilon_1
-    lost = one_minus_inverse_root(v_r * v_r * per_gamma_2)
-    per_stiffness = 1.0 / (m.bristle_stiffness - damping * lost)
-    moved = (at_rest - v_r * per_mobility) * per_stiffness
-    dlost = (1.0 - lost) ** 3 * per_gamma_2 * v_r
-    return moved, (moved * damping * dlost - per_mobility) * per_stiffness
+    damping_lost = one_minus_inverse_root(v_r * v_r * per_gamma_2)
+    per_stiffness = 1.0 / (m.bristle_stiffness - damping * damping_lost)
+    z_change = (force_at_rest - v_r * per_mobility) * per_stiffness
+    ddamping_lost = (1.0 - damping_lost) ** 3 * per_gamma_2 * v_r
+    return z_change, (z_change * damping * ddamping_lost - per_mobility) * per_stiffness
 
 
 @compiled
@@ -232,7 +239,7 @@ def solve_friction(
 
     Real time: safe; at most 100 evaluations of the law.
     """
-    rate = 2.0 * m.rate
+    two_per_k = 2.0 * m.rate
     per_F_N, per_mobility = 1.0 / F_N, 1.0 / mobility
     per_gamma = m.epsilon_1 / m.mu_C * per_F_N  # gamma of eq. (25)
     per_gamma_2 = per_gamma * per_gamma
@@ -250,20 +257,22 @@ def solve_friction(
     per_v, jerk = bound_third_derivative(m, string, mobility, F_N, limit)
     # Half the largest part of epsilon_1(v_r) in the second derivative of z_bar, times rate.
     fastest = max(high, -low)
-    sag = rate * m.epsilon_1 * rate * (limit + per_mobility * fastest / m.epsilon_0)
-    sag *= per_gamma_2 / m.epsilon_0
+    damping_curve = (
+        two_per_k * m.epsilon_1 * two_per_k * (limit + per_mobility * fastest / m.epsilon_0)
+    )
+    damping_curve *= per_gamma_2 / m.epsilon_0
 
     iterations = 0
     converged = False
     f_b, z_bar, r, slope, by_z, dz = 0.0, z, 0.0, 1.0, 0.0, 0.0
-    at_rest = free * per_mobility - m.epsilon_0 * z
+    force_at_rest = free * per_mobility - m.epsilon_0 * z
     while True:
         iterations += 1
-        moved, dz = eliminate_z_bar(v_r, at_rest, per_mobility, per_gamma_2, m)
-        z_bar = z + moved
-        r = rate * moved
-        residual, slope, curve, by_z, room, room_slope = bristle_residual(
-            v_r, (z_bar, dz), (r, rate * dz), z_ba, deflection_at_1, m
+        z_change, dz = eliminate_z_bar(v_r, force_at_rest, per_mobility, per_gamma_2, m)
+        z_bar = z + z_change
+        r = two_per_k * z_change
+        residual, slope, curve, by_z, below_z_ss, below_z_ss_slope = bristle_residual(
+            v_r, (z_bar, dz), (r, two_per_k * dz), z_ba, deflection_at_1, m
         )
         f_b = (free - v_r) * per_mobility  # eq. (49)
         if abs(residual) <= TOLERANCE * max(1.0, abs(r)):
@@ -280,10 +289,14 @@ def solve_friction(
         step = -residual * slope / max(slope_2 - residual * curve, 0.5 * slope_2)
         reached = v_r + step
         is_inside = low < reached < high
-        left = curve * curve * abs(residual)
-        left += (jerk * (1.0 + abs(v_r) * per_v) * abs(step) + sag) * slope_2
-        left *= step * step
-        if is_inside and left <= TOLERANCE * slope_2 and room * (room + room_slope * step) > 0.0:
+        error_bound = curve * curve * abs(residual)
+        error_bound += (jerk * (1.0 + abs(v_r) * per_v) * abs(step) + damping_curve) * slope_2
+        error_bound *= step * step
+        if (
+            is_inside
+            and error_bound <= TOLERANCE * slope_2
+            and below_z_ss * (below_z_ss + below_z_ss_slope * step) > 0.0
+        ):
             was_elastic = is_elastic(v_r, z_bar, z_ba)
             v_r, z_bar = reached, z_bar + step * dz
             if is_elastic(v_r, z_bar, z_ba) == was_elastic:  # else a corner of the law is between
@@ -300,6 +313,6 @@ def solve_friction(
                 converged = abs(residual) <= 1e3 * TOLERANCE * max(1.0, abs(r))
                 break
         v_r = reached
-    by_v = slope + (rate - by_z) * dz
-    tangent = rate * (z_bar - z) - by_v * v_r - by_z * z_bar, by_v, by_z
+    by_v = slope + (two_per_k - by_z) * dz
+    tangent = two_per_k * (z_bar - z) - by_v * v_r - by_z * z_bar, by_v, by_z
     return f_b, z_bar, v_r, tangent, iterations, converged

@@ -15,8 +15,8 @@ from yehu_server.jit import compiled
 from yehu_server.physics.bow import (
     advance_hair,
     choose_string,
+    contact_velocity,
     friction_limit,
-    hair_velocity,
     prepare_bow,
 )
 from yehu_server.physics.bridge import (
@@ -74,7 +74,7 @@ from yehu_server.physics.records import Array, Model, Records, State
 from yehu_server.physics.stencil import read
 from yehu_server.physics.string import (
     advance_strings,
-    most_loss,
+    max_stable_sigma_1,
     prepare_strings,
     set_string_weights,
     support,
@@ -130,7 +130,7 @@ def retune(
     Real time: safe.
     """
     m = model[0]
-    set_string_weights(m, i, T, sigma_0, min(sigma_1, most_loss(m, i, T)))
+    set_string_weights(m, i, T, sigma_0, min(sigma_1, max_stable_sigma_1(m, i, T)))
     set_tension_gain(m, i)
     set_bridge_compliance(m)
     state[0].contacts.placed = 0  # their compliances depend on the tension
@@ -194,13 +194,13 @@ def step(m: Model, state: State, control: Array, next_: int, now: int, prev: int
     u_next, u, u_prev = s.u[next_], s.u[now], s.u[prev]
     w.dropped_z, w.dropped_Psi = 0.0, 0.0
 
-    # Strings and modes free of contacts, eq. (58), then tied together, eqs. (43)-(45).
+    # Strings and modes without forces, eqs. (58) and (42), then tied together, eqs. (43)-(45).
     advance_strings(m, s, w, u_next, u, u_prev)
     pluck(m, s, c, w, control, u_next)
     q_sum = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
     eliminate_tension_and_bridge(m, s, w, u_next, q_sum)
 
-    # Where the contacts are; fingers free of forces, eq. (58). Factored while the strings move.
+    # Places of the contacts; fingers without forces, eq. (58). Independent of the strings' update.
     string, bowed = choose_string(m, s, c, w, control[F_N])
     moved, were_near = place_contacts(m, c, control, string), c.near_set
     near = advance_fingers(m, s, c, w, control, next_, now, prev)
@@ -208,16 +208,16 @@ def step(m: Model, state: State, control: Array, next_: int, now: int, prev: int
         find_shared_nodes(m, c, near)
     Q = factor_fingers(m, s, c, w, near)
 
-    # The bow, eqs. (46)-(53), and the fingers, eqs. (33)-(40).
+    # The bow, eqs. (46)-(49), and the fingers, eqs. (33)-(36).
     w.Delta_u_at[BOW] = read(s.Delta_u[string], c.first[BOW], c.weights[BOW])
-    to_bow = response(c, w, BOW)
+    bow_response = response(c, w, BOW)
     advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
     u_b = free_displacement(c, w, u_next, BOW)
-    free = hair_velocity(m, c, u_b, u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
-    mobility = 0.5 * m.rate * (compliance(m, c, w, BOW, BOW, to_bow) + m.C_h)
+    free = contact_velocity(m, c, u_b, u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
+    mobility = 0.5 * m.rate * (compliance(m, c, w, BOW, BOW, bow_response) + m.C_h)
     for i in range(STRINGS):
-        w.tau_per_newton[i], w.f_c_per_newton[i] = to_bow[i], to_bow[STRINGS + i]
-    solve_contacts(m, state, control, u_next, next_, near, Q, to_bow, bowed, free, mobility)
+        w.tau_per_newton[i], w.f_c_per_newton[i] = bow_response[i], bow_response[STRINGS + i]
+    solve_contacts(m, state, control, u_next, next_, near, Q, bow_response, bowed, free, mobility)
 
     # All that the forces move: eqs. (30), (59), (60).
     s.zeta[next_, string] -= m.C_h * s.f_b
@@ -236,7 +236,7 @@ def solve_contacts(
     next_: int,
     near: int,
     Q: Symmetric,
-    to_bow: Response,
+    bow_response: Response,
     bowed: bool,
     free: float,
     mobility: float,
@@ -247,10 +247,10 @@ def solve_contacts(
     ----------
     near : int
         Number of fingers that may touch a string.
-    Q, to_bow
+    Q, bow_response
         Of `factor_fingers`, and of `response` to the bow.
     free : float, m/s
-        Velocity of hair on string without friction and without fingers.
+        Velocity of string on hair without friction and without fingers.
     mobility : float, m/s/N
         How much a newton of friction slows it, without fingers.
     """
@@ -262,16 +262,16 @@ def solve_contacts(
         # theta depends on the friction force, and that on the contacts. Mostly theta is 1 for
         # any friction; else it is found with the friction on a string that no finger touches.
         f_b, margin = (s.f_b, abs(s.f_b) + friction_limit(m, force)) if bowed else (0.0, 0.0)
-        if find_travel(m, s, c, w, u_next, next_, near, to_bow, f_b, margin):
+        if find_travel(m, s, c, w, u_next, next_, near, bow_response, f_b, margin):
             if bowed:
                 f_b, _, _, tangent, iterations, _ = solve_friction(
                     free, mobility, s.z[string], force, tangent, m, string
                 )
             limit_gradients(s, c, w, near, f_b)
             Q = factor_fingers(m, s, c, w, near)
-        displacement, stiffening = eliminate_fingers(m, s, c, w, near, Q, to_bow)
+        displacement, compliance_reduction = eliminate_fingers(m, s, c, w, near, Q, bow_response)
         free -= 0.5 * m.rate * displacement
-        mobility -= 0.5 * m.rate * stiffening
+        mobility -= 0.5 * m.rate * compliance_reduction
         f_b, v_r = 0.0, free
     if bowed:
         f_b, z_bar, v_r, tangent, again, converged = solve_friction(

@@ -27,7 +27,7 @@ def prepare_strings(model: Any, quantities: Quantities) -> None:
 def set_string_weights(model: Model, i: int, T: float, sigma_0: float, sigma_1: float) -> None:
     """Write the scheme's weights for a tension (N) and losses, both sides divided by A_s.
 
-    The grid stays as it is, and must be stable at the tension (see `most_loss`).
+    The grid stays as it is, and must be stable at the tension (see `max_stable_sigma_1`).
     Real time: safe. Source: [Yehu] eqs. (27), (31), (32).
     """
     k, h, rho_A, EI = model.k, model.h[i], model.rho_A[i], model.EI[i]
@@ -46,7 +46,7 @@ def set_string_weights(model: Model, i: int, T: float, sigma_0: float, sigma_1: 
 
 
 @compiled
-def most_loss(model: Model, i: int, T: float) -> float:
+def max_stable_sigma_1(model: Model, i: int, T: float) -> float:
     """Return the largest sigma_1 (m^2/s) that is stable at a tension (N), by eq. (57)."""
     k, h_squared = model.k, model.h[i] ** 2
     rho_A = model.rho_A[i]
@@ -86,7 +86,7 @@ def advance_nodes(
     B: Array,
     C: Array,
 ) -> tuple[float, float, float, float]:
-    """Advance two stiff strings by one sample, free of contact forces: u* of eq. (58).
+    """Advance two stiff strings by one sample, without forces: the first two terms of eq. (58).
 
     Both in one loop, so that the sums of both are computed in parallel.
 

@@ -8,7 +8,7 @@ is quadratised as the contacts' are. The change of tension
 is implicit, and has one solution. It moves the whole string by one multiple, tau, of the second
 difference Delta u^n:
 
-    tau = spread/h T' = -gain <Delta u^n, u^{n+1} + u^{n-1}>,
+    tau = spread/h T' = -gain Delta u^n . (u^{n+1} + u^{n-1}),    . being the plain sum over nodes,
 
 so that every force on the string changes tau, and tau every displacement that is read before
 the step's end (contacts.py).
@@ -35,7 +35,7 @@ def prepare_tension(model: Any, quantities: Quantities) -> None:
 
 @compiled
 def set_tension_gain(model: Model, i: int) -> None:
-    """Write tau per <Delta u^n, u> (1/m^2). Real time: safe."""
+    """Write gain, -tau per Delta u^n . u (1/m^2). Real time: safe."""
     model.tension_gain[i] = model.stretch_stiffness[i] * model.spread[i] / model.h[i]
 
 
@@ -46,11 +46,11 @@ def eliminate_tension(model: Model, w: Work, i: int) -> tuple[float, float, floa
     Returns
     -------
     tau : float
-        What it is without other forces.
+        Without other forces.
     tau_per_sum : float, 1/(N m)
         How it responds to the sum of the forces on the string times Delta u^n under them.
     pivot : float
-        1 + gain <Delta u^n, Delta u^n>, by which both have been divided.
+        1 + gain Delta u^n . Delta u^n, by which both have been divided.
     """
     pivot = 1.0 + model.tension_gain[i] * w.Delta_u_squared[i]
     weight = model.tension_gain[i] / pivot

@@ -10,37 +10,32 @@ from __future__ import annotations
 import contextlib
 import gc
 import logging
-import math
 import sys
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from platformdirs import user_music_path
 
 from yehu_server.audio.output import Output, OutputOptions
-from yehu_server.audio.recorder import Recorder
+from yehu_server.audio.takes import Takes
 from yehu_server.control.addresses import Address, Allowed
 from yehu_server.control.announce import Announcer, announced
 from yehu_server.control.calls import Call, own_calls, preset_calls
+from yehu_server.control.mapping_follower import MappingFollower
 from yehu_server.control.osc import OscHandler
 from yehu_server.control.peers import WebTraffic
 from yehu_server.control.ports import MidiOptions, MidiPorts
 from yehu_server.control.sockets import OscPorts
+from yehu_server.control.status import StatusSources, read_status
+from yehu_server.control.troubles import Troubles
 from yehu_server.control.web import Sources, WebOptions, WebServer
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
-from yehu_server.errors import MappingError, OutputError
-from yehu_server.files import (
-    anything,
-    check_free,
-    check_target,
-    inside,
-    nothing,
-    shipped_folder,
-)
+from yehu_server.files import anything, check_free, check_target, nothing, shipped_folder
 from yehu_server.lasting import keep_on
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress
@@ -48,14 +43,12 @@ from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.delay import Delay
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.mapping_watch import MappingWatch
 from yehu_server.playing.style import Style
-from yehu_server.score.capture import CaptureWriter
+from yehu_server.score.live_capture import LiveCapture
 
 log = logging.getLogger(__name__)
 
 KEEP_EVERY_S = 0.05
-LOOK_EVERY_S = 0.5  # at the mapping's files
 FADE_MS = 50.0  # after the notes' release
 # Short turns for Python's threads, so that handlers are not late when one is busy.
 SWITCH_INTERVAL_S = 0.0001
@@ -137,24 +130,23 @@ class Server:
             for address, value in options.style.settings:
                 self.player.hold(address, value)
             undo.pop_all()
-        self._take: Recorder | None = None  # of the command; it ends with the server
-        self._recorder: Recorder | None = None  # of whoever asked for it by OSC
-        self._capture: CaptureWriter | None = None
-        self._lost_capture = False
+        self.takes = Takes(self.instrument, options.recordings, said)
+        self._capture: LiveCapture | None = None
         self.is_interruptible = False  # whether an exception may cut `stop` short just now
         self._hurry = threading.Event()
         self.midi = MidiPorts(self.player, options.midi, said) if options.midi else None
-        self._watch = (
-            MappingWatch(options.style.mapping, options.reread) if options.reread else None
-        )
-        self._next_look = 0.0
+        self._follower: MappingFollower | None = None
+        if options.reread is not None:
+            changed = partial(self.tree_changed, "/")
+            self._follower = MappingFollower(self.player, options.reread, changed, said)
         services = announced(self.osc, self.web, options.announce)
         self._announcer = Announcer(services, said) if services else None
+        ways_in = (self.osc, self.web, self._announcer, self.midi)
+        self._ways_in = [way for way in ways_in if way is not None]
         self._ending = threading.Event()
-        self._keeper = threading.Thread(target=self._keep, name="keeper", daemon=True)
-        self._rests = 0
-        self._unreported = 0
-        self._troubles: dict[str, int] = {}
+        self._troubles = Troubles(said)
+        keep = (self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", said)
+        self._keeper = threading.Thread(target=keep_on, args=keep, name="keeper", daemon=True)
 
     def start(self) -> None:
         """Begin to play.
@@ -165,40 +157,32 @@ class Server:
         gc.collect()
         gc.freeze()  # what is loaded by now stays: later collections need not look at it
         with contextlib.ExitStack() as undo:
-            undo.callback(self.osc.stop)
-            if self.web is not None:
-                undo.callback(self.web.stop)
+            undo.callback(self._close_ways_in)
             undo.callback(self.output.end)
             self.output.begin(self.instrument)
             if self.options.capture is not None:
-                self._capture = CaptureWriter(
+                self._capture = LiveCapture(
+                    self.instrument,
                     self.options.capture,
-                    rate=self.instrument.rate,
-                    seed=self.options.style.seed,
-                    tensions=[silk.T for silk in self.instrument.quantities.strings],
+                    self.options.style.seed,
+                    self._said,
                     overwrite=self.options.overwrite,
                 )
                 undo.callback(self._capture.discard)
             if self.options.record is not None:
-                self._take = Recorder(
-                    self.instrument,
-                    self.options.record,
-                    0,
-                    self._said,
-                    overwrite=self.options.overwrite,
-                )
+                self.takes.record_everything(self.options.record, overwrite=self.options.overwrite)
             undo.pop_all()
-        self.osc.start()
-        if self.web is not None:
-            self.web.start()
-        if self._announcer is not None:
-            self._announcer.start()
-        if self.midi is not None:
-            self.midi.start()
+        for way in self._ways_in:
+            way.start()
         self._keeper.start()
 
     def stop(self) -> None:
-        """End all notes, let them fade, close everything; the takes whatever else fails."""
+        """End all notes, let them fade, close everything; the takes whatever else fails.
+
+        Called again, it does nothing.
+        """
+        if self._ending.is_set():
+            return
         try:
             self.is_interruptible = True
             self._end_playing()
@@ -206,7 +190,9 @@ class Server:
             self.is_interruptible = False
             self._ending.set()
             self._keeper.join()
-            self._close_takes()
+            if self._capture is not None:
+                self._capture.close()
+            self.takes.close()
 
     def hurry(self) -> None:
         """Let `stop` not wait for what fades; any thread may call, and a signal's handler."""
@@ -215,35 +201,19 @@ class Server:
     @property
     def kept_all(self) -> bool:
         """Whether nothing is missing in what the command was to record and to capture."""
-        return not self._lost_capture and (self._take is None or self._take.is_whole)
+        return self.takes.is_whole and (self._capture is None or self._capture.is_whole)
+
+    def _close_ways_in(self) -> None:
+        for way in reversed(self._ways_in):
+            way.stop()
 
     def _end_playing(self) -> None:
-        if self.midi is not None:
-            self.midi.stop()
-        if self._announcer is not None:
-            self._announcer.stop()
-        if self.web is not None:
-            self.web.stop()
-        self.osc.stop()
+        self._close_ways_in()
         frame = self.player.frame_of()
         self.player.end_notes(frame=frame)
         fade_ms = self.player.value("/playing/release") + FADE_MS
         self._wait_for(frame + self.instrument.frames(fade_ms))
         self.output.end()
-
-    def _close_takes(self) -> None:
-        if self._capture is not None:
-            self._write_capture(self._capture)
-        capture, self._capture = self._capture, None
-        if capture is not None:
-            try:
-                capture.close(self.instrument.frame)
-            except OutputError as error:
-                self._lose_capture(error)
-        for recorder in (self._take, self._recorder):
-            if recorder is not None:
-                recorder.stop()
-                self._tell_of(recorder)
 
     def _wait_for(self, frame: int) -> None:
         """Until a frame is played, the clock stands still, or somebody is in a hurry."""
@@ -254,194 +224,64 @@ class Server:
 
     # -- what is kept beside playing -----------------------------------------------------------
 
-    def _keep(self) -> None:
-        keep_on(self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", self._said)
-
     def _keep_up(self) -> None:
-        self._follow_device()
-        if self._capture is not None:
-            self._write_capture(self._capture)
-        self._report_troubles()
-        if self._watch is not None and time.monotonic() >= self._next_look:
-            self._next_look = time.monotonic() + LOOK_EVERY_S
-            self._look_at(self._watch)
-
-    def _follow_device(self) -> None:
-        """Let the delay of what arrives be as long as the device's period asks for."""
         self._delay.look()
-        self.player.delay = self._delay.frames
-
-    def _look_at(self, watch: MappingWatch) -> None:
-        """Take up the mapping if its files have changed and are right."""
-        try:
-            mapping = watch.look()
-        except MappingError as error:
-            self._said(f"{error}; the mapping stays as it was")
-            return
-        if mapping is not None:
-            self.player.remap(mapping, frame=self.player.frame_of())
-            self.tree_changed("/")
-            self._said(f"the mapping {mapping.name} has changed, and is taken up")
-
-    def _write_capture(self, capture: CaptureWriter) -> None:
-        try:
-            for since, frame in self.instrument.rests[self._rests :]:
-                capture.note("rest", frame, since=since)
-                self._rests += 1
-            capture.events(self.instrument.applied_events())
-            meters = self.instrument.meters()
-            unreported = int(meters["unreported"])
-            if unreported > self._unreported:
-                lost = unreported - self._unreported
-                capture.note("lost", int(meters["frame"]), events=lost)
-                self._unreported = unreported
-        except OutputError as error:
-            self._lose_capture(error)
-
-    def _lose_capture(self, error: OutputError) -> None:
-        self._capture = None
-        self._lost_capture = True
-        self._said(f"capture ended: {error}; it is kept as far as it got")
-
-    def _report_troubles(self) -> None:
-        meters = self.instrument.meters()
-        troubles = {
-            "the state was lost and put back to rest": int(meters["lost"]),
-            "events found the ring full": self.instrument.dropped_events,
-            "OSC packets were dropped by the system": self.osc.traffic.kernel_drops,
-        }
-        for what, count in troubles.items():
-            if count > self._troubles.get(what, 0):
-                self._said(f"{what} ({count} so far)")
-        self._troubles = troubles
+        self.player.delay = self._delay.frames  # as long as the device's period asks for
+        if self._capture is not None:
+            self._capture.keep_up()
+        self._troubles.look(
+            {
+                "the state was lost and put back to rest": int(self.instrument.meters()["lost"]),
+                "events found the ring full": self.instrument.dropped_events,
+                "OSC packets were dropped by the system": self.osc.traffic.kernel_drops,
+            }
+        )
+        if self._follower is not None:
+            self._follower.look()
 
     # -- what OSC may ask for ------------------------------------------------------------------
 
     def soon(self, action: Callable[[], None]) -> None:
-        """See `osc.Desk`."""
+        """See `request.Desk`."""
         self.osc.call_soon(action)
 
     def say(self, line: str) -> None:
-        """See `osc.Desk`."""
+        """See `request.Desk`."""
         self._said(line)
 
     def tree_changed(self, path: str) -> None:
-        """See `osc.Desk`."""
+        """See `request.Desk`."""
         if self.web is not None:
             self.web.tree_changed(path)
 
-    def _more_calls(self) -> list[Call]:
-        """What can be called only here: presets by their names, addresses of the user's own."""
-        names = tuple(self.player.presets.names())
-        mapping = self.player.mapping
-        return [*preset_calls(names), *own_calls(mapping)]
-
     def start_recording(self, name: str) -> str:
-        """Record under a plain name, into the recordings folder; return the file's name.
-
-        Errors: OutputError.
-        """
-        ending = "" if Path(name).suffix in (".wav", ".flac") else ".wav"
-        target = inside(self.options.recordings, name, ending)
-        if self._recorder is not None and self._recorder.is_running:
-            raise OutputError(f"already recording {self._recorder.target.name}")
-        folder = self.options.recordings
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            if target.exists():
-                raise OutputError(f"{target.name} exists")
-        except OSError as error:
-            raise OutputError(f"{folder}: {error.strerror}") from error
-        self._recorder = Recorder(self.instrument, target, self.instrument.frame, self._said)
-        self._said(f"recording {target}")
-        return target.name
+        """See `request.Desk`."""
+        return self.takes.start(name)
 
     def stop_recording(self) -> str:
-        """End what `start_recording` began; return the file's name.
-
-        Errors: OutputError where none runs, or it has ended by itself.
-        """
-        recorder, self._recorder = self._recorder, None
-        if recorder is None:
-            more = "; --record ends with the server" if self._take is not None else ""
-            raise OutputError(f"nothing is being recorded{more}")
-        recorder.stop()
-        if recorder.failure:
-            raise OutputError(f"the recording has ended: {recorder.failure}")
-        self._tell_of(recorder)
-        return recorder.target.name
-
-    def _tell_of(self, recorder: Recorder) -> None:
-        if not recorder.failure:  # or it has been told
-            self._said(f"{recorder.target}: {recorder.seconds:.1f} s")
-
-    @property
-    def recording(self) -> str:
-        """The names of the files that are being recorded, or nothing."""
-        recorders = (self._take, self._recorder)
-        running = [each for each in recorders if each is not None and each.is_running]
-        return "; ".join(each.target.name for each in running)
+        """See `request.Desk`."""
+        return self.takes.stop()
 
     def status(self) -> dict[str, float | str]:
-        """How things stand, by the names of `control.status.STATUS`; any thread may call."""
-        meters = self.instrument.meters()
-        output, traffic, counts = self.output.state, self.osc.traffic, self.handler.counts
-        pitch = self.player.pitch
-        midi = self.midi
-        web = WebTraffic() if self.web is None else self.web.traffic
-        return {
-            "device": output.device or "silent clock",
-            "problem": output.problem,
-            "rate": self.instrument.rate,
-            "blocksize": self.options.output.blocksize,
-            "period": self._delay.period,
-            "latency_ms": output.latency_ms,
-            "delay_ms": 1e3 * self.player.delay / self.instrument.rate,
-            "uptime_s": time.monotonic() - self._started,
-            "frame": int(meters["frame"]),
-            "peak_db": _decibels(meters["peak"]),
-            "rms_db": _decibels(meters["rms"]),
-            "note": -1.0 if pitch is None else pitch,
-            "bow_speed": self.player.value("/bow/speed"),
-            "bow_side": self.player.value("/bow/side"),
-            "load": float(meters["load"]),
-            "worst_load": float(meters["worst_load"]),
-            "missed_deadlines": int(meters["missed"]),
-            "late_callbacks": int(meters["late_callbacks"]),
-            "underruns": int(meters["underruns"]),
-            "device_losses": output.losses,
-            "applied_events": int(meters["applied"]),
-            "late_events": int(meters["late_events"]),
-            "dropped_events": self.instrument.dropped_events,
-            "waiting_events": int(meters["waiting"]),
-            "unconverged_solves": int(meters["unconverged"]),
-            "lost_states": int(meters["lost"]),
-            "osc_packets": traffic.packets,
-            "osc_messages": counts.messages,
-            "osc_malformed": counts.malformed,
-            "osc_errors": counts.errors,
-            "osc_refused": traffic.refused,
-            "osc_dropped": traffic.kernel_drops,
-            "osc_excess": traffic.excess,
-            "osc_unsent": traffic.unsent,
-            "osc_failures": traffic.failures,
-            "osc_buffer_bytes": traffic.buffer_bytes,
-            "osc_connections": traffic.connections,
-            "osc_subscribers": self.handler.clients.subscribers,
-            "scheduled": self.handler.waiting,
-            "late_bundles": counts.late_bundles,
-            "midi_ports": "; ".join(midi.connected) if midi else "",
-            "midi_connected": len(midi.connected) if midi else 0,
-            "midi_messages": midi.received if midi else 0,
-            "midi_malformed": midi.malformed if midi else 0,
-            "http_requests": web.requests,
-            "http_refused": web.refused,
-            "http_failures": web.failures,
-            "http_unsent": web.unsent,
-            "web_sockets": web.web_sockets,
-            "recording": self.recording,
-        }
+        """See `request.Desk`; any thread may call."""
+        return read_status(
+            StatusSources(
+                meters=self.instrument.meters(),
+                instrument=self.instrument,
+                player=self.player,
+                delay=self._delay,
+                output=self.output.state,
+                blocksize=self.options.output.blocksize,
+                handler=self.handler,
+                osc=self.osc.traffic,
+                web=WebTraffic() if self.web is None else self.web.traffic,
+                midi=self.midi,
+                recording=self.takes.names,
+                uptime_s=time.monotonic() - self._started,
+            )
+        )
 
-
-def _decibels(level: float) -> float:
-    return 20.0 * math.log10(max(float(level), 1e-6))
+    def _more_calls(self) -> list[Call]:
+        """What can be called only here: presets by their names, addresses of the user's own."""
+        presets = tuple(self.player.presets.names())
+        return [*preset_calls(presets), *own_calls(self.player.mapping)]

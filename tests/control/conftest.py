@@ -335,15 +335,11 @@ class Hall:
         self.player = self.server.player
         self.instrument.report_events()
         self._ending = ending
-        self._has_ended = False
         self.server.start()
         ending.callback(self.end)
 
     def end(self) -> None:
-        """Stop the server, once."""
-        if not self._has_ended:
-            self._has_ended = True
-            self.server.stop()
+        self.server.stop()
 
     def client(self) -> Client:
         client = Client(self.ports.port, self.ports.host)

@@ -60,7 +60,7 @@ def test_a_name_that_is_more_than_a_name_records_nothing(house, name):
     client = house.client()
     client.tell("/record/start", name)
     assert client.wait_for("/error")[0] == "/yehu/record/start"
-    assert house.server.recording == ""
+    assert house.server.takes.names == ""
     folder = house.server.options.recordings
     assert list(folder.iterdir()) == []
     assert house.is_well()
@@ -82,7 +82,7 @@ def test_a_link_in_the_recordings_that_leads_out_is_not_written_through(
     address, reason = client.wait_for("/error")
     assert address == "/yehu/record/start"
     assert reason.startswith("take.wav is a link that leads out of")
-    assert hall.server.recording == ""
+    assert hall.server.takes.names == ""
     assert secret.exists() == is_there
 
 

@@ -54,7 +54,7 @@ def test_a_recording_is_not_begun_on_a_full_disk(hall, disk):
     assert address == "/yehu/record/start"
     assert "take.wav: cannot write: File too large" in reason
     assert list(hall.server.options.recordings.iterdir()) == []
-    assert hall.server.recording == ""
+    assert hall.server.takes.names == ""
 
 
 def test_a_recording_that_filled_the_disk_is_not_answered_as_if_all_were_well(
@@ -65,7 +65,7 @@ def test_a_recording_that_filled_the_disk_is_not_answered_as_if_all_were_well(
     disk(20_000)
     client.tell("/record/start", "take")
     client.wait_for("/record/started")
-    patience(lambda: hall.server.recording == "", "the disk to be full")
+    patience(lambda: hall.server.takes.names == "", "the disk to be full")
     client.tell("/record/stop")
     address, reason = client.wait_for("/error")[:2]
     assert address == "/yehu/record/stop"
@@ -84,7 +84,7 @@ def test_a_full_disk_keeps_take_and_capture_as_far_as_they_got(
     disk(100_000)
     client = hall.client()
     client.tell("/note", 67, 90)
-    patience(lambda: hall.server.recording == "", "the disk to be full")
+    patience(lambda: hall.server.takes.names == "", "the disk to be full")
     disk(capture.stat().st_size + 10)
     client.tell("/note", 69, 90)
     patience(lambda: any("capture ended" in line for line in hall.said), "no room for events")
@@ -124,6 +124,17 @@ def test_a_take_is_closed_whatever_else_fails_at_the_end(make_hall, tmp_path, mo
     assert soundfile.info(take).frames >= 4800
     assert read_capture(capture).end is not None
     hall.server.output.end()
+
+
+def test_a_server_told_to_stop_again_leaves_what_it_has_kept(make_hall, tmp_path):
+    take, capture = tmp_path / "take.wav", tmp_path / "take.jsonl"
+    hall = make_hall(record=take, capture=capture)
+    hall.wait_frames(4800)
+    hall.end()
+    kept = take.read_bytes(), capture.read_bytes(), list(hall.said)
+    hall.end()
+    assert (take.read_bytes(), capture.read_bytes(), hall.said) == kept
+    assert hall.server.kept_all
 
 
 def test_who_is_in_a_hurry_does_not_wait_for_what_fades(make_hall, tmp_path):

@@ -1,0 +1,93 @@
+"""The capture of a session while it is played."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import OutputError
+from yehu_server.score.capture import CaptureWriter
+
+
+class LiveCapture:
+    """Writes down what an instrument applies; a full disk ends it, and nothing else.
+
+    Parameters
+    ----------
+    instrument : Instrument
+        Which reports its events (``Instrument.report_events``) from the first frame on.
+    seed : int
+        Of the player's variation.
+    said : callable
+        Told in a line when the capture ends by itself.
+    overwrite : bool
+        Whether to take the place of an older file.
+
+    Raises
+    ------
+    OutputError
+        Where the file cannot be written, or is there.
+    """
+
+    def __init__(
+        self,
+        instrument: Instrument,
+        target: Path,
+        seed: int,
+        said: Callable[[str], None],
+        *,
+        overwrite: bool = False,
+    ) -> None:
+        self._instrument = instrument
+        self._said = said
+        self._writer: CaptureWriter | None = CaptureWriter(
+            target,
+            rate=instrument.rate,
+            seed=seed,
+            tensions=[silk.T for silk in instrument.quantities.strings],
+            overwrite=overwrite,
+        )
+        self._rests = 0  # written so far
+        self._unreported = 0
+        self.is_whole = True
+
+    def keep_up(self) -> None:
+        """Write what was applied since the last call."""
+        if self._writer is not None:
+            try:
+                self._write(self._writer)
+            except OutputError as error:
+                self._end(error)
+
+    def close(self) -> None:
+        """End the capture at the frame after the last one played."""
+        self.keep_up()
+        writer, self._writer = self._writer, None
+        if writer is not None:
+            try:
+                writer.close(self._instrument.frame)
+            except OutputError as error:
+                self._end(error)
+
+    def discard(self) -> None:
+        """End it, and leave no file."""
+        if self._writer is not None:
+            self._writer.discard()
+        self._writer = None
+
+    def _write(self, writer: CaptureWriter) -> None:
+        for since, frame in self._instrument.rests[self._rests :]:
+            writer.note("rest", frame, since=since)
+            self._rests += 1
+        writer.events(self._instrument.applied_events())
+        meters = self._instrument.meters()
+        unreported = int(meters["unreported"])
+        if unreported > self._unreported:
+            writer.note("lost", int(meters["frame"]), events=unreported - self._unreported)
+            self._unreported = unreported
+
+    def _end(self, error: OutputError) -> None:
+        self._writer = None
+        self.is_whole = False
+        self._said(f"capture ended: {error}; it is kept as far as it got")

@@ -25,7 +25,7 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from yehu_server.analysis.pitch import cents, note_name, pitch_hz
-from yehu_server.engine.gesture import FAST, FAST_SHARE
+from yehu_server.engine.controls import FAST, FAST_SHARE
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.output import BRIDGE_PRESSURE
 from yehu_server.errors import ParameterError, YehuError

@@ -22,7 +22,7 @@ from yehu_server.audio.output import OutputOptions
 from yehu_server.control import clients, osc, schedule
 from yehu_server.control.status import STATUS
 from yehu_server.control.web import WebOptions
-from yehu_server.engine.gesture import SILENCE
+from yehu_server.engine.controls import SILENCE
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.errors import OutputError
 from yehu_server.params.table import SLOT
@@ -47,7 +47,7 @@ def until(condition: Callable[[], Any], what: str, within_s: float = PATIENCE_S)
 
 def target_of(instrument: Instrument, address: str) -> float:
     """The target of an engine parameter on the audio side."""
-    return float(instrument._rig["gesture"]["target"][0, SLOT[address]])
+    return float(instrument._rig["controls"]["target"][0, SLOT[address]])
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,7 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import ENGINE, SLOT
 
 BAD = (math.nan, math.inf, -math.inf, 1e308, -1e308)
-STAGES = ("state", "gesture", "output")
+STAGES = ("state", "controls", "output")
 
 
 def fields(stage: str) -> list[str]:
@@ -66,7 +66,7 @@ def test_no_ramp_leads_out_of_a_parameters_range(instrument, playing, target, ra
         instrument.post(start, slot, target, ramp)
     out = np.zeros(128, np.float32)
     instrument.process(out)
-    values = instrument._rig["gesture"]["value"][0]
+    values = instrument._rig["controls"]["value"][0]
     for param in ENGINE:
         # The last bits: a value goes along its ramp in steps.
         margin = 1e-9 * max(1.0, abs(param.lo), abs(param.hi))
@@ -76,8 +76,8 @@ def test_no_ramp_leads_out_of_a_parameters_range(instrument, playing, target, ra
 
 def test_a_target_that_is_no_number_is_passed_over(instrument, playing):
     instrument._rig[:] = playing
-    before = instrument._rig["gesture"]["target"].copy()
+    before = instrument._rig["controls"]["target"].copy()
     for slot in SLOT.values():
         instrument.post(instrument.frame, slot, math.nan, 100)
     instrument.process(np.zeros(64, np.float32))
-    assert np.array_equal(instrument._rig["gesture"]["target"], before)
+    assert np.array_equal(instrument._rig["controls"]["target"], before)

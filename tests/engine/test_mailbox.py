@@ -21,7 +21,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from yehu_server.engine import native
-from yehu_server.engine.gesture import SILENCE
+from yehu_server.engine.controls import SILENCE
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
 from yehu_server.params.table import ENGINE, SLOT
@@ -38,7 +38,7 @@ needs_memfd = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no mem
 
 def values(instrument: Instrument) -> tuple[float, ...]:
     """The values of the inert parameters."""
-    return tuple(float(value) for value in instrument._rig["gesture"]["value"][0, INERT])
+    return tuple(float(value) for value in instrument._rig["controls"]["value"][0, INERT])
 
 
 def post_numbered(instrument: Instrument, number: int, frame: int = 0) -> bool:
@@ -466,10 +466,10 @@ def test_a_live_instrument_takes_in_so_many_events_for_each_64_frames():
 def test_an_event_for_no_parameter_changes_nothing(index):
     instrument = Instrument(RATE)
     run(instrument, 64)
-    before = instrument._rig["gesture"].copy()
+    before = instrument._rig["controls"].copy()
     instrument.post(0, index, 0.125, 0)
     run(instrument, 64)
-    after = instrument._rig["gesture"].copy()
+    after = instrument._rig["controls"].copy()
     for name in ("value", "target", "slope", "remaining", "silence_in", "sounding_from"):
         np.testing.assert_array_equal(after[name], before[name])
 
@@ -519,7 +519,7 @@ def crowded(block: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     instrument.post(RATE // 4, SILENCE, 0.0, 0)
     instrument.write("/output/level", 1.0, frame=RATE // 4 + 400)
     out = run(instrument, RATE // 2, block=block)
-    return out, instrument.applied_events(), instrument._rig["gesture"]["value"].copy()
+    return out, instrument.applied_events(), instrument._rig["controls"]["value"].copy()
 
 
 @pytest.fixture(scope="module")

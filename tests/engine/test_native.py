@@ -318,7 +318,7 @@ def test_what_a_process_left_that_died_while_it_played_is_mended():
     rig = instrument._rig
     rig["version"][0, 0] += 1  # it died as it wrote the meters,
     rig["meters"]["running"] = 1  # or somewhere within a block: its frames are on no tape,
-    rig["gesture"]["frame"] += 64
+    rig["controls"]["frame"] += 64
     rig["state"]["motion"]["u"] = np.nan  # and the state is half a step ahead
     instrument.recover()
     assert instrument.frame == 4160

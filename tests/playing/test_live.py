@@ -51,7 +51,7 @@ def test_a_note_is_heard_at_its_frame(live, instrument):
 
 def test_what_arrives_is_heard_a_constant_time_later(live, instrument):
     run(instrument, 480)
-    now = int(instrument.meters()["due_ns"])
+    now = int(instrument.meters()["loop"]["due_ns"])
     frames = [live.frame_of(now + ns) for ns in range(0, 10_000_000, 1_000_000)]
     assert frames[0] == pytest.approx(144, abs=1)  # 3 ms after the block's beginning
     assert np.diff(frames) == pytest.approx(48, abs=1)
@@ -83,7 +83,7 @@ def test_a_decision_never_precedes_an_earlier_one(live, instrument):
     live.note_off(67.0, frame=360)
     assert {frame for frame, _, _ in applied(instrument, 1000)} == {500}
     assert live.pitch is None
-    assert instrument._rig["gesture"]["target"][0, SLOT["/bow/speed"]] == 0.0
+    assert instrument._rig["controls"]["target"][0, SLOT["/bow/speed"]] == 0.0
 
 
 def test_direct_writes_to_the_instrument_do_not_wait_for_decisions(live, instrument):
@@ -128,7 +128,7 @@ def test_nothing_sounds_on_after_the_end(live, instrument, ending):
     tail = run(instrument, 2 * 48000)
     assert live.pitch is None
     assert np.abs(tail[-4800:]).max() < 1e-3
-    assert instrument._rig["gesture"]["target"][0, SLOT["/bow/speed"]] == 0.0
+    assert instrument._rig["controls"]["target"][0, SLOT["/bow/speed"]] == 0.0
 
 
 def test_panic_is_silent_within_ten_milliseconds(live, instrument):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from sound import bow
 
-from yehu_server.engine.gesture import SILENCE
+from yehu_server.engine.controls import SILENCE
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.mailbox import EVENT
 from yehu_server.errors import OutputError, ScoreError

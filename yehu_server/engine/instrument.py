@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.engine import native
-from yehu_server.engine.gesture import SILENCE, prepare_gesture, settle
+from yehu_server.engine.controls import SILENCE, prepare_controls, settle
 from yehu_server.engine.mailbox import EVENT, LIVE_BUDGET, RING
 from yehu_server.engine.output import prepare_output, rest_output
 from yehu_server.engine.telemetry import METERS
@@ -35,7 +35,7 @@ class Instrument:
     Parameters
     ----------
     rate : float, Hz
-        22,050 to 192,000.
+        Within the bounds of ``physics.grid``.
     quantities : Quantities
         The physical instrument; the measured one by default.
     channels : int
@@ -73,7 +73,7 @@ class Instrument:
         """
         rig = self._rig
         rig["state"] = kernel.at_rest(rig["model"])
-        rig["gesture"] = prepare_gesture(self.quantities, self.rate)
+        rig["controls"] = prepare_controls(self.quantities, self.rate)
         prepare_output(rig["output"], self.rate, self.channels)
         mail = rig["mail"]
         kept = mail["budget"].copy(), mail["reporting"].copy()
@@ -81,7 +81,7 @@ class Instrument:
         mail["budget"], mail["reporting"] = kept
         rig["meters"] = np.zeros(1, METERS)
         rig["meters"]["rate"] = self.rate
-        rig["meters"]["ns_per_frame"] = 1e9 / self.rate
+        rig["meters"]["loop"]["ns_per_frame"] = 1e9 / self.rate
         rig["published"] = rig["meters"]
         self._meters = rig["meters"].copy()  # as last read whole
         rig["taped"], rig["version"] = 0, 0
@@ -104,7 +104,7 @@ class Instrument:
     @property
     def frame(self) -> int:
         """The frame of the next sample."""
-        return int(self._rig["gesture"]["frame"][0])
+        return int(self._rig["controls"]["frame"][0])
 
     @property
     def friction_bound(self) -> float:
@@ -184,7 +184,7 @@ class Instrument:
         """
         rig = self._rig
         kernel.come_to_rest(rig["model"][0], rig["state"][0])
-        settle(rig["gesture"][0])
+        settle(rig["controls"][0])
         rest_output(rig["output"])
 
     def recover(self) -> None:

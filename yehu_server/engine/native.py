@@ -19,14 +19,15 @@ from yehu_server.engine.atomics import (
     load_acquire,
     store_release,
 )
-from yehu_server.engine.gesture import (
+from yehu_server.engine.controls import (
     BLEND,
     BODY,
-    GESTURE,
+    CONTROLS,
     LIMITER,
-    SILKS,
+    LOSS,
     TO_BODY,
     TO_LIMITER,
+    TUNING,
     amplitude,
     has_new_strings,
     level,
@@ -67,7 +68,7 @@ RIG = np.dtype(
     [
         ("model", MODEL),
         ("state", STATE),
-        ("gesture", GESTURE),
+        ("controls", CONTROLS),
         ("output", OUTPUT),
         ("mail", MAIL),
         ("meters", METERS),
@@ -89,7 +90,7 @@ def _offset(field: str, inside: str = "") -> int:
     return int(start + (kind.fields[inside][1] if inside else 0))
 
 
-MODEL_AT, STATE_AT, GESTURE_AT = _offset("model"), _offset("state"), _offset("gesture")
+MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
 OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
 RING_AT, HEAP_AT, REPORTS_AT = _offset("ring"), _offset("heap"), _offset("reports")
@@ -120,16 +121,16 @@ def drain(rig: Any, mail: Any, frame: int) -> bool:
 
 
 @compiled_to_share
-def apply(rig: Any, mail: Any, g: Any, fade: int) -> None:
+def apply(rig: Any, mail: Any, c: Any, fade: int) -> None:
     """Apply what is due at this frame, and report it."""
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     for _ in range(APPLIED_AT_ONCE):
-        if mail.waiting == 0 or heap[0].frame > g.frame:
+        if mail.waiting == 0 or heap[0].frame > c.frame:
             return
         event = heap[0]
-        take(g, event.index, event.target, event.ramp, fade)
+        take(c, event.index, event.target, event.ramp, fade)
         if mail.reporting != 0:
-            report(rig, mail, g.frame, event.index, event.target, event.ramp)
+            report(rig, mail, c.frame, event.index, event.target, event.ramp)
         mail.applied += 1
         leave(heap, mail.waiting)
         mail.waiting -= 1
@@ -148,14 +149,14 @@ def report(rig: Any, mail: Any, frame: int, index: int, target: float, ramp: int
 
 
 @compiled
-def retune(model: Array, state: Array, g: Any) -> None:
+def retune(model: Array, state: Array, c: Any) -> None:
     """Let the strings have the tuning and loss of this frame."""
     for i in range(STRINGS):
-        cents, loss = g.value[SILKS + 2 * i], g.value[SILKS + 2 * i + 1]
-        if cents != g.silk[i, 0] or loss != g.silk[i, 1]:
-            g.silk[i, 0], g.silk[i, 1] = cents, loss
-            T = g.tension[i] * 2.0 ** (cents / 600.0)  # frequency goes as its square root
-            kernel.retune(model, state, i, T, g.sigma_0[i] * loss, g.sigma_1[i] * loss)
+        cents, loss = c.value[TUNING[i]], c.value[LOSS[i]]
+        if cents != c.tuning[i] or loss != c.loss[i]:
+            c.tuning[i], c.loss[i] = cents, loss
+            T = c.tension[i] * 2.0 ** (cents / 600.0)  # frequency goes as its square root
+            kernel.retune(model, state, i, T, c.sigma_0[i] * loss, c.sigma_1[i] * loss)
 
 
 @compiled_to_share
@@ -167,40 +168,40 @@ def play(rig: Any, out: Array) -> None:
     """
     model = carray(at(rig, MODEL_AT), (1,), MODEL)
     state = carray(at(rig, STATE_AT), (1,), STATE)
-    g = carray(at(rig, GESTURE_AT), (1,), GESTURE)[0]
+    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
     tape = carray(at(rig, TAPE_AT), (TAPE,), np.float32)
     done = 0
     while done < out.shape[0]:
-        is_full = drain(rig, mail, g.frame)
-        first = g.frame
+        is_full = drain(rig, mail, c.frame)
+        first = c.frame
         frames = 0
         silenced, retuned = False, False
         while frames < CHUNK and done + frames < out.shape[0] and not silenced and not retuned:
-            apply(rig, mail, g, o.fade)
+            apply(rig, mail, c, o.fade)
             if is_full:
-                is_full = drain(rig, mail, g.frame)
-            move(g)
-            write_controls(g, o.controls[frames])
-            gain = level(g)
-            if g.silence_in > 0:
-                g.silence_in -= 1
-                gain *= g.silence_in / o.fade
-                silenced = g.silence_in == 0
+                is_full = drain(rig, mail, c.frame)
+            move(c)
+            write_controls(c, o.controls[frames])
+            gain = level(c)
+            if c.silence_in > 0:
+                c.silence_in -= 1
+                gain *= c.silence_in / o.fade
+                silenced = c.silence_in == 0
             o.gain[frames] = gain
-            o.body[frames] = amplitude(g, TO_BODY, g.value[BODY])
-            o.blend[frames] = g.value[BLEND]
-            o.soft[frames] = amplitude(g, TO_LIMITER, g.value[LIMITER])
-            retuned = has_new_strings(g)
-            g.frame += 1
+            o.body[frames] = amplitude(c, TO_BODY, c.value[BODY])
+            o.blend[frames] = c.value[BLEND]
+            o.soft[frames] = amplitude(c, TO_LIMITER, c.value[LIMITER])
+            retuned = has_new_strings(c)
+            c.frame += 1
             frames += 1
         # Strings get their tuning at the very sample. One call, since all of it is inlined.
         start, end = 0, frames - 1 if retuned else frames
         while start < frames:
             if start == end:
-                retune(model, state, g)
+                retune(model, state, c)
                 end = frames
             kernel.advance(model, state, o.controls[start:end], o.probes[start:end], None)
             start = end
@@ -235,11 +236,11 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     state = carray(at(rig, STATE_AT), (1,), STATE)[0]
-    g = carray(at(rig, GESTURE_AT), (1,), GESTURE)[0]
+    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     t.running = 1
     block: Any = np.int64(frames)
-    tell_time(t, g.frame, started_ns, block)
+    tell_time(t, c.frame, started_ns, block)
     publish(rig)  # at once, so that what comes in now is stamped by this block
     play(rig, carray(output, (block, o.channels), np.float32))
     t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
@@ -248,7 +249,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     restore_denormals(mode)
     account(t, thread_cpu_ns() - cpu_ns, flags)
     t.running, t.ended_ns = 0, monotonic_ns()
-    store_release(rig, TAPED_AT, g.frame)
+    store_release(rig, TAPED_AT, c.frame)
     publish(rig)
     return 0
 
@@ -282,8 +283,8 @@ def frame_at(rig: Any, time_ns: int) -> float:
     frame, elapsed_ns, ns_per_frame = 0, 0, 1.0
     for _ in range(TRIES):
         version = load_acquire(rig, VERSION_AT)
-        frame, elapsed_ns = published.frame, time_ns - published.due_ns
-        ns_per_frame, block = published.ns_per_frame, published.block
+        frame, elapsed_ns = published.frame, time_ns - published.loop.due_ns
+        ns_per_frame, block = published.loop.ns_per_frame, published.block
         elapsed_ns = min(elapsed_ns, STALL_NS + int(block * ns_per_frame))
         fence_acquire()
         if version % 2 == 0 and load_acquire(rig, VERSION_AT) == version:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.engine.one_pole import pole_of_cutoff, pole_of_time
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import (
     BRIDGE_FORCE,
@@ -53,8 +54,8 @@ def prepare_output(output: Any, rate: float, channels: int) -> None:
     output["channels"] = channels
     output["unsound"] = 0
     output["fade"] = max(1, round(FADE_S * rate))
-    output["decay"] = math.exp(-1.0 / (FADE_S * rate))
-    output["blocker"] = math.exp(-2.0 * math.pi * BLOCKED_HZ / rate)
+    output["decay"] = pole_of_time(FADE_S, rate)
+    output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
     rest_output(output)
 
 

@@ -8,7 +8,6 @@ A delay-locked loop gives each block's first frame a time without the jitter of 
 start: what comes in is stamped against that, so that it keeps its rhythm. A device whose own
 period is longer than a block calls back several times in a row: the loop follows the first of
 them, and how far the others run ahead of that time is what a message has to wait for.
-Source: [Adriaensen], the loop's equations.
 """
 
 from __future__ import annotations
@@ -18,6 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.engine.delay_locked_loop import LOOP, follow, predicted_ns, start
+from yehu_server.engine.one_pole import one_pole
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import STRINGS
 
@@ -27,7 +28,6 @@ SHAPE_POINTS = 64
 WINDOW_S = 1.0 / 60.0
 LOAD_BINS = 128  # of a sixty-fourth of the deadline each
 BINS_PER_DEADLINE = 64
-LOOP_HZ = 0.3  # bandwidth of the delay-locked loop
 ASTRAY_NS = 50_000_000  # so far off, the loop starts anew at once;
 ASTRAY_S = 0.1  # after so long, where it is off by more than LATE_BLOCKS
 LATE_BLOCKS = 2  # of the device's own
@@ -41,15 +41,12 @@ METERS = np.dtype(
     [
         ("rate", np.float64),  # Hz
         ("running", np.int64),  # 1 while inside the callback
-        # Time: the block's first frame, when it was due, ns from frame to frame.
-        ("frame", np.int64),
-        ("due_ns", np.int64),
-        ("ns_per_frame", np.float64),
+        ("frame", np.int64),  # the block's first
+        ("loop", LOOP),  # when it was due, and how late the request began
         ("block", np.int64),  # frames of the last callback
         ("ended_ns", np.int64),  # when the last callback returned
         # Requests of the device: a callback, or several in a row.
         ("asked_from", np.int64),  # first frame of the last request
-        ("error_ns", np.int64),  # how late it began
         ("astray", np.int64),  # frames of requests in a row that were far from due
         ("ahead_window", np.int64),  # a running number
         ("ahead_from", np.int64),  # first frame of this window
@@ -110,23 +107,24 @@ def close_window(t: Any, m: Any, s: Any) -> None:
 @compiled
 def tell_time(t: Any, frame: int, started_ns: int, frames: int) -> None:
     """Follow the starts of the device's requests with the delay-locked loop."""
-    due = t.due_ns + int(t.block * t.ns_per_frame)
+    due = predicted_ns(t.loop, t.block)
     error = started_ns - due
     close_ns = IN_A_ROW * t.block * 1e9 / t.rate
     if t.callbacks > 0 and started_ns - t.ended_ns < close_ns and error < -close_ns:
         # Of the same request; unless we only catch up, and time is not where we thought.
         is_lost = -error > max(ASTRAY_NS, LATE_BLOCKS * t.longest * 1e9 / t.rate)
-        t.due_ns = due
+        t.loop.due_ns = due
     else:
         is_lost = begin_request(t, frame, due, error)
     if t.callbacks == 0 or is_lost:
-        t.due_ns, t.error_ns, t.astray = started_ns, 0, 0
-        t.ns_per_frame = 1e9 / t.rate
+        start(t.loop, started_ns, t.rate)
+        t.astray = 0
     t.frame = frame
     t.block = frames
     t.callbacks += 1
     # As if a request took no time, so that it does not hang on how long we compute.
-    t.ahead_now = max(t.ahead_now, frame + frames - t.asked_from - t.error_ns / t.ns_per_frame)
+    late = t.loop.error_ns / t.loop.ns_per_frame
+    t.ahead_now = max(t.ahead_now, frame + frames - t.asked_from - late)
 
 
 @compiled
@@ -141,11 +139,9 @@ def begin_request(t: Any, frame: int, due: int, error: int) -> bool:
         t.ahead_from = frame
         t.ahead_window += 1
     late = LATE_BLOCKS * asked * 1e9 / t.rate
-    if t.callbacks > 0 and error - t.error_ns > late:
+    if t.callbacks > 0 and error - t.loop.error_ns > late:
         t.late_callbacks += 1
-    turn = 2.0 * math.pi * LOOP_HZ * asked / t.rate
-    t.due_ns, t.error_ns = due + int(math.sqrt(2.0) * turn * error), error
-    t.ns_per_frame += turn * turn * error / max(asked, 1)
+    follow(t.loop, due, error, asked, t.rate)
     t.astray = t.astray + asked if abs(error) > late else 0
     # A device is late for a moment, but never early.
     return bool(abs(error) > ASTRAY_NS or -error > late or t.astray > ASTRAY_S * t.rate)
@@ -156,7 +152,7 @@ def account(t: Any, cpu_ns: int, flags: int) -> None:
     """Book the CPU time of a callback against its deadline."""
     seconds = t.block / t.rate
     load = 1e-9 * cpu_ns / seconds
-    t.load += (load - t.load) * min(1.0, seconds / LOAD_MEMORY_S)
+    t.load = one_pole(t.load, load, min(1.0, seconds / LOAD_MEMORY_S))
     t.worst_load = max(t.worst_load, load)
     t.missed += 1 if load > 1.0 else 0
     t.loads[min(int(load * BINS_PER_DEADLINE), LOAD_BINS - 1)] += 1

@@ -7,7 +7,9 @@ from collections.abc import Mapping
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve, Param, Place
 
+PREFIX = "/yehu"  # before every address, in OSC and OSCQuery
 FINGERS = (1, 2, 3, 4)
+STRING_NAMES = ("inner", "outer")
 
 
 def _finger(number: int) -> tuple[Param, Param]:
@@ -113,8 +115,8 @@ TABLE: tuple[Param, ...] = (
         "Where, from the bridge, as a share of the sounding length.",
         place=Place.ENGINE, owned=True,
     ),
-    *_string("inner", "inner (F4)"),
-    *_string("outer", "outer (C5)"),
+    *(row for name, note in zip(STRING_NAMES, ("F4", "C5"), strict=True)
+      for row in _string(name, f"{name} ({note})")),
     Param(
         "/output/gain", "", "dB", -60.0, 24.0, 0.0,
         "Gain of the output, before the limiter.",
@@ -233,7 +235,8 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/release", "", "ms", 5.0, 2000.0, 60.0,
-        "Time in which the bow leaves the string at the end of a note (no kin of /yehu/release).",
+        "Time in which the bow leaves the string at the end of a note (no kin of "
+        f"{PREFIX}/release).",
     ),
     Param(
         "/playing/portamento", "", "1", 0.0, 1.0, 0.0,

@@ -79,7 +79,7 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     """What a calibration depends on, in 16 hex digits."""
     package = Path(__file__).parent.parent
     sources = [*sorted((package / "physics").glob("*.py")), package / "playing" / "bowing.py"]
-    sources += [package / "engine" / f"{name}.py" for name in ("gesture", "output")]
+    sources += [package / "engine" / f"{name}.py" for name in ("controls", "one_pole", "output")]
     sources += [Path(__file__)]
     return key_of(sources, repr((rate, a4, quantities)))
 

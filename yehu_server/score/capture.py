@@ -20,7 +20,7 @@ import numpy as np
 from llvmlite import binding
 
 from yehu_server import __version__
-from yehu_server.engine.gesture import SILENCE
+from yehu_server.engine.controls import SILENCE
 from yehu_server.engine.mailbox import EVENT
 from yehu_server.errors import OutputError, ParameterError, ScoreError
 from yehu_server.files import create, discard, read_lines, why, write_all

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from fuzz.target import scratch, target, written
 
-from yehu_server.engine.gesture import SILENCE
+from yehu_server.engine.controls import SILENCE
 from yehu_server.errors import YehuError
 from yehu_server.params.table import ENGINE
 from yehu_server.physics.grid import check_rate

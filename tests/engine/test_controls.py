@@ -19,7 +19,7 @@ every = pytest.mark.parametrize("param", ENGINE, ids=lambda param: param.address
 
 
 def value(instrument: Instrument, address: str) -> float:
-    return float(instrument._rig["gesture"]["value"][0, SLOT[address]])
+    return float(instrument._rig["controls"]["value"][0, SLOT[address]])
 
 
 def controls(instrument: Instrument) -> np.ndarray:

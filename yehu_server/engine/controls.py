@@ -1,4 +1,4 @@
-"""From player-level targets to one row of physical controls a sample. Compiled.
+"""The controls of bow, fingers and pluck at each sample, from the player's targets. Compiled.
 
 What must go on while Python is busy happens here, on absolute frames: ramps, bow force
 following bow speed, the bow keeping its relative position as the string gets shorter,
@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.engine.one_pole import one_pole, pole_of_cutoff, pole_of_time
 from yehu_server.jit import compiled
-from yehu_server.params.table import ENGINE, SLOT
+from yehu_server.params.table import ENGINE, FINGERS, SLOT, STRING_NAMES
 from yehu_server.physics.layout import (
     CONTROLS_PER_FINGER,
     F_HAMMER,
@@ -33,8 +34,8 @@ Array = Any
 SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 FORCE, SHARE, ASSIST = SLOT["/bow/force"], SLOT["/bow/pressure"], SLOT["/bow/assist"]
 POSITION, TREMOLO = SLOT["/bow/position"], SLOT["/bow/tremolo"]
-# Position and press take turns, finger by finger.
-FINGERS = SLOT["/finger/1/position"]
+FINGER_POSITION = np.array([SLOT[f"/finger/{number}/position"] for number in FINGERS])
+FINGER_PRESS = np.array([SLOT[f"/finger/{number}/press"] for number in FINGERS])
 DEPTH, ROCK = SLOT["/vibrato/depth"], SLOT["/vibrato/press"]
 RATE, ONSET = SLOT["/vibrato/rate"], SLOT["/vibrato/onset"]
 PLUCK, PLUCK_POSITION = SLOT["/pluck/force"], SLOT["/pluck/position"]
@@ -42,8 +43,8 @@ FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
 GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
 BALANCE, BLEND = SLOT["/output/balance"], SLOT["/body/blend"]
 BODY, LIMITER = SLOT["/body/gain"], SLOT["/output/limiter"]
-# Tuning and loss take turns, string by string.
-SILKS = SLOT["/string/inner/tuning"]
+TUNING = np.array([SLOT[f"/string/{name}/tuning"] for name in STRING_NAMES])
+LOSS = np.array([SLOT[f"/string/{name}/loss"] for name in STRING_NAMES])
 NOISE = SLOT["/bow/noise"]
 SLOTS = len(ENGINE)
 LOWEST = np.array([param.lo for param in ENGINE])
@@ -71,7 +72,7 @@ FORWARD = 0.25  # turns at which the bow goes as speed says
 TO_OUTPUT, TO_BODY, TO_LIMITER = range(3)  # what is set in decibels
 DECIBELS = 3
 
-GESTURE = np.dtype(
+CONTROLS = np.dtype(
     [
         ("frame", np.int64),  # of the next sample
         ("value", np.float64, SLOTS),
@@ -85,7 +86,8 @@ GESTURE = np.dtype(
         ("tension", np.float64, STRINGS),
         ("sigma_0", np.float64, STRINGS),
         ("sigma_1", np.float64, STRINGS),
-        ("silk", np.float64, (STRINGS, 2)),
+        ("tuning", np.float64, STRINGS),
+        ("loss", np.float64, STRINGS),
         ("grain", np.float64),  # of the hair, in its slow noise; how slow, and how large
         ("grain_follow", np.float64),
         ("grain_size", np.float64),
@@ -106,108 +108,107 @@ GESTURE = np.dtype(
 )
 
 
-def prepare_gesture(quantities: Quantities, rate: float) -> Any:
-    """Every parameter at its default. Returns: ndarray [shape=(1,), dtype=GESTURE]."""
-    gesture = np.zeros(1, GESTURE)
+def prepare_controls(quantities: Quantities, rate: float) -> Any:
+    """Every parameter at its default. Returns: ndarray [shape=(1,), dtype=CONTROLS]."""
+    controls = np.zeros(1, CONTROLS)
     defaults = [param.default for param in ENGINE]
-    gesture["value"][0] = gesture["target"][0] = defaults
-    gesture["factor"] = 1.0  # of 0 dB
-    gesture["follow"] = 1.0 - math.exp(-1.0 / (FOLLOW_S * rate))
-    gesture["park_after"] = round(PARK_AFTER_S * rate)
-    gesture["finger_up"] = gesture["park_after"]
-    gesture["second"] = rate
-    gesture["let_go"] = max(1, round(LET_GO_S * rate))
-    gesture["tremolo"] = FORWARD
-    gesture["bridge_x"] = quantities.bridge_x
+    controls["value"][0] = controls["target"][0] = defaults
+    controls["factor"] = 1.0  # of 0 dB
+    controls["follow"] = 1.0 - pole_of_time(FOLLOW_S, rate)
+    controls["park_after"] = round(PARK_AFTER_S * rate)
+    controls["finger_up"] = controls["park_after"]
+    controls["second"] = rate
+    controls["let_go"] = max(1, round(LET_GO_S * rate))
+    controls["tremolo"] = FORWARD
+    controls["bridge_x"] = quantities.bridge_x
     grip = quantities.bow.mu_S - quantities.bow.mu_C
     for i, string in enumerate(quantities.strings):
         impedance = math.sqrt(string.T * string.rho_A)
-        gesture["schelleng"][0, i] = 2.0 * impedance / max(grip, 1e-3)
-        gesture["tension"][0, i] = string.T
-        gesture["sigma_0"][0, i], gesture["sigma_1"][0, i] = string.sigma_0, string.sigma_1
-        gesture["silk"][0, i] = gesture["value"][0, SILKS + 2 * i : SILKS + 2 * i + 2]
-    follow = 1.0 - math.exp(-2.0 * math.pi * GRAIN_HZ / rate)
-    gesture["grain_follow"] = follow
+        controls["schelleng"][0, i] = 2.0 * impedance / max(grip, 1e-3)
+        controls["tension"][0, i] = string.T
+        controls["sigma_0"][0, i], controls["sigma_1"][0, i] = string.sigma_0, string.sigma_1
+    controls["tuning"] = controls["value"][:, TUNING]
+    controls["loss"] = controls["value"][:, LOSS]
+    follow = 1.0 - pole_of_cutoff(GRAIN_HZ, rate)
+    controls["grain_follow"] = follow
     # Even chance in -1..1, once smoothed, has a deviation of a third: hardly ever beyond 1.
-    gesture["grain_size"] = math.sqrt((2.0 - follow) / (3.0 * follow))
-    return gesture
+    controls["grain_size"] = math.sqrt((2.0 - follow) / (3.0 * follow))
+    return controls
 
 
-def settle(gesture: Any) -> None:
-    """Let a record of dtype GESTURE be where it is bound, with nothing on its way; in place."""
-    gesture["target"][PLUCK] = 0.0
-    gesture["value"] = gesture["target"]
-    gesture["remaining"] = 0
-    gesture["moving"] = 0
-    gesture["silence_in"] = 0
-    hand = gesture["value"][FINGERS : FINGERS + CONTROLS_PER_FINGER * MAX_FINGERS].reshape(-1, 2)
-    is_down = hand[:, 1] > 0.0
-    gesture["finger_up"] = np.where(is_down, 0, gesture["park_after"])
-    gesture["sounding_from"] = hand[is_down, 0].max(initial=0.0)
-    gesture["tremolo"] = FORWARD
+def settle(controls: Any) -> None:
+    """Let a record of dtype CONTROLS be where it is bound, with nothing on its way; in place."""
+    controls["target"][PLUCK] = 0.0
+    controls["value"] = controls["target"]
+    controls["remaining"] = 0
+    controls["moving"] = 0
+    controls["silence_in"] = 0
+    is_down = controls["value"][FINGER_PRESS] > 0.0
+    controls["finger_up"] = np.where(is_down, 0, controls["park_after"])
+    controls["sounding_from"] = controls["value"][FINGER_POSITION][is_down].max(initial=0.0)
+    controls["tremolo"] = FORWARD
 
 
 @compiled
-def take(g: Any, index: int, target: float, ramp: int, silence_frames: int) -> None:
+def take(c: Any, index: int, target: float, ramp: int, silence_frames: int) -> None:
     """Apply one event: set a parameter going towards its target, within its range.
 
     What is not a number is passed over. Real time: safe.
     """
     if index == SILENCE:
-        if g.silence_in == 0:
-            g.silence_in = silence_frames
+        if c.silence_in == 0:
+            c.silence_in = silence_frames
         return
     if index < 0 or index >= SLOTS or math.isnan(target):
         return
     target = min(max(target, LOWEST[index]), HIGHEST[index])
-    g.target[index] = target
-    g.moving -= 1 if g.remaining[index] > 0 else 0
+    c.target[index] = target
+    c.moving -= 1 if c.remaining[index] > 0 else 0
     if ramp <= 0:
-        g.value[index] = target
-        g.remaining[index] = 0
+        c.value[index] = target
+        c.remaining[index] = 0
     else:
-        g.slope[index] = (target - g.value[index]) / ramp
-        g.remaining[index] = ramp
-        g.moving += 1
+        c.slope[index] = (target - c.value[index]) / ramp
+        c.remaining[index] = ramp
+        c.moving += 1
 
 
 @compiled
-def move(g: Any) -> None:
+def move(c: Any) -> None:
     """Let every parameter take one step of its ramp, ending exactly on its target."""
-    if g.moving == 0:
+    if c.moving == 0:
         return
     for index in range(SLOTS):
-        if g.remaining[index] > 0:
-            g.remaining[index] -= 1
-            if g.remaining[index] == 0:
-                g.value[index] = g.target[index]
-                g.moving -= 1
+        if c.remaining[index] > 0:
+            c.remaining[index] -= 1
+            if c.remaining[index] == 0:
+                c.value[index] = c.target[index]
+                c.moving -= 1
             else:
-                g.value[index] += g.slope[index]
+                c.value[index] += c.slope[index]
 
 
 @compiled
-def amplitude(g: Any, of: int, decibels: float) -> float:
+def amplitude(c: Any, of: int, decibels: float) -> float:
     """Turn decibels to a factor, worked out only when they change."""
-    if decibels != g.decibels[of]:
-        g.decibels[of], g.factor[of] = decibels, 10.0 ** (decibels / 20.0)
-    return float(g.factor[of])
+    if decibels != c.decibels[of]:
+        c.decibels[of], c.factor[of] = decibels, 10.0 ** (decibels / 20.0)
+    return float(c.factor[of])
 
 
 @compiled
-def level(g: Any) -> float:
+def level(c: Any) -> float:
     """Amplitude at full scale of one pascal at this frame."""
-    factor = amplitude(g, TO_OUTPUT, g.value[GAIN] + g.value[BALANCE])
-    return float(g.value[LEVEL] * factor / FULL_SCALE_PRESSURE)
+    factor = amplitude(c, TO_OUTPUT, c.value[GAIN] + c.value[BALANCE])
+    return float(c.value[LEVEL] * factor / FULL_SCALE_PRESSURE)
 
 
 @compiled
-def has_new_strings(g: Any) -> bool:
+def has_new_strings(c: Any) -> bool:
     """Whether tuning or loss of a string is not what it was at the frame before."""
     for i in range(STRINGS):
-        for what in range(2):
-            if g.value[SILKS + 2 * i + what] != g.silk[i, what]:
-                return True
+        if c.value[TUNING[i]] != c.tuning[i] or c.value[LOSS[i]] != c.loss[i]:
+            return True
     return False
 
 
@@ -225,97 +226,97 @@ def chance(frame: int) -> float:
 
 
 @compiled
-def grip(g: Any) -> float:
+def grip(c: Any) -> float:
     """Share of the bow force that the hair's grain leaves at this frame, about 1."""
-    noise = g.value[NOISE]
+    noise = c.value[NOISE]
     if noise == 0.0:
         return 1.0
-    g.grain += g.grain_follow * (g.grain_size * chance(g.frame) - g.grain)
-    return float(max(0.0, 1.0 + noise * g.grain))
+    c.grain = one_pole(c.grain, c.grain_size * chance(c.frame), c.grain_follow)
+    return float(max(0.0, 1.0 + noise * c.grain))
 
 
 @compiled
-def vibrate(g: Any) -> float:
+def vibrate(c: Any) -> float:
     """Where the vibrato is, from -1 to 1, as far as it has come in; and turn it on."""
-    if g.value[DEPTH] == 0.0 and g.value[ROCK] == 0.0:
-        g.vibrato = 0.0
+    if c.value[DEPTH] == 0.0 and c.value[ROCK] == 0.0:
+        c.vibrato = 0.0
         return 0.0
-    g.vibrato += g.value[RATE] / g.second
-    g.vibrato -= math.floor(g.vibrato)
-    come = max(0.0, (g.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM))
-    return float(come * come * (3.0 - 2.0 * come) * math.sin(2.0 * math.pi * g.vibrato))
+    c.vibrato += c.value[RATE] / c.second
+    c.vibrato -= math.floor(c.vibrato)
+    come = max(0.0, (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM))
+    return float(come * come * (3.0 - 2.0 * come) * math.sin(2.0 * math.pi * c.vibrato))
 
 
 @compiled
-def turn_bow(g: Any) -> float:
+def turn_bow(c: Any) -> float:
     """Share of its speed that the bow has in a tremolo stroke, with its direction."""
-    strokes = g.value[TREMOLO]
+    strokes = c.value[TREMOLO]
     if strokes == 0.0:
-        if g.tremolo == FORWARD:
+        if c.tremolo == FORWARD:
             return 1.0
         strokes = LAST_STROKES
-    before = g.tremolo
-    g.tremolo += 0.5 * strokes / g.second
-    if g.value[TREMOLO] == 0.0 and before < FORWARD <= g.tremolo:
-        g.tremolo = FORWARD
-    g.tremolo -= math.floor(g.tremolo)
-    return float(max(-1.0, min(1.0, TURN * math.sin(2.0 * math.pi * g.tremolo))))
+    before = c.tremolo
+    c.tremolo += 0.5 * strokes / c.second
+    if c.value[TREMOLO] == 0.0 and before < FORWARD <= c.tremolo:
+        c.tremolo = FORWARD
+    c.tremolo -= math.floor(c.tremolo)
+    return float(max(-1.0, min(1.0, TURN * math.sin(2.0 * math.pi * c.tremolo))))
 
 
 @compiled
-def stop_strings(g: Any, control: Array) -> None:
+def stop_strings(c: Any, control: Array) -> None:
     """Place the fingers, with their vibrato; let the sounding length follow the nearest one."""
-    rocking = vibrate(g)
+    rocking = vibrate(c)
     stretch, harder = 1.0, 1.0
     if rocking != 0.0:
-        stretch = 2.0 ** (-rocking * g.value[DEPTH] / 1200.0)
-        harder = 1.0 + rocking * g.value[ROCK]
+        stretch = 2.0 ** (-rocking * c.value[DEPTH] / 1200.0)
+        harder = 1.0 + rocking * c.value[ROCK]
     stop = 0.0
     for j in range(MAX_FINGERS):
-        slot, column = FINGERS + 2 * j, FINGER_CONTROLS + CONTROLS_PER_FINGER * j
-        x_f, press = g.value[slot], g.value[slot + 1]
+        column = FINGER_CONTROLS + CONTROLS_PER_FINGER * j
+        x_f, press = c.value[FINGER_POSITION[j]], c.value[FINGER_PRESS[j]]
         if press > 0.0:
-            g.finger_up[j] = 0
+            c.finger_up[j] = 0
             stop = max(stop, x_f)
             if rocking != 0.0:
-                x_f = g.bridge_x - (g.bridge_x - x_f) * stretch
+                x_f = c.bridge_x - (c.bridge_x - x_f) * stretch
                 press *= harder
         else:
-            g.finger_up[j] += 1
-            if g.finger_up[j] >= g.park_after:
+            c.finger_up[j] += 1
+            if c.finger_up[j] >= c.park_after:
                 x_f = PARK_X
         control[column], control[column + 1] = x_f, press
-    g.sounding_from += g.follow * (stop - g.sounding_from)
+    c.sounding_from = one_pole(c.sounding_from, stop, c.follow)
 
 
 @compiled
-def pluck(g: Any) -> float:
+def pluck(c: Any) -> float:
     """Force (N) on the string that is pulled aside; once it is all there, let go."""
-    force = g.value[PLUCK]
-    if force != 0.0 and g.remaining[PLUCK] == 0:
-        take(g, PLUCK, 0.0, g.let_go, 0)
+    force = c.value[PLUCK]
+    if force != 0.0 and c.remaining[PLUCK] == 0:
+        take(c, PLUCK, 0.0, c.let_go, 0)
     return float(force)
 
 
 @compiled
-def write_controls(g: Any, control: Array) -> None:
+def write_controls(c: Any, control: Array) -> None:
     """Turn the parameters of this frame into the kernel's controls.
 
     Bow force is assist * share * F_max + (1 - assist) * force, with Schelleng's
     F_max = 2 Z v_b / (beta (mu_S - mu_C)) [Schelleng] and a share of it that is the
     pressure and a little more for a fast bow; the side fades it in and out.
     """
-    stop_strings(g, control)
-    speed, beta, side = g.value[SPEED] * turn_bow(g), g.value[POSITION], g.value[SIDE]
+    stop_strings(c, control)
+    speed, beta, side = c.value[SPEED] * turn_bow(c), c.value[POSITION], c.value[SIDE]
     string = 0 if side >= 0.0 else 1
-    limit = g.schelleng[string] * abs(speed) / beta
-    assist = g.value[ASSIST]
-    share = g.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
-    force = assist * share * limit + (1.0 - assist) * g.value[FORCE]
-    sounding = g.bridge_x - g.sounding_from
-    control[F_N] = side * force * grip(g)
+    limit = c.schelleng[string] * abs(speed) / beta
+    assist = c.value[ASSIST]
+    share = c.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
+    force = assist * share * limit + (1.0 - assist) * c.value[FORCE]
+    sounding = c.bridge_x - c.sounding_from
+    control[F_N] = side * force * grip(c)
     control[V_B] = speed
-    control[X_B] = g.bridge_x - beta * sounding
+    control[X_B] = c.bridge_x - beta * sounding
     control[F_HAMMER] = 0.0
-    control[F_PLUCK] = pluck(g)
-    control[X_PLUCK] = g.bridge_x - g.value[PLUCK_POSITION] * sounding
+    control[F_PLUCK] = pluck(c)
+    control[X_PLUCK] = c.bridge_x - c.value[PLUCK_POSITION] * sounding

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from yehu_server.params.spec import Place
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import PREFIX, TABLE
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "parameters.md"
 
@@ -20,13 +20,16 @@ def page() -> str:
         "",
         "Written by `scripts/parameters.py` from `yehu_server/params/table.py`.",
         "",
-        "`--set ADDRESS=VALUE` of `render` and `serve` holds any of them; OSC sets them at `/yehu`",
+        (
+            "`--set ADDRESS=VALUE` of `render` and `serve` holds any of them; "
+            f"OSC sets them at `{PREFIX}`"
+        ),
         "and their address; mappings move those under `/playing`.",
         "",
         "*Press* is always a finger on the string, in newtons. *Pressure* is the bow on the",
         "string, for its speed; its *force* is the same in newtons. What MIDI calls pressure is",
         "*aftertouch* here, but for the names of its sources in mappings. `/playing/release` is a",
-        "time; the call `/yehu/release` gives back what you took over.",
+        f"time; the call `{PREFIX}/release` gives back what you took over.",
     ]
     for place, title in (
         (Place.PLAYER, "What the player goes by"),

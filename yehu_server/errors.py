@@ -34,6 +34,10 @@ class PresetError(SettingsError):
     """A preset that is not there, cannot be read or written, or does not make sense."""
 
 
+class RefusedError(YehuError):
+    """A message to a server that cannot be done as it is: raised there, and where it was sent."""
+
+
 class ScoreError(YehuError):
     """A performance file (MIDI, gesture) that cannot be read."""
 

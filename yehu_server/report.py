@@ -13,9 +13,8 @@ import numpy as np
 from yehu_server.analysis.pitch import note_name
 from yehu_server.audio.devices import AudioDevice
 from yehu_server.control.addresses import shown
-from yehu_server.control.calls import PREFIX
 from yehu_server.lines import one_line
-from yehu_server.params.table import find
+from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.render import Summary
@@ -201,7 +200,7 @@ def status_line(status: Mapping[str, float | str]) -> str:
 
 def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]:
     """How others reach the server, in words; `is_open` where anyone is heard."""
-    lines = [f"OSC at {shown(host, port)} (UDP and TCP), such as /yehu/note 67 90"]
+    lines = [f"OSC at {shown(host, port)} (UDP and TCP), such as {PREFIX}/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
         network = ipaddress.ip_network(f"{lan}/24", strict=False)

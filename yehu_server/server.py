@@ -22,7 +22,7 @@ from platformdirs import user_music_path
 
 from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.audio.takes import Takes
-from yehu_server.control.addresses import Address, Allowed
+from yehu_server.control.addresses import OSC_ADDRESS, Address, Allowed
 from yehu_server.control.announce import Announcer, announced
 from yehu_server.control.calls import Call, own_calls, preset_calls
 from yehu_server.control.mapping_follower import MappingFollower
@@ -60,7 +60,7 @@ class ServeOptions:
 
     output: OutputOptions = field(default_factory=OutputOptions)
     midi: MidiOptions | None = field(default_factory=MidiOptions)  # None: no MIDI
-    osc: Address = ("127.0.0.1", 9000)
+    osc: Address = OSC_ADDRESS
     allowed: Allowed = field(default_factory=Allowed)
     http: WebOptions | None = None  # None: no OSCQuery
     announce: bool | None = None  # None: where it listens beyond this machine

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server.cli.terminal import warn
+from yehu_server.control.addresses import OSC_ADDRESS, parse_address, shown
 from yehu_server.errors import ParameterError
 from yehu_server.files import shipped_folder
 from yehu_server.lines import one_line
@@ -117,17 +118,15 @@ def add_server(parser: Any) -> None:
     """Add which running server is meant."""
     parser.add_argument(
         "--server",
-        default="127.0.0.1:9000",
+        default=shown(*OSC_ADDRESS),
         metavar="HOST:PORT",
-        help="the OSC address of the server (default: 127.0.0.1:9000)",
+        help=f"the OSC address of the server (default: {shown(*OSC_ADDRESS)})",
     )
 
 
 def server_of(arguments: argparse.Namespace) -> tuple[str, int]:
     """What `add_server` was told. Errors: ParameterError."""
-    from yehu_server.control.addresses import parse_address
-
-    return parse_address(arguments.server, "127.0.0.1", 9000)
+    return parse_address(arguments.server, *OSC_ADDRESS)
 
 
 def add_playing(group: Any) -> None:

@@ -53,7 +53,7 @@ def add_to(commands: Any) -> None:
         type=whole,
         default=44100,
         metavar="HZ",
-        help="sample rate, 22050 to 192000 (default: 44100)",
+        help="sample rate (default: 44100)",
     )
     parser.add_argument("--format", choices=("wav", "flac"), help="default: by the ending of OUT")
     parser.add_argument(

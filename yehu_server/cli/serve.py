@@ -27,8 +27,10 @@ from yehu_server.cli.arguments import (
     whole,
     within,
 )
+from yehu_server.control.addresses import HTTP_ADDRESS, OSC_ADDRESS, shown
 from yehu_server.limits import allow_files
 from yehu_server.lines import one_line
+from yehu_server.params.table import PREFIX
 
 EXAMPLES = """\
 examples:
@@ -42,7 +44,6 @@ The OSC messages are described in docs/osc.md,
 OSCQuery in docs/oscquery.md. Ctrl-C ends it.
 """
 
-HTTP = ("127.0.0.1", 9001)
 FILES_NEEDED = 40  # open ones: 30 by itself, and some clients
 LEVELS = ("debug", "info", "warning", "error")
 REFRESHES_PER_SECOND = 10
@@ -120,9 +121,9 @@ def _add_midi(group: Any) -> None:
 def _add_osc(group: Any) -> None:
     group.add_argument(
         "--osc",
-        default="127.0.0.1:9000",
+        default=shown(*OSC_ADDRESS),
         metavar="HOST:PORT",
-        help="where to listen, UDP and TCP (default: 127.0.0.1:9000; this machine only)",
+        help=f"where to listen, UDP and TCP (default: {shown(*OSC_ADDRESS)}; this machine only)",
     )
     group.add_argument(
         "--osc-allow",
@@ -136,10 +137,10 @@ def _add_osc(group: Any) -> None:
 def _add_web(group: Any) -> None:
     group.add_argument(
         "--http",
-        default="{}:{}".format(*HTTP),
+        default=shown(*HTTP_ADDRESS),
         metavar="HOST:PORT",
-        help="where to listen for OSCQuery, HTTP and WebSocket (default: 127.0.0.1:9001; this "
-        "machine only), or none",
+        help="where to listen for OSCQuery, HTTP and WebSocket "
+        f"(default: {shown(*HTTP_ADDRESS)}; this machine only), or none",
     )
     group.add_argument(
         "--no-http", dest="http", action="store_const", const="none", help="no OSCQuery"
@@ -194,7 +195,7 @@ def _add_running(group: Any) -> None:
         "--recordings",
         type=Path,
         metavar="FOLDER",
-        help="where /yehu/record/start writes (default: yehu-server in your music folder)",
+        help=f"where {PREFIX}/record/start writes (default: yehu-server in your music folder)",
     )
     group.add_argument("--duration", type=_duration, metavar="SECONDS", help="end by itself")
     group.add_argument(
@@ -305,11 +306,8 @@ def _options(arguments: argparse.Namespace) -> Any:
     from yehu_server.control.ports import MidiOptions
     from yehu_server.control.web import WebOptions
     from yehu_server.files import check_apart
-    from yehu_server.physics.grid import check_rate
     from yehu_server.server import ServeOptions
 
-    if arguments.rate is not None:
-        check_rate(arguments.rate)
     style = style_of(arguments, is_live=True)
     outputs = {"--record": arguments.record, "--capture": arguments.capture}
     config = [] if arguments.config is None else [arguments.config]
@@ -331,9 +329,9 @@ def _options(arguments: argparse.Namespace) -> Any:
         midi=MidiOptions(arguments.midi_in, arguments.virtual_midi, arguments.midi_api)
         if midi
         else None,
-        osc=parse_address(arguments.osc, "127.0.0.1", 9000),
+        osc=parse_address(arguments.osc, *OSC_ADDRESS),
         allowed=Allowed(arguments.osc_allow),
-        http=WebOptions(parse_address(arguments.http, *HTTP), Allowed(arguments.http_allow))
+        http=WebOptions(parse_address(arguments.http, *HTTP_ADDRESS), Allowed(arguments.http_allow))
         if arguments.http != "none"
         else None,
         announce=arguments.announce,
@@ -417,7 +415,9 @@ def _status_line(server: Any) -> Iterator[None]:
 
 
 def _rate(text: str) -> float:
-    return within(text, 22050, 192000, "Hz")
+    from yehu_server.physics.grid import HIGHEST_RATE, LOWEST_RATE
+
+    return within(text, LOWEST_RATE, HIGHEST_RATE, "Hz")
 
 
 def _blocksize(text: str) -> int:

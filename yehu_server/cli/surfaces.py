@@ -8,6 +8,7 @@ from typing import Any
 
 from yehu_server.cli.arguments import add_command, target
 from yehu_server.cli.terminal import tell
+from yehu_server.control.addresses import OSC_ADDRESS, parse_address, shown
 
 EXAMPLES = """\
 examples:
@@ -39,10 +40,10 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument(
         "--server",
-        default="127.0.0.1:9000",
+        default=shown(*OSC_ADDRESS),
         metavar="HOST:PORT",
-        help="whom Max, Pd and Open Stage Control speak to (default: 127.0.0.1:9000); in TouchOSC "
-        "it is set by hand",
+        help="whom Max, Pd and Open Stage Control speak to "
+        f"(default: {shown(*OSC_ADDRESS)}); in TouchOSC it is set by hand",
     )
     parser.add_argument(
         "--only",
@@ -60,15 +61,16 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.control.addresses import parse_address
     from yehu_server.errors import OutputError, ParameterError
-    from yehu_server.surfaces.catalogue import DEFAULT_SERVER, chosen, is_fresh, write
+    from yehu_server.surfaces.catalogue import chosen, is_fresh, write
 
     folder: Path = arguments.output
-    server = parse_address(arguments.server, *DEFAULT_SERVER)
+    server = parse_address(arguments.server, *OSC_ADDRESS)
     # Nobody looks whether the host is there: a word alone is more likely a slip than its name.
     if arguments.server.isidentifier() and arguments.server != "localhost":
-        raise ParameterError(f"{arguments.server!r}: expected HOST:PORT, such as 127.0.0.1:9000")
+        raise ParameterError(
+            f"{arguments.server!r}: expected HOST:PORT, such as {shown(*OSC_ADDRESS)}"
+        )
     surfaces = chosen(arguments.only)
     if arguments.check:
         stale = [surface for surface in surfaces if not is_fresh(surface, folder, server)]

@@ -15,6 +15,9 @@ from yehu_server.errors import ParameterError
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = tuple[str, int]
 
+# Where a server listens, and is looked for.
+OSC_ADDRESS: Address = ("127.0.0.1", 9000)
+HTTP_ADDRESS: Address = ("127.0.0.1", 9001)
 MOST_KNOWN = 1 << 16
 # The name of a host, or its number in IPv4.
 # Labels of 1 to 63 characters, and a full stop at the end or not.
@@ -103,7 +106,7 @@ def parse_address(text: str, default_host: str, default_port: int) -> Address:
         number = -1
     host = host.removeprefix("[").removesuffix("]") or default_host
     if not 0 <= number <= 65535 or not is_host(host):
-        raise ParameterError(f"{text!r}: expected HOST:PORT, such as 127.0.0.1:9000")
+        raise ParameterError(f"{text!r}: expected HOST:PORT, such as {shown(*OSC_ADDRESS)}")
     return host, number
 
 

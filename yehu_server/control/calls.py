@@ -7,11 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from yehu_server.params.table import find
+from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_address
-
-PREFIX = "/yehu"  # before every address
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,12 @@ from types import TracebackType
 from typing import Self
 
 from yehu_server.control.addresses import Address, shown, why
-from yehu_server.control.calls import PREFIX
 from yehu_server.control.packets import Message, PacketError, pack, unpack
-from yehu_server.errors import DeviceError, YehuError
+from yehu_server.errors import DeviceError, RefusedError
+from yehu_server.params.table import PREFIX
 
 ANSWERS_WITHIN_S = 2.0
 DATAGRAM_BYTES = 1 << 16
-
-
-class RefusedError(YehuError):
-    """What the server said to something that it does not do."""
 
 
 class OscClient:

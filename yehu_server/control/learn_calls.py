@@ -6,12 +6,11 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from yehu_server.control.calls import PREFIX
 from yehu_server.control.packets import pack
 from yehu_server.control.peers import Peer
 from yehu_server.control.request import Desk, Request
 from yehu_server.errors import YehuError
-from yehu_server.params.table import UNIT
+from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learned
 from yehu_server.playing.learner import Found
 from yehu_server.playing.live import LivePlayer

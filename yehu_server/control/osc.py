@@ -12,19 +12,18 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from yehu_server.control.backlog import Backlog
-from yehu_server.control.calls import PREFIX
 from yehu_server.control.clients import Clients
 from yehu_server.control.learn_calls import LearnCalls
 from yehu_server.control.packets import Message, PacketError, answer, pack, steps, unpack
 from yehu_server.control.patterns import PatternError, is_pattern, matches
 from yehu_server.control.peers import Peer
 from yehu_server.control.preset_calls import PresetCalls
-from yehu_server.control.request import Desk, RefusedError, Request
+from yehu_server.control.request import Desk, Request
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
 from yehu_server.control.status import PLACE, STATUS, STATUS_ADDRESSES, as_argument
-from yehu_server.errors import ParameterError, YehuError
+from yehu_server.errors import ParameterError, RefusedError, YehuError
 from yehu_server.params.spec import Param
-from yehu_server.params.table import BY_ADDRESS, TABLE, UNIT, find, read
+from yehu_server.params.table import BY_ADDRESS, PREFIX, TABLE, UNIT, find, read
 from yehu_server.playing.live import Arrivals, LivePlayer
 from yehu_server.playing.sources import is_own
 

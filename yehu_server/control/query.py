@@ -9,10 +9,10 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from yehu_server.control.calls import CALLS, PREFIX, Argument, Call
+from yehu_server.control.calls import CALLS, Argument, Call
 from yehu_server.control.status import PLACE, STATUS, as_argument
 from yehu_server.params.spec import Param
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import PREFIX, TABLE
 from yehu_server.params.table import UNIT as AS_UNIT
 
 Node = dict[str, Any]

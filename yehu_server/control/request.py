@@ -8,11 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from yehu_server.control.peers import Peer
-from yehu_server.errors import YehuError
-
-
-class RefusedError(YehuError):
-    """A message that cannot be done as it is."""
+from yehu_server.errors import RefusedError
 
 
 class Desk(Protocol):

@@ -29,6 +29,7 @@ from yehu_server.control.sockets import OscPorts
 from yehu_server.control.web_sockets import WebSockets
 from yehu_server.errors import DeviceError
 from yehu_server.lines import one_line
+from yehu_server.params.table import PREFIX
 
 log = logging.getLogger(__name__)
 
@@ -45,7 +46,7 @@ PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>yehu-server</title></head>
 <body><h1>yehu-server</h1><ul>
 <li><a href="/{parameters}">Parameters</a></li>
-<li><a href="/?HOST_INFO">OSCQuery</a>: <a href="/yehu">the tree</a></li>
+<li><a href="/?HOST_INFO">OSCQuery</a>: <a href="{prefix}">the tree</a></li>
 <li><a href="/metrics">Metrics</a></li>
 </ul></body></html>
 """
@@ -170,7 +171,7 @@ class WebServer:
         if request.path == f"/{PARAMETERS}":
             return self._parameters()
         if request.path == "/" and not request.query_string and _reads_html(request):
-            return _html(PAGE.format(parameters=PARAMETERS))
+            return _html(PAGE.format(parameters=PARAMETERS, prefix=PREFIX))
         return self._query(request)
 
     def _check(self, request: web.Request) -> None:

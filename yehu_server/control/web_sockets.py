@@ -11,12 +11,12 @@ from typing import Any
 
 from aiohttp import WSMsgType, web
 
-from yehu_server.control.calls import PREFIX
 from yehu_server.control.clients import Clients
 from yehu_server.control.peers import MOST_UNSENT_BYTES, WebTraffic
 from yehu_server.control.query import LISTENABLE
 from yehu_server.control.sockets import OscPorts
 from yehu_server.lines import shortened
+from yehu_server.params.table import PREFIX
 
 FRAME_BYTES = 1 << 16  # the longest we read
 HEARTBEAT_S = 20.0  # a socket whose other end is silent for half as long after it is closed

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 
 from yehu_server.errors import ParameterError
+from yehu_server.params.table import PREFIX
 
 BEND, PRESSURE, POLY_PRESSURE = "bend", "pressure", "poly-pressure"
 VELOCITY, NOTE = "velocity", "note"
@@ -21,7 +22,6 @@ FINE_ABOVE = 32
 STEPS, FINEST = 127, 16383  # of 7 and of 14 bits
 NO_NRPN = FINEST  # 127/127 means that none is selected
 CHANNELS = 16  # of a port
-OUR_OSC = "/yehu"
 
 _CC = re.compile(r"cc (0|[1-9][0-9]{0,2})(?:/(0|[1-9][0-9]{0,2}))?")
 _NRPN = re.compile(r"nrpn (0|[1-9][0-9]{0,4})(?:/(0|[1-9][0-9]{0,2}))?")
@@ -105,6 +105,6 @@ def _checked_address(text: str) -> str:
         raise ParameterError(f"{text!r} is not an OSC address")
     if len(text) > LONGEST_ADDRESS:
         raise ParameterError("the OSC address is too long")
-    if text == OUR_OSC or text.startswith(f"{OUR_OSC}/"):
-        raise ParameterError(f"{text}: addresses under {OUR_OSC} have meanings of their own")
+    if text == PREFIX or text.startswith(f"{PREFIX}/"):
+        raise ParameterError(f"{text}: addresses under {PREFIX} have meanings of their own")
     return text

@@ -7,13 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from yehu_server.control.addresses import Address
+from yehu_server.control.addresses import OSC_ADDRESS, Address
 from yehu_server.errors import OutputError
 from yehu_server.files import replacing
 from yehu_server.surfaces import max as max_patch
 from yehu_server.surfaces import page, puredata, stage, touchosc
-
-DEFAULT_SERVER = ("127.0.0.1", 9000)
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ def chosen(names: Sequence[str]) -> list[Surface]:
     return [surface for surface in SURFACES if not names or surface.name in names]
 
 
-def write(surface: Surface, folder: Path, server: Address = DEFAULT_SERVER) -> Path:
+def write(surface: Surface, folder: Path, server: Address = OSC_ADDRESS) -> Path:
     """Write a surface's file, replacing an older one; return its path.
 
     Raises
@@ -68,7 +66,7 @@ def write(surface: Surface, folder: Path, server: Address = DEFAULT_SERVER) -> P
     return target
 
 
-def is_fresh(surface: Surface, folder: Path, server: Address = DEFAULT_SERVER) -> bool:
+def is_fresh(surface: Surface, folder: Path, server: Address = OSC_ADDRESS) -> bool:
     """Whether a folder holds the file as it would be written now."""
     try:
         there = surface.content((folder / surface.name).read_bytes())

@@ -6,9 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from yehu_server.analysis.pitch import note_name
-from yehu_server.control.calls import PREFIX
 from yehu_server.params.spec import Param
-from yehu_server.params.table import TABLE, find
+from yehu_server.params.table import PREFIX, TABLE, find
 from yehu_server.playing.fingering import HIGHEST_NOTE, LOWEST_NOTE
 
 FIRST_GROUP = "playing"  # used most

@@ -16,10 +16,10 @@ from fuzz.target import Program, scratch, target
 from wire import SINCE_1900_S, Ear, StillTime
 
 from yehu_server.control import clients, osc, schedule
-from yehu_server.control.calls import CALLS, PREFIX
+from yehu_server.control.calls import CALLS
 from yehu_server.control.osc import OscHandler
 from yehu_server.control.packets import pack, unpack
-from yehu_server.params.table import TABLE, UNIT
+from yehu_server.params.table import PREFIX, TABLE, UNIT
 from yehu_server.playing import live
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import load

@@ -14,14 +14,13 @@ from aiohttp.test_utils import make_mocked_request
 from fuzz.target import ROOT, target
 
 from yehu_server.control import web_sockets
-from yehu_server.control.calls import PREFIX
 from yehu_server.control.clients import Clients
 from yehu_server.control.packets import PacketError, unpack
 from yehu_server.control.query import LISTENABLE
 from yehu_server.control.status import STATUS, Kind
 from yehu_server.control.web import Sources, WebOptions, WebServer
 from yehu_server.control.web_sockets import CommandError
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import PREFIX, TABLE
 
 HOST = "127.0.0.1"
 VALUES = {param.address: param.default for param in TABLE}

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
+from yehu_server.control.allowance import Allowance
 from yehu_server.control.packets import pack
 from yehu_server.control.peers import Peer
 from yehu_server.control.status import PLACE, as_argument
@@ -37,7 +38,7 @@ class Client:
     listens: set[str] = field(default_factory=set)  # addresses it is told of without an end
     hushed_until: float = 0.0  # when it may be answered again (monotonic s)
     to_tell: dict[str, None] = field(default_factory=dict)  # addresses, in order
-    patience: float = ERRORS_AT_ONCE  # errors it may still be sent
+    errors: Allowance = field(default_factory=lambda: Allowance(ERRORS_A_SECOND, ERRORS_AT_ONCE))
     complained: float = field(default_factory=time.monotonic)
 
     def subscribes(self, now: float) -> bool:
@@ -181,13 +182,10 @@ class Clients:
         now = time.monotonic()
         if client.hushed_until > now:
             return
-        gained = ERRORS_A_SECOND * (now - client.complained)
-        client.patience = min(client.patience + gained, ERRORS_AT_ONCE)
         client.complained = now
-        if client.patience < 1.0:
+        if not client.errors.takes(now):
             self.errors_withheld += 1
             return
-        client.patience -= 1.0
         self.errors_sent += 1
         reason = reason if isinstance(reason, str) else reason()
         peer.send(pack(f"{self.prefix}/error", shortened(address), shortened(reason)))

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from yehu_server.control.addresses import Address
+from yehu_server.control.allowance import Allowance
 from yehu_server.control.framing import Framing
 
 MOST_UNSENT_BYTES = 1 << 18  # to one peer
@@ -67,25 +68,9 @@ class WebTraffic:
     web_sockets: int = 0  # that are open
 
 
-class Allowance:
-    """How many bytes a sender is answered."""
-
-    def __init__(self) -> None:
-        self._left = float(ANSWERED_AT_ONCE_BYTES)
-        self._counted = time.monotonic()
-
-    @property
-    def is_left(self) -> bool:
-        """Whether there is any left."""
-        now = time.monotonic()
-        gained = ANSWERED_BYTES_A_SECOND * (now - self._counted)
-        self._left = min(self._left + gained, ANSWERED_AT_ONCE_BYTES)
-        self._counted = now
-        return self._left > 0.0
-
-    def spend(self, count: int) -> None:
-        """Count what was sent."""
-        self._left -= count
+def _answers() -> Allowance:
+    """The bytes that a sender of datagrams may be answered."""
+    return Allowance(ANSWERED_BYTES_A_SECOND, ANSWERED_AT_ONCE_BYTES)
 
 
 @dataclass(frozen=True)
@@ -95,7 +80,7 @@ class UdpPeer:
     socket: socket.socket = field(compare=False)
     address: Address
     traffic: Traffic = field(compare=False)
-    allowance: Allowance = field(default_factory=Allowance, compare=False)
+    allowance: Allowance = field(default_factory=_answers, compare=False)
 
     @property
     def name(self) -> str:
@@ -110,11 +95,11 @@ class UdpPeer:
     @property
     def takes_more(self) -> bool:
         """See `Peer`."""
-        return self.allowance.is_left
+        return self.allowance.left(time.monotonic()) > 0.0
 
     def send(self, packet: bytes) -> None:
         """See `Peer`."""
-        if not self.allowance.is_left:
+        if not self.takes_more:
             self.traffic.unsent += 1
             return
         self.allowance.spend(len(packet))

@@ -1,4 +1,4 @@
-"""Who may speak, and where we listen."""
+"""Network addresses: reading and writing them, and which senders are allowed."""
 
 from __future__ import annotations
 
@@ -15,21 +15,28 @@ from yehu_server.errors import ParameterError
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = tuple[str, int]
 
-# Where a server listens, and is looked for.
+# Where a server listens by default, and where commands look for it.
 OSC_ADDRESS: Address = ("127.0.0.1", 9000)
 HTTP_ADDRESS: Address = ("127.0.0.1", 9001)
 MOST_KNOWN = 1 << 16
-# The name of a host, or its number in IPv4.
-# Labels of 1 to 63 characters, and a full stop at the end or not.
+# A host's name, or its address in IPv4: labels of 1 to 63 characters, and a final full stop or not.
 _LABEL = r"[A-Za-z0-9_](?:[A-Za-z0-9_-]{0,61}[A-Za-z0-9_])?"
 _NAME = re.compile(rf"{_LABEL}(?:\.{_LABEL})*\.?")
-ANYWHERE = "0.0.0.0"  # noqa: S104 - names it only
+ANYWHERE = "0.0.0.0"  # noqa: S104 - nothing is bound to it here
 
 
 class Allowed:
-    """Which senders are heard.
+    """The networks whose hosts may send; without any, all may.
 
-    Errors: ParameterError for what is no network, such as ``192.168.1.0/24``.
+    Parameters
+    ----------
+    networks : iterable of str
+        Such as ``192.168.1.0/24``.
+
+    Raises
+    ------
+    ParameterError
+        Where one is not a network.
     """
 
     def __init__(self, networks: Iterable[str] = ()) -> None:
@@ -42,7 +49,7 @@ class Allowed:
                 raise ParameterError(f"{text!r} is not a network, such as 192.168.1.0/24") from None
 
     def __contains__(self, host: str) -> bool:
-        """Whether a host is heard: any, where no network is named."""
+        """Whether a host (an IP address) may send."""
         if not self._networks:
             return True
         if host not in self._known:
@@ -55,7 +62,7 @@ class Allowed:
 
 @lru_cache(maxsize=1024)
 def is_here(host: str) -> bool:
-    """Whether an address is one of this machine's."""
+    """Whether an IP address is one of this machine's."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         with socket.socket(family, socket.SOCK_DGRAM) as probe:
@@ -66,26 +73,26 @@ def is_here(host: str) -> bool:
 
 
 def plain(host: str) -> str:
-    """An address without its zone, and of IPv4 where it is that of IPv4 as IPv6 has it."""
+    """An IP address without its zone, and in IPv4 where it is an IPv4 address mapped to IPv6."""
     address = ipaddress.ip_address(host.partition("%")[0])
     return str(getattr(address, "ipv4_mapped", None) or address)
 
 
 def lan_address() -> str:
-    """The address of this machine on its network; nothing is sent to find it."""
+    """Find this machine's address on its network, without sending a packet."""
     with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.connect(("192.0.2.1", 9))  # a network that is for documentation only
+        probe.connect(("192.0.2.1", 9))  # a network reserved for documentation
         return str(probe.getsockname()[0])
-    return ANYWHERE  # all there is to say without a network
+    return ANYWHERE  # there is no network
 
 
 def shown(host: str, port: int) -> str:
-    """A host and a port, as `parse_address` reads them."""
+    """Host and port as text that `parse_address` reads."""
     return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
 
 def why(error: OSError) -> str:
-    """Why an address cannot be had, in the system's words alone."""
+    """The system's own words for why an address cannot be used."""
     if isinstance(error, socket.gaierror) or error.errno is None:
         return error.strerror or str(error)
     return os.strerror(error.errno)
@@ -94,7 +101,10 @@ def why(error: OSError) -> str:
 def parse_address(text: str, default_host: str, default_port: int) -> Address:
     """Read ``HOST:PORT``, ``HOST`` or ``:PORT``; IPv6 with a port as ``[HOST]:PORT``.
 
-    Errors: ParameterError.
+    Raises
+    ------
+    ParameterError
+        Where it is none of these.
     """
     host, colon, port = text.rpartition(":")
     is_bare_ipv6 = ":" in host and not host.endswith("]")
@@ -111,7 +121,7 @@ def parse_address(text: str, default_host: str, default_port: int) -> Address:
 
 
 def is_host(text: str) -> bool:
-    """Whether this may be the name or number of a host."""
+    """Whether a text may be a host's name or IP address."""
     if _NAME.fullmatch(text):
         return True
     try:

@@ -1,4 +1,4 @@
-"""How often, or how much of, something may be done."""
+"""Limits on how often something is done."""
 
 from __future__ import annotations
 
@@ -6,9 +6,14 @@ import math
 
 
 class Allowance:
-    """A token bucket: `at_once` may be spent at any moment, and `per_s` is gained each second.
+    """A token bucket, full at first. Times are those of ``time.monotonic()``.
 
-    It begins full. Moments are seconds of ``time.monotonic()``.
+    Parameters
+    ----------
+    per_s : float
+        Tokens added a second.
+    at_once : float
+        Tokens that the bucket holds.
     """
 
     def __init__(self, per_s: float, at_once: float) -> None:
@@ -17,18 +22,18 @@ class Allowance:
         self._looked = -math.inf
 
     def left(self, now: float) -> float:
-        """What may be spent at a moment."""
+        """The number of tokens at a time."""
         gained = self._per_s * (now - self._looked)
         self._left = min(self._left + gained, self._at_once)
         self._looked = now
         return self._left
 
     def spend(self, count: float) -> None:
-        """Take some; more than is left has to be gained again before there is any."""
+        """Take tokens, also more than there are: the debt is paid first."""
         self._left -= count
 
     def takes(self, now: float) -> bool:
-        """Whether there is one left at a moment; then it is taken."""
+        """Take one token if there is one; return whether there was."""
         if self.left(now) < 1.0:
             return False
         self.spend(1.0)

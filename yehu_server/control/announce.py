@@ -1,4 +1,4 @@
-"""Tells the network by zeroconf (Bonjour) that the server is there."""
+"""Announce the server on the network by zeroconf (Bonjour)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 2.0, 60.0
 
 @dataclass(frozen=True)
 class Service:
-    """One port to be found."""
+    """A port to announce."""
 
     kind: str
     host: str
@@ -30,9 +30,14 @@ class Service:
 
 
 def announced(osc: OscPorts, web: WebServer | None, wanted: bool | None) -> list[Service]:
-    """What to announce: what listens beyond this machine, or all or nothing where `wanted` is set.
+    """The services to announce: by default those that other machines can reach.
 
-    Where a port listens at all addresses, the one on the network is told.
+    Parameters
+    ----------
+    wanted : bool, optional
+        Announce all of them (True), or none (False).
+
+    A port that listens at all addresses is announced at the machine's address on its network.
     """
     services = [Service(OSC, _reached(osc.host), osc.port)]
     if web is not None:
@@ -53,7 +58,7 @@ class Announcer:
     Parameters
     ----------
     said : callable
-        Told in a line under which name they are found, or why they are not.
+        Called with a line that tells the name they are announced by, or why they are not.
     """
 
     def __init__(self, services: Sequence[Service], said: Callable[[str], None]) -> None:
@@ -63,15 +68,15 @@ class Announcer:
         self._thread = LoopThread(self._announce, "zeroconf", self._not_announced, patience)
 
     def start(self) -> None:
-        """Begin to announce."""
+        """Start to announce."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Take the announcement back."""
+        """Withdraw the announcement."""
         self._thread.stop()
 
     async def _announce(self) -> None:
-        import zeroconf  # here, so that playing need not wait for it
+        import zeroconf  # late, so that playing starts sooner
         from zeroconf.asyncio import AsyncZeroconf
 
         hosts = sorted({service.host for service in self._services})
@@ -91,7 +96,7 @@ class Announcer:
             )
             for service in self._services
         ]
-        # To its end, even if we are to end: half begun, it would leave its sockets open.
+        # Shielded from cancellation: if it were cut short, its sockets would stay open.
         started = asyncio.ensure_future(found.zeroconf.async_wait_for_start())
         try:
             await asyncio.shield(started)

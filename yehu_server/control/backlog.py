@@ -1,11 +1,11 @@
-"""What has come and is still to be done: nobody's long work before others' short.
+"""A queue of received packets that shares processing time fairly between senders.
 
-Who took least of the processor's time of late is served first, for a turn at most. So as long as
-a sender takes less than its share it is served at once, whatever others send; who sends more than
-can be handled waits for it alone. What is long counts beforehand for what it may take, and a
-stranger for one who took much: neither many long packets nor many new ports go before a player.
-What all senders of a host took counts for each of them, so that many ports are no better than one
-against another host's. What one sender says keeps its order.
+The sender that has used least processor time of late is served first, for one slice of time. A
+client that floods the server therefore delays only itself; a sender that uses less than its share
+is served at once. A long packet is charged beforehand for the time that it may take, and a new
+sender is charged as if it had used much, so that neither many long packets nor many new ports
+delay a player. Time used by all senders of a host counts for each of them, so that opening more
+ports gains nothing. The packets of one sender stay in order.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ from typing import Generic, TypeVar
 from yehu_server.control.peers import Peer
 from yehu_server.control.room import OVERHEAD_BYTES, Room
 
-MOST_BYTES = 16 << 20  # that wait
-TURN_NS, SLICE_NS = 2_000_000, 500_000  # for all, and for one sender
-FORGIVEN_NS = 1_000_000_000  # in which half of what was taken is forgotten
+MOST_BYTES = 16 << 20  # of all waiting packets
+TURN_NS, SLICE_NS = 2_000_000, 500_000  # of one call of `work`, and of one sender's turn in it
+FORGIVEN_NS = 1_000_000_000  # half-life of the time that a sender has used
 RESCALE_NS = 500 * FORGIVEN_NS  # before numbers grow too large
 LITTLE_BYTES = 1 << 10
-LONG_TAKES_NS = 1_000_000_000.0  # what is longer than that is expected to take so much
-# Who has been heard for so long is no stranger, until it has been silent for longer. Strangers
-# are taken for some who took so much.
+LONG_TAKES_NS = 1_000_000_000.0  # charged beforehand for a longer one
+# A sender is known after the first time, until it is silent for the second. One that is not known
+# is charged as if it had used the third.
 STRANGE_NS, SILENT_NS = 1_000_000_000, 60_000_000_000
 STRANGERS_TOOK_NS = 100_000_000.0
 MOST_KNOWN, MOST_SENDERS = 256, 2048
-OWED_BYTES = 4 << 10  # room that one who is known always finds
+OWED_BYTES = 4 << 10  # for which a known sender always finds room
 
 T = TypeVar("T")
 
 
 @dataclass(slots=True)
 class Work(Generic[T]):
-    """A thing to be handled, or the end of its peer; `steps` are what is left once begun."""
+    """A packet to handle, or (None) that its peer hung up; `steps` are what is left of it."""
 
     thing: T | None
     when: int
@@ -50,14 +50,14 @@ class Work(Generic[T]):
 
 @dataclass(slots=True, eq=False)
 class Host:
-    """What all senders of one host took, in ns and times the scale of when they did."""
+    """The time that all senders of a host have used (ns), each part times its scale then."""
 
     took: float = 0.0
 
 
 @dataclass(slots=True, eq=False)
 class Sender(Generic[T]):
-    """One peer, and what it is still to be served; times in ns."""
+    """A peer and its waiting packets; times in ns."""
 
     peer: Peer
     host: Host
@@ -70,16 +70,17 @@ class Sender(Generic[T]):
 
 
 class Backlog(Generic[T]):
-    """Things of all peers that wait to be handled.
+    """The packets of all peers that wait to be handled.
 
     Parameters
     ----------
     handle : callable
-        Gives the steps that a thing takes, from it, its peer and the number it was added with.
+        Called with a packet, its peer, and the number it was added with; returns an iterator
+        whose steps handle it.
     end : callable
-        A peer has hung up, and all it said is done.
+        Called with a peer that hung up, once all of its packets are handled.
     most_bytes : int
-        Room for what waits.
+        Limit on the size of all waiting packets.
     """
 
     def __init__(
@@ -96,8 +97,8 @@ class Backlog(Generic[T]):
         self._hosts: dict[str, Host] = {}
         self._known: list[Sender[T]] = []
         self._sweep_at = MOST_SENDERS
-        self._looked_ns = 0  # at who of those who are known is silent
-        # Who has something to be done, by what it took and is expected to take next.
+        self._looked_ns = 0  # when silent senders were last looked for
+        # Senders with waiting packets, by time used and expected for the next packet.
         self._queue: list[tuple[float, int, Sender[T]]] = []
         self._order = itertools.count()
         self._began_ns = time.monotonic_ns()
@@ -108,9 +109,9 @@ class Backlog(Generic[T]):
     def add(
         self, thing: T | None, peer: Peer, when: int, size: int = 0, *, is_due: bool = False
     ) -> bool:
-        """Keep a thing, or None where the peer has hung up; return whether there was room.
+        """Add a packet, or None where the peer hung up; return whether there was room.
 
-        There always is for the end of a peer, and for what `is_due`: of who is bounded otherwise.
+        There is always room for the latter, and where `is_due` (its sender is limited otherwise).
         """
         sender = self._sender(peer, time.monotonic_ns())
         size += OVERHEAD_BYTES
@@ -125,23 +126,23 @@ class Backlog(Generic[T]):
 
     @property
     def bytes(self) -> int:
-        """What all that waits takes."""
+        """The size of all waiting packets."""
         return self._room.taken_bytes
 
     def bytes_of(self, peer: Peer) -> int:
-        """What one peer's takes; any thread may ask."""
+        """The size of one peer's waiting packets; any thread may call."""
         sender = self._senders.get(peer)
         return 0 if sender is None else self._room.of(sender)
 
     def clear(self) -> None:
-        """Forget all that waits."""
+        """Drop all waiting packets."""
         for sender in self._senders.values():
             sender.works.clear()
         self._count = 0
         self._room.clear()
 
     def work(self) -> None:
-        """Handle some of it, for a turn."""
+        """Handle waiting packets for up to TURN_NS."""
         until_ns = time.monotonic_ns() + TURN_NS
         while self._queue and time.monotonic_ns() < until_ns:
             _, _, sender = heapq.heappop(self._queue)
@@ -161,10 +162,10 @@ class Backlog(Generic[T]):
         sender.is_queued = True
 
     def _serve(self, sender: Sender[T]) -> None:
-        """Handle the next thing of a sender, for a slice of time."""
+        """Handle the next packet of a sender for up to SLICE_NS."""
         work = sender.works[0]
         began_ns = time.thread_time_ns()
-        is_done = True  # also where it goes wrong: it is not tried again
+        is_done = True  # also after an error: it is not tried again
         try:
             is_done = self._advance(work, sender.peer)
         finally:
@@ -172,7 +173,7 @@ class Backlog(Generic[T]):
             took = took_ns * self._scale(time.monotonic_ns())
             sender.took += took
             sender.host.took += took
-            if is_done and sender.works and sender.works[0] is work:  # it may have cleared all
+            if is_done and sender.works and sender.works[0] is work:  # not cleared
                 sender.works.popleft()
                 self._count -= 1
                 self._room.give_back(sender, work.size)
@@ -188,9 +189,9 @@ class Backlog(Generic[T]):
         return all(time.monotonic_ns() <= until_ns for _ in work.steps)
 
     def _scale(self, now_ns: int) -> float:
-        """What a nanosecond taken now counts, so that what was taken before counts less.
+        """Weight of a nanosecond used now: it grows, so that earlier ones count less.
 
-        So the order of those who wait stays as it is while they do.
+        Scaling new values up and not old ones down keeps the order of those that wait.
         """
         passed_ns = now_ns - self._began_ns
         if passed_ns > RESCALE_NS:
@@ -219,7 +220,7 @@ class Backlog(Generic[T]):
         return sender
 
     def _know(self, sender: Sender[T], now_ns: int) -> None:
-        """Take up a sender among those who are known, if there is a place."""
+        """Count a sender among the known ones, if there is a place."""
         if len(self._known) >= MOST_KNOWN and now_ns - self._looked_ns > STRANGE_NS:
             self._looked_ns = now_ns
             for one in self._known:
@@ -235,7 +236,7 @@ class Backlog(Generic[T]):
             self._known.remove(sender)
 
     def _sweep(self) -> None:
-        """Forget strangers who have nothing to be done."""
+        """Forget unknown senders that have no waiting packets."""
         self._senders = {
             peer: sender
             for peer, sender in self._senders.items()

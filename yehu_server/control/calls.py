@@ -1,6 +1,6 @@
-"""The calls beside the parameters, as OSC, OSCQuery and the surfaces know them.
+"""The table of OSC calls beside the parameters, for OSCQuery and the surfaces.
 
-What each does is in ``osc.OscHandler``; people read of them in docs/osc.md.
+``osc.OscHandler`` carries them out; docs/osc.md describes them.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from yehu_server.playing.sources import is_address
 
 @dataclass(frozen=True)
 class Argument:
-    """One argument of a call: a number (``f``) within its range, or a word (``s``).
+    """An argument of a call: a number (``f``) in a range, or a string (``s``), maybe of `choices`.
 
-    A word may be one of `choices` only.
+    `kind` is its OSC type tag; `choices`, where there are any, are all that it may be.
     """
 
     name: str
@@ -29,7 +29,7 @@ class Argument:
 
 @dataclass(frozen=True)
 class Call:
-    """One call: its address after the prefix, what it takes, and what it does."""
+    """A call: its address after the prefix, what it does, and its arguments."""
 
     address: str
     doc: str
@@ -103,7 +103,7 @@ CALLS: tuple[Call, ...] = (
 
 
 def preset_calls(names: tuple[str, ...]) -> list[Call]:
-    """The calls that take presets, with the names there are; at whole addresses."""
+    """The calls that take a preset, with the names there are; addresses include the prefix."""
     choice = replace(NAME, choices=names)
     takes = {
         "/preset/load": (choice,),
@@ -117,7 +117,7 @@ def preset_calls(names: tuple[str, ...]) -> list[Call]:
 
 
 def own_calls(mapping: Mapping) -> list[Call]:
-    """The OSC addresses of the user's own that a mapping binds."""
+    """The OSC addresses of the user's own that a mapping binds, as calls."""
     return [
         Call(
             bind.source,

@@ -1,4 +1,4 @@
-"""Asking a server that runs: what the commands do that change or show one."""
+"""An OSC client for commands that change or show a running server."""
 
 from __future__ import annotations
 
@@ -19,9 +19,12 @@ DATAGRAM_BYTES = 1 << 16
 
 
 class OscClient:
-    """Talks to one server by UDP; a context manager.
+    """Sends OSC to one server by UDP and receives its answers; a context manager.
 
-    Errors: DeviceError where its address is none.
+    Raises
+    ------
+    DeviceError
+        Where the address cannot be used.
     """
 
     def __init__(self, server: Address) -> None:
@@ -29,7 +32,7 @@ class OscClient:
         try:
             family, kind, _, _, address = socket.getaddrinfo(*server, type=socket.SOCK_DGRAM)[0]
             self._socket = socket.socket(family, kind)
-            self._socket.connect(address)  # hears nobody else
+            self._socket.connect(address)  # receives from this server only
         except OSError as error:
             raise DeviceError(f"{self._name}: {why(error)}") from error
 
@@ -45,14 +48,17 @@ class OscClient:
         self._socket.close()
 
     def send(self, address: str, *arguments: float | str) -> None:
-        """Send a message to an address after the prefix."""
-        with contextlib.suppress(OSError):  # nobody there: no answer will tell
+        """Send a message; `address` is without the prefix."""
+        with contextlib.suppress(OSError):  # nobody listens there: no answer will come
             self._socket.send(pack(PREFIX + address, *arguments))
 
     def answers(self, within_s: float = ANSWERS_WITHIN_S) -> Iterator[Message]:
-        """What comes, with addresses after the prefix, until for so long nothing does.
+        """Messages as they come, addresses without the prefix, until none comes for `within_s`.
 
-        Errors: RefusedError where the server refuses something.
+        Raises
+        ------
+        RefusedError
+            Where the server answers with an error.
         """
         until = time.monotonic() + within_s
         while (left := until - time.monotonic()) > 0.0:
@@ -73,7 +79,15 @@ class OscClient:
             until = time.monotonic() + within_s
 
     def answer(self, address: str, within_s: float = ANSWERS_WITHIN_S) -> Message:
-        """The next message of an address. Errors: DeviceError where none comes; RefusedError."""
+        """The next message at an address (without the prefix).
+
+        Raises
+        ------
+        DeviceError
+            Where none comes within `within_s`.
+        RefusedError
+            Where the server answers with an error.
+        """
         for message in self.answers(within_s):
             if message.address == address:
                 return message

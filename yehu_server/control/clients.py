@@ -1,7 +1,6 @@
-"""Who hears back: echoes to whoever sets something, changes to subscribers, few errors.
+"""What OSC clients are told: values they set, changes they subscribed to, and errors.
 
-All of it from the listening port, as one message each and never a bundle, which Pure Data
-does not read.
+All is sent from the listening port, each message by itself: Pure Data does not read bundles.
 """
 
 from __future__ import annotations
@@ -18,45 +17,45 @@ from yehu_server.lines import shortened
 from yehu_server.params.table import UNIT, read
 
 FLUSH_S = 1.0 / 60.0
-STATUS_S = 0.25  # between looks at the status
+STATUS_S = 0.25  # between readings of the status
 SWEEP_S = 1.0
 MOST_SUBSCRIBERS, MOST_OF_A_HOST = 64, 32
 MOST_KNOWN, MOST_CROWDED = 1024, 8192
-MOST_TOLD = 512  # messages at a time
+MOST_TOLD = 512  # messages of one `flush`
 ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
 FORGIVEN_S = ERRORS_AT_ONCE / ERRORS_A_SECOND
 
 
 @dataclass
 class Client:
-    """What we keep of one peer."""
+    """A peer and what it is to be told."""
 
     peer: Peer
-    until: float = 0.0  # when its subscription ends (monotonic s)
-    form: str = ""  # of the addresses it is told: plain, or UNIT
-    status_until: float = 0.0  # when its subscription to the status ends (monotonic s)
-    listens: set[str] = field(default_factory=set)  # addresses it is told of without an end
-    hushed_until: float = 0.0  # when it may be answered again (monotonic s)
-    to_tell: dict[str, None] = field(default_factory=dict)  # addresses, in order
+    until: float = 0.0  # end of its subscription (monotonic s)
+    form: str = ""  # of addresses it is told: plain, or ending in UNIT
+    status_until: float = 0.0  # end of its subscription to the status (monotonic s)
+    listens: set[str] = field(default_factory=set)  # addresses of which it is told all changes
+    hushed_until: float = 0.0  # until then it is not answered (monotonic s)
+    to_tell: dict[str, None] = field(default_factory=dict)  # addresses to send, in order
     errors: Allowance = field(default_factory=lambda: Allowance(ERRORS_A_SECOND, ERRORS_AT_ONCE))
     complained: float = field(default_factory=time.monotonic)
 
     def subscribes(self, now: float) -> bool:
-        """Whether it is told of every change of something."""
+        """Whether it has a subscription."""
         return max(self.until, self.status_until) > now
 
 
 class Clients:
-    """Peers and what they are still to be told.
+    """The peers that are sent values and errors.
 
     Parameters
     ----------
     values : callable
-        Gives all parameters' values, by address.
+        Returns all parameters' values, by address.
     prefix : str
         Put before addresses.
     status : callable, optional
-        Gives the status values, by name; they are at PLACE and their name.
+        Returns the status values, by name; their addresses are PLACE and the name.
     """
 
     def __init__(
@@ -69,19 +68,19 @@ class Clients:
         self.prefix = prefix
         self._status = status
         self._clients: dict[Peer, Client] = {}
-        self._told: dict[str, float] = {}  # values as of the last flush
+        self._told: dict[str, float] = {}  # values at the last flush
         self._told_status: dict[str, float | str] = {}
-        self._looked = 0.0  # at the status
+        self._looked = 0.0  # when the status was last read
         self._flushed = 0.0
         self._swept = 0.0
         self._is_waiting = False
-        self._crowded = MOST_KNOWN  # when there are so many, who has nothing to hear is forgotten
+        self._crowded = MOST_KNOWN  # number of clients at which idle ones are dropped
         self.errors_sent = 0
         self.errors_withheld = 0
 
     @property
     def subscribers(self) -> int:
-        """How many hear of changes."""
+        """Number of clients with a subscription."""
         now = time.monotonic()
         return sum(client.subscribes(now) for client in list(self._clients.values()))  # any thread
 
@@ -95,7 +94,7 @@ class Clients:
         return client
 
     def _forget_idle(self, *, forgiven_s: float = 0.0) -> None:
-        """Forget whom there is nothing to tell, and nothing to forgive for so long."""
+        """Drop clients with nothing to be sent, some time after their last error."""
         now = time.monotonic()
         self._clients = {
             peer: client
@@ -114,7 +113,7 @@ class Clients:
     # -- what they are told ------------------------------------------------------------------
 
     def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
-        """Let a peer know soon what it has set."""
+        """Send a peer the values that it has set, with the next flush."""
         if len(self._clients) >= MOST_CROWDED and peer not in self._clients:
             return
         client = self._client(peer)
@@ -123,16 +122,16 @@ class Clients:
             self._is_waiting = True
 
     def hush(self, peer: Peer, seconds: float) -> None:
-        """Answer a peer no more for some time: one that tells us its values, as we tell ours.
+        """Do not answer a peer for some time: another server that sends us its own values.
 
-        Two that answer each other would never end.
+        Two servers that answer each other would go on for ever.
         """
         self._client(peer).hushed_until = time.monotonic() + seconds
 
     def subscribe(self, peer: Peer, seconds: float, form: str = "") -> bool:
-        """Tell a peer of every change for some time; return whether there was room.
+        """Send a peer every change for some time; return whether there was room for one more.
 
-        `form` is nothing for plain values, UNIT for 0 to 1, or PLACE for the status.
+        `form` is empty for plain values, UNIT for values as 0 to 1, or PLACE for the status.
         """
         client, now = self._client(peer), time.monotonic()
         if not client.subscribes(now):
@@ -150,34 +149,37 @@ class Clients:
         return True
 
     def unsubscribe(self, peer: Peer) -> None:
-        """Tell a peer no more."""
+        """End a peer's subscriptions."""
         client = self._client(peer)
         client.until = client.status_until = 0.0
 
     def listen(self, peer: Peer, address: str) -> None:
-        """Tell a peer of an address (without the prefix): now, and when it changes."""
+        """Send a peer the value at an address (without the prefix) now, and whenever it changes."""
         client = self._client(peer)
         client.listens.add(address)
         client.to_tell[address] = None
         self._is_waiting = True
 
     def ignore(self, peer: Peer, address: str) -> None:
-        """Tell a peer of an address no more."""
+        """End what `listen` began."""
         client = self._client(peer)
         client.listens.discard(address)
         client.to_tell.pop(address, None)
 
     def hears(self, peer: Peer) -> bool:
-        """Whether a peer is still to be told of changes."""
+        """Whether a peer is sent changes of values."""
         client = self._clients.get(peer)
         return client is not None and (client.until > time.monotonic() or bool(client.listens))
 
     def forget(self, peer: Peer) -> None:
-        """A peer is gone."""
+        """Drop a peer that has hung up."""
         self._clients.pop(peer, None)
 
     def complain(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
-        """Tell a peer of an error, unless it has had many of late; only then ask the reason."""
+        """Send a peer an error, unless it has been sent many of late.
+
+        A callable `reason` is called only where the error is sent.
+        """
         client = self._client(peer)
         now = time.monotonic()
         if client.hushed_until > now:
@@ -198,13 +200,13 @@ class Clients:
         return any(client.subscribes(now) or client.listens for client in self._clients.values())
 
     def wait_s(self) -> float | None:
-        """Seconds until there is something to tell."""
+        """Seconds until the next flush; None where there is nothing to send."""
         if not self._is_waiting and not self._is_watched:
             return None
         return max(0.0, self._flushed + FLUSH_S - time.monotonic())
 
     def flush(self) -> None:
-        """Tell everyone what is due, at most 60 times a second."""
+        """Send what is due, at most 60 times a second."""
         now = time.monotonic()
         if now - self._swept > SWEEP_S:
             self._swept = now
@@ -228,7 +230,7 @@ class Clients:
         self._tell()
 
     def _tell(self) -> None:
-        """Tell what is to be told, as far as one flush goes; those who are left come first next."""
+        """Send up to MOST_TOLD messages; clients that are left out come first the next time."""
         packets: dict[str, bytes] = {}
         left = MOST_TOLD
         for peer, client in list(self._clients.items()):  # sending may end one
@@ -247,7 +249,7 @@ class Clients:
             if client.to_tell:
                 self._is_waiting = True
             if peer in self._clients:
-                self._clients[peer] = self._clients.pop(peer)  # behind the others
+                self._clients[peer] = self._clients.pop(peer)  # to the end of the row
 
     def _value(self, address: str) -> float | str:
         if address.startswith(PLACE):
@@ -255,7 +257,7 @@ class Clients:
         return read(self._told, address)
 
     def _changed_status(self, now: float) -> set[str]:
-        """The addresses of what changed of the status, where someone asks and it is time."""
+        """Addresses of status values that changed, where a client wants them and it is time."""
         asked = {
             address
             for client in self._clients.values()

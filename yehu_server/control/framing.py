@@ -1,8 +1,8 @@
-"""OSC packets in a stream of bytes, in either framing: a length before each, or SLIP.
+"""Framing of OSC packets in a TCP stream: by a length before each packet, or by SLIP.
 
-A peer's first byte tells which: a length begins with 0, SLIP with its END byte or at once with a
-packet. Whatever cannot be OSC ends the stream with its first byte, since the next could be one: a
-page in a player's browser can send us HTTP or STUN, and put OSC of its own into it.
+A peer's first byte shows which: a length begins with 0, SLIP with its END byte or directly with a
+packet. A stream that is not OSC is ended at its first byte: a page in a player's browser can make
+it send HTTP or STUN to this port, with OSC packets of the page's own further on.
 """
 
 from __future__ import annotations
@@ -12,28 +12,32 @@ from collections.abc import Iterator
 
 from pythonosc import slip
 
-MOST_BYTES = (1 << 16) - 1  # of one packet: as in a datagram, and less than any STUN begins with
+# Of a packet: as in a datagram, and less than the beginning of a STUN message says as a length.
+MOST_BYTES = (1 << 16) - 1
 LENGTH_BYTES = 4
-STARTS = b"/#"  # of a packet
+STARTS = b"/#"  # first bytes that a packet may have
 ENDS = re.compile(b"\xc0+")
 
 
 class FramingError(ValueError):
-    """A stream that is neither framing, or a packet that is too long."""
+    """A stream in neither framing, or a packet that is too long."""
 
 
 class Framing:
-    """The framing of one connection, as soon as the peer has shown it."""
+    """The framing of one connection, found from the first byte received."""
 
     def __init__(self) -> None:
         self._received = bytearray()
-        self._sought = 0  # bytes of it that were looked at for an END
+        self._sought = 0  # bytes of it that hold no END
         self._is_slip: bool | None = None
 
     def packets(self, data: bytes) -> Iterator[bytes]:
-        """The packets that `data` completes; all of them are taken before there is more data.
+        """The packets that `data` completes; take all of them before the next call.
 
-        Errors: FramingError.
+        Raises
+        ------
+        FramingError
+            Where the stream is not OSC; its connection should be closed.
         """
         self._received += data
         if self._is_slip is None and self._received:
@@ -41,7 +45,7 @@ class Framing:
         yield from self._slip() if self._is_slip else self._prefixed()
 
     def wrap(self, packet: bytes) -> bytes:
-        """A packet as bytes for this peer; SLIP (OSC 1.1) until it has shown its framing."""
+        """Frame a packet for this peer; by SLIP (OSC 1.1) until it has sent something."""
         if self._is_slip is False:
             return len(packet).to_bytes(LENGTH_BYTES, "big") + packet
         return slip.encode(packet)
@@ -67,13 +71,13 @@ class Framing:
             if self._sought == 0:
                 if ends := ENDS.match(received):
                     at = ends.end()
-                    del ends  # else it holds on to the bytes
+                    del ends  # or the buffer could not be resized
                     del received[:at]
                 _check_start(received[:1])
             end = received.find(slip.END, self._sought)
             if end < 0:
                 self._sought = len(received)
-            if max(end, self._sought) > 2 * MOST_BYTES:  # each byte may take two
+            if max(end, self._sought) > 2 * MOST_BYTES:  # SLIP may send a byte as two
                 raise FramingError(f"a packet of more than {MOST_BYTES} bytes is too long")
             if end < 0:
                 return
@@ -84,17 +88,17 @@ class Framing:
 
 
 def _check_start(first: bytearray) -> None:
-    """Errors: FramingError where no packet begins with a byte."""
+    """Raise FramingError where no packet begins with a byte."""
     if first and first not in STARTS:
         raise FramingError("this is no OSC")
 
 
 def _decoded(frame: bytes) -> bytes:
-    """A packet without SLIP's escapes. Errors: FramingError."""
+    """Undo SLIP's escapes; raise FramingError where the packet is too long."""
     try:
         packet = slip.decode(frame)
     except slip.ProtocolError:
-        return b""  # damaged: to be counted with the malformed ones
+        return b""  # damaged: counted as a malformed packet
     if len(packet) > MOST_BYTES:
         raise FramingError(f"a packet of {len(packet)} bytes is too long")
     return packet

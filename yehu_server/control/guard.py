@@ -1,8 +1,8 @@
-"""Which web requests are answered: not what a foreign page makes a player's browser ask.
+"""Protection against foreign web pages in a player's browser: by the headers Host and Origin.
 
-A page from anywhere can open a WebSocket to this machine, and by changing what its name means
-(DNS rebinding) read from it too. Its requests show where it comes from: another port of this
-machine is elsewhere, since any program may serve pages there.
+A page from any site can open a WebSocket to this machine, and read from it too where the site's
+name is made to mean this machine (DNS rebinding). Pages of another port of this machine count as
+foreign, since any program may serve them.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from urllib.parse import urlsplit
 from yehu_server.control.addresses import is_here
 
 LONGEST_NAME = 300
-PORTS = {"http": 80, "https": 443}  # of what names none, by scheme
+PORTS = {"http": 80, "https": 443}  # by scheme, where an origin names none
 NOWHERE = ("", 0)
 
 
 def own_names() -> frozenset[str]:
-    """What this machine is called."""
+    """The names of this machine."""
     name = socket.gethostname().lower()
     short = name.partition(".")[0]
     return frozenset({"localhost", name, short, f"{short}.local"} - {"", ".local"})
 
 
 def refusal(hosts: Sequence[str], origins: Sequence[str], names: frozenset[str]) -> str:
-    """Why a request is not answered, by its headers Host and Origin; nothing where it is."""
+    """Why a request is refused, by its headers Host and Origin; empty where it is allowed."""
     host, _ = _place(hosts[0]) if len(hosts) == 1 else NOWHERE
     if not (_is_address(host) or host in names):
         return "ask for this machine by its address, or as localhost"
@@ -42,7 +42,7 @@ def refusal(hosts: Sequence[str], origins: Sequence[str], names: frozenset[str])
 
 
 def _place(text: str, port: int = 0) -> tuple[str, int]:
-    """The host and the port of ``HOST:PORT``, or of ``HOST`` and a port; or nowhere."""
+    """Host and port of ``HOST:PORT``, or of ``HOST`` with a default port; NOWHERE for others."""
     try:
         parts = urlsplit(f"//{text[:LONGEST_NAME]}")
         port = port if parts.port is None else parts.port

@@ -1,7 +1,7 @@
-"""Hears of JACK what RtMidi does not tell: that the server ends, and that ports go.
+"""Watch JACK for what RtMidi does not report: the server's end, and ports that disappear.
 
-A client of our own, without ports. When the server ends, this process does: nothing that
-RtMidi does after that is safe.
+This is a JACK client of its own, without ports. When the server ends, it ends this process, since
+nothing that RtMidi does after that is safe.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ PORT_IS_GONE = 0
 
 
 class JackWatch:
-    """Watches the JACK server that is running."""
+    """A JACK client that watches the running server."""
 
     def __init__(self, name: str) -> None:
         self._left: set[str] = set()
@@ -31,7 +31,7 @@ class JackWatch:
         self._client = jack.jack_client_open(name.encode(), NO_START_SERVER, None)
         if not self._client:
             return
-        # Kept here, since JACK keeps their addresses only.
+        # Referenced here, since JACK keeps only their addresses.
         self._ended = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(lambda _: os._exit(1))
         kind = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_int, ctypes.c_void_p)
         self._registered = kind(self._port_changed)
@@ -41,7 +41,7 @@ class JackWatch:
         jack.jack_activate(client)
 
     def left(self) -> set[str]:
-        """Full names of ports that went since the last call, also where they are back."""
+        """Full names of ports that disappeared since the last call, even if they are back."""
         left, self._left = self._left, set()
         return left
 

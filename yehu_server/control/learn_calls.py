@@ -1,4 +1,4 @@
-"""The calls of MIDI learn, and the one that tells what moves what."""
+"""The OSC calls of MIDI learn, and the one that lists what controllers move."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from yehu_server.playing.mapping_entries import free
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
 
-PATIENCE_S = 60.0  # for somebody to move something
+PATIENCE_S = 60.0  # to wait for something to be moved
 NOT_MOVED = -1.0
 
 
 class LearnCalls:
-    """Acts on ``/learn``, ``/unlearn`` and ``/bindings``.
+    """Carries out ``/learn``, ``/unlearn`` and ``/bindings``.
 
     Parameters
     ----------
     complain : callable
-        Tells a peer of something wrong, with the address it sent to.
+        Sends a peer an error, with the address that it sent to.
 
     Attributes
     ----------
     by_address : dict
-        What each call does. Each raises YehuError where it refuses.
+        The function that carries out each call; each raises YehuError where it refuses.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class LearnCalls:
         self._player = player
         self._desk = desk
         self._complain = complain
-        self._wants = 0  # how often somebody asked, so that what was found late counts no more
+        self._wants = 0  # number of requests, so that what is found for an earlier one is ignored
         self.by_address: dict[str, Callable[[Request], None]] = {
             "/learn": self._learn,
             "/unlearn": self._unlearn,
@@ -107,5 +107,5 @@ class LearnCalls:
 
 
 def _plain(address: str) -> str:
-    """An address as the table has it."""
+    """An address as the parameter table has it."""
     return address.removeprefix(PREFIX).removesuffix(UNIT)

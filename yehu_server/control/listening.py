@@ -1,4 +1,4 @@
-"""The sockets that listen for OSC, and what the system does for them."""
+"""Open the sockets for OSC, and set what the kernel does for them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import sys
 from yehu_server.control.addresses import shown, why
 from yehu_server.errors import DeviceError
 
-BUFFER_BYTES = 32 << 20  # asked for; the system grants what it may
-DATAGRAM_BYTES = 1 << 14  # longer ones are not heard: few would fill the system's buffer
+BUFFER_BYTES = 32 << 20  # asked for; the system may grant less
+DATAGRAM_BYTES = 1 << 14  # longer ones are dropped: a few would fill the system's buffer
 TRIES_FOR_A_PORT = 20
-# Linux's numbers for what Python's socket module does not name.
+# Linux's numbers of options that Python's socket module does not name.
 SO_ATTACH_FILTER, SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 26, 33, 35, 40
 UDP_HEADER_BYTES = 8
-# A filter for the kernel: what is longer than a datagram may be is dropped before it takes room.
+# A kernel filter (BPF) that drops longer datagrams before they take room in the buffer.
 FILTER = (
     (0x80, 0, 0, 0),  # load the length
     (0x25, 0, 1, DATAGRAM_BYTES + UDP_HEADER_BYTES),  # skip one if it is no more than this
@@ -27,11 +27,17 @@ FILTER = (
 
 
 def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
-    """A UDP and a TCP socket at one address, the latter listening. Errors: DeviceError."""
+    """Open a UDP socket and a listening TCP socket at one address.
+
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
+    """
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0][0]
         for _ in range(TRIES_FOR_A_PORT if port == 0 else 0):
-            with contextlib.suppress(OSError):  # free on UDP, but not on TCP
+            with contextlib.suppress(OSError):  # in use for TCP only
                 return _bind(family, host, port)
         return _bind(family, host, port)
     except OSError as error:
@@ -51,14 +57,14 @@ def _bind(family: int, host: str, port: int) -> tuple[socket.socket, socket.sock
 
 
 def widen(udp: socket.socket) -> int:
-    """Ask for a large buffer, and for the kernel's stamps, counts and filter.
+    """Ask for a large receive buffer, and for the kernel's time stamps, drop counts and filter.
 
-    Returns what is granted, in bytes.
+    Returns the size of the buffer that is granted (bytes).
     """
     with contextlib.suppress(OSError):
         udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
     if sys.platform == "linux":
-        with contextlib.suppress(OSError):  # for the privileged only
+        with contextlib.suppress(OSError):  # with privileges only
             udp.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, BUFFER_BYTES)
         for option in (SO_TIMESTAMPNS, SO_RXQ_OVFL):
             with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""A thread with an asyncio loop of its own, that outlasts the system's troubles."""
+"""A thread with an asyncio event loop that starts again after errors."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ SAID_FOR_S = 60.0
 
 
 class LoopThread:
-    """Runs one coroutine function in a thread, from `start` to `stop`, which cancels it.
+    """Runs a coroutine function in a thread, from `start` to `stop`; after an error, again.
 
     Parameters
     ----------
     failed : callable
-        Told of an error that ended it, once for each reason in a row; it is run again.
+        Called with an error that ended the coroutine, once for equal ones in a row.
     """
 
     def __init__(
@@ -46,16 +46,16 @@ class LoopThread:
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def call(self, action: Callable[..., object], *arguments: Any) -> None:
-        """Let the loop do something, unless it is over; any thread may call."""
+        """Call a function in the loop, unless it has ended; any thread may call."""
         with contextlib.suppress(RuntimeError):
             self.loop.call_soon_threadsafe(action, *arguments)
 
     def stop(self) -> None:
-        """Cancel the coroutine and wait until it has cleaned up."""
+        """Cancel the coroutine and wait until it has ended."""
         self.call(self._ended.set)
         if self._thread.is_alive():
             self._thread.join()
@@ -83,7 +83,7 @@ class LoopThread:
         ended.cancel()
 
     def _complain(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """Say in a line, once a minute, that the loop is short of files; it tries again itself."""
+        """Log that files or memory are short, once a minute; asyncio itself tries again."""
         error = context.get("exception")
         if not (isinstance(error, OSError) and error.errno in SHORT):
             loop.default_exception_handler(context)

@@ -1,4 +1,4 @@
-"""A mapping whose files are watched while it is played."""
+"""Take up a mapping again when its files change while it is played."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ LOOK_EVERY_S = 0.5
 
 
 class MappingFollower:
-    """Gives a player its mapping anew when the mapping's files have changed and are right.
+    """Watches a mapping's files, and gives the player the new mapping where they are right.
 
     Parameters
     ----------
     reread : callable
         Reads the files. Raises MappingError.
     changed : callable
-        Called when the player has another mapping.
+        Called when the player has got a new mapping.
     said : callable
-        Told in a line of each change, and of what is wrong with the files.
+        Called with a line about each change, and about what is wrong with the files.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class MappingFollower:
         self._next_look = 0.0  # monotonic s
 
     def look(self) -> None:
-        """Look at the files, if it is time."""
+        """Look at the files, at most every LOOK_EVERY_S."""
         if time.monotonic() < self._next_look:
             return
         self._next_look = time.monotonic() + LOOK_EVERY_S

@@ -16,12 +16,12 @@ FAMILIES = {Kind.GAUGE: GaugeMetricFamily, Kind.COUNTER: CounterMetricFamily}
 
 
 class Metrics(Collector):
-    """Every number of the status, read when it is asked for.
+    """The status values that are numbers, read whenever metrics are requested.
 
     Parameters
     ----------
     status : callable
-        Gives the status values, by name.
+        Returns the status values, by name.
     """
 
     def __init__(self, status: Callable[[], Mapping[str, float | str]]) -> None:
@@ -30,7 +30,7 @@ class Metrics(Collector):
         self._registry.register(self)
 
     def describe(self) -> list[Metric]:
-        """See `Collector`: what comes is known by the table."""
+        """See `Collector`; the names come from the table, none are registered."""
         return []
 
     def collect(self) -> Iterator[Metric]:
@@ -42,9 +42,9 @@ class Metrics(Collector):
                 yield family(f"{NAMESPACE}_{row.name}", row.doc, value=float(status[row.name]))
 
     def text(self, accept: str) -> tuple[bytes, str]:
-        """The metrics in the format a client accepts, and its content type."""
+        """The metrics, in a format that a client's Accept header asks for, and its content type."""
         try:
             encode, content_type = choose_encoder(accept)
-        except (TypeError, ValueError):  # prometheus-client compares versions that are none
+        except (TypeError, ValueError):  # prometheus-client fails on malformed versions
             encode, content_type = choose_encoder("")
         return encode(self._registry), content_type

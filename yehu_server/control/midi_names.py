@@ -1,4 +1,4 @@
-"""MIDI ports by the part of their names that stays the same."""
+"""Stable names of MIDI ports: without the numbers that change when a port is plugged in again."""
 
 from __future__ import annotations
 
@@ -6,30 +6,30 @@ import itertools
 import re
 from collections.abc import Iterable, Sequence
 
-# ALSA ends a name in numbers that change with each plugging in; Windows counts ports.
+# ALSA appends numbers that change each time a device is plugged in; Windows counts ports.
 _CHANGING = re.compile(r"(?<=\S)\s+\d+(:\d+)?$")
 _THROUGH = re.compile(r"\bthrough\b|\bthru\b", re.IGNORECASE)
 
 
 def _base(name: str) -> str:
     base = _CHANGING.sub("", name.strip())
-    # ALSA: "Client:Client MIDI 1" says the client twice.
+    # ALSA repeats the client: "Client:Client MIDI 1".
     client, colon, port = base.partition(":")
     return port if colon and port.startswith(client) else base
 
 
 class StableNames:
-    """Names that ports keep while they are there, and get again when they come back.
+    """Gives ports names that they keep, and get again when they come back.
 
-    Of several ports alike the second is called ``#2``, and so on; when the first goes, the
-    second stays the second.
+    Of several ports with one name the second is called ``#2``, and so on; it stays so when the
+    first one goes.
     """
 
     def __init__(self) -> None:
         self._names: dict[tuple[str, int], str] = {}
 
     def of(self, full_names: Iterable[str]) -> list[str]:
-        """The names of the ports that are there now, in order."""
+        """The names of the ports that are present now, in order."""
         present: dict[tuple[str, int], str] = {}
         for full_name in full_names:
             count = next(n for n in itertools.count() if (full_name, n) not in present)
@@ -47,12 +47,12 @@ class StableNames:
 
 
 def stable_names(names: Iterable[str]) -> list[str]:
-    """The names of ports that are seen for the first time; see `StableNames`."""
+    """The names of ports that are all seen for the first time; see `StableNames`."""
     return StableNames().of(names)
 
 
 def is_wanted(name: str, patterns: Sequence[str]) -> bool:
-    """Whether a port is to be opened: by words of its name, or any but a through port."""
+    """Whether to open a port: by words of its name; without patterns, any but a through port."""
     if not patterns:
         return not _THROUGH.search(name)
     return any(

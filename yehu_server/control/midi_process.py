@@ -1,7 +1,8 @@
 """The process that holds the MIDI inputs: ``python -m yehu_server.control.midi_process``.
 
-It opens what is wanted as it comes, stamps each message on arrival, and passes it on. RtMidi
-over JACK crashes when the server dies: then this process ends, and a fresh one takes over.
+It opens the wanted inputs as they appear, stamps each message on arrival, and passes it on.
+RtMidi over JACK crashes when the JACK server dies: then this process ends, and a new one takes
+its place.
 """
 
 from __future__ import annotations
@@ -18,19 +19,19 @@ from yehu_server.control.midi_names import StableNames, is_wanted, stable_names
 from yehu_server.errors import ParameterError
 
 LOOK_EVERY_S = 0.5
-SYSTEM_EVERY_S = 2.0  # look for a MIDI system, where there is none
+SYSTEM_EVERY_S = 2.0  # between looks for a MIDI system, where there is none
 SENSE_EVERY_S = 0.05
-SENSE_WITHIN_S = 0.33  # active sensing: a message at least every 300 ms
-SLEPT_S = 0.25  # between two looks for it: it was we who were away
+SENSE_WITHIN_S = 0.33  # active sensing promises a message every 300 ms
+SLEPT_S = 0.25  # a longer pause between two checks: this process was stopped
 CLIENT = "yehu-server MIDI"
 ACTIVE_SENSING, CLOCKS = 0xFE, {0xF8, 0xF9}
-MOST_BYTES = 3  # system exclusive says nothing to us
+MOST_BYTES = 3  # longer ones are system exclusive, which is ignored
 
 APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windows": "WINDOWS_MM"}
 
 
 class Input:
-    """One open port."""
+    """An open MIDI input."""
 
     def __init__(self, midi: Any, name: str, full_name: str | None, parent: Parent) -> None:
         self.midi = midi
@@ -52,13 +53,13 @@ class Input:
             self._parent.tell("midi", port=self.name, at=at, bytes=list(data))
 
     def sense(self) -> None:
-        """Tell when a port that promised to say something regularly has not."""
+        """Report the port as silent where active sensing has stopped."""
         if self._senses and time.monotonic() - self._last > SENSE_WITHIN_S:
             self._senses = False
             self._parent.tell("silent", port=self.name)
 
     def wait_anew(self) -> None:
-        """Let the other have as much time as if it had just said something."""
+        """Begin the time for active sensing again."""
         self._last = time.monotonic()
 
     def close(self) -> None:
@@ -68,7 +69,7 @@ class Input:
 
 
 class Inputs:
-    """All inputs, as they come and go."""
+    """The wanted MIDI inputs, opened and closed as they appear and disappear."""
 
     def __init__(self, parent: Parent, order: Message) -> None:
         self._parent = parent
@@ -77,26 +78,26 @@ class Inputs:
         self._api = order["api"]
         self._open: dict[str, Input] = {}
         self._names = StableNames()
-        self._finder: Any = None  # the one client that asks for names
+        self._finder: Any = None  # the client that lists port names
         self._problem = ""
         self._refused: set[str] = set()
-        self._sought: set[str] = set(self._patterns)  # those that nothing has matched yet
+        self._sought: set[str] = set(self._patterns)  # those that no port has matched yet
         self._watch: JackWatch | None = None
         self._sensed = time.monotonic()
 
     @property
     def has_system(self) -> bool:
-        """Whether there is a MIDI system to ask."""
+        """Whether there is a MIDI system."""
         return self._finder is not None
 
     def look(self) -> None:
-        """Open what has come, close what is gone."""
+        """Open ports that appeared, close those that disappeared."""
         if self._finder is None and not self._start():
             return
         names = self._finder.get_ports()
         stable = dict(zip(self._names.of(names), names, strict=True))
         gone = set(self._open) - set(stable) - {self._virtual}
-        if self._watch is not None:  # away for a moment, and back under the same name
+        if self._watch is not None:  # ports that went and are back under the same name
             left = self._watch.left()
             gone |= {name for name, port in self._open.items() if port.full_name in left}
         for name in gone:
@@ -111,7 +112,7 @@ class Inputs:
         self._seek(stable)
 
     def _seek(self, names: Iterable[str]) -> None:
-        """Tell of patterns that no port matches, at the first look."""
+        """Report patterns that no port matches, at the first look."""
         present = list(names)
         for pattern in self._sought:
             if not any(is_wanted(name, [pattern]) for name in present):
@@ -144,7 +145,7 @@ class Inputs:
         return True
 
     def _add(self, name: str, full_name: str | None) -> None:
-        """Open a port, or a virtual one, that is listened to from its first moment."""
+        """Open a port, or (without a full name) a virtual one."""
         import rtmidi
 
         try:
@@ -167,9 +168,12 @@ class Inputs:
 
 
 def check_api(api: str | None) -> None:
-    """Refuse a MIDI system that is not of this machine: RtMidi would take another unasked.
+    """Refuse a MIDI system that RtMidi does not have here: it would take another one silently.
 
-    Errors: ParameterError.
+    Raises
+    ------
+    ParameterError
+        Where it has no such system.
     """
     import rtmidi
 
@@ -180,7 +184,7 @@ def check_api(api: str | None) -> None:
 
 
 def open_client(api: str | int | None) -> tuple[Any, str]:
-    """A client of a MIDI system, the first there is or the one named; or why there is none."""
+    """Open a client of the named MIDI system, or of the first there is; or None, and why."""
     import rtmidi
 
     if isinstance(api, str):
@@ -197,7 +201,7 @@ def open_client(api: str | int | None) -> tuple[Any, str]:
 
 
 def list_inputs() -> tuple[str, list[str], str]:
-    """The MIDI system, the stable names of its inputs, or why there are none."""
+    """List the MIDI inputs: the system, their stable names, and why there is no system."""
     client, problem = open_client(None)
     if client is None:
         return "", [], problem
@@ -211,14 +215,14 @@ def _number(api: str) -> int:
 
 
 def api_name(number: int) -> str:
-    """A MIDI system's name, for reading."""
+    """A MIDI system's display name."""
     import rtmidi
 
     return str(rtmidi.get_api_display_name(number))
 
 
 def main() -> None:
-    """Serve one parent until it hangs up."""
+    """Serve the parent process until it closes the pipe."""
     parent = Parent()
     orders = parent.orders()
     inputs = Inputs(parent, next(orders))

@@ -1,4 +1,4 @@
-"""What OSC messages mean: every parameter of the table, and the playing calls.
+"""Carry out OSC messages: setting parameters, and the calls.
 
 The protocol is described in docs/osc.md.
 """
@@ -32,27 +32,27 @@ log = logging.getLogger(__name__)
 Act = Callable[[Request], None]
 
 LONGEST_PATTERN = 256
-DUE_AT_ONCE = 1024  # messages whose time has come, before others are looked at
+DUE_AT_ONCE = 1024  # scheduled messages taken up at a time
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 
 
 class UnknownError(Exception):
-    """An address that we do not have; looking for a near one takes too long for a flood."""
+    """An unknown address; a near one is looked for only where the error is sent."""
 
 
 @dataclass
 class Counts:
-    """What became of messages, since the start."""
+    """Numbers of messages since the start."""
 
     messages: int = 0
     malformed: int = 0
-    errors: int = 0  # wrong type, unknown address, out of range
+    errors: int = 0  # wrong types, unknown addresses, refused calls
     late_bundles: int = 0
     scheduled: int = 0
 
 
 class OscHandler:
-    """Acts on packets; one thread (``sockets.OscPorts``) calls it."""
+    """Carries out the messages of packets; called by the thread of ``sockets.OscPorts`` only."""
 
     def __init__(self, player: LivePlayer, desk: Desk) -> None:
         self._player = player
@@ -86,7 +86,7 @@ class OscHandler:
         }
         self._calls |= PresetCalls(player, self.clients, self._complain, desk).by_address
         self._calls |= LearnCalls(player, desk, self._complain).by_address
-        # What only another server says: it has been told to tell us its values.
+        # Messages of another server that was made to send us its values.
         self._answers: dict[str, Act] = {
             f"{PREFIX}/subscribed": self._hush,
             f"{PREFIX}/error": lambda _call: None,
@@ -97,7 +97,7 @@ class OscHandler:
 
     @property
     def waiting(self) -> int:
-        """Messages that wait for their time."""
+        """Number of messages that wait for their time."""
         return len(self._schedule) + len(self._due)
 
     # -- packets -----------------------------------------------------------------------------
@@ -119,12 +119,12 @@ class OscHandler:
             self.clients.complain(peer, "", f"malformed packet: {error}")
 
     def _take(self, message: Message, peer: Peer, now: float, frame: int) -> Iterator[None]:
-        """Act on a message now, or keep it until its time."""
+        """Carry out a message, or schedule it."""
         self.counts.messages += 1
         if message.due_s is None or message.due_s <= now:
             yield from self._act(message, peer, frame)
             return
-        packet = answer(message.address, message.payload)  # unpacked it takes more room
+        packet = answer(message.address, message.payload)  # smaller than the message unpacked
         if self._schedule.add(message.due_s, packet, peer, len(packet)):
             self.counts.scheduled += 1
         else:
@@ -136,7 +136,7 @@ class OscHandler:
 
     def tick(self) -> None:
         """See `sockets.Handler`."""
-        # Before any message of now that would be heard later is decided on.
+        # Early enough to be decided before messages that arrive now and are heard later.
         self._schedule.ahead_s = AHEAD_S + self._player.delay / self._player.instrument.rate
         for due_s, packet, peer in self._schedule.due(DUE_AT_ONCE):
             self._due.add(packet, peer, self._tags.frame_at(due_s), len(packet), is_due=True)
@@ -170,7 +170,7 @@ class OscHandler:
         except YehuError as error:
             self._complain(peer, message.address, str(error))
             return
-        for action in actions:  # of a pattern, one that refuses does not hold up the others
+        for action in actions:  # one refusal does not stop the others that match a pattern
             try:
                 action(call)
             except YehuError as error:
@@ -199,11 +199,11 @@ class OscHandler:
         self.clients.complain(peer, address, reason)
 
     def _mover(self, address: str) -> Act:
-        """Move what the mapping has at an address of the user's own."""
+        """Move what the mapping binds to an address of the user's own."""
         return lambda call: self._player.move(address, call.numbers(1)[0], frame=call.frame)
 
     def _hearing(self, address: str, action: Act) -> Act:
-        """Also let what comes be learned."""
+        """The same, and let MIDI learn hear the value."""
 
         def hear(call: Request) -> None:
             self._player.hear(address, call.numbers(1)[0])
@@ -329,12 +329,12 @@ class OscHandler:
 
 
 def _form(address: str) -> str:
-    """What comes after the parameter's own address."""
+    """The part of an address after the parameter's own."""
     return UNIT if address.endswith(UNIT) else ""
 
 
 def _parameter(address: str) -> Param:
-    """The parameter of an address. Errors: ParameterError, with a near name if there is one."""
+    """Find a parameter; raise ParameterError, with a similar address if there is one."""
     if address in STATUS_ADDRESSES:
         raise ParameterError(f"the status cannot be set; ask for it by {PREFIX}/get")
     if address.startswith(PLACE):
@@ -346,7 +346,7 @@ def _parameter(address: str) -> Param:
 
 
 def _near(address: str) -> str:
-    """Why an address is unknown, and one that is near."""
+    """The reason for an unknown address, with a similar one if there is one."""
     if not address.startswith(PREFIX + "/"):
         return f"unknown address (all begin with {PREFIX}/)"
     try:
@@ -367,7 +367,13 @@ def _port(number: float) -> int:
 
 
 def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[str]:
-    """The addresses that a pattern fits. Errors: RefusedError where it fits none."""
+    """The addresses that a pattern matches.
+
+    Raises
+    ------
+    RefusedError
+        Where the pattern is wrong or matches none.
+    """
     if len(pattern) > LONGEST_PATTERN:
         raise RefusedError("the pattern is too long")
     try:

@@ -1,6 +1,6 @@
-"""OSC packets taken apart: messages with their time tags; and messages put together.
+"""Read and write OSC packets.
 
-Read here and not by python-osc, which takes damaged packets for whole ones, and some for ever.
+python-osc does not read them here: it accepts damaged packets, and never ends with some.
 """
 
 from __future__ import annotations
@@ -10,23 +10,23 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-DEEPEST = 32  # bundles in bundles, lists in lists
+DEEPEST = 32  # bundles within bundles, arrays within arrays
 BUNDLE = b"#bundle\0"
 IMMEDIATELY = (0, 1)  # as a time tag
 SECONDS_1900_TO_1970 = 2_208_988_800
-MOST_ARGUMENTS = 256  # of a message, which is read in one step
+MOST_ARGUMENTS = 256  # of a message; it is read in one step
 
 
 class PacketError(ValueError):
-    """Bytes that are no OSC packet."""
+    """Bytes that are not an OSC packet."""
 
 
 @dataclass(frozen=True)
 class Message:
-    """One OSC message.
+    """An OSC message.
 
-    `due_s` is the time its bundle asks for, in seconds since 1970, or None for now. `payload`
-    is the type tags and arguments as they came.
+    `due_s` is the time tag of its bundle (seconds since 1970), or None for immediately;
+    `payload` the type tags and arguments as received.
     """
 
     address: str
@@ -36,15 +36,26 @@ class Message:
 
 
 def unpack(packet: bytes) -> list[Message]:
-    """The messages of a packet, in order. Errors: PacketError; nothing of it counts then."""
+    """The messages of a packet, in order.
+
+    Raises
+    ------
+    PacketError
+        Where any part of it is damaged.
+    """
     return [message for message in steps(packet) if message is not None]
 
 
 def steps(packet: bytes) -> Iterator[Message | None]:
-    """The messages of a packet, one at a time, in steps of which some give none.
+    """The messages of a packet, one at a time, in short steps: those without a message give None.
 
-    A bundle is looked through to its end before its first message is given, and is not kept:
-    unpacked it takes fifty times the memory. Errors: PacketError, before the first message.
+    A bundle is checked to its end before its first message is given, and then read again:
+    unpacked it would take fifty times the memory.
+
+    Raises
+    ------
+    PacketError
+        Where any part of it is damaged; before the first message.
     """
     data = memoryview(packet)
     try:
@@ -85,7 +96,7 @@ def _message(data: memoryview, due_s: float | None) -> Message:
     reader = _Reader(data)
     address = reader.text()
     payload = bytes(data[reader.place :])
-    if not payload:  # old senders leave out the tags where there are no arguments
+    if not payload:  # old senders omit the tags where there are no arguments
         return Message(address, [], due_s)
     tags = reader.text()
     if not tags.startswith(","):
@@ -110,7 +121,7 @@ def _message(data: memoryview, due_s: float | None) -> Message:
 
 
 class _Reader:
-    """A place in a message; struct.error or PacketError past its end."""
+    """Reads a message from front to back; raises struct.error or PacketError beyond its end."""
 
     def __init__(self, data: memoryview) -> None:
         self._data = data
@@ -145,14 +156,14 @@ class _Reader:
         raise PacketError(f"unknown type {tag!r}")
 
     def _skip_to(self, place: int) -> None:
-        """Go on at the next multiple of four."""
+        """Continue at the next multiple of four."""
         self.place = (place + 3) & ~3
         if self.place > len(self._data):
             raise PacketError("cut short")
 
 
 class Bang:
-    """The argument that means "now" or "without end" and has no value (type I)."""
+    """The argument without a value of type I, "infinitum" or "impulse"."""
 
 
 FIXED = {
@@ -164,7 +175,7 @@ CONSTANTS = {"T": True, "F": False, "N": None, "I": Bang()}
 
 
 def pack(address: str, *arguments: float | str | bool) -> bytes:
-    """One message as a packet: numbers as f, i or h, and strings."""
+    """Write a message as a packet: numbers as f, i or h, and strings."""
     tags, data = ",", b""
     for argument in arguments:
         if isinstance(argument, str):
@@ -180,11 +191,11 @@ def pack(address: str, *arguments: float | str | bool) -> bytes:
 
 
 def _padded(text: str) -> bytes:
-    """A string as OSC has it: with an end, to a multiple of four bytes."""
+    """A string as OSC has it: ended by a NUL, padded to a multiple of four bytes."""
     data = text.encode()
     return data + bytes(4 - len(data) % 4)
 
 
 def answer(address: str, payload: bytes) -> bytes:
-    """A message with type tags and arguments as another brought them."""
+    """Write a message with the type tags and arguments of another."""
     return _padded(address) + payload

@@ -1,7 +1,7 @@
-"""OSC address patterns: ``* ? [a-z] [!a-z] {this,that}`` ([OSC] section on matching).
+"""Match OSC address patterns: ``* ? [a-z] [!a-z] {this,that}`` ([OSC] section on matching).
 
-Matched by following all places in the address at once, so that no pattern, however twisted,
-takes longer than its length times the address's.
+All positions in the address that a piece of the pattern can reach are followed at once, so that
+no pattern takes longer than its length times the address's.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ SPECIAL = frozenset("*?[{")
 
 
 class PatternError(ValueError):
-    """A pattern whose brackets do not close."""
+    """A pattern with an unclosed bracket."""
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,12 @@ class One:
 
 @dataclass(frozen=True)
 class AnyNumber:
-    """Any run of characters within a part of the address."""
+    """Any number of characters within a part of the address."""
 
 
 @dataclass(frozen=True)
 class Either:
-    """One of some words."""
+    """One of several words."""
 
     words: tuple[str, ...]
 
@@ -40,12 +40,18 @@ Piece = One | AnyNumber | Either
 
 
 def is_pattern(address: str) -> bool:
-    """Whether an address is to be matched, not looked up."""
+    """Whether an address has characters of a pattern."""
     return not SPECIAL.isdisjoint(address)
 
 
 def matches(pattern: str, address: str) -> bool:
-    """Whether a pattern fits the whole of an address. Errors: PatternError."""
+    """Whether a pattern matches the whole of an address.
+
+    Raises
+    ------
+    PatternError
+        Where a bracket is not closed.
+    """
     places = {0}
     for piece in _pieces(pattern):
         places = _after(piece, places, address)
@@ -55,14 +61,14 @@ def matches(pattern: str, address: str) -> bool:
 
 
 def _after(piece: Piece, places: set[int], address: str) -> set[int]:
-    """Where in the address we may be once `piece` has matched."""
+    """Positions in the address after `piece`, from all positions before it."""
     if isinstance(piece, Either):
         return {at + len(w) for at in places for w in piece.words if address.startswith(w, at)}
     if isinstance(piece, One):
         return {at + 1 for at in places if at < len(address) and piece.fits(address[at])}
     reached: set[int] = set()
     for at in sorted(places):
-        if at not in reached:  # else an earlier place has led to all that this one would
+        if at not in reached:  # else an earlier position has reached all that this one would
             end = address.find("/", at)
             reached.update(range(at, (end if end >= 0 else len(address)) + 1))
     return reached
@@ -70,13 +76,15 @@ def _after(piece: Piece, places: set[int], address: str) -> set[int]:
 
 @lru_cache(maxsize=256)
 def _pieces(pattern: str) -> tuple[Piece, ...]:
-    """What a pattern is made of. Errors: PatternError."""
+    """The pieces of a pattern; raises PatternError."""
     pieces: list[Piece] = []
     at = 0
     while at < len(pattern):
         char = pattern[at]
         if char == "*":
-            if not pieces or not isinstance(pieces[-1], AnyNumber):  # two in a row are as one
+            if not pieces or not isinstance(
+                pieces[-1], AnyNumber
+            ):  # "**" is "*"
                 pieces.append(AnyNumber())
         elif char == "?":
             pieces.append(One(lambda c: c != "/"))
@@ -97,7 +105,7 @@ def _pieces(pattern: str) -> tuple[Piece, ...]:
 
 
 def _end_of_plain(pattern: str, at: int) -> int:
-    """Where the characters that stand for themselves end."""
+    """Position after the characters that stand for themselves."""
     while at < len(pattern) and pattern[at] not in SPECIAL:
         at += 1
     return at

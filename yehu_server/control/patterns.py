@@ -82,9 +82,7 @@ def _pieces(pattern: str) -> tuple[Piece, ...]:
     while at < len(pattern):
         char = pattern[at]
         if char == "*":
-            if not pieces or not isinstance(
-                pieces[-1], AnyNumber
-            ):  # "**" is "*"
+            if not pieces or not isinstance(pieces[-1], AnyNumber):  # "**" is "*"
                 pieces.append(AnyNumber())
         elif char == "?":
             pieces.append(One(lambda c: c != "/"))

@@ -1,7 +1,7 @@
-"""Who sends us OSC, and how to answer: by datagram, or over a connection.
+"""The peers that send OSC, and how each is answered: by datagram, or over a connection.
 
-None is answered without bound: a sender of datagrams so many bytes a second, since few that ask
-can ask for much, and not even for itself; over a connection, what the other end takes.
+Answers are limited. A sender of datagrams gets so many bytes a second, since a small request may
+have large answers, and its address may be forged; a connection gets what its other end reads.
 """
 
 from __future__ import annotations
@@ -17,59 +17,59 @@ from yehu_server.control.addresses import Address
 from yehu_server.control.allowance import Allowance
 from yehu_server.control.framing import Framing
 
-MOST_UNSENT_BYTES = 1 << 18  # to one peer
+MOST_UNSENT_BYTES = 1 << 18  # waiting for one peer
 ANSWERED_AT_ONCE_BYTES, ANSWERED_BYTES_A_SECOND = 1 << 17, 1 << 17
 
 
 class Peer(Protocol):
-    """Someone who sent us something, and can be answered."""
+    """A sender of OSC, which can be answered."""
 
     @property
     def name(self) -> str:
-        """Host and port, for reading."""
+        """Host and port, for display."""
 
     @property
     def host(self) -> str:
-        """The host's address."""
+        """IP address of the host."""
 
     @property
     def takes_more(self) -> bool:
-        """Whether there is room to tell it what it need not be told now."""
+        """Whether it may be sent more than it must be."""
 
     def send(self, packet: bytes) -> None:
-        """Send a packet, or drop it where the peer does not take it."""
+        """Send a packet, or drop it where the limit is reached."""
 
     def at(self, port: int) -> Peer:
-        """The same host at a port of its choice."""
+        """A peer at another port of the same host."""
 
 
 @dataclass
 class Traffic:
-    """What came and went, since the start."""
+    """Counters of OSC traffic since the start, and what there is now."""
 
     packets: int = 0
-    refused: int = 0  # from senders who are not allowed, and connections that are not OSC
-    excess: int = 0  # found no room beside others
-    kernel_drops: int = 0  # found the socket's buffer full
+    refused: int = 0  # packets from senders that are not allowed, and refused connections
+    excess: int = 0  # packets dropped because too many wait
+    kernel_drops: int = 0  # packets dropped by the kernel, its buffer being full
     unsent: int = 0
-    failures: int = 0  # defects of ours
+    failures: int = 0  # messages that met a defect of the server
     connections: int = 0
-    buffer_bytes: int = 0  # of the UDP socket, as granted
+    buffer_bytes: int = 0  # of the UDP socket, as the kernel grants
 
 
 @dataclass
 class WebTraffic:
-    """What came and went by HTTP and WebSocket, since the start."""
+    """Counters of HTTP and WebSocket traffic since the start, and what there is now."""
 
     requests: int = 0
     refused: int = 0
-    failures: int = 0  # defects of ours
+    failures: int = 0  # requests that met a defect of the server
     unsent: int = 0
-    web_sockets: int = 0  # that are open
+    web_sockets: int = 0  # open now
 
 
 def _answers() -> Allowance:
-    """The bytes that a sender of datagrams may be answered."""
+    """The bytes of answers to one sender of datagrams."""
     return Allowance(ANSWERED_BYTES_A_SECOND, ANSWERED_AT_ONCE_BYTES)
 
 
@@ -109,15 +109,20 @@ class UdpPeer:
             self.traffic.unsent += 1
 
     def at(self, port: int) -> UdpPeer:
-        """See `Peer`; what is sent there counts for who asked for it."""
+        """See `Peer`; bytes sent there count for this peer too."""
         address = (self.address[0], port, *self.address[2:])
         return UdpPeer(self.socket, address, self.traffic, self.allowance)
 
 
 class TcpPeer:
-    """One TCP connection.
+    """A TCP connection.
 
-    `watch` is told when there is something else to wait for, `hear_out` when the peer is gone.
+    Parameters
+    ----------
+    watch : callable
+        Called with the peer when its `events` may have changed.
+    hear_out : callable
+        Called with the peer when its connection is broken.
     """
 
     def __init__(
@@ -132,10 +137,10 @@ class TcpPeer:
         self.name = f"{address[0]}:{address[1]} (TCP)"
         self.host = address[0]
         self.framing = Framing()
-        self.has_spoken = False  # a whole packet
-        self.heard_s = time.monotonic()  # when it last spoke, or came
-        self.is_being_heard = False  # then no more of it is read
-        self.reads = True  # until the peer will say no more
+        self.has_spoken = False  # sent a whole packet
+        self.heard_s = time.monotonic()  # time of its last packet, or of its connecting
+        self.is_being_heard = False  # packets of it wait or are handled; no more are read
+        self.reads = True  # until its end of the connection is closed
         self._unsent = bytearray()
         self._finished = False
         self._traffic = traffic
@@ -154,13 +159,13 @@ class TcpPeer:
 
     @property
     def events(self) -> int:
-        """What to wait for, for a selector."""
+        """The events that a selector should wait for."""
         return (selectors.EVENT_READ if self.reads else 0) | (
             selectors.EVENT_WRITE if self._unsent else 0
         )
 
     def send(self, packet: bytes) -> None:
-        """See `Peer`; one who reads nothing for long misses what does not fit."""
+        """See `Peer`; packets are dropped while the peer does not read."""
         if len(self._unsent) > MOST_UNSENT_BYTES:
             self._traffic.unsent += 1
         elif not self._finished:
@@ -168,7 +173,7 @@ class TcpPeer:
             self.flush()
 
     def flush(self) -> None:
-        """Send what is waiting, as far as the peer takes it now."""
+        """Send waiting bytes, as many as the connection takes now."""
         try:
             while self._unsent:
                 del self._unsent[: self.socket.send(self._unsent)]
@@ -179,18 +184,18 @@ class TcpPeer:
         self._watch(self)
 
     def cut_off(self) -> None:
-        """Say and hear no more."""
+        """End the connection at once."""
         self._unsent.clear()
         self._finished = True
         if self.reads:
             self._hear_out(self)
 
     def finish(self) -> None:
-        """Close as soon as the peer has taken what is waiting."""
+        """End the connection once all waiting bytes are sent."""
         self._finished = True
         self._watch(self)
 
     def at(self, port: int) -> TcpPeer:
-        """See `Peer`: over a connection there is only one way back."""
+        """See `Peer`: a connection has no other port."""
         del port
         return self

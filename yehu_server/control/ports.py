@@ -1,4 +1,4 @@
-"""MIDI inputs, live: what comes in is played, what goes away is silenced."""
+"""Play from MIDI inputs as they are connected; end the notes of those that disappear."""
 
 from __future__ import annotations
 
@@ -17,25 +17,26 @@ from yehu_server.playing.live import Arrivals, LivePlayer
 
 log = logging.getLogger(__name__)
 
-LIVES_S = 5.0  # a process that ended sooner has something wrong
+LIVES_S = 5.0  # a process that ends sooner is started again only after a while
 
 
 @dataclass
 class MidiOptions:
-    """Which inputs; see ``yehu-server serve --help``."""
+    """The MIDI inputs to open; see ``yehu-server serve --help``."""
 
-    patterns: Sequence[str] = ()  # none: all but through ports
+    patterns: Sequence[str] = ()  # empty: all but through ports
     virtual: str | None = None
-    api: str | None = None  # None: the first that is there
+    api: str | None = None  # None: the first there is
 
 
 class MidiPorts:
-    """Passes on what the inputs' process hears.
+    """Passes MIDI messages from the process that holds the inputs to the player.
 
     Parameters
     ----------
     changed : callable
-        Told in a line when a port or the MIDI system comes or goes; from another thread.
+        Called with a line when a port or the MIDI system appears or disappears; from another
+        thread.
     """
 
     def __init__(
@@ -45,28 +46,28 @@ class MidiPorts:
         self._arrivals = Arrivals(player)
         self._options = options
         self._changed = changed
-        self._numbers: dict[str, int] = {}  # a port keeps its number when it comes back
+        self._numbers: dict[str, int] = {}  # a port that comes back gets its old one
         self._connected: dict[str, None] = {}
         self._ending = threading.Event()
         self._gone = threading.Event()
         self._backoff = Backoff()
         self._thread = threading.Thread(target=self._supervise, name="MIDI", daemon=True)
-        self._missing: set[str] = set()  # patterns that nothing matched at the start
+        self._missing: set[str] = set()  # patterns reported as matching nothing
         self.received = 0
         self.malformed = 0
         self.problem = ""
 
     @property
     def connected(self) -> list[str]:
-        """The names of the open ports."""
+        """Names of the open ports."""
         return list(self._connected)
 
     def start(self) -> None:
-        """Begin to listen."""
+        """Start to receive."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop listening."""
+        """Stop receiving."""
         self._ending.set()
         self._gone.set()
         if self._thread.is_alive():
@@ -76,9 +77,9 @@ class MidiPorts:
         keep_on(self._serve, self._ending, 0.0, "MIDI inputs", self._changed)
 
     def _serve(self) -> None:
-        """Have a process that holds the inputs until it ends, as it does with JACK's server."""
+        """Run a process that holds the inputs until it ends, as it does when JACK's server ends."""
         self._gone.clear()
-        if self._ending.is_set():  # before `_gone` was cleared
+        if self._ending.is_set():  # `stop` set both before `_gone` was cleared
             return
         begun, options = time.monotonic(), self._options
         child = Child("yehu_server.control.midi_process", self._heard)
@@ -122,7 +123,7 @@ class MidiPorts:
             self._gone.set()
 
     def _tell_missing(self, pattern: str, present: Sequence[str]) -> None:
-        if pattern not in self._missing:  # once, however often the MIDI system begins anew
+        if pattern not in self._missing:  # once, however often the process starts
             self._missing.add(pattern)
             there = ", ".join(present) or "none"
             self._changed(f"MIDI: no input is like {pattern!r} yet (there are: {there})")
@@ -142,7 +143,7 @@ class MidiPorts:
             self._player.let_go_of(self._numbers[port], frame=self._player.frame_of())
 
     def _let_go(self) -> None:
-        """End what all ports have left sounding."""
+        """End the notes of all ports."""
         for port in self._connected:
             self._let_go_of(port)
         if self._connected:

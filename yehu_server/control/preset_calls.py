@@ -1,4 +1,4 @@
-"""The calls that load, save and list presets, and morph between two."""
+"""The OSC calls that load, save, delete and list presets, and morph between two."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from yehu_server.lines import shortened
 from yehu_server.params.preset import Preset, morph
 from yehu_server.playing.live import LivePlayer
 
-SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # by whoever it is: each is written to the disk
+SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # of all clients together: each writes a file
 
 
 class PresetCalls:
-    """Acts on what comes under ``/preset``.
+    """Carries out the calls under ``/preset``.
 
     Parameters
     ----------
     complain : callable
-        Tells a peer of something wrong that holds up nothing, with the address it sent to.
+        Sends a peer an error that stops nothing, with the address that it sent to.
 
     Attributes
     ----------
     by_address : dict
-        What each call does. Each raises YehuError where it refuses.
+        The function that carries out each call; each raises YehuError where it refuses.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The OSCQuery tree: what can be set, asked and called, as JSON-able dicts.
+"""The OSCQuery tree of parameters, status values and calls, as dicts for JSON.
 
 Source: the OSCQuery proposal (github.com/Vidvox/OSCQueryProposal), third revision.
 """
@@ -23,8 +23,8 @@ ATTRIBUTES = (
 )  # fmt: skip
 EXTENSIONS = dict.fromkeys((*ATTRIBUTES[3:], "LISTEN", "PATH_CHANGED"), True)
 ROOT_DOC = "A virtual yehu, the Chinese two-stringed fiddle."
-NO_ARGUMENTS = "N"  # as a type: clients then show a button, and send nil
-# The proposal's names of units (its units.md); others stay as they are.
+NO_ARGUMENTS = "N"  # a type for which clients show a button, and send nil
+# Names of units in the proposal's units.md; others stay as they are.
 UNIT_NAMES = {
     "m": "distance.m",
     "m/s": "speed.m/s",
@@ -35,7 +35,7 @@ UNIT_NAMES = {
     "MIDI note": "time.midinote",
     "dB": "gain.db",
 }
-# What may be listened to, without the prefix.
+# Addresses to which clients may listen, without the prefix.
 LISTENABLE = frozenset(
     [param.address + form for param in TABLE for form in ("", AS_UNIT)]
     + [PLACE + row.name for row in STATUS]
@@ -47,14 +47,14 @@ def tree(
     status: Mapping[str, float | str],
     more_calls: Iterable[Call] = (),
 ) -> Node:
-    """Describe everything, from the root down.
+    """The whole tree.
 
     Parameters
     ----------
     values, status : mapping
         Parameters by address, status values by name.
     more_calls : iterable of Call
-        What can be called beside `CALLS`, or else than these say; at whole addresses.
+        Calls added to `CALLS`, or in place of some; their addresses include the prefix.
     """
     root: Node = {"FULL_PATH": "/", "ACCESS": NO_VALUE, "DESCRIPTION": ROOT_DOC}
     for param in TABLE:
@@ -77,7 +77,7 @@ def tree(
 
 
 def find(root: Node, path: str) -> Node | None:
-    """The node at a path, or None."""
+    """The node at a path, or None where there is none."""
     node: Node | None = root
     for name in path.strip("/").split("/") if path.strip("/") else ():
         node = None if node is None else node.get("CONTENTS", {}).get(name)
@@ -85,7 +85,7 @@ def find(root: Node, path: str) -> Node | None:
 
 
 def host_info(name: str, osc: tuple[str, int], web: tuple[str, int]) -> dict[str, Any]:
-    """Describe the server: its name, what it can do, and where it listens."""
+    """The server's HOST_INFO: its name, extensions and addresses."""
     return {
         "NAME": name,
         "EXTENSIONS": EXTENSIONS,
@@ -98,7 +98,7 @@ def host_info(name: str, osc: tuple[str, int], web: tuple[str, int]) -> dict[str
 
 
 def _put(root: Node, address: str, described: Node) -> None:
-    """Describe a node, and make the containers above it where there are none."""
+    """Add a node, and the containers above it that are missing."""
     node, path = root, ""
     for name in address.strip("/").split("/"):
         path += f"/{name}"
@@ -148,7 +148,7 @@ def _range(argument: Argument) -> dict[str, Any]:
 
 
 def _units(units: list[str]) -> Node:
-    """The attribute, where there is a unit at all."""
+    """The attribute UNIT; nothing where no argument has a unit."""
     if all(unit == "1" for unit in units):
         return {}
     return {"UNIT": [UNIT_NAMES.get(unit, unit) for unit in units]}
@@ -159,5 +159,5 @@ def _type(value: float | str) -> str:
 
 
 def _json(value: float | str) -> float | str | None:
-    """A value that JSON can say."""
+    """A value as JSON can have it: None for one that is not finite."""
     return None if isinstance(value, float) and not math.isfinite(value) else value

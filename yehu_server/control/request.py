@@ -1,4 +1,4 @@
-"""One OSC message that asks for something, and whom it may ask beside the player."""
+"""A received OSC message, and the services that calls need beside the player."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from yehu_server.errors import RefusedError
 
 
 class Desk(Protocol):
-    """What the server does beside playing."""
+    """The services of the server that OSC calls need beside the player."""
 
     def status(self) -> Mapping[str, float | str]:
-        """How things stand."""
+        """The status values, by name."""
 
     def start_recording(self, name: str) -> str:
-        """Record under a plain name; return the file's. Errors: YehuError."""
+        """Record to a file of a plain name; return the file's name. Raises YehuError."""
 
     def stop_recording(self) -> str:
-        """End the recording; return the file's name. Errors: YehuError."""
+        """End the recording; return the file's name. Raises YehuError."""
 
     def soon(self, action: Callable[[], None]) -> None:
-        """Let the thread that handles packets do something; any thread may call."""
+        """Call a function in the thread that handles packets; any thread may call."""
 
     def tree_changed(self, path: str) -> None:
-        """What can be set or called at an address or below is not what it was."""
+        """Announce that the tree of addresses has changed at a path or below."""
 
     def say(self, line: str) -> None:
-        """Tell whoever runs the server."""
+        """Print or log a line for whoever runs the server."""
 
 
 @dataclass(frozen=True)
 class Request:
-    """One message to be acted on: its arguments, who sent it, and when it is to be heard."""
+    """A message to carry out: its arguments, its sender, and the frame at which it is heard."""
 
     arguments: Sequence[Any]
     payload: bytes
@@ -43,14 +43,26 @@ class Request:
     frame: int
 
     def check_peer(self) -> None:
-        """Errors: RefusedError where the peer asks for more than it is answered, or takes."""
+        """Refuse more answers to a peer that has reached its limit.
+
+        Raises
+        ------
+        RefusedError
+            Where it has.
+        """
         if not self.peer.takes_more:
             raise RefusedError("there are too many answers on their way to you")
 
     def numbers(self, least: int, most: int | None = None) -> list[float]:
-        """The arguments as finite numbers. Errors: RefusedError."""
+        """The arguments as finite numbers.
+
+        Raises
+        ------
+        RefusedError
+            Where their count is not within `least` to `most` (by default `least`), or one is none.
+        """
         most = least if most is None else most
-        if least == 0 and list(self.arguments) == [None]:  # how OSCQuery's clients send nothing
+        if least == 0 and list(self.arguments) == [None]:  # so OSCQuery clients send none
             return []
         count = len(self.arguments)
         if not least <= count <= most:
@@ -60,19 +72,31 @@ class Request:
         return [_number(argument) for argument in self.arguments]
 
     def word(self) -> str:
-        """The one argument, a string. Errors: RefusedError."""
+        """The only argument, a string.
+
+        Raises
+        ------
+        RefusedError
+            Where there is anything else.
+        """
         if len(self.arguments) != 1 or not isinstance(self.arguments[0], str):
             raise RefusedError("expected one string")
         return self.arguments[0]
 
     def word_and_flag(self) -> tuple[str, bool]:
-        """A string, and after it a number that may be left out: whether it is not 0."""
+        """A string, and whether an optional number after it is not 0.
+
+        Raises
+        ------
+        RefusedError
+            Where there is anything else.
+        """
         (flag,) = replace(self, arguments=self.arguments[1:] or [0]).numbers(1)
         return replace(self, arguments=self.arguments[:1]).word(), flag != 0.0
 
 
 def _number(argument: Any) -> float:
-    """A number as clients send it: float, int, or T and F. Errors: RefusedError."""
+    """A number from a float, an int, T or F; raises RefusedError."""
     if not isinstance(argument, int | float):
         raise RefusedError(f"expected a number, got {_kind(argument)}")
     try:

@@ -1,16 +1,16 @@
-"""Room in memory that many share."""
+"""A limit on memory that several owners share."""
 
 from __future__ import annotations
 
 from typing import Any
 
-OVERHEAD_BYTES = 256  # of a small thing that is kept, beside its own bytes
+OVERHEAD_BYTES = 256  # memory for a stored packet beside its own bytes
 
 
 class Room:
-    """So many bytes for all. One owner gets no more than is left for the others after it.
+    """A number of bytes for all owners: each may hold at most as much as is still free.
 
-    So one alone has half of it, two have a third each, and there is always some for the next.
+    A single owner gets half of it, two get a third each; there is always some for another one.
     """
 
     def __init__(self, most_bytes: int) -> None:
@@ -19,11 +19,11 @@ class Room:
         self.taken_bytes = 0
 
     def of(self, owner: Any) -> int:
-        """What one owner has taken, in bytes; any thread may ask."""
+        """Bytes that an owner holds; any thread may call."""
         return self._owned.get(owner, 0)
 
     def take(self, owner: Any, size: int, *, is_due: bool = False) -> bool:
-        """Take some; return whether there was enough. There is for what is due to an owner."""
+        """Take bytes for an owner; return whether there were enough (with `is_due` always)."""
         owned = self._owned.get(owner, 0) + size
         if not is_due and owned > self._most_bytes - self.taken_bytes:
             return False
@@ -32,7 +32,7 @@ class Room:
         return True
 
     def give_back(self, owner: Any, size: int) -> None:
-        """Give back what was taken."""
+        """Give back bytes of an owner."""
         self.taken_bytes -= size
         left = self._owned[owner] - size
         if left:
@@ -41,6 +41,6 @@ class Room:
             del self._owned[owner]
 
     def clear(self) -> None:
-        """All is given back."""
+        """Give back all bytes."""
         self._owned.clear()
         self.taken_bytes = 0

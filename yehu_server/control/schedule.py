@@ -1,9 +1,9 @@
-"""Messages with a time tag, until they are due.
+"""Keep messages with time tags until they are due.
 
-A tag names a moment of the world's clock; the instrument counts frames. The first tag of a
-series ties the two together, and later ones are counted from it at the nominal rate: so
-distances are exact to the frame. Where the device's own pace has led more than a millisecond
-away from that, the tie is made anew.
+A tag is a time of the system's clock; the instrument counts frames. The first tag of a series
+gives a time and its frame, and later tags are counted from it at the nominal sample rate, so that
+intervals are exact to the frame. Once the device's own rate has led more than a millisecond away
+from that, a new pair of time and frame is taken.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from typing import Generic, TypeVar
 from yehu_server.control.room import OVERHEAD_BYTES, Room
 from yehu_server.playing.live import LivePlayer
 
-AHEAD_S = 0.01  # how long before a message of now a scheduled one is decided on
+AHEAD_S = 0.01  # scheduled messages are decided so long before those of now
 TOGETHER_NS, TRIES = 100_000, 10
 STRAY_S = 0.001
-MOST_BYTES = 20 << 20  # that wait: some 65,000 notes, half as many of one sender
+MOST_BYTES = 20 << 20  # some 65,000 notes, half as many of one sender
 
 
 T = TypeVar("T")
@@ -27,24 +27,24 @@ Sender = TypeVar("Sender")
 
 
 def both_clocks() -> tuple[float, int]:
-    """The world's clock (s since 1970) and the monotonic one (ns) at one moment."""
+    """The system's clock (s since 1970) and the monotonic clock (ns) at the same moment."""
     for _ in range(TRIES):
         before = time.monotonic_ns()
         now_s = time.time()
-        if time.monotonic_ns() - before < TOGETHER_NS:  # nothing held us up between them
+        if time.monotonic_ns() - before < TOGETHER_NS:  # the thread was not held up in between
             break
     return now_s, before
 
 
 class TagClock:
-    """Frames of time tags."""
+    """Converts time tags to frames."""
 
     def __init__(self, player: LivePlayer) -> None:
         self._player = player
-        self._tie: tuple[float, int] | None = None  # a moment (s since 1970) and its frame
+        self._tie: tuple[float, int] | None = None  # a time (s since 1970) and its frame
 
     def frame_at(self, due_s: float) -> int:
-        """The frame that is played at a moment."""
+        """The frame that is played at a time (s since 1970)."""
         rate = self._player.instrument.rate
         now_s, now_ns = both_clocks()
         true = self._player.instrument.frame_at(now_ns) + (due_s - now_s) * rate
@@ -58,14 +58,14 @@ class TagClock:
 
 
 class Schedule(Generic[T, Sender]):
-    """What is to be done when, as far as it has not come.
+    """Things that wait for their time.
 
     Parameters
     ----------
     ahead_s : float
-        How long before its time a thing is handed out.
+        How long before its time a thing is due.
     most_bytes : int
-        Room for all that waits; half of it for one sender's.
+        Limit on the size of all of them; one sender may have half of it.
     """
 
     def __init__(self, ahead_s: float = AHEAD_S, most_bytes: int = MOST_BYTES) -> None:
@@ -78,9 +78,9 @@ class Schedule(Generic[T, Sender]):
         return len(self._waiting)
 
     def add(self, due_s: float, thing: T, sender: Sender, size: int = 0) -> bool:
-        """Keep a thing until its time (s since 1970); return whether there was room.
+        """Keep a thing of some size (bytes) until its time (s since 1970).
 
-        `size` is what it takes, in bytes.
+        Returns whether there was room.
         """
         size += OVERHEAD_BYTES
         if not self._room.take(sender, size):
@@ -89,7 +89,7 @@ class Schedule(Generic[T, Sender]):
         return True
 
     def due(self, most: int) -> list[tuple[float, T, Sender]]:
-        """What is to be handed out now, with the times it is meant for: so many at most."""
+        """Remove and return what is due now, at most so many, each with its time and sender."""
         ready: list[tuple[float, T, Sender]] = []
         horizon = time.time() + self.ahead_s
         while self._waiting and self._waiting[0][0] <= horizon and len(ready) < most:
@@ -99,12 +99,12 @@ class Schedule(Generic[T, Sender]):
         return ready
 
     def wait_s(self) -> float | None:
-        """Seconds until the next thing is to be handed out."""
+        """Seconds until the next thing is due; None where there is none."""
         if not self._waiting:
             return None
         return max(0.0, self._waiting[0][0] - self.ahead_s - time.time())
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Drop everything."""
         self._waiting.clear()
         self._room.clear()

@@ -1,9 +1,9 @@
-"""Sockets for OSC: UDP and TCP at one address, read by one thread, fast, and parsed later.
+"""Serve OSC by UDP and TCP at one address, in one thread.
 
-The UDP socket is emptied before anything is parsed, so that a burst is kept by memory and not by
-the kernel's small buffer; of a sender who finds no room in memory what is over is dropped, and
-counted. A connection is not read again before what it said is handled: its sender waits. On Linux
-the kernel stamps what arrives, and tells what it dropped: a message is as early as it truly was,
+The UDP socket is emptied before packets are parsed, so that memory holds a burst and not the
+kernel's small buffer; packets of a sender that has too many waiting are dropped and counted. A
+connection is not read again before its last packets are handled, so that its sender waits. On
+Linux the kernel stamps packets on arrival and counts those it drops: a message has its true time
 however busy Python is.
 """
 
@@ -35,44 +35,47 @@ from yehu_server.control.peers import Peer, TcpPeer, Traffic, UdpPeer
 
 log = logging.getLogger(__name__)
 
-STREAM_BYTES = 1 << 16  # read at a time
-BEHIND_BYTES = 1 << 16  # of a peer that came another way, before it waits
+STREAM_BYTES = 1 << 16  # of a connection, read at a time
+BEHIND_BYTES = 1 << 16  # waiting of one WebSocket, before it has to wait
 MOST_ASKED = 64
-READ_AT_ONCE = 128  # datagrams, before we look for what is due
-READ_FOR_NS = 4_000_000  # before we handle some of it
-MOST_PEERS = 1024  # whose addresses we keep
+READ_AT_ONCE = 128  # datagrams of one turn
+READ_FOR_NS = 4_000_000  # before packets are handled in between
+MOST_PEERS = 1024  # UDP peers that are kept
 ACCEPT_AGAIN_S = 1.0
 MOST_CONNECTIONS, MOST_OF_A_HOST = 64, 32
-# A connection that has said nothing for so long, or nothing since it was made, gives its place to
-# who comes where all are taken, unless it is still told of changes.
+# Where there are too many connections, a new one replaces one that has sent nothing for the first
+# time, or never sent a packet in the second, unless it is sent changes of values.
 QUIET_S, SPEAKS_WITHIN_S = 60.0, 10.0
 WARN_AGAIN_S = 1.0
 LONGEST_WAIT_S = 0.5
 
 
 class Handler(Protocol):
-    """What is done with packets; called from the socket's thread."""
+    """Handles packets; called from the sockets' thread."""
 
     def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
-        """Act on one packet, in steps between which others may be handled."""
+        """Handle a packet in steps, between which other packets may be handled."""
 
     def tick(self) -> None:
         """Do what is due."""
 
     def wait_s(self) -> float | None:
-        """Seconds until `tick` has something to do."""
+        """Seconds until `tick` has something to do; None where it has nothing."""
 
     def hears(self, peer: Peer) -> bool:
-        """Whether a peer is still to be told of changes."""
+        """Whether a peer is sent changes of values."""
 
     def gone(self, peer: Peer) -> None:
-        """A peer has hung up."""
+        """Drop a peer that has hung up."""
 
 
 class OscPorts:
-    """One UDP and one TCP port, and the thread that serves them.
+    """A UDP and a TCP port, and the thread that serves them.
 
-    Errors: DeviceError where the address is taken or not this machine's.
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
     """
 
     def __init__(self, host: str, port: int, allowed: Allowed, handler: Handler) -> None:
@@ -80,7 +83,7 @@ class OscPorts:
         self._allowed = allowed
         self._handler = handler
         self._backlog: Backlog[bytes] = Backlog(self._handle, self._end)
-        self._has_more = False  # in the socket, as far as we know
+        self._has_more = False  # whether the UDP socket was not emptied
         self._handled_ns = 0
         self._accept_from = math.inf  # monotonic s
         self._warned = 0.0  # monotonic s
@@ -101,11 +104,11 @@ class OscPorts:
         self._thread = threading.Thread(target=self._run, name="OSC", daemon=True)
 
     def start(self) -> None:
-        """Begin to serve."""
+        """Start to serve."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop serving and close."""
+        """Stop serving and close all sockets."""
         self._ending = True
         self._wake_there.send(b"!")
         if self._thread.is_alive():
@@ -119,7 +122,7 @@ class OscPorts:
         self._selector.close()
 
     def receive(self, packet: bytes, peer: Peer) -> None:
-        """Take in a packet that came another way; any thread may call."""
+        """Take a packet that a WebSocket received; any thread may call."""
         arrived_ns = time.monotonic_ns()
 
         def take_in() -> None:
@@ -129,35 +132,35 @@ class OscPorts:
         self.call_soon(take_in)
 
     def leave(self, peer: Peer) -> None:
-        """A peer who came another way is gone, once what it said is done; any thread may call."""
+        """Drop a WebSocket's peer once its packets are handled; any thread may call."""
         self.call_soon(lambda: self._backlog.add(None, peer, 0))
 
     def call_soon(self, action: Callable[[], object]) -> None:
-        """Let the thread that serves do something; any thread may call."""
+        """Call a function in the thread that serves; any thread may call."""
         self._asked.append(action)
         self._wake()
 
     def _wake(self) -> None:
-        with contextlib.suppress(OSError):  # it is full, so that the thread will wake anyway
+        with contextlib.suppress(OSError):  # full: the thread will wake anyway
             self._wake_there.send(b"!")
 
     def _run(self) -> None:
         while not self._ending:
             try:
                 self._turn()
-            except Exception:  # a defect of ours must not silence the instrument's only ear
+            except Exception:  # a defect of the server must not end the thread
                 self.traffic.failures += 1
                 log.exception("OSC: a message could not be handled")
 
     def _turn(self) -> None:
-        """Read what has come, handle for a while, and do what is due."""
+        """Read the sockets, handle packets for a while, and do what is due."""
         asked = self._handler.wait_s()
         wait = LONGEST_WAIT_S if asked is None else min(asked, LONGEST_WAIT_S)
         self._has_more = False
         for key, events in self._selector.select(0.0 if self._backlog else wait):
             self._serve(key, events)
         now_ns = time.monotonic_ns()
-        # First the socket's small buffer, then the backlog's large one.
+        # Empty the socket's small buffer first: the backlog has more room.
         if not self._has_more or now_ns - self._handled_ns > READ_FOR_NS:
             self._backlog.work()
             self._handled_ns = time.monotonic_ns()
@@ -168,11 +171,11 @@ class OscPorts:
             self._selector.register(self._tcp, selectors.EVENT_READ)
 
     def is_behind(self, peer: Peer) -> bool:
-        """Whether a peer that comes another way has to wait; any thread may ask."""
+        """Whether a WebSocket's peer should wait before it sends more; any thread may call."""
         return len(self._asked) >= MOST_ASKED or self._backlog.bytes_of(peer) >= BEHIND_BYTES
 
     def _handle(self, data: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
-        """The steps of a packet, or of a part of a stream."""
+        """The steps that handle a packet, or a part of a stream."""
         if isinstance(peer, TcpPeer):
             return self._handle_stream(data, peer, arrived_ns)
         return self._handler.handle(data, peer, arrived_ns)
@@ -185,7 +188,7 @@ class OscPorts:
                 peer.heard_s = time.monotonic()
                 try:
                     yield from self._handler.handle(packet, peer, arrived_ns)
-                except Exception:  # of ours: what comes after it is heard
+                except Exception:  # a defect of the server; later packets are handled
                     self.traffic.failures += 1
                     log.exception("OSC: a message could not be handled")
                 yield
@@ -197,7 +200,7 @@ class OscPorts:
             peer.is_being_heard = False
 
     def _warn(self, what: str) -> None:
-        """Say what strangers do; those who do it often do not fill the log."""
+        """Log what a peer did wrong, as a warning once a second at most."""
         now = time.monotonic()
         log.log(
             logging.WARNING if now > self._warned + WARN_AGAIN_S else logging.DEBUG, "OSC: %s", what
@@ -205,7 +208,7 @@ class OscPorts:
         self._warned = now
 
     def _end(self, peer: Peer) -> None:
-        """A peer has hung up, and all it said is done."""
+        """Drop a peer that hung up, once all of its packets are handled."""
         if isinstance(peer, TcpPeer):
             peer.finish()
         self._handler.gone(peer)
@@ -226,20 +229,20 @@ class OscPorts:
     def _do_asked(self) -> None:
         with contextlib.suppress(BlockingIOError):
             self._wake_here.recv(STREAM_BYTES)
-        for _ in range(len(self._asked)):  # of what is asked meanwhile the next turn hears
+        for _ in range(len(self._asked)):  # what is added meanwhile waits for the next turn
             self._asked.popleft()()
         if self._asked:
             self._wake()
 
     def _read_datagrams(self) -> None:
-        """Empty the socket, as far as one turn goes."""
+        """Read up to READ_AT_ONCE datagrams."""
         offset_ns = time.time_ns() - time.monotonic_ns()
         for _ in range(READ_AT_ONCE):
             try:
                 packet, extras, _, address = self._udp.recvmsg(DATAGRAM_BYTES + 1, 128)
             except BlockingIOError:
                 return
-            except OSError as error:  # of an earlier answer that nobody took
+            except OSError as error:  # an earlier answer was refused at its port
                 log.debug("OSC: %s", error)
                 continue
             arrived_ns = time.monotonic_ns() if not extras else 0
@@ -250,7 +253,7 @@ class OscPorts:
                 elif kind == SO_RXQ_OVFL:
                     self.traffic.kernel_drops = struct.unpack("I", data[:4])[0]
             if address[1] == self.port and is_here(address[0]):
-                self.traffic.refused += 1  # our own word, by way of a subscription to ourselves
+                self.traffic.refused += 1  # from this server: someone subscribed it to itself
             elif address[0] in self._allowed:
                 self._enqueue(packet, self._peer(address), arrived_ns)
             else:
@@ -267,7 +270,7 @@ class OscPorts:
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
         self.traffic.packets += 1
-        is_short = len(packet) <= DATAGRAM_BYTES  # where the kernel did not see to it
+        is_short = len(packet) <= DATAGRAM_BYTES  # the kernel drops longer ones on Linux only
         if not (is_short and self._backlog.add(packet, peer, arrived_ns, len(packet))):
             self.traffic.excess += 1
 
@@ -276,7 +279,7 @@ class OscPorts:
     def _accept(self) -> None:
         try:
             connection, address = self._tcp.accept()
-        except OSError:  # too many open files: try again when some may be closed
+        except OSError:  # too many open files: try again later
             self._selector.unregister(self._tcp)
             self._accept_from = time.monotonic() + ACCEPT_AGAIN_S
             return
@@ -292,7 +295,7 @@ class OscPorts:
         self._selector.register(connection, selectors.EVENT_READ, peer)
 
     def _has_place(self, host: str) -> bool:
-        """Whether there is room for one more connection, if need be in place of a silent one."""
+        """Whether there is room for one more connection; ends a silent one for it."""
         open_ = [peer for peer in self._streams if not peer.is_finished]
         of_host = [peer for peer in open_ if peer.host == host]
         if len(of_host) >= MOST_OF_A_HOST:
@@ -307,7 +310,7 @@ class OscPorts:
         return silent is not None
 
     def _longest_silent(self, peers: list[TcpPeer]) -> TcpPeer | None:
-        """Who has said nothing for longest, if it was too long."""
+        """The connection that has sent nothing for longest, if that was too long."""
         now = time.monotonic()
         silent = [
             peer
@@ -319,7 +322,7 @@ class OscPorts:
         return min(silent, key=lambda peer: peer.heard_s, default=None)
 
     def _read_stream(self, peer: TcpPeer) -> None:
-        if peer.is_being_heard:  # the sender waits, and nothing is lost
+        if peer.is_being_heard:  # the sender waits; nothing is lost
             return
         try:
             data = peer.socket.recv(STREAM_BYTES)
@@ -334,13 +337,13 @@ class OscPorts:
             self.hear_out(peer)
 
     def hear_out(self, peer: TcpPeer) -> None:
-        """Read no more from a peer; what it has said is still acted on and answered."""
+        """Read no more from a peer; its packets are still handled and answered."""
         peer.reads = False
         self.watch(peer)
         self._backlog.add(None, peer, 0)
 
     def watch(self, peer: TcpPeer) -> None:
-        """Wait for what the peer has still to say or to take; close when there is neither."""
+        """Let the selector wait for the peer's events; close the connection if it has none."""
         with contextlib.suppress(KeyError, ValueError):
             self._selector.unregister(peer.socket)
         if peer.events:

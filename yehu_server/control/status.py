@@ -1,6 +1,6 @@
-"""The status values: name, kind, unit, meaning, and how each is read. The one table of them.
+"""The one table of status values: name, kind, meaning, unit, and how each is read.
 
-OSC, OSCQuery, the metrics, the command's status line and docs/osc.md take them from here.
+OSC, OSCQuery, the metrics, the status line of `serve` and docs/osc.md take them from here.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class OutputState(Protocol):
 
 @dataclass(frozen=True)
 class StatusSources:
-    """What the status values are read from at one moment."""
+    """What the status values are read from."""
 
     meters: Any  # a record of dtype telemetry.METERS
     instrument: Instrument
@@ -52,16 +52,16 @@ class StatusSources:
 
 
 class Kind(Enum):
-    """What a status value is."""
+    """Kind of a status value."""
 
     TEXT = "text"
-    GAUGE = "gauge"  # a number that goes up and down
-    COUNTER = "counter"  # one that only grows
+    GAUGE = "gauge"  # a number that may rise and fall
+    COUNTER = "counter"  # a number that only grows
 
 
 @dataclass(frozen=True)
 class StatusValue:
-    """One row of the table."""
+    """A row of the table."""
 
     name: str
     kind: Kind
@@ -74,48 +74,58 @@ TEXT, GAUGE, COUNTER = Kind.TEXT, Kind.GAUGE, Kind.COUNTER
 
 
 def _count(name: str) -> Callable[[StatusSources], int]:
-    """How to read a whole number of the meters."""
+    """Read a whole number of the meters."""
     return lambda now: int(now.meters[name])
 
 
 def _number(name: str) -> Callable[[StatusSources], float]:
-    """How to read another number of the meters."""
+    """Read another number of the meters."""
     return lambda now: float(now.meters[name])
 
 
 def _decibels(name: str) -> Callable[[StatusSources], float]:
-    """How to read an amplitude of the meters as decibels."""
+    """Read an amplitude of the meters, in decibels."""
     least = 10.0 ** (SILENT_DB / 20.0)
     return lambda now: 20.0 * math.log10(max(float(now.meters[name]), least))
 
 
 STATUS: tuple[StatusValue, ...] = (
-    StatusValue("device", TEXT, "What plays.", lambda now: now.output.device or "silent clock"),
-    StatusValue("problem", TEXT, "Why no device does.", lambda now: now.output.problem),
+    StatusValue(
+        "device",
+        TEXT,
+        "Device that plays, or silent clock.",
+        lambda now: now.output.device or "silent clock",
+    ),
+    StatusValue(
+        "problem",
+        TEXT,
+        "Why no device plays; empty where one does.",
+        lambda now: now.output.problem,
+    ),
     StatusValue("rate", GAUGE, "Sample rate of the device.", lambda now: now.instrument.rate, "Hz"),
     StatusValue(
         "blocksize",
         GAUGE,
-        "Frames asked for at a time, as --blocksize has it.",
+        "Frames computed at a time, as set by --blocksize.",
         lambda now: now.blocksize,
     ),
     StatusValue(
         "period",
         GAUGE,
-        "Frames the device really asks for at once, at most.",
+        "Largest number of frames that the device asks for at once.",
         lambda now: now.delay.period,
     ),
     StatusValue(
         "latency_ms",
         GAUGE,
-        "Latency of the device, as it says.",
+        "Latency that the device reports.",
         lambda now: now.output.latency_ms,
         "ms",
     ),
     StatusValue(
         "delay_ms",
         GAUGE,
-        "From a message to its sound, before the device.",
+        "Delay from a message to its sound, without the device's latency.",
         lambda now: 1e3 * now.player.delay / now.instrument.rate,
         "ms",
     ),
@@ -130,7 +140,7 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue(
         "note",
         GAUGE,
-        "The pitch that sounds, of a note or drawn by hand; -1 where none does.",
+        "Pitch that sounds, of a note or of a bow drawn by hand; -1 for none.",
         lambda now: -1.0 if now.player.pitch is None else now.player.pitch,
         "MIDI note",
     ),
@@ -144,53 +154,51 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue(
         "bow_side",
         GAUGE,
-        "Which string the bow lies on; 0 lifted.",
+        "String that the bow is on: 1 inner (F4), -1 outer (C5), 0 for none.",
         lambda now: now.player.value("/bow/side"),
     ),
     StatusValue(
         "load",
         GAUGE,
-        "CPU time of the callback over its deadline, mean of a second.",
+        "CPU time of the callback divided by its deadline, mean of a second.",
         _number("load"),
     ),
-    StatusValue("worst_load", GAUGE, "The same, worst since the start.", _number("worst_load")),
+    StatusValue("worst_load", GAUGE, "The same, largest since the start.", _number("worst_load")),
     StatusValue(
         "missed_deadlines",
         COUNTER,
-        "Callbacks that took more CPU time than they have.",
+        "Callbacks that took more CPU time than their deadline.",
         _count("missed"),
     ),
     StatusValue(
         "late_callbacks",
         COUNTER,
-        "Requests of the device two periods late or more.",
+        "Requests of the device that came two periods late or more.",
         _count("late_callbacks"),
     ),
-    StatusValue(
-        "underruns", COUNTER, "Under-runs, as the device reports them.", _count("underruns")
-    ),
+    StatusValue("underruns", COUNTER, "Under-runs that the device reported.", _count("underruns")),
     StatusValue(
         "device_losses",
         COUNTER,
-        "How often the device went away.",
+        "Number of times the device disappeared.",
         lambda now: now.output.losses,
     ),
     StatusValue(
         "applied_events",
         COUNTER,
-        "Moves of bow and finger that reached the model.",
+        "Events (moves of bow or finger) that reached the model.",
         _count("applied"),
     ),
     StatusValue(
-        "late_events", COUNTER, "Moves that came after their frame.", _count("late_events")
+        "late_events", COUNTER, "Events that came after their frame.", _count("late_events")
     ),
     StatusValue(
         "dropped_events",
         COUNTER,
-        "Moves that found the ring full.",
+        "Events dropped because the ring was full.",
         lambda now: now.instrument.dropped_events,
     ),
-    StatusValue("waiting_events", GAUGE, "Moves that wait for their frame.", _count("waiting")),
+    StatusValue("waiting_events", GAUGE, "Events that wait for their frame.", _count("waiting")),
     StatusValue(
         "unconverged_solves",
         COUNTER,
@@ -198,89 +206,95 @@ STATUS: tuple[StatusValue, ...] = (
         _count("unconverged"),
     ),
     StatusValue(
-        "lost_states", COUNTER, "How often the model was put back to rest.", _count("lost")
+        "lost_states",
+        COUNTER,
+        "Number of times the model lost its state and was put back to rest.",
+        _count("lost"),
     ),
-    StatusValue("osc_packets", COUNTER, "OSC packets that came in.", lambda now: now.osc.packets),
+    StatusValue("osc_packets", COUNTER, "OSC packets received.", lambda now: now.osc.packets),
     StatusValue(
         "osc_messages",
         COUNTER,
-        "OSC messages that came in.",
+        "OSC messages received.",
         lambda now: now.handler.counts.messages,
     ),
     StatusValue(
         "osc_malformed",
         COUNTER,
-        "Packets that are no OSC.",
+        "Packets that are not OSC.",
         lambda now: now.handler.counts.malformed,
     ),
     StatusValue(
         "osc_errors",
         COUNTER,
-        "Messages that could not be done.",
+        "Messages that could not be carried out.",
         lambda now: now.handler.counts.errors,
     ),
     StatusValue(
         "osc_refused",
         COUNTER,
-        "Packets of senders who are not allowed, and connections refused.",
+        "Packets of senders that are not allowed, and refused connections.",
         lambda now: now.osc.refused,
     ),
     StatusValue(
         "osc_dropped",
         COUNTER,
-        "Packets the system lost for want of room.",
+        "Packets dropped by the system because its buffer was full.",
         lambda now: now.osc.kernel_drops,
     ),
     StatusValue(
         "osc_excess",
         COUNTER,
-        "Packets dropped since their sender has too many waiting.",
+        "Packets dropped because their sender had too many waiting.",
         lambda now: now.osc.excess,
     ),
     StatusValue(
         "osc_unsent",
         COUNTER,
-        "Answers dropped: too many, or nobody takes them.",
+        "Answers dropped because they were too many, or not read.",
         lambda now: now.osc.unsent,
     ),
     StatusValue(
         "osc_failures",
         COUNTER,
-        "Messages that met a defect of the server: please report it, with the log.",
+        "Messages that met a defect of the server; please report it, with the log.",
         lambda now: now.osc.failures,
     ),
     StatusValue(
         "osc_buffer_bytes",
         GAUGE,
-        "Room for packets that the system grants.",
+        "Size of the system's buffer for packets.",
         lambda now: now.osc.buffer_bytes,
         "bytes",
     ),
     StatusValue(
-        "osc_connections", GAUGE, "TCP connections for OSC.", lambda now: now.osc.connections
+        "osc_connections",
+        GAUGE,
+        "Number of TCP connections for OSC.",
+        lambda now: now.osc.connections,
     ),
     StatusValue(
         "osc_subscribers",
         GAUGE,
-        "Who is told of every change.",
+        "Number of subscribers.",
         lambda now: now.handler.clients.subscribers,
     ),
     StatusValue(
         "scheduled",
         GAUGE,
-        "Messages that wait for their time.",
+        "Messages that wait for their time tag.",
         lambda now: now.handler.waiting,
     ),
     StatusValue(
         "late_bundles",
         COUNTER,
-        "Bundles that came after their time.",
+        "Bundles that came after their time tag.",
         lambda now: now.handler.counts.late_bundles,
     ),
     StatusValue(
         "midi_ports",
         TEXT,
-        "The MIDI inputs that are connected.",
+        "Names of connected MIDI inputs.",
         lambda now: "; ".join(now.midi.connected) if now.midi else "",
     ),
     StatusValue(
@@ -292,25 +306,25 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue(
         "midi_messages",
         COUNTER,
-        "MIDI messages that came in.",
+        "MIDI messages received.",
         lambda now: now.midi.received if now.midi else 0,
     ),
     StatusValue(
         "midi_malformed",
         COUNTER,
-        "Damaged MIDI messages.",
+        "Damaged MIDI messages received.",
         lambda now: now.midi.malformed if now.midi else 0,
     ),
     StatusValue(
         "http_requests",
         COUNTER,
-        "HTTP requests that came in, and WebSockets.",
+        "HTTP requests received, with those for WebSockets.",
         lambda now: now.web.requests,
     ),
     StatusValue(
         "http_refused",
         COUNTER,
-        "Requests that are not allowed, or are too many.",
+        "Requests refused because they were not allowed, or too many.",
         lambda now: now.web.refused,
     ),
     StatusValue(
@@ -322,20 +336,22 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue(
         "http_unsent",
         COUNTER,
-        "What WebSockets missed because they read too slowly.",
+        "Messages dropped because a WebSocket read too slowly.",
         lambda now: now.web.unsent,
     ),
-    StatusValue("web_sockets", GAUGE, "WebSockets that are open.", lambda now: now.web.web_sockets),
-    StatusValue("recording", TEXT, "The file being written.", lambda now: now.recording),
+    StatusValue(
+        "web_sockets", GAUGE, "Number of open WebSockets.", lambda now: now.web.web_sockets
+    ),
+    StatusValue("recording", TEXT, "Names of the files being recorded.", lambda now: now.recording),
 )
 STATUS_ADDRESSES = frozenset(PLACE + row.name for row in STATUS)
 
 
 def read_status(now: StatusSources) -> dict[str, float | str]:
-    """Every status value at one moment, by name, in the table's order."""
+    """All status values, by name, in the table's order."""
     return {row.name: row.read(now) for row in STATUS}
 
 
 def as_argument(value: float | str) -> float | str:
-    """A status value as OSC carries it: Pure Data and Max read no ints of 64 bits."""
+    """A status value for OSC, where Pure Data and Max read no ints of 64 bits: those as floats."""
     return float(value) if isinstance(value, int) and abs(value) > INT_MAX else value

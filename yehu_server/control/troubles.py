@@ -1,4 +1,4 @@
-"""Lines about what goes wrong while playing, few of them however often it does."""
+"""Report what goes wrong while playing, in a limited number of lines."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each trouble
 
 
 class Troubles:
-    """Reports counts that grow: the first growth at once, what follows every ten seconds.
+    """Reports counts that grow: at once, and then at most every ten seconds.
 
     Parameters
     ----------
     said : callable
-        Told the lines.
+        Called with each line.
     """
 
     def __init__(self, said: Callable[[str], None]) -> None:
@@ -27,7 +27,13 @@ class Troubles:
         self._allowances = defaultdict(partial(Allowance, LINES_PER_S, LINES_AT_ONCE))
 
     def look(self, counts: Mapping[str, int]) -> None:
-        """Compare counts, by what is counted, with those of the last lines."""
+        """Report counts that have grown since they were last reported.
+
+        Parameters
+        ----------
+        counts : mapping
+            Each by a phrase for what is counted.
+        """
         now = time.monotonic()
         for what, count in counts.items():
             if count > self._told.get(what, 0) and self._allowances[what].takes(now):

@@ -1,6 +1,6 @@
-"""OSCQuery by HTTP and WebSocket, and metrics, from a thread of its own.
+"""Serve OSCQuery by HTTP and WebSocket, and metrics, in a thread.
 
-No request changes anything but by OSC in a WebSocket. No path of a request reaches the disk.
+Only OSC messages in a WebSocket change anything. No path of a request is used as a file's name.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ log = logging.getLogger(__name__)
 
 NAME = "yehu-server"
 MOST_WEB_SOCKETS = 64
-MOST_CONNECTIONS = 256  # with those that have asked nothing yet
+MOST_CONNECTIONS = 256  # with those that have sent no request
 SWEEP_S = 0.25
 BODY_BYTES = 1 << 16
-IDLE_S = 15.0  # for which a connection is kept
-ENDING_S = 0.2  # for answers on their way
+IDLE_S = 15.0  # before an idle connection is closed
+ENDING_S = 0.2  # to finish answers at the end
 HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-store"}
 PARAMETERS = "parameters.html"
 PAGE = """<!DOCTYPE html>
@@ -54,7 +54,7 @@ PAGE = """<!DOCTYPE html>
 
 @dataclass(frozen=True)
 class WebOptions:
-    """Where to listen, and to whom."""
+    """The address to listen at, and the networks that are answered."""
 
     address: Address
     allowed: Allowed = field(default_factory=Allowed)
@@ -62,18 +62,21 @@ class WebOptions:
 
 @dataclass(frozen=True)
 class Sources:
-    """What is told of; any thread may call."""
+    """Where answers come from; all may be called by any thread."""
 
     values: Callable[[], Mapping[str, float]]  # parameters, by address
     status: Callable[[], Mapping[str, float | str]]  # by name
-    folder: Path  # of the page of parameters
+    folder: Path  # that has the page of parameters
     more_calls: Callable[[], Iterable[Call]] = tuple  # beside calls.CALLS
 
 
 class WebServer:
-    """One TCP port for HTTP and WebSockets, and the thread that serves it.
+    """A TCP port for HTTP and WebSockets, and the thread that serves it.
 
-    Errors: DeviceError where the address is taken or not this machine's.
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
     """
 
     def __init__(
@@ -94,22 +97,22 @@ class WebServer:
         )
 
     def start(self) -> None:
-        """Begin to serve."""
+        """Start to serve."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Hang up and stop serving."""
+        """Close all connections and stop serving."""
         self._thread.stop()
         self._listening.close()
 
     def tree_changed(self, path: str) -> None:
-        """Tell all WebSockets that what is at a path or below has changed; any thread may call."""
+        """Tell all WebSockets that the tree has changed at a path or below; any thread may call."""
         self._thread.call(self._sockets.tell, "PATH_CHANGED", path)
 
     async def _serve(self) -> None:
         app = web.Application(logger=log)
         app.router.add_route("*", "/{path:.*}", self._answer)
-        quiet = logging.getLogger(f"{__name__}.http")  # clients' nonsense is no news
+        quiet = logging.getLogger(f"{__name__}.http")  # malformed requests are not logged
         quiet.disabled = True
         runner = web.AppRunner(
             app,
@@ -123,7 +126,7 @@ class WebServer:
         server = runner.server
         assert server is not None  # noqa: S101 - setup makes it
         try:
-            # A copy, since it is closed at the end, and we may have to begin again.
+            # A copy, since it is closed at the end, and serving may have to start again.
             await web.SockSite(runner, self._listening.dup()).start()
             while True:
                 await asyncio.sleep(SWEEP_S)
@@ -133,7 +136,7 @@ class WebServer:
             await runner.cleanup()
 
     def _close_excess(self, connections: Sequence[web.RequestHandler]) -> None:
-        """Close who has been connected longest, and is no WebSocket, where they are too many."""
+        """Close the oldest connections where there are too many, but no WebSockets."""
         others = [one for one in connections if one not in self._talking]
         for excess in others[: max(0, len(connections) - MOST_CONNECTIONS)]:
             excess.force_close()
@@ -148,9 +151,9 @@ class WebServer:
                 error.force_close()
             error.headers.update(HEADERS)
             raise
-        except ConnectionError:  # hung up
+        except ConnectionError:  # the client hung up
             raise
-        except Exception:  # a defect of ours must not end more than this request
+        except Exception:  # a defect of the server must fail this request only
             self.traffic.failures += 1
             log.exception("OSCQuery: a request could not be answered")
             raise web.HTTPInternalServerError from None
@@ -191,7 +194,7 @@ class WebServer:
             raise web.HTTPRequestEntityTooLarge(BODY_BYTES, request.content_length or 0)
 
     def _query(self, request: web.Request) -> web.Response:
-        """Describe a node, all of it or the attributes that are asked for."""
+        """Answer with a node, or with those of its attributes that are asked for."""
         asked = list(request.query)
         if asked == ["HOST_INFO"]:
             return _json(self._host_info(request))
@@ -209,7 +212,7 @@ class WebServer:
         return _json(found) if found else web.Response(status=204, headers=HEADERS)
 
     def _host_info(self, request: web.Request) -> dict[str, Any]:
-        # As the client reached us: it may know this machine by one of several addresses.
+        # The address by which the client reached this machine, which may have several.
         reached = plain(request.get_extra_info("sockname", (self.host, self.port))[0])
         is_anywhere = ipaddress.ip_address(plain(self._osc.host)).is_unspecified
         osc_host = reached if is_anywhere else self._osc.host
@@ -234,7 +237,7 @@ def _listen(host: str, port: int) -> socket.socket:
 
 
 def _is_text(received: str) -> bool:
-    """Whether it was UTF-8; what was not holds stray bytes that no answer could repeat."""
+    """Whether a received text was UTF-8; otherwise it has surrogates, which cannot be sent back."""
     try:
         received.encode()
     except UnicodeEncodeError:

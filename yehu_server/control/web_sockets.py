@@ -1,4 +1,4 @@
-"""WebSockets: OSC in binary frames, and the commands of OSCQuery in text frames."""
+"""Serve WebSockets: OSC in binary frames, OSCQuery commands in text frames."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from yehu_server.control.sockets import OscPorts
 from yehu_server.lines import shortened
 from yehu_server.params.table import PREFIX
 
-FRAME_BYTES = 1 << 16  # the longest we read
-HEARTBEAT_S = 20.0  # a socket whose other end is silent for half as long after it is closed
+FRAME_BYTES = 1 << 16  # longest frame that is read
+HEARTBEAT_S = 20.0  # a socket that does not answer within half of this is closed
 CLOSING_S = 0.3
 BEHIND_S = 0.005
 
 
 class CommandError(ValueError):
-    """A text frame that is no command."""
+    """A text frame that is not a command."""
 
 
 class WebPeer:
-    """One WebSocket, seen from the threads that send to it.
+    """A WebSocket, for the threads that send to it.
 
-    What is sent waits here for the web's thread to write it. One who reads nothing misses what
-    does not fit, and holds up nobody.
+    Packets wait here until the web's thread writes them. While the other end does not read, further
+    packets are dropped, and no other client is delayed.
     """
 
     def __init__(self, host: str, loop: asyncio.AbstractEventLoop, traffic: WebTraffic) -> None:
@@ -61,16 +61,16 @@ class WebPeer:
             self._unsent_bytes += len(packet)
             wake, self._is_awake = not self._is_awake, True
         if wake:
-            with contextlib.suppress(RuntimeError):  # the loop is over
+            with contextlib.suppress(RuntimeError):  # the loop has ended
                 self._loop.call_soon_threadsafe(self._woken.set)
 
     def at(self, port: int) -> WebPeer:
-        """See `Peer`: over a connection there is only one way back."""
+        """See `Peer`: a connection has no other port."""
         del port
         return self
 
     async def write(self, socket: web.WebSocketResponse) -> None:
-        """Write what is sent, for as long as the other end takes it."""
+        """Write packets as they are sent, until the connection ends."""
         with contextlib.suppress(ConnectionError):
             while await self._woken.wait():
                 self._woken.clear()
@@ -91,16 +91,16 @@ class WebPeer:
 
 
 class WebSockets:
-    """All WebSockets; of the web's thread."""
+    """All open WebSockets; used by the web's thread."""
 
     def __init__(self, osc: OscPorts, clients: Clients, traffic: WebTraffic) -> None:
         self._osc = osc
-        self._clients = clients  # of the OSC thread
+        self._clients = clients  # used by the OSC thread only
         self._traffic = traffic
         self._open: dict[web.WebSocketResponse, WebPeer] = {}
 
     async def serve(self, request: web.Request) -> web.WebSocketResponse:
-        """Talk with one client until one of us hangs up."""
+        """Serve one client until either end closes the connection."""
         socket = web.WebSocketResponse(
             timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=FRAME_BYTES, compress=False
         )
@@ -111,7 +111,7 @@ class WebSockets:
         writing = asyncio.ensure_future(peer.write(socket))
         try:
             async for frame in socket:
-                # While we are behind with it the sender waits, and nothing is lost.
+                # The sender waits while its packets wait; nothing is lost.
                 while self._osc.is_behind(peer):  # noqa: ASYNC110 - the OSC thread has no event
                     await asyncio.sleep(BEHIND_S)
                 if frame.type is WSMsgType.BINARY:
@@ -128,12 +128,12 @@ class WebSockets:
         return socket
 
     def tell(self, command: str, data: Any) -> None:
-        """Send a command to all."""
+        """Send a command to all clients."""
         for peer in self._open.values():
             peer.send(_command(command, data))
 
     async def close(self) -> None:
-        """Hang up."""
+        """Close all WebSockets."""
         closing = [socket.close(code=1001) for socket in list(self._open)]
         await asyncio.gather(*closing, return_exceptions=True)
 
@@ -152,7 +152,7 @@ def _command(command: str, data: Any) -> str:
 
 
 def _read(text: str) -> tuple[str, str]:
-    """A command and its address, without the prefix. Errors: CommandError."""
+    """Read a command and its address (without the prefix); raises CommandError."""
     try:
         said = json.loads(text)
     except (ValueError, RecursionError):

@@ -1,4 +1,4 @@
-"""The live composition: instrument, player, audio output, OSC, MIDI and OSCQuery.
+"""The live server: connects instrument, player, audio output, OSC, MIDI and OSCQuery.
 
 web thread ─> OSC thread ──┐
                            ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
@@ -49,27 +49,29 @@ from yehu_server.score.live_capture import LiveCapture
 log = logging.getLogger(__name__)
 
 KEEP_EVERY_S = 0.05
-FADE_MS = 50.0  # after the notes' release
-# Short turns for Python's threads, so that handlers are not late when one is busy.
+FADE_MS = 50.0  # waited for after the notes' release
+# Python's threads take short turns, so that a busy one does not delay the others.
 SWITCH_INTERVAL_S = 0.0001
 
 
 @dataclass
 class ServeOptions:
-    """How to serve; see ``yehu-server serve --help``."""
+    """Options of a server; see ``yehu-server serve --help``."""
 
     output: OutputOptions = field(default_factory=OutputOptions)
     midi: MidiOptions | None = field(default_factory=MidiOptions)  # None: no MIDI
     osc: Address = OSC_ADDRESS
     allowed: Allowed = field(default_factory=Allowed)
     http: WebOptions | None = None  # None: no OSCQuery
-    announce: bool | None = None  # None: where it listens beyond this machine
+    announce: bool | None = None  # None: what other machines can reach
     style: Style = field(default_factory=Style)
-    reread: Callable[[], Mapping] | None = None  # the mapping's files; None: they are not watched
+    reread: Callable[[], Mapping] | None = (
+        None  # reads the mapping's files; None: they are not watched
+    )
     jitter_ms: float | None = None  # None: see playing.delay
     record: Path | None = None
     capture: Path | None = None
-    overwrite: bool = False  # whether these two may take the place of older files
+    overwrite: bool = False  # whether these two may replace older files
     recordings: Path = field(default_factory=lambda: user_music_path() / "yehu-server")
 
 
@@ -79,12 +81,16 @@ class Server:
     Parameters
     ----------
     said : callable
-        Told in a line what a player should know: devices that come and go, troubles.
+        Called with a line for the player: about devices that appear or disappear, and troubles.
     progress : callable, optional
-        Told notes done and in all, where the instrument has to be calibrated first.
+        Called with the number of notes done and of all, while the instrument is calibrated.
 
-    Errors: DeviceError where a named device or the OSC address cannot be had; OutputError
-    where `record` or `capture` cannot be written.
+    Raises
+    ------
+    DeviceError
+        Where a named device is not there, or the address of OSC or OSCQuery cannot be used.
+    OutputError
+        Where `record` or `capture` cannot be written.
     """
 
     def __init__(
@@ -103,7 +109,7 @@ class Server:
         with contextlib.ExitStack() as undo:
             self.output = Output(options.output, said)
             undo.callback(self.output.end)
-            native.warm_up()  # while the device is looked for
+            native.warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
             calibration = calibration_for(rate, a4=options.style.a4, progress=progress)
             quantities = calibration.tuned(Quantities())
@@ -115,7 +121,7 @@ class Server:
                 calibration=calibration,
                 delay_ms=1e3 * self._delay.frames / rate,
             )
-            self.player.presets.all()  # read now, so that to tell of them takes no time later
+            self.player.presets.all()  # read now, so that listing them is quick later
             self.handler = OscHandler(self.player, self)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
             undo.callback(self.osc.stop)
@@ -132,7 +138,7 @@ class Server:
             undo.pop_all()
         self.takes = Takes(self.instrument, options.recordings, said)
         self._capture: LiveCapture | None = None
-        self.is_interruptible = False  # whether an exception may cut `stop` short just now
+        self.is_interruptible = False  # whether `stop` may be interrupted by an exception now
         self._hurry = threading.Event()
         self.midi = MidiPorts(self.player, options.midi, said) if options.midi else None
         self._follower: MappingFollower | None = None
@@ -149,13 +155,18 @@ class Server:
         self._keeper = threading.Thread(target=keep_on, args=keep, name="keeper", daemon=True)
 
     def start(self) -> None:
-        """Begin to play.
+        """Start to play.
 
-        Errors: DeviceError where a named device cannot be opened; OutputError.
+        Raises
+        ------
+        DeviceError
+            Where a named device cannot be opened.
+        OutputError
+            Where `record` or `capture` cannot be written.
         """
         sys.setswitchinterval(SWITCH_INTERVAL_S)
         gc.collect()
-        gc.freeze()  # what is loaded by now stays: later collections need not look at it
+        gc.freeze()  # later collections skip all objects of now, which stay
         with contextlib.ExitStack() as undo:
             undo.callback(self._close_ways_in)
             undo.callback(self.output.end)
@@ -177,9 +188,9 @@ class Server:
         self._keeper.start()
 
     def stop(self) -> None:
-        """End all notes, let them fade, close everything; the takes whatever else fails.
+        """End all notes, wait until they have faded, and close everything.
 
-        Called again, it does nothing.
+        Recording and capture are closed whatever else fails. Called again, it does nothing.
         """
         if self._ending.is_set():
             return
@@ -195,12 +206,12 @@ class Server:
             self.takes.close()
 
     def hurry(self) -> None:
-        """Let `stop` not wait for what fades; any thread may call, and a signal's handler."""
+        """Let `stop` not wait for notes to fade; any thread or signal handler may call."""
         self._hurry.set()
 
     @property
     def kept_all(self) -> bool:
-        """Whether nothing is missing in what the command was to record and to capture."""
+        """Whether nothing is missing in the command's recording and capture."""
         return self.takes.is_whole and (self._capture is None or self._capture.is_whole)
 
     def _close_ways_in(self) -> None:
@@ -216,17 +227,17 @@ class Server:
         self.output.end()
 
     def _wait_for(self, frame: int) -> None:
-        """Until a frame is played, the clock stands still, or somebody is in a hurry."""
+        """Wait until a frame is played, but not if the clock stands still or after `hurry`."""
         patience = time.monotonic() + 1.0 + (frame - self.instrument.frame) / self.instrument.rate
         while self.instrument.frame < frame and time.monotonic() < patience:
             if self._hurry.wait(0.005):
                 return
 
-    # -- what is kept beside playing -----------------------------------------------------------
+    # -- done beside playing -------------------------------------------------------------------
 
     def _keep_up(self) -> None:
         self._delay.look()
-        self.player.delay = self._delay.frames  # as long as the device's period asks for
+        self.player.delay = self._delay.frames  # as the device's period requires
         if self._capture is not None:
             self._capture.keep_up()
         self._troubles.look(
@@ -239,7 +250,7 @@ class Server:
         if self._follower is not None:
             self._follower.look()
 
-    # -- what OSC may ask for ------------------------------------------------------------------
+    # -- services for OSC calls ----------------------------------------------------------------
 
     def soon(self, action: Callable[[], None]) -> None:
         """See `request.Desk`."""
@@ -282,6 +293,6 @@ class Server:
         )
 
     def _more_calls(self) -> list[Call]:
-        """What can be called only here: presets by their names, addresses of the user's own."""
+        """The calls with this server's presets, and the user's own addresses."""
         presets = tuple(self.player.presets.names())
         return [*preset_calls(presets), *own_calls(self.player.mapping)]

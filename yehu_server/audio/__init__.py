@@ -1,1 +1,1 @@
-"""Where sound goes: files (and, live, devices)."""
+"""Sound files and audio devices."""

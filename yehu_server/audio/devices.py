@@ -1,4 +1,4 @@
-"""Audio outputs: what there is, and which one is meant."""
+"""List audio outputs, and choose one by name."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from typing import Any
 
 from yehu_server.errors import DeviceError
 
-CLIENT_NAME = b"yehu-server"  # among JACK's clients
+CLIENT_NAME = b"yehu-server"  # in JACK
 NO_PORTAUDIO = "PortAudio is not installed (Debian: sudo apt-get install libportaudio2)"
 
 
 @dataclass(frozen=True)
 class AudioDevice:
-    """An output that PortAudio knows."""
+    """An audio output, as PortAudio lists it."""
 
-    index: int  # changes from start to start: never for people
+    index: int  # PortAudio's; it may change at each start
     name: str
     host_api: str
     channels: int
-    rate: float  # Hz; what it runs at by default
+    rate: float  # Hz; the default one
     latency_ms: float
     is_default: bool
 
     @property
     def full_name(self) -> str:
-        """Name and host API: what `choose` finds it by, whatever comes and goes."""
+        """Name and host API, by which `choose` finds it whatever other devices there are."""
         return f"{self.name}, {self.host_api}"
 
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Keep off the terminal what sound systems print when they are asked for devices."""
+    """Suppress what sound systems print to the terminal when devices are listed."""
     sys.stderr.flush()
     kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 2)
@@ -50,7 +50,13 @@ def quiet() -> Iterator[None]:
 
 
 def load_portaudio() -> Any:
-    """Import sounddevice, which starts PortAudio. Errors: DeviceError without PortAudio."""
+    """Import sounddevice, which starts PortAudio.
+
+    Raises
+    ------
+    DeviceError
+        Where there is no PortAudio.
+    """
     name = ctypes.util.find_library("portaudio")
     if name is not None:
         with contextlib.suppress(OSError, AttributeError):  # without JACK
@@ -63,7 +69,7 @@ def load_portaudio() -> Any:
 
 
 def outputs(sounddevice: Any) -> list[AudioDevice]:
-    """Every output there is, the default one marked."""
+    """List all outputs, the default one marked."""
     apis = sounddevice.query_hostapis()
     default = default_index(sounddevice)
     return [
@@ -82,7 +88,7 @@ def outputs(sounddevice: Any) -> list[AudioDevice]:
 
 
 def default_index(sounddevice: Any) -> int:
-    """PortAudio's default output, or the first host API's that has one; -1 for none."""
+    """Index of PortAudio's default output, or of the first host API that has one; -1 for none."""
     index = int(sounddevice.default.device[1])
     apis = sounddevice.query_hostapis()
     candidates = [index, *(api["default_output_device"] for api in apis)]
@@ -90,14 +96,17 @@ def default_index(sounddevice: Any) -> int:
 
 
 def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
-    """The output that is meant: by its full name, its name, or words that both hold.
+    """Choose an output by its full name, its name, or words in these.
 
     Parameters
     ----------
     wanted : str, optional
-        Such as ``"hifi"`` or ``"system, JACK"``; the default output without it.
+        Such as ``"hifi"`` or ``"system, JACK"``; by default the default output.
 
-    Errors: DeviceError where none or several fit.
+    Raises
+    ------
+    DeviceError
+        Where none or several match.
     """
     if wanted is None:
         fitting = [device for device in devices if device.is_default]

@@ -1,4 +1,4 @@
-"""Sound files: results whole or not at all, and takes that are right at every moment."""
+"""Write sound files: renderings that appear when complete, recordings valid at every moment."""
 
 from __future__ import annotations
 
@@ -19,26 +19,31 @@ from yehu_server.files import anything, replacing, why
 
 FORMATS = ("wav", "flac")
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}
-RENDERED = "yehu-server render"  # what a file says of who made it, which may so be made again
+RENDERED = (
+    "yehu-server render"  # software named in a rendered file, which may therefore be replaced
+)
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class SoundWriter:
-    """A mono sound file being written, whose header is right after each write.
+    """Writes a mono sound file whose header is valid after each write.
 
     Parameters
     ----------
     file : io.FileIO
         A new one, unbuffered; it stays open.
     target : Path
-        What it is called in errors.
+        Its name in errors.
     format_name : "wav" or "flac"
     subtype : "16", "24" or "float"
     software : str
-        What the file says of who made it.
+        Named in the file as its maker.
 
-    Errors: OutputError. What was written before stays.
+    Raises
+    ------
+    OutputError
+        Here and from all methods; what was written before stays valid.
     """
 
     def __init__(
@@ -63,11 +68,11 @@ class SoundWriter:
 
     @property
     def kept_frames(self) -> int:
-        """Frames that are in the file for sure: an encoder may hold some back."""
+        """Number of frames in the file; an encoder may hold back more."""
         return self._stream.frames
 
     def write(self, samples: Samples) -> None:
-        """Append samples [shape=(frames,), full scale]."""
+        """Append samples [shape=(frames,), full scale 1]."""
         self.frames += len(samples)
         if self._limit is not None and self.frames > self._limit:
             raise OutputError(f"{self._target}: too long for a WAV file (4 GiB); use FLAC")
@@ -77,7 +82,7 @@ class SoundWriter:
             self._stream.write(samples)
 
     def close(self) -> None:
-        """Write what is still held back."""
+        """Write what the encoder holds back."""
         with self._telling():
             self._stream.close()
 
@@ -90,12 +95,18 @@ class SoundWriter:
 
     @property
     def rms(self) -> float:
-        """Root mean square of what was written, of full scale."""
+        """Root mean square of all samples, of full scale."""
         return float((self._power / self.frames) ** 0.5) if self.frames else 0.0
 
 
 def format_of(target: Path) -> str:
-    """The format that a file's ending names; WAV without one. Errors: OutputError."""
+    """The format of a file by its ending; WAV without one.
+
+    Raises
+    ------
+    OutputError
+        Where the ending is another.
+    """
     ending = target.suffix.lower().lstrip(".")
     if ending in ("", "wave"):
         return "wav"
@@ -105,7 +116,13 @@ def format_of(target: Path) -> str:
 
 
 def check_format(format_name: str, subtype: str) -> None:
-    """Refuse what a format cannot hold. Errors: OutputError."""
+    """Refuse samples of a subtype that a format cannot hold.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot.
+    """
     if not soundfile.check_format(format_name.upper(), SUBTYPES[subtype]):
         raise OutputError(f"a {format_name} file cannot hold {subtype} samples; use 16 or 24")
 
@@ -125,9 +142,12 @@ def sound_file(
     format_name : "wav" or "flac"
     subtype : "16", "24" or "float"
     may_replace : callable
-        Told an older target; whether it may be replaced.
+        Called with the target where a file is there; returns whether to replace it.
 
-    Errors: OutputError.
+    Raises
+    ------
+    OutputError
+        Where it cannot be written, or not replaced.
     """
     check_format(format_name, subtype)
     with replacing(target, may_replace) as partial, io.FileIO(partial, "w") as file:
@@ -144,7 +164,7 @@ def sound_file(
 
 
 def is_rendered(target: Path) -> bool:
-    """Whether a file is one that `sound_file` made, or holds nothing."""
+    """Whether a file was made by `sound_file`, or is empty."""
     try:
         if target.stat().st_size == 0:
             return True

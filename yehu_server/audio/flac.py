@@ -1,7 +1,7 @@
-"""FLAC, written so that the header is right after every write, as far as blocks are whole.
+"""Write FLAC files whose header is valid after every write, for all whole blocks.
 
-libFLAC encodes; its stream header tells how many samples there are only once it is closed. We
-tell it all along: a block is 4096 samples, so a kill costs less than a tenth of a second.
+libFLAC encodes, but writes the number of samples into the header only at the end. Here it is
+written all along: a block has 4096 samples, so that a crash loses less than a tenth of a second.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ import soundfile
 from yehu_server.files import write_all
 
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24"}
-SYNC = b"\xff\xf8"  # what a block of a fixed size begins with
-HEADER_BYTES = 42  # of the file, as far as the stream's own header goes
-BLOCK_FRAMES = slice(10, 12)  # the most frames of a block
-TOTAL = slice(18, 26)  # how many frames there are, in the lowest 36 bits
+SYNC = b"\xff\xf8"  # first bytes of a block of fixed size
+HEADER_BYTES = 42  # of the file up to the end of STREAMINFO
+BLOCK_FRAMES = slice(10, 12)  # largest number of frames of a block
+TOTAL = slice(18, 26)  # number of frames, in the lowest 36 bits
 TOTAL_BITS = 36
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class FlacStream:
-    """A mono FLAC file being written; see `wav.WavStream`."""
+    """Writes a mono FLAC file; see `wav.WavStream`."""
 
     def __init__(self, file: io.FileIO, rate: int, subtype: str, software: str = "") -> None:
-        self.frames = 0  # in the file for sure
+        self.frames = 0  # in the file
         self._given = 0
         self._spy = _Spy(file)
         self._encoder = soundfile.SoundFile(
@@ -44,8 +44,8 @@ class FlacStream:
             self._encoder.software = software
 
     def write(self, samples: Samples) -> None:
-        """Append samples [shape=(frames,), full scale]."""
-        # soundfile asserts that all frames were written: they are not where the disk is full.
+        """Append samples [shape=(frames,), full scale 1]."""
+        # soundfile asserts that all frames were written, which fails on a full disk.
         with contextlib.suppress(AssertionError, soundfile.LibsndfileError):
             self._encoder.write(samples)
         self._given += len(samples)
@@ -64,27 +64,27 @@ class FlacStream:
                 self._spy.cut()
                 self._spy.tell_total(self.frames)
             raise self._spy.error
-        if not self._encoder.closed:  # or it has told it itself
+        if not self._encoder.closed:  # at its end it has written the number itself
             self._spy.tell_total(self.frames)
 
 
 class _Spy(io.RawIOBase):
-    """The file as libsndfile sees it: counts the blocks, and keeps the first error."""
+    """The file for libsndfile, which counts blocks and keeps the first error."""
 
     def __init__(self, file: io.FileIO) -> None:
         self.error: OSError | None = None
         self._file = file
         self._header = bytearray()
         self._blocks = 0
-        self._whole = 0  # bytes, up to the last whole block
+        self._whole = 0  # bytes up to the end of the last whole block
 
     @property
     def frames(self) -> int:
-        """As many as are in the blocks of the file, were the last as long as the others."""
+        """Number of frames in the file's blocks, as if the last one were as long as the others."""
         return self._blocks * int.from_bytes(self._header[BLOCK_FRAMES], "big")
 
     def write(self, data: Any) -> int:
-        """Write all, or nothing more after an error; never raises, as C calls us."""
+        """Write all, or nothing after an error; never raises, since C calls it."""
         data = bytes(data)
         if self.error is not None:
             return 0
@@ -102,21 +102,21 @@ class _Spy(io.RawIOBase):
         return len(data)
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Move, as of a file."""
+        """See `io.IOBase`."""
         return self._file.seek(offset, whence)
 
     def tell(self) -> int:
-        """Tell the place, as of a file."""
+        """See `io.IOBase`."""
         return self._file.tell()
 
     def cut(self) -> None:
-        """Take back what is no whole block."""
+        """Remove an incomplete block from the end."""
         self._file.truncate(self._whole)
 
     def tell_total(self, frames: int) -> None:
-        """Write how many frames there are into the stream's header, and come back."""
+        """Write the number of frames into the header."""
         if len(self._header) < HEADER_BYTES:
-            return  # nothing is written yet
+            return  # there is no header yet
         word = int.from_bytes(self._header[TOTAL], "big") >> TOTAL_BITS << TOTAL_BITS
         self._header[TOTAL] = (word | frames).to_bytes(8, "big")
         self._file.seek(TOTAL.start)

@@ -1,8 +1,8 @@
-"""Where live sound goes: an audio device, or the silent clock while there is none.
+"""Play live: by an audio device, or by a silent clock while there is none.
 
-Exactly one of them plays the instrument at any time. When the device is lost, the clock goes
-on from the same frame within some hundredths of a second, and a fresh process looks for the
-device until it is back.
+Exactly one of them computes samples at any time. When the device is lost, the clock continues at
+the same frame within some hundredths of a second, and a new process looks for the device until it
+is back.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ NULL = "null"
 NULL_RATE = 48000.0
 FIRST_LOOK_S, COMPILING_S = 10.0, 300.0
 HUNG_AFTER_S = 2.0
-LISTEN_S = 0.05  # for events of the device's process, at a time
+LISTEN_S = 0.05  # to wait at a time for events of the device's process
 AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
-HOPELESS_S = 0.5  # the silent clock gives up catching up
+HOPELESS_S = 0.5  # a delay that the silent clock does not make up for
 
 
 class SharedMemory:
-    """Memory for one instrument, that a child process can map by its file descriptor."""
+    """Memory for an instrument, which a child process can map by its file descriptor."""
 
     def __init__(self) -> None:
         if hasattr(os, "memfd_create"):
@@ -50,14 +50,14 @@ class SharedMemory:
         self.buffer = mmap.mmap(self.descriptor, RIG_BYTES)
 
     def close(self) -> None:
-        """Let no further process in; the memory goes with the last who uses it."""
+        """Close the descriptor; the memory is freed with the last process that has mapped it."""
         if self.descriptor >= 0:
             os.close(self.descriptor)
         self.descriptor = -1
 
 
 class SilentClock:
-    """Plays the instrument in real time, to nobody."""
+    """Computes the instrument's samples in real time, without a device."""
 
     def __init__(self, instrument: Instrument, blocksize: int) -> None:
         self._instrument = instrument
@@ -67,7 +67,7 @@ class SilentClock:
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop; when this returns, nothing is played any more."""
+        """Stop; when this returns, nothing is computed any more."""
         self._ending.set()
         self._thread.join()
 
@@ -87,7 +87,7 @@ class SilentClock:
 
 @dataclass
 class OutputOptions:
-    """How to open the device; see ``yehu-server serve --help``."""
+    """The device and how to open it; see ``yehu-server serve --help``."""
 
     device: str | None = None  # None: the system's default
     rate: float | None = None  # None: the device's own
@@ -98,7 +98,7 @@ class OutputOptions:
 
 @dataclass
 class OutputState:
-    """What plays the instrument now."""
+    """The device that plays now, or why none does."""
 
     device: str | None = None  # None: the silent clock
     latency_ms: float = 0.0
@@ -107,14 +107,15 @@ class OutputState:
 
 
 class Output:
-    """The instrument's way out, which looks for its device from the first moment.
+    """Plays an instrument on a device, which it looks for from its construction on.
 
-    Use: `find` the device, make the instrument at its rate in ``memory``, `begin`, `end`.
+    Call `find`, make the instrument with that rate in ``memory``, then call `begin`, and at last
+    `end`.
 
     Parameters
     ----------
     changed : callable
-        Told in a line when the device is there, gone, or back; from another thread.
+        Called with a line when the device plays, disappears, or is back; from another thread.
     """
 
     def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:
@@ -130,17 +131,20 @@ class Output:
         self._thread = threading.Thread(target=self._supervise, name="audio", daemon=True)
         self._ending = threading.Event()
         self._awake = AwakeTime()
-        self._heart = (0, 0.0)  # callbacks, and the awake time of the last
-        self._refused = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)  # by the device
-        self._short = Backoff()  # of what a process needs
+        self._heart = (0, 0.0)  # number of callbacks, and the awake time of the last one
+        self._refused = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)  # the device refuses
+        self._short = Backoff()  # files or memory for a process are short
         self._look_at = 0.0  # monotonic s
         if options.device != NULL:
             self._look()
 
     def find(self) -> float:
-        """Look for the device; return the rate to run at (Hz).
+        """Wait for the device to be found; return the sample rate to play at (Hz).
 
-        Errors: DeviceError where a named device is not there.
+        Raises
+        ------
+        DeviceError
+            Where a named device is not there.
         """
         if self._options.device == NULL:
             self.state.problem = "asked for silence"
@@ -158,9 +162,12 @@ class Output:
         return self._options.rate or NULL_RATE
 
     def begin(self, instrument: Instrument) -> None:
-        """Play an instrument that lives in ``memory``.
+        """Start to play an instrument that lies in ``memory``.
 
-        Errors: DeviceError where a named device cannot be opened.
+        Raises
+        ------
+        DeviceError
+            Where a named device cannot be opened.
         """
         self._instrument = instrument
         self._start_clock()
@@ -187,7 +194,7 @@ class Output:
     # -- the device's process ----------------------------------------------------------------
 
     def _look(self) -> None:
-        """Let a fresh process look for the device."""
+        """Start a new process that looks for the device."""
         self._events = queue.Queue()
         try:
             self._child = Child(
@@ -215,7 +222,7 @@ class Output:
         self._channels = instrument_channels
 
     def _take_up(self) -> str:
-        """Hand the instrument over from the clock to the device; return why it cannot be."""
+        """Hand the instrument over from the clock to the device; return why that failed."""
         instrument = self._instrument
         ready = self._await({"ready", "failed", "gone"}, "the audio device")
         if ready["event"] != "ready" or self._child is None or instrument is None:
@@ -242,7 +249,7 @@ class Output:
         return str(event.get("reason", "the audio process ended"))
 
     def _give_up(self, reason: str, backoff: Backoff) -> None:
-        """Look again only after a while, each time a longer one."""
+        """Stop looking for the device for a while, longer each time."""
         self._drop_child()
         self._look_at = time.monotonic() + backoff.failed()
         if reason != self.state.problem:
@@ -250,7 +257,7 @@ class Output:
             self._changed(f"no sound: {reason}")
 
     def _await(self, kinds: set[str], what: str) -> Message:
-        """The next event of some kinds; none within the time is as bad as the end."""
+        """The next event of some kinds; without one in time, as if the process had ended."""
         deadline = self._awake() + FIRST_LOOK_S
         while not self._ending.is_set():
             try:
@@ -268,7 +275,7 @@ class Output:
 
     def _drop_child(self, *, gently: bool = False) -> None:
         child, self._child = self._child, None
-        self._events = queue.Queue()  # its last words are nobody's business
+        self._events = queue.Queue()  # its last events are ignored
         if child is not None:
             child.stop() if gently else child.kill()
 
@@ -276,8 +283,8 @@ class Output:
         keep_on(self._follow, self._ending, 0.0, "audio", self._changed)
 
     def _follow(self) -> None:
-        """Follow the device as it goes and comes: one turn."""
-        if self.state.device is None and self._clock is None:  # the turn before has failed
+        """Handle an event of the device's process, or its silence."""
+        if self.state.device is None and self._clock is None:  # the last call has failed
             self._rest_on_clock()
         try:
             event = self._events.get(timeout=LISTEN_S)
@@ -295,14 +302,14 @@ class Output:
             self._look()
 
     def _has_stopped(self) -> bool:
-        """Whether the device calls no more, as far as we were awake to see it."""
+        """Whether the callbacks have stopped, in time in which this process was awake."""
         beats, now = int(self._meters()["callbacks"]), self._awake()
         if beats != self._heart[0] or self.state.device is None:
             self._heart = beats, now
         return now - self._heart[1] > HUNG_AFTER_S
 
     def _lose(self, reason: str) -> None:
-        """Go on to the silent clock; the process must be gone before that plays."""
+        """Continue on the silent clock, once the device's process is gone."""
         device = self.state.device
         if device is None:
             self._give_up(reason, self._refused)

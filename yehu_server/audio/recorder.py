@@ -1,4 +1,4 @@
-"""Records what is played, live, off the instrument's tape."""
+"""Record live sound, from the instrument's tape."""
 
 from __future__ import annotations
 
@@ -16,23 +16,26 @@ from yehu_server.files import create, discard
 
 EVERY_S = 0.05
 SUBTYPES = {"wav": "float", "flac": "24"}
-ROOM_S = 1.0  # what must fit on the disk for a recording to begin
+ROOM_S = 1.0  # a recording begins only if so much fits on the disk
 
 
 class Recorder:
-    """One recording, in a thread of its own, into a file that is right at every moment.
+    """A recording in a thread of its own, to a file that is valid at every moment.
 
     Parameters
     ----------
     start : int
-        The frame to begin at.
+        The first frame to record.
     said : callable
-        Told in a line when the recording ends by itself, such as on a full disk, or when some
-        of it is missing.
+        Called with a line when the recording ends by itself, such as on a full disk, or when
+        frames are missing.
     overwrite : bool
-        Whether to take the place of an older file.
+        Whether to replace an older file.
 
-    Errors: OutputError where the file could not be written, or is there.
+    Raises
+    ------
+    OutputError
+        Where the file cannot be written, or is there.
     """
 
     def __init__(
@@ -66,16 +69,16 @@ class Recorder:
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing is missing so far."""
+        """Whether no frame is missing so far."""
         return not self.failure and self.missed_frames == 0
 
     @property
     def seconds(self) -> float:
-        """How long the recording is."""
+        """Length of the recording (s)."""
         return self._writer.kept_frames / self._instrument.rate
 
     def stop(self) -> None:
-        """End the recording with what is played so far."""
+        """End the recording at the last frame played."""
         self._ending.set()
         self._thread.join()
 
@@ -85,7 +88,7 @@ class Recorder:
             while not ending:
                 ending = self._ending.wait(EVERY_S)
                 begin, samples = self._instrument.taped(self._position)
-                if begin > self._position:  # we were held up for longer than the tape
+                if begin > self._position:  # the thread was late by more than the tape
                     self._miss(begin)
                 self._writer.write(samples)
                 self._position = begin + len(samples)
@@ -97,7 +100,7 @@ class Recorder:
             self._said(f"recording ended: {self.failure}{kept}")
 
     def _miss(self, begin: int) -> None:
-        """Silence for what is lost, so that the rest keeps its place."""
+        """Write silence for missing frames, so that later ones keep their time."""
         rate = self._instrument.rate
         lost, at = begin - self._position, self._writer.frames
         self.missed_frames += lost

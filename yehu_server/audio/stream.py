@@ -1,8 +1,8 @@
 """The process that holds the audio stream: ``python -m yehu_server.audio.stream``.
 
-It looks for the device until it is there, opens a stream whose callback is compiled C, and
-tells when it is lost. The instrument lies in memory shared with the parent, so another such
-process, or the silent clock, goes on where this one stopped.
+It looks for the device until it is found, opens a stream with the compiled callback, and reports
+when the device is lost. The instrument lies in memory shared with the parent, so that another such
+process, or the silent clock, continues where this one stopped.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MOST_CHANNELS = 64
 
 
 class Stream:
-    """One PortAudio output stream."""
+    """A PortAudio output stream."""
 
     def __init__(self, sounddevice: Any, device: AudioDevice, order: Message) -> None:
         import numpy as np
@@ -59,22 +59,22 @@ class Stream:
 
     @property
     def latency_ms(self) -> float:
-        """From callback to the device's output, as PortAudio has it."""
+        """Latency from callback to output, as PortAudio reports it."""
         return 1e3 * float(self._stream.latency)
 
     def start(self) -> None:
-        """Let the callback be called."""
+        """Start the callbacks."""
         self._stream.start()
 
     def close(self) -> None:
-        """Close the stream; give up where PortAudio hangs, as it does without its server."""
+        """Close the stream; give up where PortAudio hangs, as it does without JACK's server."""
         closing = threading.Thread(target=self._stream.close, daemon=True)
         closing.start()
         closing.join(CLOSE_WITHIN_S)
 
 
 def main() -> None:
-    """Serve one parent until it hangs up."""
+    """Serve the parent process until it closes the pipe."""
     parent = Parent()
     orders: queue.Queue[Message | None] = queue.Queue()
 
@@ -127,7 +127,7 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
 def _look(
     parent: Parent, orders: queue.Queue[Message | None], sounddevice: Any, wanted: str | None
 ) -> AudioDevice | None:
-    """Wait for the device; PortAudio sees what came since only when it starts anew."""
+    """Wait for the device. PortAudio lists new devices only after it is started again."""
     missing = ""
     for look in itertools.count():
         try:

@@ -1,4 +1,4 @@
-"""Recordings of an instrument while it plays: the command's, and those made on request."""
+"""The recordings of a server: the one of the command, and those that clients request."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ ENDINGS = (".wav", ".flac")
 
 
 class Takes:
-    """One recording of everything, and beside it one at a time on request.
+    """A recording of everything, and beside it one at a time that clients request.
 
     Parameters
     ----------
     folder : Path
-        Where recordings on request are written; it is made when one begins.
+        Where requested recordings are written; it is made when needed.
     said : callable
-        Told in a line when a recording begins or ends.
+        Called with a line when a recording begins or ends.
     """
 
     def __init__(self, instrument: Instrument, folder: Path, said: Callable[[str], None]) -> None:
@@ -42,13 +42,13 @@ class Takes:
         self._everything = Recorder(self._instrument, target, 0, self._said, overwrite=overwrite)
 
     def start(self, name: str) -> str:
-        """Record under a plain name, into the folder; return the file's name.
+        """Record to a file of a plain name in the folder; return its name.
 
         Raises
         ------
         OutputError
-            Where a recording runs, the name is no plain one or taken, or the file cannot be
-            written.
+            Where a requested recording runs, the name is not plain or already taken, or the file
+            cannot be written.
         """
         target = inside(self._folder, name, "" if Path(name).suffix in ENDINGS else ".wav")
         if self._requested is not None and self._requested.is_running:
@@ -69,7 +69,7 @@ class Takes:
         Raises
         ------
         OutputError
-            Where none runs, or it has ended by itself.
+            Where there is none, or it has ended by itself.
         """
         recorder, self._requested = self._requested, None
         if recorder is None:
@@ -82,7 +82,7 @@ class Takes:
         return recorder.target.name
 
     def close(self) -> None:
-        """End all recordings with what is played so far."""
+        """End all recordings at the last frame played."""
         for recorder in (self._everything, self._requested):
             if recorder is not None:
                 recorder.stop()
@@ -90,16 +90,16 @@ class Takes:
 
     @property
     def is_whole(self) -> bool:
-        """Whether the recording of everything, if there is one, lacks nothing."""
+        """Whether no frame is missing in the recording of everything, if there is one."""
         return self._everything is None or self._everything.is_whole
 
     @property
     def names(self) -> str:
-        """Names of the files that are being recorded, or nothing."""
+        """Names of the files being recorded, separated by semicolons."""
         recorders = (self._everything, self._requested)
         running = [each for each in recorders if each is not None and each.is_running]
         return "; ".join(each.target.name for each in running)
 
     def _tell_of(self, recorder: Recorder) -> None:
-        if not recorder.failure:  # or it has been told
+        if not recorder.failure:  # or that was reported
             self._said(f"{recorder.target}: {recorder.seconds:.1f} s")

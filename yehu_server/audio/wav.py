@@ -1,8 +1,8 @@
-"""WAV, written so that the header is right after every write.
+"""Write WAV files whose header is valid after every write.
 
-Whoever ends us, and whenever, leaves a file that any program opens. The format is Microsoft's
-of 1994: what is not PCM has an extended ``fmt`` chunk and a ``fact`` chunk. No time stamp is in
-it, so that the same samples are the same bytes.
+A crash at any moment leaves a file that any program opens. The format is Microsoft's of 1994:
+samples that are not PCM have an extended ``fmt`` chunk and a ``fact`` chunk. There is no time
+stamp, so that the same samples give the same bytes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class WavStream:
-    """A mono WAV file being written.
+    """Writes a mono WAV file.
 
     Parameters
     ----------
@@ -32,13 +32,16 @@ class WavStream:
         A new one, unbuffered.
     subtype : "16", "24" or "float"
     software : str
-        What to say of who made it; nothing by default.
+        Named in the file as its maker; nothing by default.
 
-    Errors: OSError. What was written before stays, and is whole.
+    Raises
+    ------
+    OSError
+        Here and from all methods; what was written before stays valid.
     """
 
     def __init__(self, file: io.FileIO, rate: int, subtype: str, software: str = "") -> None:
-        self.frames = 0  # in the file for sure
+        self.frames = 0  # in the file
         self._file = file
         self._rate = rate
         self._subtype = subtype
@@ -47,7 +50,7 @@ class WavStream:
         write_all(file, self._header())
 
     def write(self, samples: Samples) -> None:
-        """Append samples [shape=(frames,), full scale]."""
+        """Append samples [shape=(frames,), full scale 1]."""
         try:
             write_all(self._file, encoded(samples, self._subtype))
             self.frames += len(samples)
@@ -63,7 +66,7 @@ class WavStream:
             write_all(self._file, b"\0")  # chunks have even lengths
 
     def _cut(self) -> None:
-        """Take back what is no whole sample."""
+        """Remove an incomplete sample from the end."""
         each = BYTES[self._subtype]
         self.frames = (self._file.seek(0, io.SEEK_END) - self._header_bytes) // each
         self._file.truncate(self._header_bytes + self.frames * each)
@@ -88,7 +91,7 @@ class WavStream:
 
 
 def encoded(samples: Samples, subtype: str) -> bytes:
-    """Samples as the bytes of a WAV file; what is beyond full scale is held there."""
+    """Encode samples as bytes of a WAV file; those beyond full scale are clipped."""
     if subtype == "float":
         return samples.astype("<f4").tobytes()
     scaled = np.rint(samples.astype(np.float64) * 2.0**31).clip(-(2.0**31), 2.0**31 - 1.0)

@@ -1,1 +1,1 @@
-"""The instrument as a running thing: compiled gestures, the model, the output."""
+"""The running instrument: events, controls, the model, the output, in one compiled callback."""

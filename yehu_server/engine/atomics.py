@@ -1,7 +1,7 @@
-"""Loads and stores that two threads, or two processes, may do at once. Compiled.
+"""Atomic loads and stores for memory that threads or processes share. Compiled.
 
-What was written before a `store_release` is seen by whoever reads its value with
-`load_acquire`. On x86 these are plain moves, on ARM ``stlr`` and ``ldar``.
+A thread that reads the value of a `store_release` by `load_acquire` sees all that was written
+before it. On x86 these are plain moves, on ARM ``stlr`` and ``ldar``.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def at(_context: Any, base: Any, offset: Any) -> Any:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def load_acquire(_context: Any, base: Any, offset: Any) -> Any:
-    """The 64-bit whole number `offset` bytes after `base`."""
+    """Load the 64-bit integer `offset` bytes after `base`."""
 
     def generate(_codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         return builder.load_atomic(_word(builder, arguments), "acquire", WORD)
@@ -37,7 +37,7 @@ def load_acquire(_context: Any, base: Any, offset: Any) -> Any:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def store_release(_context: Any, base: Any, offset: Any, value: Any) -> Any:
-    """Store a 64-bit whole number `offset` bytes after `base`."""
+    """Store a 64-bit integer `offset` bytes after `base`."""
 
     def generate(_codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         builder.store_atomic(arguments[2], _word(builder, arguments), "release", WORD)
@@ -47,7 +47,7 @@ def store_release(_context: Any, base: Any, offset: Any, value: Any) -> Any:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def fence_release(_context: Any) -> Any:
-    """Let no later store pass an earlier one."""
+    """Order later stores after earlier loads and stores."""
 
     def generate(_codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
         builder.fence("release")
@@ -57,7 +57,7 @@ def fence_release(_context: Any) -> Any:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def fence_acquire(_context: Any) -> Any:
-    """Let no later load pass an earlier one."""
+    """Order later loads and stores after earlier loads."""
 
     def generate(_codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
         builder.fence("acquire")

@@ -1,8 +1,8 @@
 """The controls of bow, fingers and pluck at each sample, from the player's targets. Compiled.
 
-What must go on while Python is busy happens here, on absolute frames: ramps, bow force
-following bow speed, the bow keeping its relative position as the string gets shorter,
-the hand leaving the strings when a finger is up.
+What depends on the frame is done here and not in Python: parameters move along ramps, the bow
+force follows the bow's speed, the bow keeps its relative position as the sounding length changes,
+vibrato and tremolo oscillate, and a lifted finger moves away.
 """
 
 from __future__ import annotations
@@ -49,27 +49,27 @@ NOISE = SLOT["/bow/noise"]
 SLOTS = len(ENGINE)
 LOWEST = np.array([param.lo for param in ENGINE])
 HIGHEST = np.array([param.hi for param in ENGINE])
-SILENCE = SLOTS  # an event at this index fades the sound out and puts the model to rest
+SILENCE = SLOTS  # index of the event that fades the sound out and puts the model to rest
 
-# While a finger is up it waits near the loop, where the strings hardly move: at its
-# rest height over the middle of a string it would be hit by it. By ear.
+# A lifted finger waits near the loop, where the strings hardly move: over the middle of a string
+# that swings wide it would be hit. By ear.
 PARK_X = 0.012  # m
 PARK_AFTER_S = 0.04
-# A fast bow needs a larger share of Schelleng's limit, or notes jump to the octave. Measured
-# over F4 to F6: shares from 0.35 hold at 0.12 m/s, from 0.5 at 0.2, from 0.75 at 0.3.
+# A fast bow needs a larger share of Schelleng's limit, or notes jump to the octave. Measured from
+# F4 to F6: the least share that holds is 0.35 at 0.12 m/s, 0.5 at 0.2 m/s, 0.75 at 0.3 m/s.
 FAST_SHARE, FAST = 0.6, 0.35  # m/s
-LET_GO_S = 0.3e-3  # in which a plucked string slips off the fingertip
-FOLLOW_S = 0.01  # how fast the bow follows the sounding length
-ONSET_FROM = 0.4  # share of /vibrato/onset before there is any
-# A tremolo stroke is at full speed for most of its time: the sine that turns the bow, cut off.
+LET_GO_S = 0.3e-3  # time in which a plucked string slips off the fingertip
+FOLLOW_S = 0.01  # time constant with which the bow follows the sounding length
+ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
+# In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed.
 TURN = 3.0
-LAST_STROKES = 12.0  # a second, that bring the bow back to its direction as tremolo ends
+LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
 
-GRAIN_HZ = 2000.0  # how fast the hair's grip trembles. By ear.
+GRAIN_HZ = 2000.0  # cutoff of the noise in the hair's grip. By ear.
 
-FORWARD = 0.25  # turns at which the bow goes as speed says
+FORWARD = 0.25  # phase of the tremolo (turns) at which the bow has its own direction
 
-TO_OUTPUT, TO_BODY, TO_LIMITER = range(3)  # what is set in decibels
+TO_OUTPUT, TO_BODY, TO_LIMITER = range(3)  # gains that are set in decibels
 DECIBELS = 3
 
 CONTROLS = np.dtype(
@@ -79,37 +79,46 @@ CONTROLS = np.dtype(
         ("target", np.float64, SLOTS),
         ("slope", np.float64, SLOTS),
         ("remaining", np.int64, SLOTS),
-        ("moving", np.int64),  # how many parameters are on their way
-        ("decibels", np.float64, DECIBELS),  # what `factor` was worked out of
+        ("moving", np.int64),  # number of parameters on a ramp
+        ("decibels", np.float64, DECIBELS),  # the gains, and their amplitude factors
         ("factor", np.float64, DECIBELS),
-        # of each string in tune, and the tuning (cents) and loss that it has
+        # of each string as calibrated (N, 1/s, m^2/s); its tuning (cents) and loss now
         ("tension", np.float64, STRINGS),
         ("sigma_0", np.float64, STRINGS),
         ("sigma_1", np.float64, STRINGS),
         ("tuning", np.float64, STRINGS),
         ("loss", np.float64, STRINGS),
-        ("grain", np.float64),  # of the hair, in its slow noise; how slow, and how large
+        ("grain", np.float64),  # noise of the grip: its value, one-pole coefficient, amplitude
         ("grain_follow", np.float64),
         ("grain_size", np.float64),
-        ("sounding_from", np.float64),  # m; where the sounding length begins
-        ("finger_up", np.int64, MAX_FINGERS),  # frames since each was lifted
-        ("second", np.float64),  # frames
-        ("vibrato", np.float64),  # turns of the vibrato, and of the tremolo
+        ("sounding_from", np.float64),  # m; end of the sounding length, from the loop
+        ("finger_up", np.int64, MAX_FINGERS),  # frames since each finger was lifted
+        ("second", np.float64),  # in frames: the sample rate
+        ("vibrato", np.float64),  # phases of vibrato and tremolo (turns)
         ("tremolo", np.float64),
         ("follow", np.float64),
         ("park_after", np.int64),
         ("bridge_x", np.float64),
-        # 2 Z / (mu_S - mu_C) of each string: Schelleng's upper limit is this v / beta.
+        # 2 Z / (mu_S - mu_C) of each string; times v_b / beta it is Schelleng's upper limit.
         ("schelleng", np.float64, STRINGS),
         ("let_go", np.int64),  # frames
-        ("silence_in", np.int64),  # frames until the model is put to rest; 0: not asked
+        ("silence_in", np.int64),  # frames until the model is put to rest; 0: not to be
     ],
     align=True,
 )
 
 
 def prepare_controls(quantities: Quantities, rate: float) -> Any:
-    """Every parameter at its default. Returns: ndarray [shape=(1,), dtype=CONTROLS]."""
+    """Prepare the record, with every parameter at its default.
+
+    Parameters
+    ----------
+    rate : float, Hz
+
+    Returns
+    -------
+    ndarray [shape=(1,), dtype=CONTROLS]
+    """
     controls = np.zeros(1, CONTROLS)
     defaults = [param.default for param in ENGINE]
     controls["value"][0] = controls["target"][0] = defaults
@@ -131,13 +140,13 @@ def prepare_controls(quantities: Quantities, rate: float) -> Any:
     controls["loss"] = controls["value"][:, LOSS]
     follow = 1.0 - pole_of_cutoff(GRAIN_HZ, rate)
     controls["grain_follow"] = follow
-    # Even chance in -1..1, once smoothed, has a deviation of a third: hardly ever beyond 1.
+    # Uniform noise in -1..1 gets a standard deviation of 1/3 after the filter: it rarely exceeds 1.
     controls["grain_size"] = math.sqrt((2.0 - follow) / (3.0 * follow))
     return controls
 
 
 def settle(controls: Any) -> None:
-    """Let a record of dtype CONTROLS be where it is bound, with nothing on its way; in place."""
+    """Move all parameters of a record of dtype CONTROLS to their targets, in place."""
     controls["target"][PLUCK] = 0.0
     controls["value"] = controls["target"]
     controls["remaining"] = 0
@@ -151,9 +160,16 @@ def settle(controls: Any) -> None:
 
 @compiled
 def take(c: Any, index: int, target: float, ramp: int, silence_frames: int) -> None:
-    """Apply one event: set a parameter going towards its target, within its range.
+    """Apply an event: begin a parameter's ramp to a target, clamped to its range.
 
-    What is not a number is passed over. Real time: safe.
+    A target that is not a number is ignored. Real time: safe.
+
+    Parameters
+    ----------
+    index : int
+        Slot of the parameter, or SILENCE.
+    ramp, silence_frames : int
+        Length of the ramp, and of the fade before silence (frames).
     """
     if index == SILENCE:
         if c.silence_in == 0:
@@ -175,7 +191,7 @@ def take(c: Any, index: int, target: float, ramp: int, silence_frames: int) -> N
 
 @compiled
 def move(c: Any) -> None:
-    """Let every parameter take one step of its ramp, ending exactly on its target."""
+    """Advance all ramps by one sample; each ends exactly on its target. Real time: safe."""
     if c.moving == 0:
         return
     for index in range(SLOTS):
@@ -190,7 +206,7 @@ def move(c: Any) -> None:
 
 @compiled
 def amplitude(c: Any, of: int, decibels: float) -> float:
-    """Turn decibels to a factor, worked out only when they change."""
+    """Convert decibels to an amplitude factor, computed only when they change."""
     if decibels != c.decibels[of]:
         c.decibels[of], c.factor[of] = decibels, 10.0 ** (decibels / 20.0)
     return float(c.factor[of])
@@ -198,14 +214,14 @@ def amplitude(c: Any, of: int, decibels: float) -> float:
 
 @compiled
 def level(c: Any) -> float:
-    """Amplitude at full scale of one pascal at this frame."""
+    """Gain from pascals to full scale at this sample."""
     factor = amplitude(c, TO_OUTPUT, c.value[GAIN] + c.value[BALANCE])
     return float(c.value[LEVEL] * factor / FULL_SCALE_PRESSURE)
 
 
 @compiled
 def has_new_strings(c: Any) -> bool:
-    """Whether tuning or loss of a string is not what it was at the frame before."""
+    """Whether the tuning or loss of a string differs from what the model has."""
     for i in range(STRINGS):
         if c.value[TUNING[i]] != c.tuning[i] or c.value[LOSS[i]] != c.loss[i]:
             return True
@@ -214,7 +230,7 @@ def has_new_strings(c: Any) -> bool:
 
 @compiled
 def chance(frame: int) -> float:
-    """A number of this frame's own in -1..1, like random ones.
+    """A pseudorandom number in -1..1, the same for the same frame.
 
     Source: [SplitMix], its output function.
     """
@@ -227,7 +243,7 @@ def chance(frame: int) -> float:
 
 @compiled
 def grip(c: Any) -> float:
-    """Share of the bow force that the hair's grain leaves at this frame, about 1."""
+    """Factor of the bow force at this sample, about 1: noise of the hair."""
     noise = c.value[NOISE]
     if noise == 0.0:
         return 1.0
@@ -237,7 +253,7 @@ def grip(c: Any) -> float:
 
 @compiled
 def vibrate(c: Any) -> float:
-    """Where the vibrato is, from -1 to 1, as far as it has come in; and turn it on."""
+    """Advance the vibrato by one sample; its value, -1 to 1, faded in by /vibrato/onset."""
     if c.value[DEPTH] == 0.0 and c.value[ROCK] == 0.0:
         c.vibrato = 0.0
         return 0.0
@@ -249,7 +265,7 @@ def vibrate(c: Any) -> float:
 
 @compiled
 def turn_bow(c: Any) -> float:
-    """Share of its speed that the bow has in a tremolo stroke, with its direction."""
+    """Advance the tremolo by one sample; factor of the bow's speed, -1 to 1."""
     strokes = c.value[TREMOLO]
     if strokes == 0.0:
         if c.tremolo == FORWARD:
@@ -265,7 +281,7 @@ def turn_bow(c: Any) -> float:
 
 @compiled
 def stop_strings(c: Any, control: Array) -> None:
-    """Place the fingers, with their vibrato; let the sounding length follow the nearest one."""
+    """Write the fingers' controls, with vibrato; follow the sounding length they leave."""
     rocking = vibrate(c)
     stretch, harder = 1.0, 1.0
     if rocking != 0.0:
@@ -291,7 +307,7 @@ def stop_strings(c: Any, control: Array) -> None:
 
 @compiled
 def pluck(c: Any) -> float:
-    """Force (N) on the string that is pulled aside; once it is all there, let go."""
+    """Force (N) of the pluck at this sample; it is released once its ramp has ended."""
     force = c.value[PLUCK]
     if force != 0.0 and c.remaining[PLUCK] == 0:
         take(c, PLUCK, 0.0, c.let_go, 0)
@@ -300,11 +316,16 @@ def pluck(c: Any) -> float:
 
 @compiled
 def write_controls(c: Any, control: Array) -> None:
-    """Turn the parameters of this frame into the kernel's controls.
+    """Write the kernel's controls for this sample. Real time: safe.
 
-    Bow force is assist * share * F_max + (1 - assist) * force, with Schelleng's
-    F_max = 2 Z v_b / (beta (mu_S - mu_C)) [Schelleng] and a share of it that is the
-    pressure and a little more for a fast bow; the side fades it in and out.
+    The bow force is assist * share * F_max + (1 - assist) * force, times the side. Here
+    F_max = 2 Z v_b / (beta (mu_S - mu_C)) is Schelleng's upper limit [Schelleng], and the share
+    is /bow/pressure and a little more for a fast bow.
+
+    Parameters
+    ----------
+    control : ndarray [shape=(columns,)]
+        See ``physics.layout``.
     """
     stop_strings(c, control)
     speed, beta, side = c.value[SPEED] * turn_bow(c), c.value[POSITION], c.value[SIDE]

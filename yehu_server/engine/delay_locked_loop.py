@@ -1,7 +1,7 @@
-"""A delay-locked loop: when an event of a regular series is due, without its jitter. Compiled.
+"""A delay-locked loop: times of regular events without their jitter. Compiled.
 
-The events are the beginnings of blocks of frames. A loop of second order follows their time and
-their rate, so that it has no error left where the rate is constant. Its damping is 1 / sqrt(2).
+The events are the starts of blocks of frames. The loop is of second order: it follows time and
+rate, so that a constant rate leaves no error. Its damping ratio is 1 / sqrt(2).
 Source: [Adriaensen], the loop's equations.
 """
 
@@ -18,8 +18,8 @@ BANDWIDTH_HZ = 0.3
 
 LOOP = np.dtype(
     [
-        ("due_ns", np.int64),  # of the last event, as the loop has it
-        ("error_ns", np.int64),  # how much later it came than was predicted
+        ("due_ns", np.int64),  # time of the last event, filtered
+        ("error_ns", np.int64),  # its time less the predicted one
         ("ns_per_frame", np.float64),
     ],
     align=True,
@@ -28,28 +28,28 @@ LOOP = np.dtype(
 
 @compiled
 def start(loop: Any, now_ns: int, rate: float) -> None:
-    """Begin with an event at `now_ns`, and a nominal rate (Hz). Real time: safe."""
+    """Start at an event at `now_ns`, with the nominal rate (Hz). Real time: safe."""
     loop.due_ns, loop.error_ns, loop.ns_per_frame = now_ns, 0, 1e9 / rate
 
 
 @compiled
 def predicted_ns(loop: Any, frames: int) -> int:
-    """When an event is due that comes `frames` after the last one. Real time: safe."""
+    """Predict the time of an event `frames` after the last one. Real time: safe."""
     return int(loop.due_ns + int(frames * loop.ns_per_frame))
 
 
 @compiled
 def follow(loop: Any, due_ns: int, error_ns: int, frames: int, rate: float) -> None:
-    """Take in an event that was predicted for `due_ns` and came `error_ns` later.
+    """Update the loop with an event. Real time: safe.
 
     Parameters
     ----------
+    due_ns, error_ns : int
+        The predicted time, and how much later the event came.
     frames : int
-        Since the event before.
+        Frames since the event before.
     rate : float, Hz
-        The nominal one.
-
-    Real time: safe.
+        The nominal rate.
     """
     turn = 2.0 * math.pi * BANDWIDTH_HZ * frames / rate
     loop.due_ns, loop.error_ns = due_ns + int(math.sqrt(2.0) * turn * error_ns), error_ns

@@ -1,4 +1,4 @@
-"""The instrument: events in, samples out. The same compiled callback live and offline."""
+"""The instrument for Python: post events, compute samples, read meters; live and offline alike."""
 
 from __future__ import annotations
 
@@ -27,23 +27,26 @@ TAPE_FRAMES = native.TAPE
 
 
 class Instrument:
-    """One yehu, ready to play.
+    """A yehu that computes sound.
 
-    One thread at a time may post events (`write`, `silence`), another play; both
-    may be in other processes, where `memory` is shared between them.
+    One thread at a time may post events (`write`, `silence`), and another may compute samples
+    (`process`), also in another process that shares `memory`.
 
     Parameters
     ----------
     rate : float, Hz
-        Within the bounds of ``physics.grid``.
+        Sample rate, within the bounds of ``physics.grid``.
     quantities : Quantities
-        The physical instrument; the measured one by default.
+        The physical instrument; by default the measured one.
     channels : int
-        How many get the same signal.
+        Number of channels, which all get the same signal.
     memory : buffer of RIG_BYTES, optional
-        Where to live. With it the instrument is live: it bounds what one block may cost.
+        Holds all state. With it the instrument is live: events of one block are limited.
 
-    Errors: ParameterError where rate or quantities make no stable model.
+    Raises
+    ------
+    ParameterError
+        Where rate and quantities make no stable model.
     """
 
     def __init__(
@@ -67,9 +70,9 @@ class Instrument:
         self.reset()
 
     def reset(self) -> None:
-        """Put model and parameters back to the start; forget scheduled events.
+        """Put model and parameters back to their start; drop all events.
 
-        Nobody may play or post meanwhile.
+        Nothing may post or compute meanwhile.
         """
         rig = self._rig
         rig["state"] = kernel.at_rest(rig["model"])
@@ -83,18 +86,18 @@ class Instrument:
         rig["meters"]["rate"] = self.rate
         rig["meters"]["loop"]["ns_per_frame"] = 1e9 / self.rate
         rig["published"] = rig["meters"]
-        self._meters = rig["meters"].copy()  # as last read whole
+        self._meters = rig["meters"].copy()  # the last consistent copy
         rig["taped"], rig["version"] = 0, 0
         self.rests: list[tuple[int, int]] = []
 
     @property
     def address(self) -> int:
-        """Where the rig lies: the `userdata` of ``engine.native.callback``."""
+        """Address of the rig: the `userdata` of ``engine.native.callback``."""
         return int(self._address)
 
     @property
     def channels(self) -> int:
-        """How many channels get the signal."""
+        """Number of channels that get the signal."""
         return int(self._rig["output"]["channels"][0])
 
     @channels.setter
@@ -103,7 +106,7 @@ class Instrument:
 
     @property
     def frame(self) -> int:
-        """The frame of the next sample."""
+        """Frame number of the next sample."""
         return int(self._rig["controls"]["frame"][0])
 
     @property
@@ -113,39 +116,42 @@ class Instrument:
 
     @property
     def unconverged_solves(self) -> int:
-        """Friction solves that did not converge, since the start."""
+        """Number of friction solves that did not converge, since the start."""
         return int(self._rig["state"]["unconverged"][0])
 
     @property
     def lost_states(self) -> int:
-        """How often the state was lost and put back to rest, since the start.
+        """Number of times that the model's state was lost and put back to rest, since the start.
 
-        Each sample of output that was not a number counts too.
+        Samples of output that were not numbers are counted too.
         """
         return int(self._rig["state"]["lost"][0] + self._rig["output"]["unsound"][0])
 
     @property
     def dropped_events(self) -> int:
-        """Events that found the ring full, since the start."""
+        """Number of events dropped because the ring was full, since the start."""
         return int(self._rig["mail"]["dropped"][0, 0])
 
     def frames(self, ms: float) -> int:
-        """Milliseconds as a number of frames."""
+        """Convert milliseconds to frames."""
         return round(ms * 1e-3 * self.rate)
 
     def write(
         self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
     ) -> float:
-        """Let a parameter of the engine move to a value; return the value accepted.
+        """Move a parameter of the engine to a value, clamped to its range; return that value.
 
         Parameters
         ----------
         frame : int
-            When; now by default. Events of one frame apply in the order written.
+            When to begin; by default now. Events of one frame apply in the order written.
         ramp_ms : float
-            How long the way takes; the parameter's own smoothing by default.
+            Length of the ramp; by default the parameter's own smoothing.
 
-        Errors: ParameterError for an unknown address or a value that is not finite.
+        Raises
+        ------
+        ParameterError
+            Where the address is none of the engine's, or the value is not finite.
         """
         param = find(address)
         accepted = param.accept(value)
@@ -157,30 +163,33 @@ class Instrument:
         return accepted
 
     def silence(self, *, frame: int | None = None) -> None:
-        """Fade the sound out within 5 ms and put the model to rest."""
+        """Fade the sound out within 5 ms, then put the model to rest."""
         self.post(self.frame if frame is None else frame, SILENCE, 0.0, 0)
 
     def post(self, frame: int, index: int, target: float, ramp: int) -> bool:
-        """Post a bare event (``engine.mailbox``); whether there was room for it."""
+        """Post an event (``engine.mailbox``); return whether there was room for it."""
         return bool(native.post.call(self._address, frame, index, target, ramp))
 
     def process(self, out: Array) -> None:
-        """Write the next samples, in full scale.
+        """Compute the next samples (full scale is 1).
 
         Parameters
         ----------
         out : ndarray [shape=(frames,) or (frames, channels), float32, contiguous]
 
-        Errors: TypeError where `out` is not contiguous.
+        Raises
+        ------
+        TypeError
+            Where `out` is not contiguous.
         """
         if len(out):
             address = addressof(c_float.from_buffer(out))  # four times as fast as `out.ctypes`
             native.callback.call(None, address, len(out), None, 0, self._address)
 
     def come_to_rest(self) -> None:
-        """Put the model to rest at once, its parameters where they are bound.
+        """Put the model to rest at once, and move all parameters to their targets.
 
-        Nobody may play meanwhile.
+        Nothing may compute meanwhile.
         """
         rig = self._rig
         kernel.come_to_rest(rig["model"][0], rig["state"][0])
@@ -188,9 +197,10 @@ class Instrument:
         rest_output(rig["output"])
 
     def recover(self) -> None:
-        """Mend what a process left that was killed while it played: rest, and a gap of silence.
+        """Repair the state after a process was killed while it computed a block.
 
-        Nobody may play meanwhile. Kept in ``rests``: first frame of the gap, and after it.
+        The model is put to rest, and the frames of that block become silence; ``rests`` has their
+        first frame and the one after them. Nothing may compute meanwhile.
         """
         rig = self._rig
         rig["version"][0, 0] += rig["version"][0, 0] % 2
@@ -203,7 +213,7 @@ class Instrument:
             self.rests.append(gap)
 
     def meters(self) -> Any:
-        """What the audio side last told of itself: a record of dtype ``telemetry.METERS``."""
+        """The last published meters: a record of dtype ``telemetry.METERS``."""
         meters = np.zeros(1, METERS)
         for _ in range(native.TRIES):
             if native.read_meters.call(self._address, meters.ctypes.data):
@@ -212,26 +222,30 @@ class Instrument:
         return self._meters[0]
 
     def frame_at(self, time_ns: int) -> float:
-        """The frame that a moment of ``time.monotonic_ns()`` falls on, as blocks are played."""
+        """The frame that is played at a time of ``time.monotonic_ns()``."""
         return float(native.frame_at.call(self._address, time_ns))
 
     def report_events(self) -> None:
-        """Keep what is applied for `applied_events`."""
+        """Report applied events from now on, for `applied_events`."""
         self._rig["mail"]["reporting"] = 1
 
     def applied_events(self) -> Array:
-        """What was applied since the last call: ndarray [shape=(events,), dtype=EVENT]."""
+        """The events applied since the last call: ndarray [shape=(events,), dtype=EVENT]."""
         events = np.zeros(RING, EVENT)
         count = native.read_reports.call(self._address, events.ctypes.data, RING)
         return events[:count].copy()
 
     def taped(self, start: int) -> tuple[int, Array]:
-        """What was played from a frame on, as far as the tape still holds it.
+        """The samples that were played from a frame on.
 
-        Returns the frame it begins at, and the samples [shape=(frames,), float32]. Only the
-        last `TAPE_FRAMES` are held; who comes too late gets a later beginning.
+        Returns
+        -------
+        frame : int
+            The first frame returned: a later one where the tape, which holds the last
+            `TAPE_FRAMES`, has overwritten `start`.
+        samples : ndarray [shape=(frames,), float32]
         """
-        margin = TAPE_FRAMES // 8  # may be overwritten while we copy
+        margin = TAPE_FRAMES // 8  # may be overwritten during the copy
         end = native.taped.call(self._address)
         begin = max(start, end - TAPE_FRAMES + margin)
         tape = self._rig["tape"][0]

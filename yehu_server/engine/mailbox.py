@@ -1,9 +1,9 @@
-"""Events on their way to the instrument and back, without locks. Compiled.
+"""Lock-free queues of events to the instrument, and of reports of applied ones. Compiled.
 
-Whoever plays posts events into one ring; the audio side drains it into a heap in order of
-frames, and reports what it applied in a second ring. Each ring has one writer and one reader,
-each of whom moves only its own cursor, and only after it has touched the entry: so neither
-ever waits. A full ring drops what comes and counts it.
+Players post events to a ring; the audio side moves them to a heap in the order of their frames,
+and reports applied events in a second ring. Each ring has one writer and one reader. Each moves
+only its own cursor, after it has written or read the entry, so neither waits. Events for a full
+ring are dropped and counted.
 """
 
 from __future__ import annotations
@@ -18,29 +18,29 @@ Array = Any
 
 RING = 1 << 16  # events; powers of two
 HEAP = 1 << 14
-# Bounds on what one callback does: events drained for each 64 frames, and events applied on
-# one frame. The rest follows with the next.
+# Limits on the work of a callback: events moved to the heap for each 64 frames, and events applied
+# at one frame. The rest waits for the next.
 LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 10, 64
 
 EVENT = np.dtype(
     [("frame", np.int64), ("index", np.int64), ("target", np.float64), ("ramp", np.int64)]
 )
 WAITING = np.dtype([*EVENT.descr, ("order", np.int64)])
-LINE = 8  # words in a cache line, so that the two sides' cursors do not share one
+LINE = 8  # words of a cache line: the two sides' cursors lie in different ones
 
 MAIL = np.dtype(
     [
-        ("posted", np.int64, LINE),  # written by who posts
+        ("posted", np.int64, LINE),  # number of events posted; written by players, as the next
         ("dropped", np.int64, LINE),
-        ("read", np.int64, LINE),  # written by who reads the reports
-        ("drained", np.int64, LINE),  # written by the audio side, as all that follows
+        ("read", np.int64, LINE),  # number of reports read; written by their reader
+        ("drained", np.int64, LINE),  # written by the audio side, as all below
         ("reported", np.int64, LINE),
         ("unreported", np.int64),
         ("late", np.int64),
         ("applied", np.int64),
         ("waiting", np.int64),  # entries in the heap
         ("reporting", np.int64),
-        ("budget", np.int64),  # events to drain in one go
+        ("budget", np.int64),  # events moved to the heap at a time
     ],
     align=True,
 )
@@ -50,11 +50,11 @@ MAIL = np.dtype(
 def wait(
     heap: Array, waiting: int, frame: int, index: int, target: float, ramp: int, order: int
 ) -> None:
-    """Put an event into the heap of `waiting` entries. Real time: safe; log(waiting) steps."""
+    """Add an event to a heap of `waiting` entries. Real time: safe; log(waiting) steps."""
     hole = waiting
     while hole > 0:
         parent = (hole - 1) // 2
-        if heap[parent].frame <= frame:  # of one frame, the older comes first
+        if heap[parent].frame <= frame:  # at one frame, the older event comes first
             break
         heap[hole] = heap[parent]
         hole = parent
@@ -65,7 +65,7 @@ def wait(
 
 @compiled
 def leave(heap: Array, waiting: int) -> None:
-    """Take the first event out of the heap of `waiting` entries. Real time: safe."""
+    """Remove the first event from a heap of `waiting` entries. Real time: safe."""
     end = waiting - 1
     last = heap[end]
     hole = 0
@@ -82,5 +82,5 @@ def leave(heap: Array, waiting: int) -> None:
 
 @compiled
 def is_before(one: Any, other: Any) -> bool:
-    """Whether one event is due before another: by frame, then as posted."""
+    """Whether one event comes before another: by frame, then in the order posted."""
     return bool(one.frame < other.frame or (one.frame == other.frame and one.order < other.order))

@@ -1,8 +1,7 @@
-"""The C callback, and the other calls into the instrument that need no Python. Compiled.
+"""The audio callback, and the other functions of the instrument that C can call. Compiled.
 
-All that an instrument is lies in one record, the rig, so that one address reaches it: the
-audio device's `userdata`, here or in another process. Live and offline sound come from the
-same compiled callback.
+All state of an instrument lies in one record, the rig. Its address is the `userdata` of the
+audio stream, in this process or another one. The same callback computes live and offline sound.
 """
 
 from __future__ import annotations
@@ -60,7 +59,7 @@ from yehu_server.physics.layout import MODEL, STATE, STRINGS
 
 Array = Any
 
-TAPE = 1 << 19  # the last samples, for who records: 10 s at 48 kHz
+TAPE = 1 << 19  # the last samples, for recorders: 10 s at 48 kHz
 STALL_NS = 20_000_000
 TRIES = 100
 
@@ -101,9 +100,9 @@ REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
 
 @compiled_to_share
 def drain(rig: Any, mail: Any, frame: int) -> bool:
-    """Move what was posted into the heap, as far as the callback's budget goes.
+    """Move posted events to the heap, up to the budget of a callback.
 
-    Returns whether the heap has no room for more, so that it is worth another try soon.
+    Returns whether some are left because the heap is full: then it is worth trying again soon.
     """
     ring = carray(at(rig, RING_AT), (RING,), EVENT)
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
@@ -122,7 +121,7 @@ def drain(rig: Any, mail: Any, frame: int) -> bool:
 
 @compiled_to_share
 def apply(rig: Any, mail: Any, c: Any, fade: int) -> None:
-    """Apply what is due at this frame, and report it."""
+    """Apply the events that are due at this frame, and report them."""
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     for _ in range(APPLIED_AT_ONCE):
         if mail.waiting == 0 or heap[0].frame > c.frame:
@@ -138,7 +137,7 @@ def apply(rig: Any, mail: Any, c: Any, fade: int) -> None:
 
 @compiled_to_share
 def report(rig: Any, mail: Any, frame: int, index: int, target: float, ramp: int) -> None:
-    """Tell who captures what was applied, and when."""
+    """Report an applied event for captures."""
     reported = mail.reported[0]
     if reported - load_acquire(rig, READ_AT) >= RING:
         mail.unreported += 1
@@ -150,20 +149,26 @@ def report(rig: Any, mail: Any, frame: int, index: int, target: float, ramp: int
 
 @compiled
 def retune(model: Array, state: Array, c: Any) -> None:
-    """Let the strings have the tuning and loss of this frame."""
+    """Give the model's strings the tuning and loss of this frame."""
     for i in range(STRINGS):
         cents, loss = c.value[TUNING[i]], c.value[LOSS[i]]
         if cents != c.tuning[i] or loss != c.loss[i]:
             c.tuning[i], c.loss[i] = cents, loss
-            T = c.tension[i] * 2.0 ** (cents / 600.0)  # frequency goes as its square root
+            T = c.tension[i] * 2.0 ** (
+                cents / 600.0
+            )  # the frequency is proportional to its square root
             kernel.retune(model, state, i, T, c.sigma_0[i] * loss, c.sigma_1[i] * loss)
 
 
 @compiled_to_share
 def play(rig: Any, out: Array) -> None:
-    """Play one block into `out` [shape=(frames, channels), float32], in full scale.
+    """Compute one block. The samples do not depend on the sizes of blocks.
 
-    What is heard does not depend on how frames are cut into blocks.
+    Parameters
+    ----------
+    out : ndarray [shape=(frames, channels), float32]
+        In full scale.
+
     Real time: safe; no allocation, no exception, every sample finite.
     """
     model = carray(at(rig, MODEL_AT), (1,), MODEL)
@@ -197,7 +202,7 @@ def play(rig: Any, out: Array) -> None:
             retuned = has_new_strings(c)
             c.frame += 1
             frames += 1
-        # Strings get their tuning at the very sample. One call, since all of it is inlined.
+        # Strings are retuned at the very sample. One call of the kernel, since it is inlined.
         start, end = 0, frames - 1 if retuned else frames
         while start < frames:
             if start == end:
@@ -220,7 +225,7 @@ def play(rig: Any, out: Array) -> None:
 
 @native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)")
 def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig: Any) -> int:
-    """Fill one block of output: PortAudio's own signature (PaStreamCallback).
+    """Compute one block for PortAudio (a PaStreamCallback).
 
     Parameters
     ----------
@@ -241,7 +246,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     t.running = 1
     block: Any = np.int64(frames)
     tell_time(t, c.frame, started_ns, block)
-    publish(rig)  # at once, so that what comes in now is stamped by this block
+    publish(rig)  # at once, so that messages that arrive now are stamped by this block
     play(rig, carray(output, (block, o.channels), np.float32))
     t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
     t.late_events, t.applied = mail.late, mail.applied
@@ -256,7 +261,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
 
 @compiled_to_share
 def publish(rig: Any) -> None:
-    """Copy the meters out, so that readers see all of a block or nothing of it."""
+    """Publish the meters by a seqlock: readers get all of a block's, or none."""
     version = load_acquire(rig, VERSION_AT)
     store_release(rig, VERSION_AT, version + 1)
     fence_release()
@@ -266,7 +271,7 @@ def publish(rig: Any) -> None:
 
 @native("int64(voidptr, voidptr)")
 def read_meters(rig: Any, into: Any) -> int:
-    """Copy the published meters; return 0 where a write came between (try again)."""
+    """Copy the published meters; return 0 where they were written meanwhile (try again)."""
     version = load_acquire(rig, VERSION_AT)
     carray(into, (1,), METERS)[0] = carray(at(rig, PUBLISHED_AT), (1,), METERS)[0]
     fence_acquire()
@@ -275,9 +280,9 @@ def read_meters(rig: Any, into: Any) -> int:
 
 @native("float64(voidptr, int64)")
 def frame_at(rig: Any, time_ns: int) -> float:
-    """The frame that a moment of the monotonic clock falls on, by the last callback's time.
+    """The frame that is played at a time of the monotonic clock, by the last callback's time.
 
-    While no callback comes, time stands still `STALL_NS` after the last block.
+    Without further callbacks it stops `STALL_NS` after the last block.
     """
     published = carray(at(rig, PUBLISHED_AT), (1,), METERS)[0]
     frame, elapsed_ns, ns_per_frame = 0, 0, 1.0
@@ -294,9 +299,9 @@ def frame_at(rig: Any, time_ns: int) -> float:
 
 @native("int64(voidptr, int64, int64, float64, int64)")
 def post(rig: Any, frame: int, index: int, target: float, ramp: int) -> int:
-    """Post one event; return 0 where the ring is full and the event was dropped.
+    """Post an event; return 0 where it was dropped because the ring is full.
 
-    One thread at a time may post.
+    Only one thread at a time may post.
     """
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     posted = mail.posted[0]
@@ -311,7 +316,7 @@ def post(rig: Any, frame: int, index: int, target: float, ramp: int) -> int:
 
 @native("int64(voidptr, voidptr, int64)")
 def read_reports(rig: Any, into: Any, room: int) -> int:
-    """Move reports of applied events to an array of EVENT; return how many."""
+    """Move reports of applied events to an array of EVENT [shape=(room,)]; return their number."""
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     reports = carray(at(rig, REPORTS_AT), (RING,), EVENT)
     events = carray(into, (room,), EVENT)
@@ -325,7 +330,7 @@ def read_reports(rig: Any, into: Any, room: int) -> int:
 
 @native("int64(voidptr)")
 def taped(rig: Any) -> int:
-    """How many frames have been played and are on the tape."""
+    """Number of frames played and on the tape."""
     return int(load_acquire(rig, TAPED_AT))
 
 
@@ -333,11 +338,11 @@ PLAYED_BY = (callback, read_meters, frame_at, post, read_reports, taped)
 
 
 def warm_up() -> None:
-    """Compile, or load from the cache, all that playing needs."""
+    """Compile all functions that playing needs, or load them from the cache."""
     for function in PLAYED_BY:
         _ = function.address
 
 
 def is_warm() -> bool:
-    """Whether all that playing needs is compiled, or kept from an earlier start."""
+    """Whether all functions that playing needs are in the cache."""
     return all(function.is_kept for function in PLAYED_BY)

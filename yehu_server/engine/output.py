@@ -1,4 +1,4 @@
-"""From the model's probes to samples: DC blocker, gain, limiter, and a fade for lost states."""
+"""The output stage, from the model's probes to samples: DC blocker, gain, limiter, fades."""
 
 from __future__ import annotations
 
@@ -20,20 +20,22 @@ from yehu_server.physics.layout import (
 
 Array = Any
 
-CHUNK = 64  # frames run through the kernel at a time
+CHUNK = 64  # frames that the kernel computes at a time
 FADE_S = 0.005
-BLOCKED_HZ = 10.0  # what is slower than this is no sound
-# Pa that count for a newton at the bridge, so that a blend is about as loud at both ends.
+BLOCKED_HZ = 10.0  # cutoff of the DC blocker
+# Pressure (Pa) for a newton at the bridge: a blend is about as loud at both of its ends.
 BRIDGE_PRESSURE = 0.1
-LARGEST = 2.0  # of what the limiter lets out: rounding takes no sample further than full scale
+LARGEST = (
+    2.0  # a sample beyond this is an error: rounding takes the limiter's output hardly beyond 1
+)
 
 OUTPUT = np.dtype(
     [
-        ("channels", np.int64),  # of the device; all get the same signal
-        ("fade", np.int64),  # frames of a fade to silence
+        ("channels", np.int64),  # of the device, all with the same signal
+        ("fade", np.int64),  # length of a fade to silence (frames)
         ("last", np.float64),  # the last sample
-        ("unsound", np.int64),  # samples that were not numbers, written as silence
-        ("ghost", np.float64),  # what is left of the one before a lost state
+        ("unsound", np.int64),  # number of samples that were not numbers, replaced by silence
+        ("ghost", np.float64),  # decays from the last sample before a lost state
         ("decay", np.float64),
         ("pressure", np.float64),  # input and output of the DC blocker (Pa)
         ("swing", np.float64),
@@ -50,7 +52,7 @@ OUTPUT = np.dtype(
 
 
 def prepare_output(output: Any, rate: float, channels: int) -> None:
-    """Set the coefficients of a record of dtype OUTPUT [shape=(1,)], in place."""
+    """Set the coefficients of a record of dtype OUTPUT [shape=(1,)] for a rate (Hz), in place."""
     output["channels"] = channels
     output["unsound"] = 0
     output["fade"] = max(1, round(FADE_S * rate))
@@ -60,16 +62,16 @@ def prepare_output(output: Any, rate: float, channels: int) -> None:
 
 
 def rest_output(output: Any) -> None:
-    """Forget the last samples, in place."""
+    """Clear the filters' states of a record of dtype OUTPUT, in place."""
     for name in ("last", "ghost", "pressure", "swing"):
         output[name] = 0.0
 
 
 @compiled
 def limit(x: float, soft: float) -> float:
-    """Bend what is above `soft`, 0 to 1, so that nothing exceeds full scale.
+    """Soft clipping: above `soft` (0 to 1) peaks are bent, so that none exceeds full scale.
 
-    Odd, memoryless, and smooth below 1.
+    Odd, memoryless, and smooth where `soft` is below 1. Real time: safe.
     """
     size = abs(x)
     if size <= soft:
@@ -81,29 +83,29 @@ def limit(x: float, soft: float) -> float:
 
 @compiled
 def fall_silent(o: Any) -> None:
-    """Forget what the filters hold, as the model is put to rest. Real time: safe."""
+    """Clear the filters' states, when the model is put to rest. Real time: safe."""
     o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
 
 
 @compiled
 def play_out(o: Any, n: int) -> float:
-    """Make one sample of output of row `n` of the probes; a lost state is faded, not cut.
+    """Compute a sample from row `n` of the probes; a lost state fades out. Real time: safe.
 
-    Whatever comes in, what goes out is finite.
+    The sample is finite whatever the probes are.
     """
     probe = o.probes[n]
     if probe[ITERATIONS] < 0:
         o.ghost = o.last
         o.pressure, o.swing = 0.0, 0.0
     o.ghost *= o.decay
-    # A finger's press pulls at the bridge for as long as it lasts: not a sound.
+    # The DC blocker also removes the static pull of a finger at the bridge.
     radiated = o.body[n] * probe[PRESSURE]
     source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
     o.swing = source - o.pressure + o.blocker * o.swing
     o.pressure = source
     loud = o.swing * o.gain[n] + o.ghost
     sample = limit(loud, o.soft[n])
-    if not (abs(loud) < math.inf and abs(sample) <= LARGEST):  # so that NaN is caught too
+    if not (abs(loud) < math.inf and abs(sample) <= LARGEST):  # true for NaN too
         sample = 0.0
         o.unsound += 1
         fall_silent(o)

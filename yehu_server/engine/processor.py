@@ -1,7 +1,7 @@
-"""The processor's own: clocks, and how it treats denormal numbers. Compiled.
+"""The processor's clocks and its treatment of denormal numbers. Compiled.
 
-Numbers below 1e-308 take some processors a hundred times longer. A string that dies away
-is full of them, so the audio thread counts them as zero.
+Denormal numbers (below 1e-308) slow some processors down a hundredfold. A decaying string has many
+of them, so the audio thread flushes them to zero.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-# Clock numbers for clock_gettime. The first is the one time.monotonic_ns() reads.
+# Clocks of clock_gettime; time.monotonic_ns() reads the first.
 MONOTONIC, THREAD_CPU = (8, 16) if sys.platform == "darwin" else (1, 3)
-# x86: flush to zero, and denormals are zero, in MXCSR; ARM: flush to zero in FPCR.
+# x86: FTZ and DAZ (flush to zero, denormals are zero) in MXCSR; ARM: FZ in FPCR.
 X86_BITS, ARM_BIT = 0x8040, 1 << 24
 
 
@@ -33,7 +33,7 @@ def _clock(codegen: Any, builder: Any, number: int) -> Any:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def monotonic_ns(_context: Any) -> Any:
-    """What ``time.monotonic_ns()`` says, in every process of this machine."""
+    """The time of ``time.monotonic_ns()``, the same in all processes."""
 
     def generate(codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
         return _clock(codegen, builder, MONOTONIC)
@@ -43,7 +43,7 @@ def monotonic_ns(_context: Any) -> Any:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def thread_cpu_ns(_context: Any) -> Any:
-    """How long this thread has computed."""
+    """CPU time of this thread (ns)."""
 
     def generate(codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
         return _clock(codegen, builder, THREAD_CPU)
@@ -92,7 +92,7 @@ X86, ARM = {"x86_64", "AMD64"}, {"aarch64", "arm64"}
 
 @intrinsic  # type: ignore[untyped-decorator]
 def flush_denormals(_context: Any) -> Any:
-    """Count denormals as zero on this thread from here on; return the mode before."""
+    """Flush denormal numbers to zero on this thread from now on; return the mode before."""
 
     def generate(_codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
         machine = platform.machine()
@@ -106,7 +106,7 @@ def flush_denormals(_context: Any) -> Any:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def restore_denormals(_context: Any, mode: Any) -> Any:
-    """Go back to the mode that `flush_denormals` returned."""
+    """Restore the mode that `flush_denormals` returned."""
 
     def generate(_codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         _write_mode(builder, platform.machine(), arguments[0])

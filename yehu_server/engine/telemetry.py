@@ -1,13 +1,13 @@
-"""What the audio side tells of itself, published without locks. Compiled.
+"""Meters of the audio side: time of frames, load, levels, counts. Compiled.
 
-The audio side keeps one METERS record for itself and copies it out after each block, under a
-version number that is odd while it writes (a seqlock): a reader who sees the version change
-reads again. Nobody waits for a reader.
+The audio side keeps a METERS record of its own and publishes a copy after each block, by a
+seqlock: the version is odd while it is written, and a reader that finds the version changed reads
+again. The audio side never waits.
 
 A delay-locked loop gives each block's first frame a time without the jitter of the callback's
-start: what comes in is stamped against that, so that it keeps its rhythm. A device whose own
-period is longer than a block calls back several times in a row: the loop follows the first of
-them, and how far the others run ahead of that time is what a message has to wait for.
+start; messages are stamped by it, so that they keep their rhythm. A device with a period longer
+than a block calls back several times in a row. The loop follows the first callback of such a
+request; how far the others run ahead of their time is the delay that messages need.
 """
 
 from __future__ import annotations
@@ -28,10 +28,12 @@ SHAPE_POINTS = 64
 WINDOW_S = 1.0 / 60.0
 LOAD_BINS = 128  # of a sixty-fourth of the deadline each
 BINS_PER_DEADLINE = 64
-ASTRAY_NS = 50_000_000  # so far off, the loop starts anew at once;
-ASTRAY_S = 0.1  # after so long, where it is off by more than LATE_BLOCKS
-LATE_BLOCKS = 2  # of the device's own
-IN_A_ROW = 0.125  # of a block: callbacks closer than this, and as much too early, are one request
+ASTRAY_NS = 50_000_000  # an error this large starts the loop anew at once,
+ASTRAY_S = 0.1  # and one above LATE_BLOCKS after this time
+LATE_BLOCKS = 2  # in blocks of the device
+# A callback within this share of a block after the last one, and early by as much, belongs to the
+# same request.
+IN_A_ROW = 0.125
 LONGEST_PERIOD_S = 0.5
 AHEAD_WINDOW_S = 0.1
 LOAD_MEMORY_S = 1.0
@@ -42,32 +44,32 @@ METERS = np.dtype(
         ("rate", np.float64),  # Hz
         ("running", np.int64),  # 1 while inside the callback
         ("frame", np.int64),  # the block's first
-        ("loop", LOOP),  # when it was due, and how late the request began
+        ("loop", LOOP),  # its time, and the error of the request
         ("block", np.int64),  # frames of the last callback
-        ("ended_ns", np.int64),  # when the last callback returned
+        ("ended_ns", np.int64),  # time at which the last callback returned
         # Requests of the device: a callback, or several in a row.
         ("asked_from", np.int64),  # first frame of the last request
-        ("astray", np.int64),  # frames of requests in a row that were far from due
-        ("ahead_window", np.int64),  # a running number
+        ("astray", np.int64),  # frames of successive requests with a large error
+        ("ahead_window", np.int64),  # its number
         ("ahead_from", np.int64),  # first frame of this window
-        ("ahead_now", np.float64),  # in this window
+        ("ahead_now", np.float64),  # as `ahead`, of this window
         ("longest_now", np.int64),
-        ("ahead", np.float64),  # frames played before their time, at most; of the last window
-        ("longest", np.int64),  # frames of the longest request; of the last window
-        # How the callback fares.
+        ("ahead", np.float64),  # most frames computed before their time in the last window
+        ("longest", np.int64),  # frames of the longest request in the last window
+        # The callback.
         ("callbacks", np.int64),
-        ("late_callbacks", np.int64),  # begun LATE_BLOCKS or more after they were due
-        ("missed", np.int64),  # took more CPU time than the block lasts
-        ("underruns", np.int64),  # as the device reports them
+        ("late_callbacks", np.int64),  # that began LATE_BLOCKS or more after their time
+        ("missed", np.int64),  # that took more CPU time than the block lasts
+        ("underruns", np.int64),  # reported by the device
         ("load", np.float64),  # CPU time over the deadline, mean of a second
         ("worst_load", np.float64),
         ("loads", np.int64, LOAD_BINS),
-        # What is heard, over windows of a sixtieth of a second.
-        ("window", np.int64),  # a running number
+        # Level, over windows of a sixtieth of a second.
+        ("window", np.int64),  # its number
         ("window_frames", np.int64),
         ("window_peak", np.float64),
         ("window_power", np.float64),
-        ("peak", np.float64),  # of the last whole window
+        ("peak", np.float64),  # of the last full window
         ("rms", np.float64),
         ("shapes", np.float32, (STRINGS, SHAPE_POINTS)),  # m; displacement, end to end
         ("unconverged", np.int64),
@@ -84,7 +86,7 @@ METERS = np.dtype(
 
 @compiled
 def hear(t: Any, sample: float) -> None:
-    """Add one sample to the level of this window."""
+    """Add a sample to the level of this window. Real time: safe."""
     t.window_peak = max(t.window_peak, abs(sample))
     t.window_power += sample * sample
     t.window_frames += 1
@@ -92,7 +94,7 @@ def hear(t: Any, sample: float) -> None:
 
 @compiled
 def close_window(t: Any, m: Any, s: Any) -> None:
-    """Publish level and string shapes where a window is full."""
+    """Take level and string shapes at the end of a window. Real time: safe."""
     if t.window_frames < WINDOW_S * t.rate:
         return
     t.peak, t.rms = t.window_peak, math.sqrt(t.window_power / t.window_frames)
@@ -106,12 +108,20 @@ def close_window(t: Any, m: Any, s: Any) -> None:
 
 @compiled
 def tell_time(t: Any, frame: int, started_ns: int, frames: int) -> None:
-    """Follow the starts of the device's requests with the delay-locked loop."""
+    """Update the time of frames at the start of a callback. Real time: safe.
+
+    Parameters
+    ----------
+    frame, frames : int
+        First frame of the block, and its length.
+    started_ns : int
+        Time of the callback's start.
+    """
     due = predicted_ns(t.loop, t.block)
     error = started_ns - due
     close_ns = IN_A_ROW * t.block * 1e9 / t.rate
     if t.callbacks > 0 and started_ns - t.ended_ns < close_ns and error < -close_ns:
-        # Of the same request; unless we only catch up, and time is not where we thought.
+        # Of the same request, unless the error is so large that the loop's time must be wrong.
         is_lost = -error > max(ASTRAY_NS, LATE_BLOCKS * t.longest * 1e9 / t.rate)
         t.loop.due_ns = due
     else:
@@ -122,14 +132,14 @@ def tell_time(t: Any, frame: int, started_ns: int, frames: int) -> None:
     t.frame = frame
     t.block = frames
     t.callbacks += 1
-    # As if a request took no time, so that it does not hang on how long we compute.
+    # As if requests took no time, so that the measure does not depend on computing time.
     late = t.loop.error_ns / t.loop.ns_per_frame
     t.ahead_now = max(t.ahead_now, frame + frames - t.asked_from - late)
 
 
 @compiled
 def begin_request(t: Any, frame: int, due: int, error: int) -> bool:
-    """Take one step of the loop; return whether it is far off and has to start anew."""
+    """Update the loop at a new request; return whether its error is too large to go on."""
     asked = min(frame - t.asked_from, int(LONGEST_PERIOD_S * t.rate))
     t.asked_from = frame
     t.longest_now = max(t.longest_now, asked)
@@ -143,13 +153,21 @@ def begin_request(t: Any, frame: int, due: int, error: int) -> bool:
         t.late_callbacks += 1
     follow(t.loop, due, error, asked, t.rate)
     t.astray = t.astray + asked if abs(error) > late else 0
-    # A device is late for a moment, but never early.
+    # A device may be late for a moment, but never early.
     return bool(abs(error) > ASTRAY_NS or -error > late or t.astray > ASTRAY_S * t.rate)
 
 
 @compiled
 def account(t: Any, cpu_ns: int, flags: int) -> None:
-    """Book the CPU time of a callback against its deadline."""
+    """Count the load and under-runs of a callback. Real time: safe.
+
+    Parameters
+    ----------
+    cpu_ns : int
+        CPU time that it took.
+    flags : int
+        PortAudio's PaStreamCallbackFlags.
+    """
     seconds = t.block / t.rate
     load = 1e-9 * cpu_ns / seconds
     t.load = one_pole(t.load, load, min(1.0, seconds / LOAD_MEMORY_S))

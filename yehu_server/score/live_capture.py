@@ -1,4 +1,4 @@
-"""The capture of a session while it is played."""
+"""Capture a session while it is played."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from yehu_server.score.capture import CaptureWriter
 
 
 class LiveCapture:
-    """Writes down what an instrument applies; a full disk ends it, and nothing else.
+    """Writes the events that an instrument applies to a file; a full disk ends only the capture.
 
     Parameters
     ----------
     instrument : Instrument
-        Which reports its events (``Instrument.report_events``) from the first frame on.
+        It must report its events (``Instrument.report_events``) from the first frame on.
     seed : int
-        Of the player's variation.
+        Seed of the player's variation.
     said : callable
-        Told in a line when the capture ends by itself.
+        Called with a line when the capture ends by itself.
     overwrite : bool
-        Whether to take the place of an older file.
+        Whether to replace an older file.
 
     Raises
     ------
@@ -48,12 +48,12 @@ class LiveCapture:
             tensions=[silk.T for silk in instrument.quantities.strings],
             overwrite=overwrite,
         )
-        self._rests = 0  # written so far
+        self._rests = 0  # number of those written
         self._unreported = 0
         self.is_whole = True
 
     def keep_up(self) -> None:
-        """Write what was applied since the last call."""
+        """Write the events that were applied since the last call."""
         if self._writer is not None:
             try:
                 self._write(self._writer)
@@ -61,7 +61,7 @@ class LiveCapture:
                 self._end(error)
 
     def close(self) -> None:
-        """End the capture at the frame after the last one played."""
+        """Write the last events, and end the capture after the last frame played."""
         self.keep_up()
         writer, self._writer = self._writer, None
         if writer is not None:
@@ -71,7 +71,7 @@ class LiveCapture:
                 self._end(error)
 
     def discard(self) -> None:
-        """End it, and leave no file."""
+        """End the capture and remove its file."""
         if self._writer is not None:
             self._writer.discard()
         self._writer = None

@@ -242,8 +242,10 @@ class Server:
             self._capture.keep_up()
         self._troubles.look(
             {
-                "the state was lost and put back to rest": int(self.instrument.meters()["lost"]),
-                "events found the ring full": self.instrument.dropped_events,
+                "the model lost its state and was put back to rest": int(
+                    self.instrument.meters()["lost"]
+                ),
+                "events were dropped, as the ring was full": self.instrument.dropped_events,
                 "OSC packets were dropped by the system": self.osc.traffic.kernel_drops,
             }
         )

@@ -49,7 +49,7 @@ def test_words_that_fit_several_are_refused_with_their_names():
 
 
 def test_what_fits_none_is_refused_with_all_names():
-    with pytest.raises(DeviceError, match=r"no audio output fits 'usb' .*HiFiBerry.*system"):
+    with pytest.raises(DeviceError, match=r"no audio output matches 'usb' .*HiFiBerry.*system"):
         choose(DEVICES, "usb")
 
 

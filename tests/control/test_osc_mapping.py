@@ -46,7 +46,7 @@ def test_patterns_reach_ones_own_addresses_too(own_stage, wire):
     assert say(own_stage, wire, "/fader{2,3}", 1) == []
     assert own_stage.player.value("/playing/expression") == 0.0
     assert own_stage.player.value(VOLUME) == 0.0
-    assert say(own_stage, wire, "/fadr*", 1) == ["/fadr* the pattern fits no address"]
+    assert say(own_stage, wire, "/fadr*", 1) == ["/fadr* the pattern matches no address"]
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,7 @@ def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched
     assert send(21) == 1.0
     path.write_text(BIND.format(21) + BIND.format(22))
     patience(lambda: len(watched.said) == 2, "the mapping to be taken up")
-    assert watched.said[1] == "the mapping mine has changed, and is taken up"
+    assert watched.said[1] == "the mapping mine has changed; it is used from now on"
     assert watched.player.pitch is not None
     assert send(20) == 1.0
     assert send(22) == 0.0

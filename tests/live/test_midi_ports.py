@@ -562,7 +562,7 @@ def test_a_missing_name_is_said_once_however_often_the_midi_system_begins_anew()
     ports = MidiPorts(SimpleNamespace(), MidiOptions(), said.append)
     for _ in range(2):
         ports._heard({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
-    assert said == ["MIDI: no input is like 'breath' yet (there are: keys, synth)"]
+    assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]
 
 
 def test_a_breath_controller_on_a_port_of_its_own_plays_the_keyboards_note(
@@ -573,7 +573,7 @@ def test_a_breath_controller_on_a_port_of_its_own_plays_the_keyboards_note(
         *("--mapping", "wind", "--audio-device", "null"),
     )
     osc = server.osc()
-    server.said("no input is like 'breath' yet")
+    server.said("no input matches 'breath' yet")
     for box in ("keystep", "breath"):
         sender.tell(f"open {box} out")
         server.said(f"MIDI: {box}:out is connected", SOON_S)

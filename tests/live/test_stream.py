@@ -186,7 +186,7 @@ def refused(jackd, folder: Path, *words: object) -> str:
 def test_a_device_that_is_not_there_is_refused(jackd, tmp_path):
     jackd.start(512)
     line = refused(jackd, tmp_path, "--audio-device", "hifi", *files(tmp_path))
-    assert line == f"yehu-server: no audio output fits 'hifi' (there are: {DEVICE})"
+    assert line == f"yehu-server: no audio output matches 'hifi' (there are: {DEVICE})"
 
 
 @pytest.fixture(scope="module")

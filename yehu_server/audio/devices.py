@@ -124,5 +124,5 @@ def choose(devices: Sequence[AudioDevice], wanted: str | None) -> AudioDevice:
         return fitting[0]
     names = "; ".join(device.full_name for device in fitting or devices) or "none"
     if fitting:
-        raise DeviceError(f"several audio outputs fit {wanted!r}: {names}")
-    raise DeviceError(f"no audio output fits {wanted!r} (there are: {names})")
+        raise DeviceError(f"several audio outputs match {wanted!r}: {names}")
+    raise DeviceError(f"no audio output matches {wanted!r} (there are: {names})")

@@ -90,7 +90,7 @@ class Framing:
 def _check_start(first: bytearray) -> None:
     """Raise FramingError where no packet begins with a byte."""
     if first and first not in STARTS:
-        raise FramingError("this is no OSC")
+        raise FramingError("not OSC")
 
 
 def _decoded(frame: bytes) -> bytes:

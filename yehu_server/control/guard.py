@@ -37,7 +37,7 @@ def refusal(hosts: Sequence[str], origins: Sequence[str], names: frozenset[str])
     port = PORTS.get(scheme.lower()) if len(origins) == 1 else None
     is_ours = port is not None and _place(origin, port) == _place(hosts[0], port)
     if not is_ours or not (host in names or is_here(host)):
-        return "a page from elsewhere may not ask"
+        return "requests of foreign pages are refused"
     return ""
 
 

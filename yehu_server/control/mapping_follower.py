@@ -52,4 +52,4 @@ class MappingFollower:
         if mapping is not None:
             self._player.remap(mapping, frame=self._player.frame_of())
             self._changed()
-            self._said(f"the mapping {mapping.name} has changed, and is taken up")
+            self._said(f"the mapping {mapping.name} has changed; it is used from now on")

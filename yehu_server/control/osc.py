@@ -381,5 +381,5 @@ def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[st
     except PatternError as error:
         raise RefusedError(str(error)) from error
     if not found:
-        raise RefusedError("the pattern fits no address")
+        raise RefusedError("the pattern matches no address")
     return found

@@ -64,7 +64,7 @@ def steps(packet: bytes) -> Iterator[Message | None]:
                 yield None
         yield from _content(data, None, DEEPEST)
     except (struct.error, UnicodeDecodeError) as error:
-        raise PacketError("cut short, or no text") from error
+        raise PacketError("cut short, or not text") from error
 
 
 def _content(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message | None]:
@@ -78,7 +78,7 @@ def _content(data: memoryview, due_s: float | None, depth: int) -> Iterator[Mess
 
 def _bundle(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message | None]:
     if depth == 0:
-        raise PacketError("bundles too deep in bundles")
+        raise PacketError("bundles are nested too deep")
     yield None
     tag = struct.unpack_from(">II", data, 8)
     if tag != IMMEDIATELY:
@@ -88,7 +88,7 @@ def _bundle(data: memoryview, due_s: float | None, depth: int) -> Iterator[Messa
         (size,) = struct.unpack_from(">i", data, place)
         start, place = place + 4, place + 4 + size
         if size <= 0 or size % 4 != 0 or place > len(data):
-            raise PacketError("an element of a bundle is not as long as it says")
+            raise PacketError("an element of a bundle has a wrong length")
         yield from _content(data[start:place], due_s, depth - 1)
 
 
@@ -108,7 +108,7 @@ def _message(data: memoryview, due_s: float | None) -> Message:
     for tag in tags[1:]:
         if tag == "[":
             if len(lists) > DEEPEST:
-                raise PacketError("lists too deep in lists")
+                raise PacketError("arrays are nested too deep")
             lists.append([])
             lists[-2].append(lists[-1])
         elif tag == "]" and len(lists) > 1:
@@ -150,7 +150,7 @@ class _Reader:
             (size,) = struct.unpack_from(">i", self._data, self.place)
             start = self.place + 4
             if size < 0 or start + size > len(self._data):
-                raise PacketError("a blob is not as long as it says")
+                raise PacketError("a blob has a wrong length")
             self._skip_to(start + size)
             return self._bytes[start : start + size]
         raise PacketError(f"unknown type {tag!r}")

@@ -126,7 +126,7 @@ class MidiPorts:
         if pattern not in self._missing:  # once, however often the process starts
             self._missing.add(pattern)
             there = ", ".join(present) or "none"
-            self._changed(f"MIDI: no input is like {pattern!r} yet (there are: {there})")
+            self._changed(f"MIDI: no input matches {pattern!r} yet (there are: {there})")
 
     def _receive(self, event: Message) -> None:
         self.received += 1

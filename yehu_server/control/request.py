@@ -51,7 +51,7 @@ class Request:
             Where it has.
         """
         if not self.peer.takes_more:
-            raise RefusedError("there are too many answers on their way to you")
+            raise RefusedError("too many answers to you are waiting")
 
     def numbers(self, least: int, most: int | None = None) -> list[float]:
         """The arguments as finite numbers.

@@ -305,7 +305,7 @@ class OscPorts:
         else:
             return True
         if silent is not None:
-            self._warn(f"{silent.name}: silent for long; its place is another's")
+            self._warn(f"{silent.name}: closed for another connection, as it was silent for long")
             silent.cut_off()
         return silent is not None
 

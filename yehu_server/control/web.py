@@ -179,10 +179,10 @@ class WebServer:
 
     def _check(self, request: web.Request) -> None:
         if request.remote is None or request.remote not in self._allowed:
-            raise web.HTTPForbidden(text="not for this address\n")
+            raise web.HTTPForbidden(text="this address is not allowed\n")
         headers = request.headers
         if not all(map(_is_text, (request.path, *headers.values()))):
-            refused = web.HTTPBadRequest(text="no UTF-8\n")
+            refused = web.HTTPBadRequest(text="not UTF-8\n")
             refused.force_close()
             raise refused
         reason = refusal(headers.getall("Host", []), headers.getall("Origin", []), self._names)

@@ -90,4 +90,4 @@ class LiveCapture:
     def _end(self, error: OutputError) -> None:
         self._writer = None
         self.is_whole = False
-        self._said(f"capture ended: {error}; it is kept as far as it got")
+        self._said(f"capture ended: {error}; what was written is kept")

@@ -11,6 +11,8 @@ from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_address
 
+LONGEST_SUBSCRIPTION_S = 3600.0
+
 
 @dataclass(frozen=True)
 class Argument:
@@ -43,7 +45,7 @@ def _of(address: str, name: str) -> Argument:
 
 
 NOTE = Argument("note", lo=0.0, hi=127.0, unit="MIDI note")
-SECONDS = Argument("seconds", lo=0.0, hi=3600.0, unit="s")
+SECONDS = Argument("seconds", lo=0.0, hi=LONGEST_SUBSCRIPTION_S, unit="s")
 NAME = Argument("name", "s")
 FROM, TO = Argument("from", "s"), Argument("to", "s")
 AMOUNT = Argument("amount", lo=0.0, hi=1.0)

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from yehu_server.control.backlog import Backlog
+from yehu_server.control.calls import LONGEST_SUBSCRIPTION_S
 from yehu_server.control.clients import Clients
 from yehu_server.control.learn_calls import LearnCalls
 from yehu_server.control.packets import Message, PacketError, answer, pack, steps, unpack
@@ -33,7 +34,7 @@ Act = Callable[[Request], None]
 
 LONGEST_PATTERN = 256
 DUE_AT_ONCE = 1024  # scheduled messages taken up at a time
-SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
+SUBSCRIBED_S = 60.0
 
 
 class UnknownError(Exception):

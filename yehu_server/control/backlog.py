@@ -26,8 +26,8 @@ MOST_BYTES = 16 << 20  # of all waiting packets
 TURN_NS, SLICE_NS = 2_000_000, 500_000  # of one call of `work`, and of one sender's turn in it
 FORGIVEN_NS = 1_000_000_000  # half-life of the time that a sender has used
 RESCALE_NS = 500 * FORGIVEN_NS  # before numbers grow too large
-LITTLE_BYTES = 1 << 10
-LONG_TAKES_NS = 1_000_000_000.0  # charged beforehand for a longer one
+# A packet longer than the first is charged the second beforehand.
+LITTLE_BYTES, LONG_TAKES_NS = 1 << 10, 1_000_000_000.0
 # A sender is known after the first time, until it is silent for the second. One that is not known
 # is charged as if it had used the third.
 STRANGE_NS, SILENT_NS = 1_000_000_000, 60_000_000_000
@@ -50,7 +50,7 @@ class Work(Generic[T]):
 
 @dataclass(slots=True, eq=False)
 class Host:
-    """The time that all senders of a host have used (ns), each part times its scale then."""
+    """The time that all senders of a host have used (ns), weighted by `Backlog._scale`."""
 
     took: float = 0.0
 
@@ -204,7 +204,7 @@ class Backlog(Generic[T]):
             self._began_ns, passed_ns = now_ns, 0
         return math.pow(2.0, passed_ns / FORGIVEN_NS)
 
-    # -- who they are --------------------------------------------------------------------------
+    # -- senders -------------------------------------------------------------------------------
 
     def _sender(self, peer: Peer, now_ns: int) -> Sender[T]:
         sender = self._senders.get(peer)

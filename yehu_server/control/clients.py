@@ -110,7 +110,7 @@ class Clients:
             or client.listens
         }
 
-    # -- what they are told ------------------------------------------------------------------
+    # -- what clients are sent ---------------------------------------------------------------
 
     def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
         """Send a peer the values that it has set, with the next flush."""
@@ -192,7 +192,7 @@ class Clients:
         reason = reason if isinstance(reason, str) else reason()
         peer.send(pack(f"{self.prefix}/error", shortened(address), shortened(reason)))
 
-    # -- when --------------------------------------------------------------------------------
+    # -- flushing ----------------------------------------------------------------------------
 
     @property
     def _is_watched(self) -> bool:

@@ -296,7 +296,7 @@ class OscHandler:
         self._player.reset(frame=call.frame)
         self.clients.echo(call.peer, BY_ADDRESS)
 
-    # -- the desk ----------------------------------------------------------------------------
+    # -- services ----------------------------------------------------------------------------
 
     def _status(self, call: Request) -> None:
         call.check_peer()

@@ -147,8 +147,8 @@ class Server:
             self._follower = MappingFollower(self.player, options.reread, changed, said)
         services = announced(self.osc, self.web, options.announce)
         self._announcer = Announcer(services, said) if services else None
-        ways_in = (self.osc, self.web, self._announcer, self.midi)
-        self._ways_in = [way for way in ways_in if way is not None]
+        self._ways_in: list[OscPorts | WebServer | Announcer | MidiPorts] = [self.osc]
+        self._ways_in += [way for way in (self.web, self._announcer, self.midi) if way is not None]
         self._ending = threading.Event()
         self._troubles = Troubles(said)
         keep = (self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", said)

@@ -24,7 +24,9 @@ class Troubles:
     def __init__(self, said: Callable[[str], None]) -> None:
         self._said = said
         self._told: dict[str, int] = {}
-        self._allowances = defaultdict(partial(Allowance, LINES_PER_S, LINES_AT_ONCE))
+        self._allowances: dict[str, Allowance] = defaultdict(
+            partial(Allowance, LINES_PER_S, LINES_AT_ONCE)
+        )
 
     def look(self, counts: Mapping[str, int]) -> None:
         """Report counts that have grown since they were last reported.

@@ -139,7 +139,6 @@ class Server:
         self.takes = Takes(self.instrument, options.recordings, said)
         self._capture: LiveCapture | None = None
         self.is_interruptible = False  # whether `stop` may be interrupted by an exception now
-        self._hurry = threading.Event()
         self.midi = MidiPorts(self.player, options.midi, said) if options.midi else None
         self._follower: MappingFollower | None = None
         if options.reread is not None:
@@ -149,7 +148,7 @@ class Server:
         self._announcer = Announcer(services, said) if services else None
         self._ways_in: list[OscPorts | WebServer | Announcer | MidiPorts] = [self.osc]
         self._ways_in += [way for way in (self.web, self._announcer, self.midi) if way is not None]
-        self._ending = threading.Event()
+        self._ending, self._hurry = threading.Event(), threading.Event()
         self._troubles = Troubles(said)
         keep = (self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", said)
         self._keeper = threading.Thread(target=keep_on, args=keep, name="keeper", daemon=True)

@@ -133,13 +133,13 @@ def test_the_first_byte_that_no_packet_begins_with_ends_a_stream(said):
     wrong = next(at for at in range(len(said)) if said[at : at + 1] != END)
     for before in (b"", END, slipped(SOME), slipped_bare(SOME)):
         got: list[bytes] = []
-        with pytest.raises(FramingError, match="no OSC"):
+        with pytest.raises(FramingError, match="not OSC"):
             got.extend(Framing().packets(before + said[: wrong + 1]))
         assert got == (SOME if len(before) > 1 else [])
 
 
 def test_what_is_no_osc_after_a_length_ends_a_stream_with_its_first_byte():
-    with pytest.raises(FramingError, match="no OSC"):
+    with pytest.raises(FramingError, match="not OSC"):
         read(Framing(), b"\0\0\0\x08G")
 
 

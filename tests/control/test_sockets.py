@@ -527,7 +527,7 @@ def test_a_web_page_is_hung_up_on_with_its_first_byte_and_plays_nothing(
     page.socket.sendall(POST[:1])
     assert page.has_ended()
     assert ports.traffic.refused == 21
-    assert [record.message for record in caplog.records if "no OSC" in record.message][1:] == []
+    assert [record.message for record in caplog.records if "not OSC" in record.message][1:] == []
     assert keeper.packets == []
     patience(lambda: ports.traffic.connections == 0, "all to be gone")
 

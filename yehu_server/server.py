@@ -99,10 +99,9 @@ class Server:
         said: Callable[[str], None] = log.info,
         progress: Progress | None = None,
     ) -> None:
-        for target in (options.record, options.capture):
-            if target is not None:
-                check_target(target)
-                check_free(target, anything if options.overwrite else nothing)
+        for target in filter(None, (options.record, options.capture)):
+            check_target(target)
+            check_free(target, anything if options.overwrite else nothing)
         self.options = options
         self._said = said
         self._started = time.monotonic()
@@ -112,8 +111,8 @@ class Server:
             native.warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
             calibration = calibration_for(rate, a4=options.style.a4, progress=progress)
-            quantities = calibration.tuned(Quantities())
-            self.instrument = Instrument(rate, quantities, memory=self.output.memory.buffer)
+            memory = self.output.memory.buffer
+            self.instrument = Instrument(rate, calibration.tuned(Quantities()), memory=memory)
             self._delay = Delay(self.instrument, options.output.blocksize, options.jitter_ms)
             self.player = LivePlayer(
                 self.instrument,
@@ -284,8 +283,10 @@ class Server:
                 delay=self._delay,
                 output=self.output.state,
                 blocksize=self.options.output.blocksize,
-                handler=self.handler,
                 osc=self.osc.traffic,
+                messages=self.handler.counts,
+                scheduled=self.handler.waiting,
+                subscribers=self.handler.clients.subscribers,
                 web=WebTraffic() if self.web is None else self.web.traffic,
                 midi=self.midi,
                 recording=self.takes.names,

@@ -12,7 +12,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from yehu_server.control.osc import OscHandler
+    from yehu_server.control.osc import Counts
     from yehu_server.control.peers import Traffic, WebTraffic
     from yehu_server.control.ports import MidiPorts
     from yehu_server.engine.instrument import Instrument
@@ -43,8 +43,10 @@ class StatusSources:
     delay: Delay
     output: OutputState
     blocksize: int
-    handler: OscHandler
     osc: Traffic
+    messages: Counts
+    scheduled: int
+    subscribers: int
     web: WebTraffic
     midi: MidiPorts | None
     recording: str
@@ -216,19 +218,19 @@ STATUS: tuple[StatusValue, ...] = (
         "osc_messages",
         COUNTER,
         "OSC messages received.",
-        lambda now: now.handler.counts.messages,
+        lambda now: now.messages.messages,
     ),
     StatusValue(
         "osc_malformed",
         COUNTER,
         "Packets that are not OSC.",
-        lambda now: now.handler.counts.malformed,
+        lambda now: now.messages.malformed,
     ),
     StatusValue(
         "osc_errors",
         COUNTER,
         "Messages that could not be carried out.",
-        lambda now: now.handler.counts.errors,
+        lambda now: now.messages.errors,
     ),
     StatusValue(
         "osc_refused",
@@ -277,19 +279,19 @@ STATUS: tuple[StatusValue, ...] = (
         "osc_subscribers",
         GAUGE,
         "Number of subscribers.",
-        lambda now: now.handler.clients.subscribers,
+        lambda now: now.subscribers,
     ),
     StatusValue(
         "scheduled",
         GAUGE,
         "Messages that wait for their time tag.",
-        lambda now: now.handler.waiting,
+        lambda now: now.scheduled,
     ),
     StatusValue(
         "late_bundles",
         COUNTER,
         "Bundles that came after their time tag.",
-        lambda now: now.handler.counts.late_bundles,
+        lambda now: now.messages.late_bundles,
     ),
     StatusValue(
         "midi_ports",

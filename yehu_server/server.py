@@ -47,7 +47,6 @@ from yehu_server.playing.style import Style
 from yehu_server.score.live_capture import LiveCapture
 
 log = logging.getLogger(__name__)
-
 KEEP_EVERY_S = 0.05
 FADE_MS = 50.0  # waited for after the notes' release
 # Python's threads take short turns, so that a busy one does not delay the others.
@@ -111,8 +110,8 @@ class Server:
             native.warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
             calibration = calibration_for(rate, a4=options.style.a4, progress=progress)
-            memory = self.output.memory.buffer
-            self.instrument = Instrument(rate, calibration.tuned(Quantities()), memory=memory)
+            tuned, memory = calibration.tuned(Quantities()), self.output.memory.buffer
+            self.instrument = Instrument(rate, tuned, memory=memory)
             self._delay = Delay(self.instrument, options.output.blocksize, options.jitter_ms)
             self.player = LivePlayer(
                 self.instrument,
@@ -296,5 +295,5 @@ class Server:
 
     def _more_calls(self) -> list[Call]:
         """The calls with this server's presets, and the user's own addresses."""
-        presets = tuple(self.player.presets.names())
-        return [*preset_calls(presets), *own_calls(self.player.mapping)]
+        presets = preset_calls(tuple(self.player.presets.names()))
+        return [*presets, *own_calls(self.player.mapping)]

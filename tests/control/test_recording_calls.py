@@ -88,7 +88,7 @@ def test_a_link_in_the_recordings_that_leads_out_is_not_written_through(
 
 def test_a_folder_that_cannot_be_reached_is_answered(make_hall, tmp_path):
     hall = make_hall()
-    hall.server.options.recordings = tmp_path / ("x" * 300)  # stands in for a folder without access
+    hall.server.takes._folder = tmp_path / ("x" * 300)  # stands in for a folder without access
     client = hall.client()
     client.tell("/record/start", "take")
     message = client.next(0.5)

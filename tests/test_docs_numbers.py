@@ -191,7 +191,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
             words(layout.MAX_FINGERS),
             layout.MAX_MODES,
             layout.MAX_SECTIONS,
-            layout.MAX_NODES,
+            layout.MAX_INTERVALS,
         ),
     },
     "docs/decisions/0008-time-of-what-comes-in.md": {

@@ -32,8 +32,8 @@ def page() -> str:
         f"time; the call `{PREFIX}/release` gives back what you took over.",
     ]
     for place, title in (
-        (Place.PLAYER, "What the player goes by"),
-        (Place.ENGINE, "What the player moves, or you do directly"),
+        (Place.PLAYER, "Parameters of the player"),
+        (Place.ENGINE, "Parameters of the engine, moved by the player or by you"),
     ):
         lines += ["", f"## {title}", "", "| address | symbol | range | default | what |"]
         lines.append("|---|---|---|---|---|")

@@ -206,7 +206,9 @@ def test_the_page_of_parameters_is_fresh():
     )
 
 
-@pytest.mark.parametrize("block", page("CONTRIBUTING.md").blocks("diff"))
+@pytest.mark.parametrize(
+    "block", page("CONTRIBUTING.md").blocks("diff"), ids=lambda block: block.splitlines()[0][4:]
+)
 def test_what_the_example_changes_stands_in_the_code(block):
     head, _, body = block.partition("\n")
     source = (ROOT / head.removeprefix("--- ")).read_text(encoding="utf-8")

@@ -9,8 +9,8 @@ import pytest
 
 from yehu_server import cli
 from yehu_server.analysis.pitch import note_name
-from yehu_server.cli.config import expand
-from yehu_server.cli.serve import _options
+from yehu_server.cli.config import MOST_VALUES, parse
+from yehu_server.cli.serve_options import options_of
 from yehu_server.errors import ParameterError
 from yehu_server.report import connect_lines, query_line
 
@@ -19,8 +19,7 @@ ELSEWHERE = "core" if sys.platform != "darwin" else "windows"
 
 
 def options(*words: str):
-    parser = cli._parser()
-    return _options(parser.parse_args(expand(["serve", *words], parser)))
+    return options_of(parse(["serve", *words], cli._parser()))
 
 
 @pytest.fixture
@@ -36,9 +35,9 @@ def file(tmp_path) -> Path:
         (f"rate = 0x{'f' * 5000}", "digits"),
         (f"a{'.a' * 30_000} = 1", "parts"),
         (f"a = {'[' * 3000}{']' * 3000}", "too deep"),
-        (f"midi-in = [{'1,' * 30_000}]", "more than 1000 options"),
+        (f"midi-in = [{'1,' * 30_000}]", f"midi-in: more than {MOST_VALUES} values"),
     ],
-    ids=["help", "digits", "hex digits", "parts", "brackets", "options"],
+    ids=["help", "digits", "hex digits", "parts", "brackets", "values"],
 )
 def test_a_file_that_is_odd_gets_one_line(file, text, reason):
     file.write_text(text)
@@ -59,6 +58,7 @@ def test_any_option_may_stand_in_the_file(file):
     file.write_text(
         'rate = 48000\nmidi-in = ["keystep", "breath"]\nosc = ":9100"\nlatency = 0.01\n'
         'set = { "/bow/position" = 0.1 }\nosc_allow = ["10.0.0.0/8"]\njitter-buffer = 5\n'
+        "programs = true\nwatch = false\nannounce = false\nno-http = true\n"
     )
     read = options("--config", str(file))
     assert read.output.rate == 48000
@@ -69,6 +69,10 @@ def test_any_option_may_stand_in_the_file(file):
     assert "10.1.2.3" in read.allowed
     assert "192.168.0.1" not in read.allowed
     assert read.jitter_ms == 5.0
+    assert read.style.programs
+    assert read.reread is None
+    assert read.announce is False
+    assert read.http is None
 
 
 @pytest.mark.parametrize("order", [0, 1])
@@ -79,27 +83,47 @@ def test_the_command_line_wins_wherever_the_file_is_named(file, order):
     assert (read.output.rate, read.output.blocksize) == (44100, 64)
 
 
+def test_an_option_that_may_be_repeated_adds_to_those_of_the_file(file):
+    file.write_text('midi-in = "keystep"\n[set]\n"/playing/volume" = 0.5\n')
+    words = ("--midi-in", "breath", "--set", "/playing/volume=0.25")
+    read = options(*words, "--config", str(file))
+    assert read.midi.patterns == ["keystep", "breath"]
+    assert read.style.settings == (("/playing/volume", 0.5), ("/playing/volume", 0.25))
+
+
+def test_a_file_counts_for_its_own_command_line_only(file):
+    file.write_text('rate = 48000\nmidi-in = ["keystep"]\n')
+    parser = cli._parser()
+    parse(["serve", "--config", str(file)], parser)
+    plain = parse(["serve"], parser)
+    assert (plain.rate, plain.midi_in) == (None, [])
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("rate = 'fast'", "'fast' is not a number"),
-        ("rat = 48000", "unrecognized arguments: --rat=48000"),
+        ("rate = 'fast'", ":2: rate: 'fast' is not a number"),
+        ("rat = 48000", ":2: unknown option 'rat'; did you mean rate?"),
         ("rate = [", "not a TOML file"),
-        ("rate = 5", "not within 22050 to 192000 Hz"),
-        ("config = 'other.toml'", "cannot name another"),
-        ("rate = 1979-05-27", "expected a word or a number"),
-        ("blocksize = 0", "0 is not within 1 to 8192 frames"),
+        ("rate = 5", ":2: rate: 5 is not within 22050 to 192000 Hz"),
+        ("config = 'other.toml'", ":2: a config file cannot name another"),
+        ("rate = 1979-05-27", ":2: rate: expected text or a number"),
+        ("blocksize = 0", ":2: blocksize: 0 is not within 1 to 8192 frames"),
+        ("http = false", ":2: http: expected text or a number, got False"),
+        ("watch = 1", ":2: watch: expected true or false, got 1"),
+        ("range = 'fold'", ":2: range: 'fold' is none of transpose, clamp, skip"),
+        ("\n[set]\n'/playing/volume' = []", ":3: set: expected text or a number"),
     ],
 )
-def test_an_error_in_the_file_names_it(file, text, reason, capsys):
-    file.write_text(text)
+def test_an_error_in_the_file_names_file_and_line(file, text, reason, capsys):
+    file.write_text(f"mpe = true\n{text}")
     try:
         code = cli.main(["serve", "--config", str(file)])
     except SystemExit as leaving:
         code = leaving.code
     assert code == 2
     error = capsys.readouterr().err
-    assert reason in error
+    assert f"{file}{reason}" in error if reason.startswith(":") else reason in error
     assert str(file) in error
     assert error.count("\n") == 1
 

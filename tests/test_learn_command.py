@@ -58,7 +58,7 @@ def test_what_is_moved_is_learned_and_told(server, at, capsys):
     with a_fader_that_moves(server):
         assert main(["learn", "/playing/vibrato", "/output/gain", *at]) == 0
     out = capsys.readouterr().out
-    assert "move what shall move /yehu/playing/vibrato" in out
+    assert "move the control for /yehu/playing/vibrato" in out
     assert "/my/fader moves /yehu/output/gain, kept in" in out
     assert [bind.target for bind in load("mine/keyboard").of("/my/fader")] == ["/output/gain"]
     assert server.player.mapping == load("mine/keyboard")

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import pytest
 
 from yehu_server.audio.devices import AudioDevice
-from yehu_server.cli import _parser, main, serve
+from yehu_server.cli import _parser, log, main, serve
 from yehu_server.lines import FIRST, LAST, one_line, shortened
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
@@ -115,7 +115,7 @@ def test_log_lines_are_bounded_and_steer_nothing(monkeypatch, is_json):
     before = logging.getLogger().handlers[:]
     stderr = io.StringIO()
     try:
-        serve._set_up_log(argparse.Namespace(json_log=is_json, log_level="info"))
+        log.set_up_log(argparse.Namespace(json_log=is_json, log_level="info"))
         monkeypatch.setattr(sys, "stderr", stderr)
         logging.getLogger("yehu_server").info("MIDI: %s", EVIL + "x" * 100_000)
         logging.getLogger("yehu_server").error("a defect", exc_info=ValueError(EVIL))

@@ -297,8 +297,8 @@ def test_without_any_device_it_says_so_and_plays_in_silence(jackd, serve, tmp_pa
 
 COMPILING = """
 import argparse, logging
-from yehu_server.cli.serve import _set_up_log
-_set_up_log(argparse.Namespace(log_level="debug", json_log=False))
+from yehu_server.cli.log import set_up_log
+set_up_log(argparse.Namespace(log_level="debug", json_log=False))
 print(logging.getLogger("numba").getEffectiveLevel())
 """
 

@@ -1,4 +1,4 @@
-"""The command line: words to calls. Each command has a module of its name."""
+"""The command line. Each command has a module of its name."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from yehu_server.cli import (
     sweep,
 )
 from yehu_server.cli.arguments import Parser
-from yehu_server.cli.config import expand
+from yehu_server.cli.config import parse
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import YehuError
 
@@ -36,9 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             signal.signal(getattr(signal, name), _interrupt)
     logging.basicConfig(format="yehu-server: %(message)s", level=logging.WARNING)
     try:
-        parser = _parser()
-        words = expand(sys.argv[1:] if argv is None else argv, parser)
-        arguments = parser.parse_args(words)
+        arguments = parse(sys.argv[1:] if argv is None else argv, _parser())
         code: int = arguments.run(arguments)
     except YehuError as error:
         warn(str(error))

@@ -13,7 +13,7 @@ examples:
   yehu-server devices
   yehu-server serve --audio-device "system, JACK" --midi-in keystep
 
-Any words that only one device has will do as its name.
+A device may be named by any words that no other device has.
 """
 
 
@@ -23,7 +23,7 @@ def add_to(commands: Any) -> None:
         commands,
         "devices",
         run=run,
-        help="the audio outputs and MIDI inputs there are",
+        help="list audio outputs and MIDI inputs",
         description="List the audio outputs and MIDI inputs that serve can use.",
         epilog=EXAMPLES,
     )

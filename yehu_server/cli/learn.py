@@ -20,7 +20,7 @@ examples:
   yehu-server learn
   yehu-server learn --forget /playing/vibrato
 
-Begin `yehu-server serve` before. What is learned is kept in a mapping file of yours, at once.
+Start `yehu-server serve` first. Binds are saved at once, in a mapping file of your own.
 """
 LONGEST_S = 60.0
 
@@ -31,17 +31,24 @@ def add_to(commands: Any) -> None:
         commands,
         "learn",
         run=run,
-        help="let a knob, pedal or OSC address move a parameter of a running server",
-        description="Let what you move next move a parameter of a running server (MIDI learn).",
+        help="bind a knob, pedal or OSC address to a parameter of a running server",
+        description="Bind the control that you move next to a parameter of a running server.",
         epilog=EXAMPLES,
     )
     parser.add_argument(
-        "parameters", nargs="*", metavar="ADDRESS", help="of parameters; asked for if none is named"
+        "parameters",
+        nargs="*",
+        metavar="ADDRESS",
+        help="the parameters; without any, the command asks for them",
     )
     parser.add_argument(
-        "--soft", action="store_true", help="soft take-over: wait until the knob is where it is"
+        "--soft",
+        action="store_true",
+        help="soft take-over: the knob has no effect until it reaches the present value",
     )
-    parser.add_argument("--forget", action="store_true", help="forget what was learned for these")
+    parser.add_argument(
+        "--forget", action="store_true", help="remove the binds of these parameters"
+    )
     add_server(parser)
 
 
@@ -66,7 +73,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
         return
     client.send("/learn", address, int(arguments.soft))
     (target,) = client.answer("/learning").arguments
-    tell(f"move what shall move {target} ... (Ctrl-C ends)", flush=True)
+    tell(f"move the control for {target} ... (Ctrl-C ends)", flush=True)
     try:
         for message in client.answers(LONGEST_S):
             if message.address == "/learned":
@@ -81,7 +88,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
 
 
 def _ask(client: OscClient, arguments: argparse.Namespace) -> None:
-    """Ask for one parameter after another, until an empty line."""
+    """Ask for parameters until an empty line."""
     if not sys.stdin.isatty():
         raise ParameterError("name the parameters to learn, such as /playing/vibrato")
     _complete()

@@ -10,7 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_action, add_command, add_server, server_of, target
+from yehu_server.cli.arguments import add_action, add_command, add_server, server_of
+from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import MappingError, ParameterError
 
@@ -28,8 +29,8 @@ examples:
   yehu-server mappings convert wind -o my-wind.toml
 """
 
-LOOKS_PER_SECOND = 5
-# What a server tells of each binding; the place is below 0 where nothing was moved.
+REFRESHES_PER_SECOND = 5
+# The values of a /binding message; `place` is negative where the source was never moved.
 BINDING = ("source", "target", "from", "to", "curve", "terms", "place", "value")
 
 
@@ -38,35 +39,37 @@ def add_to(commands: Any) -> None:
     parser = add_command(
         commands,
         "mappings",
-        help="what controllers move: mappings that come along, and your own",
-        description="List the mappings, show what one moves, check or convert files of your own.",
+        help="list, show, check and convert mappings: what controllers move",
+        description="List and show mappings; check or convert files of your own.",
         epilog=EXAMPLES,
     )
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
-    add_action(actions, "list", _list, "the mappings that come along, and those in your folder")
-    show = add_action(actions, "show", _show, "what controllers move in one")
+    add_action(actions, "list", _list, "list the shipped mappings and your own")
+    show = add_action(actions, "show", _show, "show the binds of a mapping")
     show.add_argument(
         "mapping", nargs="?", metavar="NAME", help="a mapping's name, or a file (default: keyboard)"
     )
     show.add_argument(
         "--live",
         action="store_true",
-        help="what moves what in a running server, and where it is now; Ctrl-C ends",
+        help="the binds of a running server, with present positions and values; Ctrl-C ends",
     )
     add_server(show)
-    check = add_action(actions, "check", _check, "whether files are right")
+    check = add_action(actions, "check", _check, "check files and report all errors")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
-    convert = add_action(actions, "convert", _convert, "one as a file of today's form")
+    convert = add_action(
+        actions, "convert", _convert, "write a mapping as a file in canonical form"
+    )
     convert.add_argument(
         "mapping",
         metavar="FILE",
-        help="a file, also of what show --json prints, or a mapping's name",
+        help="a file, also one with the output of show --json, or the name of a mapping",
     )
     convert.add_argument(
         "-o", "--output", type=target, metavar="OUT", help="the file to write (default: print it)"
     )
     convert.add_argument(
-        "--overwrite", action="store_true", help="replace OUT where it is there, also the FILE"
+        "--overwrite", action="store_true", help="replace OUT if it exists, even if it is FILE"
     )
     for action in (actions.choices["list"], show):
         action.add_argument("--json", action="store_true", help="print one JSON object")
@@ -91,7 +94,7 @@ def _about(name: str) -> str:
 
     try:
         return load(name, own_first=True).about
-    except MappingError as error:  # one that is wrong does not hide the others
+    except MappingError as error:  # list the others all the same
         return str(error)
 
 
@@ -111,7 +114,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _show_live(arguments: argparse.Namespace) -> int:
-    """Show the bindings of a running server: once, or on a terminal as they move."""
+    """Show the binds of a running server: once, or on a terminal as they move."""
     from rich.console import Console
     from rich.live import Live
 
@@ -131,7 +134,7 @@ def _show_live(arguments: argparse.Namespace) -> int:
             return 0
         with Live(bindings_table(rows), console=console, auto_refresh=False) as live:
             while True:
-                time.sleep(1.0 / LOOKS_PER_SECOND)
+                time.sleep(1.0 / REFRESHES_PER_SECOND)
                 live.update(bindings_table(_bindings(client)), refresh=True)
 
 
@@ -143,7 +146,7 @@ def _bindings(client: OscClient) -> list[list[Any]]:
             rows.append(list(message.arguments))
         elif message.address == "/bindings":
             return rows
-    client.answer("/bindings")  # none came: says so
+    client.answer("/bindings")  # raises: there was no answer
     return rows
 
 
@@ -152,7 +155,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
     code = 0
     for file in arguments.files:
-        # A path, also where it has no ending: a mapping's name would be no file.
+        # Always a path: without an ending, `load` would take it as the name of a mapping.
         try:
             mapping = load(str(file if file.suffix else Path() / file.absolute()))
         except MappingError as error:
@@ -172,13 +175,13 @@ def _convert(arguments: argparse.Namespace) -> int:
 
     path = find_file(arguments.mapping, own_first=True)
     text = text_of(path)
-    is_json = text.lstrip().startswith("{")  # as no TOML does
+    is_json = text.lstrip().startswith("{")  # no TOML does
     data = json_of(path, text) if is_json else toml_of(path, text)
-    sheet = sheet_of(path, data, "" if is_json else text)
-    with_bases(path, sheet)  # which it needs to be of use
-    if arguments.output is not None and sheet.name == path.stem:
-        sheet = replace(sheet, name=arguments.output.stem)
-    converted = as_toml(sheet) if is_json else tidied(sheet, text)
+    contents = sheet_of(path, data, "" if is_json else text)
+    with_bases(path, contents)  # raises where a base is wrong
+    if arguments.output is not None and contents.name == path.stem:
+        contents = replace(contents, name=arguments.output.stem)
+    converted = as_toml(contents) if is_json else tidied(contents, text)
     if arguments.output is None and sys.stdout.isatty():
         tell(converted.rstrip("\n"))
     elif arguments.output is None:

@@ -8,7 +8,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_action, add_command, add_presets_folder
+from yehu_server.cli.arguments import add_action, add_command
+from yehu_server.cli.style_options import add_presets_folder
 from yehu_server.cli.terminal import tell, warn
 
 EXAMPLES = """\
@@ -24,18 +25,18 @@ def add_to(commands: Any) -> None:
     parser = add_command(
         commands,
         "presets",
-        help="sounds: those that come along, and your own",
-        description="List the presets, show what is in one, or check files of your own.",
+        help="list, show and check presets",
+        description="List and show presets; check files of your own.",
         epilog=EXAMPLES,
     )
     actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
-    listed = add_action(actions, "list", _list, "the presets")
-    show = add_action(actions, "show", _show, "the values of one")
-    show.add_argument("preset", metavar="NAME", help="a preset's name, or a file")
+    listed = add_action(actions, "list", _list, "list the presets")
+    show = add_action(actions, "show", _show, "show the values of a preset")
+    show.add_argument("preset", metavar="NAME", help="the name of a preset, or a file")
     for action in (listed, show):
         add_presets_folder(action)
         action.add_argument("--json", action="store_true", help="print one JSON object")
-    check = add_action(actions, "check", _check, "whether files are right")
+    check = add_action(actions, "check", _check, "check files and report all errors")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
 
 

@@ -11,17 +11,13 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import (
     add_command,
     add_output,
-    add_playing,
     add_reporting,
-    channel,
     check_output,
-    compiling,
-    decibels,
     progress_bar,
-    seconds,
-    style_of,
-    whole,
+    warn_of_compiling,
 )
+from yehu_server.cli.converters import channel, decibels, seconds, whole
+from yehu_server.cli.style_options import add_playing, style_of
 from yehu_server.cli.terminal import tell, warn
 
 if TYPE_CHECKING:
@@ -42,11 +38,11 @@ def add_to(commands: Any) -> None:
         commands,
         "render",
         run=run,
-        help="MIDI files into a sound file",
-        description="Play MIDI files on the instrument, one after another, into a sound file.",
+        help="render MIDI files to a sound file",
+        description="Render MIDI files, one after another, to a sound file.",
         epilog=EXAMPLES,
     )
-    parser.add_argument("midi", nargs="+", type=Path, metavar="IN.mid", help="what to play")
+    parser.add_argument("midi", nargs="+", type=Path, metavar="IN.mid", help="the MIDI files")
     add_output(parser)
     parser.add_argument(
         "--rate",
@@ -55,12 +51,14 @@ def add_to(commands: Any) -> None:
         metavar="HZ",
         help="sample rate (default: 44100)",
     )
-    parser.add_argument("--format", choices=("wav", "flac"), help="default: by the ending of OUT")
+    parser.add_argument(
+        "--format", choices=("wav", "flac"), help="file format (default: by the ending of OUT)"
+    )
     parser.add_argument(
         "--subtype",
         choices=("16", "24", "float"),
         default="24",
-        help="how samples are stored (default: 24 bits)",
+        help="sample format (default: 24 bits)",
     )
     parser.add_argument(
         "--channel",
@@ -73,14 +71,14 @@ def add_to(commands: Any) -> None:
         "--tail",
         type=seconds,
         metavar="SECONDS",
-        help="how long to go on after the end of the score, up to 600 "
-        "(default: until 80 dB under full scale, at most 5 s)",
+        help="time after the end of the score, up to 600 "
+        "(default: until 80 dB below full scale, at most 5 s)",
     )
     parser.add_argument(
         "--gain-db",
         type=decibels,
         metavar="DB",
-        help="gain before the limiter, -60 to 24 (default: 0, or as --preset has it)",
+        help="gain before the limiter, -60 to 24 (default: 0, or that of --preset)",
     )
     parser.add_argument(
         "--normalize", action="store_true", help="scale the result to a peak of -1 dBFS"
@@ -111,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
     instrument = [] if arguments.instrument is None else [arguments.instrument]
     check_apart({"-o": arguments.output}, [*arguments.midi, *style.files, *instrument])
     may_replace = check_output(arguments)
-    _tell_of_own(arguments, style)
+    _warn_of_own(arguments, style)
     channels = arguments.channel
     options = Options(
         rate=arguments.rate,
@@ -127,8 +125,8 @@ def run(arguments: argparse.Namespace) -> int:
     score = concatenate([read_score(path) for path in arguments.midi])
     for warning in score.warnings:
         warn(warning)
-    with compiling(arguments):
-        warm_up()
+    warn_of_compiling(arguments)
+    warm_up()
     with progress_bar(arguments, "calibrating", "notes") as progress:
         rate = float(options.rate)
         calibration = calibration_for(
@@ -152,10 +150,10 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _tell_of_own(arguments: argparse.Namespace, style: Style) -> None:
-    """Say it where a mapping of the user's own would count in live playing."""
+def _warn_of_own(arguments: argparse.Namespace, style: Style) -> None:
+    """Warn where serve would use the user's own mapping of this name."""
     from yehu_server.playing.mapping import MINE, own_mappings
 
     own = style.mapping.files[0].stem
     if (arguments.mapping or own) == own and own in own_mappings() and not arguments.quiet:
-        warn(f"mapping {own}: the one that comes along; --mapping {MINE}{own} takes yours")
+        warn(f"mapping {own}: the shipped one; --mapping {MINE}{own} is your own")

@@ -12,10 +12,10 @@ from yehu_server.cli.arguments import (
     add_output,
     add_reporting,
     check_output,
-    compiling,
-    hours,
     progress_bar,
+    warn_of_compiling,
 )
+from yehu_server.cli.converters import hours
 from yehu_server.cli.terminal import tell, warn
 
 MAX_DURATION_H = 12.0
@@ -34,17 +34,19 @@ def add_to(commands: Any) -> None:
         commands,
         "replay",
         run=run,
-        help="a captured session into a sound file",
-        description="Render what serve --capture wrote: the same samples, on the same build.",
+        help="render a captured session to a sound file",
+        description="Render a capture of serve: the same samples, on the same build.",
         epilog=EXAMPLES,
     )
-    parser.add_argument("capture", type=Path, metavar="CAPTURE", help="what serve --capture wrote")
+    parser.add_argument("capture", type=Path, metavar="CAPTURE", help="a file of serve --capture")
     add_output(parser)
-    parser.add_argument("--format", choices=("wav", "flac"), help="default: by the ending of OUT")
+    parser.add_argument(
+        "--format", choices=("wav", "flac"), help="file format (default: by the ending of OUT)"
+    )
     parser.add_argument(
         "--subtype",
         choices=("16", "24", "float"),
-        help="how samples are stored (default: float in WAV, as recorded; 24 in FLAC)",
+        help="sample format (default: float in WAV, as recorded; 24 in FLAC)",
     )
     parser.add_argument(
         "--max-duration",
@@ -71,8 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
     capture = read_capture(arguments.capture)
     for warning in capture.warnings:
         warn(f"{arguments.capture}: {warning}")
-    with compiling(arguments):
-        warm_up()
+    warn_of_compiling(arguments)
+    warm_up()
     with progress_bar(arguments, "replaying") as progress:
         result = replay(
             capture,

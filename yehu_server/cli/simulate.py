@@ -10,10 +10,10 @@ from yehu_server.cli.arguments import (
     add_command,
     add_gesture,
     add_reporting,
-    compiling,
     progress_bar,
-    target,
+    warn_of_compiling,
 )
+from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
@@ -31,8 +31,8 @@ def add_to(commands: Any) -> None:
         commands,
         "simulate",
         run=run,
-        help="a gesture in physical units into arrays",
-        description="Run the physical model through a gesture file and keep every signal.",
+        help="run a gesture in physical units, and keep all signals as arrays",
+        description="Run the physical model with a gesture file and keep every signal.",
         epilog=EXAMPLES,
     )
     add_gesture(parser)
@@ -55,9 +55,12 @@ def run(arguments: argparse.Namespace) -> int:
     check_target(arguments.output)
     check_apart({"-o": arguments.output}, [arguments.gesture])
     if arguments.output.suffix.lower() not in ("", ".npz"):
-        raise OutputError(f"{arguments.output}: arrays are written, not sound; name an .npz file")
+        raise OutputError(
+            f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"
+        )
     start = time.perf_counter()
-    with compiling(arguments), progress_bar(arguments, "simulating") as progress:
+    warn_of_compiling(arguments)
+    with progress_bar(arguments, "simulating") as progress:
         result = simulate(
             gesture,
             energy=arguments.energy,

@@ -6,7 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, target
+from yehu_server.cli.arguments import add_command
+from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import tell
 from yehu_server.control.addresses import OSC_ADDRESS, parse_address, shown
 
@@ -16,7 +17,7 @@ examples:
   yehu-server surfaces -o panels --server 192.168.1.5:9000 --only yehu.pd
   yehu-server surfaces -o mappings --check
 
-How to open each is told in docs/surfaces.md.
+docs/surfaces.md describes how to open each.
 """
 
 
@@ -27,7 +28,7 @@ def add_to(commands: Any) -> None:
         "surfaces",
         run=run,
         help="write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
-        description="Write control surfaces, and a page about the parameters, over older ones.",
+        description="Write control surfaces and a page of the parameters, replacing older files.",
         epilog=EXAMPLES,
     )
     parser.add_argument(
@@ -36,13 +37,13 @@ def add_to(commands: Any) -> None:
         type=target,
         required=True,
         metavar="FOLDER",
-        help="where to write; made if it is not there",
+        help="folder to write to; created if missing",
     )
     parser.add_argument(
         "--server",
         default=shown(*OSC_ADDRESS),
         metavar="HOST:PORT",
-        help="whom Max, Pd and Open Stage Control speak to "
+        help="address that Max, Pd and Open Stage Control send to "
         f"(default: {shown(*OSC_ADDRESS)}); in TouchOSC it is set by hand",
     )
     parser.add_argument(
@@ -50,12 +51,12 @@ def add_to(commands: Any) -> None:
         action="append",
         default=[],
         metavar="NAME",
-        help="write this file alone, such as yehu.pd; may be repeated",
+        help="write only this file, such as yehu.pd; may be repeated",
     )
     parser.add_argument(
         "--check",
         action="store_true",
-        help="write nothing; leave with code 1 where a file is not as it would be written",
+        help="write nothing; exit with code 1 where a file is not up to date",
     )
 
 
@@ -66,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     folder: Path = arguments.output
     server = parse_address(arguments.server, *OSC_ADDRESS)
-    # Nobody looks whether the host is there: a word alone is more likely a slip than its name.
+    # The host is not looked up here: a single word is more likely a mistake than a host name.
     if arguments.server.isidentifier() and arguments.server != "localhost":
         raise ParameterError(
             f"{arguments.server!r}: expected HOST:PORT, such as {shown(*OSC_ADDRESS)}"

@@ -10,11 +10,10 @@ from yehu_server.cli.arguments import (
     add_command,
     add_gesture,
     add_reporting,
-    compiling,
-    positive,
     progress_bar,
-    target,
+    warn_of_compiling,
 )
+from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
@@ -22,7 +21,7 @@ examples:
   yehu-server sweep gesture.json -o runs --vary bow_force=0.1:2:20 --vary bow_velocity=0.1,0.2
   yehu-server sweep gesture.json -o runs --vary instrument.bow.epsilon_0=2e4,3e4,4e4 --index-only
 
-Names are those of a gesture file; all combinations are run. It is described in docs/simulate.md
+Names are those of a gesture file, which is described in docs/simulate.md
 """
 
 
@@ -32,13 +31,18 @@ def add_to(commands: Any) -> None:
         commands,
         "sweep",
         run=run,
-        help="a gesture again and again with other figures, on all cores",
-        description="Run a gesture file with every combination of some figures, on all cores.",
+        help="run a gesture with all combinations of some values, on all cores",
+        description="Run a gesture file with all combinations of some values, on all cores.",
         epilog=EXAMPLES,
     )
     add_gesture(parser)
     parser.add_argument(
-        "-o", "--output", required=True, type=target, metavar="FOLDER", help="where results go"
+        "-o",
+        "--output",
+        required=True,
+        type=target,
+        metavar="FOLDER",
+        help="folder for the results",
     )
     parser.add_argument(
         "--vary",
@@ -48,15 +52,18 @@ def add_to(commands: Any) -> None:
         help="V1,V2,... or FROM:TO:STEPS of a control or instrument entry; may be repeated",
     )
     parser.add_argument(
-        "--index-only", action="store_true", help="keep pitch and level of each, and no arrays"
+        "--index-only", action="store_true", help="keep pitch and level of each run, but no arrays"
     )
     parser.add_argument(
-        "--workers", type=positive, metavar="N", help="how many at a time (default: all cores)"
+        "--workers",
+        type=positive,
+        metavar="N",
+        help="number of runs at a time (default: one per core)",
     )
     parser.add_argument(
         "--overwrite",
         action="store_true",
-        help="remove the results of the sweep before from the folder, if there are any",
+        help="remove the results of an earlier sweep from the folder",
     )
     add_reporting(parser)
 
@@ -72,7 +79,8 @@ def run(arguments: argparse.Namespace) -> int:
     axes = [axis_of(text) for text in arguments.vary]
     runs = variations(gesture.source, axes, arguments.gesture.parent)
     start = time.perf_counter()
-    with compiling(arguments), progress_bar(arguments, "sweeping", "runs") as progress:
+    warn_of_compiling(arguments)
+    with progress_bar(arguments, "sweeping", "runs") as progress:
         rows = sweep(
             runs,
             arguments.output,

@@ -1,4 +1,4 @@
-"""Where commands print: the one way of lines to the terminal."""
+"""Print results and warnings of commands, a safe line at a time."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from yehu_server.lines import one_line
 
 
 def tell(text: str, *, flush: bool = False) -> None:
-    """Print a result, line by line."""
+    """Print a result."""
     for line in text.split("\n"):
         print(one_line(line), flush=flush)
 
 
 def warn(text: str) -> None:
-    """Print one line of warning or error."""
+    """Print a warning or an error on one line."""
     print(f"yehu-server: {one_line(text)}", file=sys.stderr)

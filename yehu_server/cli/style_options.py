@@ -1,0 +1,158 @@
+"""Options of playing that serve and render share: mapping, preset, tuning."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.converters import HIGHEST_A4, LOWEST_A4, a4, seed
+from yehu_server.cli.terminal import warn
+from yehu_server.errors import ParameterError
+
+if TYPE_CHECKING:
+    from yehu_server.playing.mapping import Mapping
+    from yehu_server.playing.style import Style
+
+
+def add_playing(group: Any) -> None:
+    """Add the options of playing that serve and render share; see `style_of`."""
+    group.add_argument(
+        "--mapping",
+        metavar="FILE",
+        help="what controllers move: the name of a mapping, mine/NAME for one of yours, or a file "
+        "(default: keyboard)",
+    )
+    group.add_argument(
+        "--mpe",
+        action="store_true",
+        help="start with one MPE zone of 15 member channels; without --mapping, use the mapping "
+        "named mpe",
+    )
+    group.add_argument(
+        "--preset",
+        metavar="NAME",
+        help="the sound to start with: the name of a preset, or a file (see yehu-server presets)",
+    )
+    group.add_argument(
+        "--programs",
+        action="store_true",
+        help="let MIDI program changes select presets (default: they are ignored)",
+    )
+    add_presets_folder(group)
+    group.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="ADDRESS=VALUE",
+        help="hold a parameter at a value, such as /playing/bow_position=0.1; may be repeated",
+    )
+    group.add_argument(
+        "--a4",
+        type=a4,
+        default=440.0,
+        metavar="HZ",
+        help=f"reference pitch, {LOWEST_A4:g} to {HIGHEST_A4:g} (default: 440)",
+    )
+    group.add_argument(
+        "--tuning",
+        type=Path,
+        metavar="FILE.scl",
+        help="a Scala scale, or the name of a shipped one, from C up (default: equal temperament)",
+    )
+    group.add_argument(
+        "--keyboard-map",
+        type=Path,
+        metavar="FILE.kbm",
+        help="a Scala keyboard map, or the name of a shipped one; it fixes the pitch in Hz",
+    )
+    group.add_argument(
+        "--range",
+        choices=("transpose", "clamp", "skip"),
+        default="transpose",
+        help="what happens to notes outside F4 to F6 (default: transpose, by octaves)",
+    )
+    group.add_argument(
+        "--open-strings",
+        choices=("always", "on-pitch", "never"),
+        default="always",
+        help="when C5 is played on the open outer string, not on the inner one (default: always)",
+    )
+    group.add_argument(
+        "--seed",
+        type=seed,
+        default=0,
+        metavar="N",
+        help="seed of the random variation between notes, 0 to 65535 (default: 0)",
+    )
+
+
+def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:
+    """The mapping given by --mapping and --mpe.
+
+    Raises
+    ------
+    MappingError
+        Where there is no such mapping, or it is wrong.
+    """
+    from yehu_server.playing.mapping import DEFAULT, MPE, load
+
+    name = arguments.mapping or (MPE if arguments.mpe else DEFAULT)
+    mapping = load(name, own_first=is_live)
+    return replace(mapping, mpe=mapping.mpe or arguments.mpe)
+
+
+def add_presets_folder(group: Any) -> None:
+    """Add --presets, the folder of the user's presets."""
+    group.add_argument(
+        "--presets",
+        type=Path,
+        metavar="FOLDER",
+        help="folder of your own presets (default: in your configuration folder)",
+    )
+
+
+def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
+    """The style of playing given by the options of `add_playing`.
+
+    In live playing, mappings and presets of the user's own precede shipped ones of the same
+    name. Else they must be named explicitly, so that the result of a rendering depends on its
+    command alone.
+
+    Raises
+    ------
+    YehuError
+        Where a file or value is wrong.
+    """
+    from yehu_server.params.table import assignment
+    from yehu_server.playing.fingering import OpenStrings, RangePolicy
+    from yehu_server.playing.presets import Presets
+    from yehu_server.playing.style import Style
+    from yehu_server.playing.tuning import EQUAL, read_tuning
+
+    if arguments.keyboard_map is not None and arguments.tuning is None:
+        raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
+    own_first = is_live or arguments.presets is not None
+    presets = Presets(arguments.presets, own_first=own_first)
+    start: tuple[tuple[str, float], ...] = ()
+    file = None
+    if arguments.preset is not None:
+        file = presets.find_file(arguments.preset)
+        preset = presets.find(arguments.preset)
+        start = tuple(preset.values.items())
+        for remark in preset.remarks():
+            warn(remark)
+    return Style(
+        mapping=mapping_of(arguments, is_live=is_live),
+        presets=presets,
+        preset=file,
+        start=start,
+        programs=arguments.programs,
+        settings=tuple(assignment(text) for text in arguments.set),
+        a4=arguments.a4,
+        tuning=read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL,
+        policy=RangePolicy(arguments.range),
+        open_strings=OpenStrings(arguments.open_strings),
+        seed=arguments.seed,
+    )

@@ -1,4 +1,4 @@
-"""What a command tells a person when it is done."""
+"""The texts and tables in which commands report results."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ from yehu_server.simulate import Simulation
 if TYPE_CHECKING:
     from rich.table import Table
 
-NOTABLE_BOUND = 1.2  # of friction; the measured instrument at 44.1 kHz is at 1.02, without trouble
+NOTABLE_BOUND = 1.2  # friction bound; the measured instrument at 44.1 kHz has 1.02
 FATE = {
     RangePolicy.TRANSPOSE: "moved by octaves",
-    RangePolicy.CLAMP: "played as the nearest there is",
+    RangePolicy.CLAMP: "played as the nearest note",
     RangePolicy.SKIP: "left out",
 }
 
 
 def decibels(level: float) -> str:
-    """A level of full scale in dB, for reading."""
+    """A level relative to full scale, in dB, for reading."""
     return f"{20.0 * math.log10(level):.1f} dBFS" if level > 0.0 else "silence"
 
 
 def counted(number: int, thing: str) -> str:
-    """A number of things, in words."""
+    """A number of things, with a plural."""
     return f"{number} {thing}" + ("" if number == 1 else "s")
 
 
 def render_report(target: Path, summary: Summary) -> str:
-    """A few lines on a rendering."""
+    """The report on a rendering."""
     pace = f"{summary.duration_s:.1f} s, {summary.real_time_factor:.0f} x real time"
     lines = [f"{target}: {pace}, peak {decibels(summary.peak)}, rms {decibels(summary.rms)}"]
     heard = ", ".join(
@@ -63,16 +63,16 @@ def render_report(target: Path, summary: Summary) -> str:
     if summary.unconverged_solves:
         lines.append(f"{counted(summary.unconverged_solves, 'friction solve')} did not converge")
     if summary.lost_states:
-        lines.append(f"lost state, put back to rest: {counted(summary.lost_states, 'time')}")
+        lines.append(f"the state was lost and set to rest: {counted(summary.lost_states, 'time')}")
     if summary.friction_bound >= NOTABLE_BOUND:
         lines.append(
-            "note: at this sample rate the bow grips less surely; a higher --rate is better"
+            "note: at this sample rate the bow sticks less reliably; a higher --rate is better"
         )
     return "\n".join(lines)
 
 
 def simulate_report(target: Path, result: Simulation) -> str:
-    """A few lines on a simulation."""
+    """The report on a simulation."""
     meta, arrays = result.meta, result.arrays
     intervals = " and ".join(str(N) for N in meta["grid_intervals"])
     size = f"{meta['frames']} samples at {meta['sample_rate']:g} Hz, {intervals} grid intervals"
@@ -95,7 +95,7 @@ def simulate_report(target: Path, result: Simulation) -> str:
 
 
 def replay_report(target: Path, result: Replayed) -> str:
-    """A few lines on a replay."""
+    """The report on a replay."""
     pace = f"{result.duration_s:.1f} s, {result.real_time_factor:.0f} x real time"
     line = f"{target}: {pace}, peak {decibels(result.peak)}, rms {decibels(result.rms)}"
     return f"{line}\n{counted(result.events, 'event')}"
@@ -129,7 +129,7 @@ def devices_report(
 
 
 def mapping_report(mapping: ControllerMapping) -> None:
-    """Print a mapping as a table: what moves what, from where to where."""
+    """Print a mapping as a table of sources, targets and ranges."""
     from rich.console import Console
     from rich.table import Table
 
@@ -143,7 +143,7 @@ def mapping_report(mapping: ControllerMapping) -> None:
     for bind in mapping.binds:
         param = find(bind.target)
         unit = "" if param.unit == "1" else f" {param.unit}"
-        ends = [f"{end:g}{unit}" for end in bind.way]
+        ends = [f"{end:g}{unit}" for end in bind.output_range]
         if bind.is_by_range:
             ends = ["- bend range", "+ bend range"][:: -1 if bind.invert else 1]
         cells = (bind.source, bind.target, *ends, bind.curve_name, "; ".join(bind.terms))
@@ -152,23 +152,23 @@ def mapping_report(mapping: ControllerMapping) -> None:
     for address, value in mapping.start:
         param = find(address)
         unit = "" if param.unit == "1" else f" {param.unit}"
-        console.print(f"begins with {address} = {value:g}{unit}")
+        console.print(f"starts with {address} = {value:g}{unit}")
     if mapping.mpe:
-        console.print("begins with one MPE zone of 15 member channels on every port")
+        console.print("starts with one MPE zone of 15 member channels on every port")
 
 
 def bindings_table(rows: Sequence[Sequence[Any]]) -> Table:
-    """A table of what moves what in a running server, and where it is now."""
+    """A table of the binds of a running server, with present positions and values."""
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
     table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for column in ("you move", "what moves", "from, to", "is at", "value", "terms"):
         table.add_column(column, overflow="fold", no_wrap=column in ("you move", "what moves"))
-    for source, target, first, last, _curve, terms, place, value in rows:
+    for source, target, first, last, _curve, terms, position, value in rows:
         param = find(target.removeprefix(PREFIX))
         unit = "" if param.unit == "1" else f" {param.unit}"
-        at = "-" if place < 0.0 else f"{100.0 * place:.0f} %"
+        at = "-" if position < 0.0 else f"{100.0 * position:.0f} %"
         span = f"{first:.4g}, {last:.4g}{unit}"
         cells = (source, param.address, span, at, f"{value:.4g}{unit}", terms)
         table.add_row(*map(one_line, cells))
@@ -180,7 +180,7 @@ def _because(problem: str) -> str:
 
 
 def status_line(status: Mapping[str, float | str]) -> str:
-    """One line on how playing goes."""
+    """The status of a running server in one line."""
     note, speed = float(status["note"]), float(status["bow_speed"])
     arrow = "" if speed == 0.0 else (" down" if speed > 0.0 else " up")
     parts = [
@@ -199,7 +199,7 @@ def status_line(status: Mapping[str, float | str]) -> str:
 
 
 def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]:
-    """How others reach the server, in words; `is_open` where anyone is heard."""
+    """Lines that tell how to reach the server; `is_open` where it accepts any sender."""
     lines = [f"OSC at {shown(host, port)} (UDP and TCP), such as {PREFIX}/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
@@ -210,11 +210,11 @@ def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]
         where = lan if address.is_unspecified else host
         lines.append(f"on a phone (TouchOSC): host {where}, send port {port}")
         if is_open:
-            lines.append("anyone on this network may play; --osc-allow names who may")
+            lines.append("anyone on this network may play; --osc-allow restricts it")
     return lines
 
 
 def query_line(host: str, port: int, lan: str) -> str:
-    """Where OSCQuery is, in words."""
+    """A line with the address of OSCQuery."""
     address = ipaddress.ip_address(host)
     return f"OSCQuery at http://{shown(lan if address.is_unspecified else host, port)}/"

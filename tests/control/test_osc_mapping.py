@@ -11,7 +11,7 @@ VOLUME = "/playing/volume"
 OWN = Mapping(
     "own",
     (
-        Bind("/fader1", VOLUME, reach=(0.0, 127.0)),
+        Bind("/fader1", VOLUME, input_range=(0.0, 127.0)),
         Bind("/fader2", "/playing/expression", invert=True),
         Bind("/1/push", "/playing/pizzicato"),
     ),

@@ -74,9 +74,9 @@ def test_each_unit_comes_back_from_its_value(param: Param):
 @pytest.mark.parametrize("ends", [(1.0, 5.0), (5.0, 1.0), (0.2, 0.3)])
 def test_a_curve_is_undone_also_where_it_falls(curve: Curve, ends):
     for n in range(101):
-        value = curve.bend(n / 100, *ends)
-        assert curve.unbend(value, *ends) == pytest.approx(n / 100, abs=1e-9)
-    assert curve.unbend(2.0, 3.0, 3.0) == 0.0
+        value = curve.from_unit(n / 100, *ends)
+        assert curve.to_unit(value, *ends) == pytest.approx(n / 100, abs=1e-9)
+    assert curve.to_unit(2.0, 3.0, 3.0) == 0.0
 
 
 @rows
@@ -163,7 +163,7 @@ def test_a_setting_may_have_blanks_around_its_words():
 
 def test_curves_keep_their_ends_and_the_middle_each_has():
     for curve, middle in ((Curve.LIN, 2.5), (Curve.EXP, 2.0), (Curve.S, 2.5)):
-        assert curve.bend(0.0, 1.0, 4.0) == 1.0
-        assert curve.bend(0.5, 1.0, 4.0) == pytest.approx(middle)
-        assert curve.bend(1.0, 1.0, 4.0) == 4.0
-    assert Curve.S.bend(0.25, 0.0, 1.0) == pytest.approx(0.15625)
+        assert curve.from_unit(0.0, 1.0, 4.0) == 1.0
+        assert curve.from_unit(0.5, 1.0, 4.0) == pytest.approx(middle)
+        assert curve.from_unit(1.0, 1.0, 4.0) == 4.0
+    assert Curve.S.from_unit(0.25, 0.0, 1.0) == pytest.approx(0.15625)

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yehu_server.params.spec import Curve
-from yehu_server.playing.binds import NEAR, Bind, Table
+from yehu_server.playing.binds import PICKUP_WINDOW, Bind, Breakpoints
 
 PRESSURE = "/playing/pressure"
 units = st.floats(0.0, 1.0)
@@ -15,13 +15,13 @@ spans = st.tuples(st.floats(0.05, 2.0), st.floats(0.05, 2.0))
 
 
 @st.composite
-def tables(draw, *, rising: bool = False) -> Table:
+def tables(draw, *, rising: bool = False) -> Breakpoints:
     """Tables of up to eight points, a thousandth apart at least."""
-    ways = draw(st.lists(st.integers(1, 999), max_size=6, unique=True))
+    positions = draw(st.lists(st.integers(1, 999), max_size=6, unique=True))
     shares = draw(st.lists(st.integers(0, 1000), min_size=8, max_size=8, unique=rising))
     shares = sorted(shares) if rising else shares
-    points = zip((0, *sorted(ways), 1000), shares, strict=False)
-    return Table(tuple((way / 1000, share / 1000) for way, share in points))
+    points = zip((0, *sorted(positions), 1000), shares, strict=False)
+    return Breakpoints(tuple((position / 1000, share / 1000) for position, share in points))
 
 
 curves = st.one_of(st.sampled_from(Curve), tables(rising=True))
@@ -29,9 +29,12 @@ curves = st.one_of(st.sampled_from(Curve), tables(rising=True))
 
 @given(tables())
 def test_a_table_goes_through_all_its_points(table):
-    for way, share in table.points:
-        assert table.at(way) == pytest.approx(share, abs=1e-9)
-    assert (table.at(0.0), table.at(1.0)) == (table.points[0][1], table.points[-1][1])
+    for position, fraction in table.points:
+        assert table.fraction_at(position) == pytest.approx(fraction, abs=1e-9)
+    assert (table.fraction_at(0.0), table.fraction_at(1.0)) == (
+        table.points[0][1],
+        table.points[-1][1],
+    )
 
 
 @given(tables(), units)
@@ -39,18 +42,18 @@ def test_between_its_points_a_table_is_straight(table, unit):
     for (x0, y0), (x1, y1) in zip(table.points, table.points[1:], strict=False):
         if x0 <= unit <= x1:
             expected = (y0 * (x1 - unit) + y1 * (unit - x0)) / (x1 - x0)
-            assert table.at(unit) == pytest.approx(expected, abs=1e-9)
+            assert table.fraction_at(unit) == pytest.approx(expected, abs=1e-9)
 
 
 def test_a_table_spreads_over_the_span():
-    bind = Bind("cc 4", PRESSURE, (0.5, 1.5), Table(((0.0, 0.0), (0.5, 0.2), (1.0, 1.0))))
-    values = [bind.apply(unit) for unit in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    bind = Bind("cc 4", PRESSURE, (0.5, 1.5), Breakpoints(((0.0, 0.0), (0.5, 0.2), (1.0, 1.0))))
+    values = [bind.from_unit(unit) for unit in (0.0, 0.25, 0.5, 0.75, 1.0)]
     assert values == pytest.approx([0.5, 0.6, 0.7, 1.1, 1.5])
 
 
 @given(spans, curves, st.booleans(), units)
 def test_no_place_leads_beyond_the_span(span, curve, invert, unit):
-    value = Bind("cc 4", PRESSURE, span, curve, invert).apply(unit)
+    value = Bind("cc 4", PRESSURE, span, curve, invert).from_unit(unit)
     assert min(span) - 1e-9 <= value <= max(span) + 1e-9
 
 
@@ -60,59 +63,59 @@ def test_to_invert_is_to_reverse_the_span_and_both_together_cancel(span, curve, 
     inverted = Bind("cc 4", PRESSURE, span, curve, invert=True)
     reversed_ = Bind("cc 4", PRESSURE, back, curve)
     both = Bind("cc 4", PRESSURE, back, curve, invert=True)
-    assert inverted.apply(unit) == pytest.approx(reversed_.apply(unit))
-    assert both.apply(unit) == pytest.approx(plain.apply(unit))
+    assert inverted.from_unit(unit) == pytest.approx(reversed_.from_unit(unit))
+    assert both.from_unit(unit) == pytest.approx(plain.from_unit(unit))
 
 
 @given(spans, curves, st.booleans(), units)
 def test_every_value_is_found_back_at_a_place_that_gives_it(span, curve, invert, unit):
     bind = Bind("cc 4", PRESSURE, span, curve, invert)
-    value = bind.apply(unit)
-    place = bind.place_of(value)
-    assert -1e-9 <= place <= 1.0 + 1e-9
-    assert bind.apply(place) == pytest.approx(value, abs=1e-6)
+    value = bind.from_unit(unit)
+    position = bind.to_unit(value)
+    assert -1e-9 <= position <= 1.0 + 1e-9
+    assert bind.from_unit(position) == pytest.approx(value, abs=1e-6)
 
 
 @given(tables(), st.floats(0.05, 2.0))
 def test_any_value_has_a_place_also_in_a_table_that_turns_back(table, value):
-    assert 0.0 <= Bind("cc 4", PRESSURE, (0.1, 1.9), table).place_of(value) <= 1.0
+    assert 0.0 <= Bind("cc 4", PRESSURE, (0.1, 1.9), table).to_unit(value) <= 1.0
 
 
 @given(spans, curves, st.booleans(), units, units)
 def test_a_source_that_goes_over_the_targets_place_meets_it(span, curve, invert, unit, other):
     bind = Bind("cc 4", PRESSURE, span, curve, invert)
     low, high = sorted((unit, other))
-    middle = bind.apply(0.5 * (low + high))
-    assert bind.meets(high, low, middle)
-    assert bind.meets(low, high, middle)
+    middle = bind.from_unit(0.5 * (low + high))
+    assert bind.picks_up(high, low, middle)
+    assert bind.picks_up(low, high, middle)
 
 
 def test_a_source_meets_its_target_from_a_sixtyfourth_of_the_way():
     bind = Bind("cc 4", "/playing/volume")
-    assert bind.meets(0.5, None, 0.5 + NEAR)
-    assert bind.meets(0.5, None, 0.5 - NEAR)
-    assert not bind.meets(0.5, None, 0.5 + 1.01 * NEAR)
-    assert not bind.meets(0.5, 0.4, 0.6)
-    assert not bind.meets(0.5, 0.9, 0.4)
+    assert bind.picks_up(0.5, None, 0.5 + PICKUP_WINDOW)
+    assert bind.picks_up(0.5, None, 0.5 - PICKUP_WINDOW)
+    assert not bind.picks_up(0.5, None, 0.5 + 1.01 * PICKUP_WINDOW)
+    assert not bind.picks_up(0.5, 0.4, 0.6)
+    assert not bind.picks_up(0.5, 0.9, 0.4)
 
 
 @pytest.mark.parametrize("invert", [False, True])
 def test_a_target_beyond_the_span_is_met_at_its_end(invert):
     bind = Bind("cc 4", PRESSURE, (0.3, 0.7), invert=invert)
     low, high = (1.0, 0.0) if invert else (0.0, 1.0)
-    assert bind.meets(high, None, 1.8)
-    assert not bind.meets(low, None, 1.8)
-    assert bind.meets(low, None, 0.05)
+    assert bind.picks_up(high, None, 1.8)
+    assert not bind.picks_up(low, None, 1.8)
+    assert bind.picks_up(low, None, 0.05)
 
 
 def test_a_flat_part_of_a_table_is_met_anywhere_on_it():
-    bind = Bind("cc 4", "/playing/volume", None, Table(((0.0, 0.5), (0.8, 0.5), (1.0, 1.0))))
-    assert all(bind.meets(place, None, 0.5) for place in (0.0, 0.4, 0.8))
-    assert not bind.meets(1.0, None, 0.5)
+    bind = Bind("cc 4", "/playing/volume", None, Breakpoints(((0.0, 0.5), (0.8, 0.5), (1.0, 1.0))))
+    assert all(bind.picks_up(position, None, 0.5) for position in (0.0, 0.4, 0.8))
+    assert not bind.picks_up(1.0, None, 0.5)
 
 
 @pytest.mark.parametrize(
-    ("reach", "argument", "place"),
+    ("sent", "argument", "position"),
     [
         ((0.0, 1.0), 0.25, 0.25),
         ((0.0, 127.0), 127, 1.0),
@@ -121,11 +124,11 @@ def test_a_flat_part_of_a_table_is_met_anywhere_on_it():
         ((1.0, -1.0), 0.5, 0.25),
     ],
 )
-def test_an_osc_argument_is_spread_over_what_the_address_sends(reach, argument, place):
-    assert Bind("/fader", "/playing/volume", reach=reach).place(argument) == place
+def test_an_osc_argument_is_spread_over_what_the_address_sends(sent, argument, position):
+    assert Bind("/fader", "/playing/volume", input_range=sent).input_to_unit(argument) == position
 
 
 def test_channels_count_from_one_and_over_all_ports():
     bind = Bind("cc 4", PRESSURE, channels=(2, 16))
-    assert [channel for channel in range(-16, 40) if bind.hears(channel)] == [1, 15, 17, 31, 33]
+    assert [channel for channel in range(-16, 40) if bind.receives(channel)] == [1, 15, 17, 31, 33]
     assert Bind("cc 4", PRESSURE).hears(-1)

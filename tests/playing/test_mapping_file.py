@@ -14,10 +14,15 @@ from hypothesis import strategies as st
 
 from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
-from yehu_server.playing.binds import Bind, Table
+from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import load, mapping_folder, own_mappings, shipped_mappings
-from yehu_server.playing.mapping_file import MOST_COMPLAINTS, read_sheet, sheet_of, toml_of
-from yehu_server.playing.mapping_writer import as_toml, tidied
+from yehu_server.playing.mapping_file import (
+    MOST_ERRORS,
+    mapping_file_from,
+    read_mapping_file,
+    toml_of,
+)
+from yehu_server.playing.mapping_writer import as_toml, canonical
 from yehu_server.playing.toml_lines import lines_of
 
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
@@ -81,7 +86,7 @@ def own(config_home):
 
 
 def test_a_file_says_all_that_a_bind_has(read):
-    table = Table(((0.0, 0.0), (0.5, 0.2), (1.0, 1.0)))
+    table = Breakpoints(((0.0, 0.0), (0.5, 0.2), (1.0, 1.0)))
     assert read(FULL).binds == (
         Bind("cc 1/33", "/playing/pressure", (0.1, 0.9), table, invert=True),
         Bind(
@@ -92,7 +97,7 @@ def test_a_file_says_all_that_a_bind_has(read):
             is_soft=True,
             is_global=True,
         ),
-        Bind("/fader1", "/playing/volume", curve=Curve.S, reach=(0.0, 127.0)),
+        Bind("/fader1", "/playing/volume", curve=Curve.S, input_range=(0.0, 127.0)),
     )
 
 
@@ -140,13 +145,13 @@ def test_a_file_says_all_that_a_bind_has(read):
         ("nrpn 2/44", "note", "24: bind 2: soft: note cannot wait"),
         ("nrpn 2/44", "poly-pressure", "24: bind 2: soft: poly-pressure cannot wait"),
         ("global = true", "global = 1", "25: bind 2: global: expected true or false, got 1"),
-        ("nrpn 2/44", "note", "25: bind 2: global: note is of one note"),
+        ("nrpn 2/44", "note", "25: bind 2: global: note belongs to one note"),
         ("[0, 127]", "[1, 1]", "31: bind 3: input: expected two different numbers"),
         ("[0, 127]", "[0, inf]", "31: bind 3: input: expected two different numbers"),
         ("[0, 127]", "127", "31: bind 3: input: expected [from, to], got 127"),
         ("[0, 127]", "[0, 1]\nglobal = true", "32: bind 3: global: an OSC address always is"),
-        ("/fader1", "cc 9", "31: bind 3: input: only what an OSC address sends"),
-        ('curve = "s"', "channel = 1", "32: bind 3: channel: an OSC address has none"),
+        ("/fader1", "cc 9", "31: bind 3: input: only OSC addresses have an input range"),
+        ('curve = "s"', "channel = 1", "32: bind 3: channel: an OSC address has no channel"),
         ('source = "/fader1"\n', "", "28: bind 3: needs a source and a target"),
         ('"mine"', '"mine', "2: not a mapping file"),
     ],
@@ -171,7 +176,7 @@ def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines(read):
 def test_of_very_many_errors_the_first_are_told(read):
     with pytest.raises(MappingError) as caught:
         read(BIND.replace("pressure", "presure") * 500)
-    assert len(caught.value.more) == MOST_COMPLAINTS - 1
+    assert len(caught.value.more) == MOST_ERRORS - 1
 
 
 def test_an_error_in_a_list_of_inline_tables_has_the_line_of_the_list(read):
@@ -286,14 +291,14 @@ def test_any_entries_are_read_or_refused_and_what_is_read_is_written_and_read_ag
 ):
     path = tmp_path_factory.getbasetemp() / "any.toml"
     try:
-        sheet = sheet_of(path, data)
+        contents = mapping_file_from(path, data)
     except MappingError as error:
         lines = (str(error), *error.more)
     else:
         lines = ()
-        assert sheet_of(path, toml_of(path, as_toml(sheet))) == sheet
-        for bind, place in itertools.product(sheet.binds, (0.0, 0.3, 1.0)):
-            assert min(bind.ends) - 1e-9 <= bind.apply(place) <= max(bind.ends) + 1e-9
+        assert mapping_file_from(path, toml_of(path, as_toml(contents))) == contents
+        for bind, position in itertools.product(contents.binds, (0.0, 0.3, 1.0)):
+            assert min(bind.ends) - 1e-9 <= bind.from_unit(position) <= max(bind.ends) + 1e-9
     assert all(line.isprintable() for line in lines)
 
 
@@ -368,15 +373,15 @@ def test_an_error_in_a_base_names_that_file(own, read):
 @pytest.mark.parametrize("name", shipped_mappings())
 def test_a_shipped_mapping_is_in_canonical_form(name):
     path = mapping_folder() / f"{name}.toml"
-    text, sheet = path.read_text(encoding="utf-8"), read_sheet(path)
-    assert tidied(sheet, text) == text
-    assert sheet_of(path, toml_of(path, as_toml(sheet))) == sheet
+    text, contents = path.read_text(encoding="utf-8"), read_mapping_file(path)
+    assert canonical(contents, text) == text
+    assert mapping_file_from(path, toml_of(path, as_toml(contents))) == contents
 
 
 def test_what_is_tidied_keeps_its_comments(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(FULL)
-    written = tidied(read_sheet(path), FULL)
+    written = canonical(read_mapping_file(path), FULL)
     expected = FULL.replace('"nrpn 2/44"', '"nrpn 300"').replace("[2, 1]", "[1, 2]")
     assert written == expected
 
@@ -384,23 +389,23 @@ def test_what_is_tidied_keeps_its_comments(tmp_path):
 def test_inline_tables_are_written_as_tables(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text('bind = [{source = "cc 1", target = "/playing/volume"}]\n')
-    written = tidied(read_sheet(path), path.read_text())
+    written = canonical(read_mapping_file(path), path.read_text())
     assert '[[bind]]\nsource = "cc 1"\n' in written
-    assert sheet_of(path, toml_of(path, written)) == read_sheet(path)
+    assert mapping_file_from(path, toml_of(path, written)) == read_mapping_file(path)
 
 
 @pytest.mark.parametrize("name", ["name", "about", "base", "start", "binds", "mpe"])
 def test_what_is_tidied_says_what_it_shall_whatever_the_text_said(name):
     path = mapping_folder() / "keyboard.toml"
-    sheet = read_sheet(path)
+    contents = read_mapping_file(path)
     others = {
         "name": "other",
         "about": "another",
         "base": "wind",
         "start": (("/playing/volume", 0.5),),
-        "binds": sheet.binds[1:],
+        "binds": contents.binds[1:],
         "mpe": True,
     }
-    changed = replace(sheet, **{name: others[name]})
-    written = tidied(changed, path.read_text(encoding="utf-8"))
-    assert sheet_of(path, toml_of(path, written)) == changed
+    changed = replace(contents, **{name: others[name]})
+    written = canonical(changed, path.read_text(encoding="utf-8"))
+    assert mapping_file_from(path, toml_of(path, written)) == changed

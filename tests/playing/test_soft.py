@@ -6,7 +6,7 @@ import mido
 import pytest
 
 from yehu_server.params.spec import Curve
-from yehu_server.playing.binds import Bind, Table
+from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.messages import MidiPlayer
 
@@ -68,7 +68,7 @@ def test_a_target_at_an_end_is_picked_up_there(make, at, value, control):
         Bind("cc 1", VOLUME, invert=True, is_soft=True),
         Bind("cc 1", VOLUME, (0.1, 0.9), Curve.EXP, is_soft=True),
         Bind("cc 1", VOLUME, (0.9, 0.1), Curve.S, is_soft=True),
-        Bind("cc 1", VOLUME, None, Table(((0.0, 0.0), (0.9, 0.1), (1.0, 1.0))), is_soft=True),
+        Bind("cc 1", VOLUME, None, Breakpoints(((0.0, 0.0), (0.9, 0.1), (1.0, 1.0))), is_soft=True),
     ],
     ids=["from high to low", "inverted", "exp", "s", "table"],
 )
@@ -146,7 +146,7 @@ def test_hard_and_soft_targets_of_one_controller_do_not_disturb_each_other(make,
 
 
 def test_an_osc_fader_waits_too(make, player):
-    midi = make(Bind("/fader", VOLUME, reach=(0.0, 10.0), is_soft=True))
+    midi = make(Bind("/fader", VOLUME, input_range=(0.0, 10.0), is_soft=True))
     midi.write(VOLUME, 0.5)
     midi.move("/fader", 1.0)
     assert player.value(VOLUME) == 0.5

@@ -280,7 +280,7 @@ def test_whatever_comes_next_need_not_wait_for_the_glide(playing, listener):
 
 def test_an_osc_address_moves_its_targets_on_all_channels(playing, player):
     midi, cc = playing(
-        Bind("/fader", VOLUME, reach=(0.0, 127.0)),
+        Bind("/fader", VOLUME, input_range=(0.0, 127.0)),
         Bind("/fader", "/playing/attack", (10.0, 110.0), invert=True),
         Bind("cc 7", VOLUME),
     )

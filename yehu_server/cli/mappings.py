@@ -170,18 +170,18 @@ def _check(arguments: argparse.Namespace) -> int:
 def _convert(arguments: argparse.Namespace) -> int:
     from yehu_server.files import anything, nothing, replacing
     from yehu_server.playing.mapping import find_file, with_bases
-    from yehu_server.playing.mapping_file import json_of, sheet_of, text_of, toml_of
-    from yehu_server.playing.mapping_writer import as_toml, tidied
+    from yehu_server.playing.mapping_file import json_of, mapping_file_from, text_of, toml_of
+    from yehu_server.playing.mapping_writer import as_toml, canonical
 
     path = find_file(arguments.mapping, own_first=True)
     text = text_of(path)
     is_json = text.lstrip().startswith("{")  # no TOML does
     data = json_of(path, text) if is_json else toml_of(path, text)
-    contents = sheet_of(path, data, "" if is_json else text)
+    contents = mapping_file_from(path, data, "" if is_json else text)
     with_bases(path, contents)  # raises where a base is wrong
     if arguments.output is not None and contents.name == path.stem:
         contents = replace(contents, name=arguments.output.stem)
-    converted = as_toml(contents) if is_json else tidied(contents, text)
+    converted = as_toml(contents) if is_json else canonical(contents, text)
     if arguments.output is None and sys.stdout.isatty():
         tell(converted.rstrip("\n"))
     elif arguments.output is None:
@@ -217,7 +217,7 @@ def _bind_fields(bind: Bind) -> dict[str, Any]:
         "smoothing": bind.smoothing_ms,
         "channel": bind.channels or None,
         "soft": bind.is_soft,
-        "alone": bind.is_alone,
+        "alone": bind.is_exclusive,
         "global": bind.is_global,
-        "input": bind.reach if is_address(bind.source) else None,
+        "input": bind.input_range if is_address(bind.source) else None,
     }

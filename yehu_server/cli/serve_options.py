@@ -85,7 +85,8 @@ def _add_osc(group: Any) -> None:
         "--osc",
         default=shown(*OSC_ADDRESS),
         metavar="HOST:PORT",
-        help=f"address to listen at, UDP and TCP (default: {shown(*OSC_ADDRESS)}; this machine only)",
+        help="address to listen at, UDP and TCP "
+        f"(default: {shown(*OSC_ADDRESS)}; this machine only)",
     )
     group.add_argument(
         "--osc-allow",
@@ -156,7 +157,8 @@ def _add_running(group: Any) -> None:
         "--recordings",
         type=Path,
         metavar="FOLDER",
-        help=f"folder that {PREFIX}/record/start writes to (default: yehu-server in your music folder)",
+        help=f"folder that {PREFIX}/record/start writes to "
+        "(default: yehu-server in your music folder)",
     )
     group.add_argument(
         "--duration", type=_duration, metavar="SECONDS", help="end after this time (default: never)"

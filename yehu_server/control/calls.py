@@ -126,7 +126,7 @@ def own_calls(mapping: Mapping) -> list[Call]:
         Call(
             bind.source,
             f"Moves {PREFIX}{bind.target}, by the mapping {mapping.name}.",
-            (Argument("place", lo=min(bind.reach), hi=max(bind.reach)),),
+            (Argument("place", lo=min(bind.input_range), hi=max(bind.input_range)),),
         )
         for bind in mapping.binds
         if is_address(bind.source)

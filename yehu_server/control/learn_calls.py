@@ -97,7 +97,7 @@ class LearnCalls:
         rows = self._player.bindings()
         for bind, place, value in rows:
             at = NOT_MOVED if place is None else place
-            ends = bind.way
+            ends = bind.output_range
             if bind.is_by_range:
                 bend_range = self._player.value("/playing/bend_range")
                 ends = (bind.semitones(0.0, bend_range), bind.semitones(1.0, bend_range))

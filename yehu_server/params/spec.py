@@ -1,4 +1,4 @@
-"""What one parameter is; values live elsewhere."""
+"""The metadata of a parameter: address, range, default, unit, curve. Values live elsewhere."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from enum import Enum
 
 from yehu_server.errors import ParameterError
 
-TURNED_ON = 0.5
+TURNED_ON = 0.5  # a switch is on from here
 
 
 class Curve(Enum):
-    """How 0..1 spreads over a range."""
+    """How 0..1 is mapped to a range."""
 
     LIN = "linear"
     EXP = "exp"  # equal ratios; the range must be above zero
     S = "s"  # gentle at both ends
 
-    def bend(self, unit: float, lo: float, hi: float) -> float:
+    def from_unit(self, unit: float, lo: float, hi: float) -> float:
         """Map `unit` in 0..1 to `lo`..`hi`; hi below lo inverts."""
         if self is Curve.EXP:
             return float(lo * (hi / lo) ** unit)
@@ -26,8 +26,8 @@ class Curve(Enum):
             unit = unit * unit * (3.0 - 2.0 * unit)
         return lo + (hi - lo) * unit
 
-    def unbend(self, value: float, lo: float, hi: float) -> float:
-        """Find the unit in 0..1 that `bend` maps to `value`; a value beyond an end is at it."""
+    def to_unit(self, value: float, lo: float, hi: float) -> float:
+        """Find the unit in 0..1 that `from_unit` maps to `value`, clamped to the range."""
         if lo == hi:
             return 0.0
         value = min(max(value, min(lo, hi)), max(lo, hi))
@@ -40,7 +40,7 @@ class Curve(Enum):
 
 
 class Place(Enum):
-    """Who holds the value: the compiled engine, or the player who decides in Python."""
+    """Where the value is held: in the compiled engine, or in the player (Python)."""
 
     ENGINE = "engine"
     PLAYER = "player"
@@ -48,11 +48,11 @@ class Place(Enum):
 
 @dataclass(frozen=True)
 class Param:
-    """One row of the table.
+    """One row of the parameter table.
 
-    `lo`, `hi`, `default` are in `unit`; `smooth_ms` is the ramp of a write that names none.
-    `owned` marks what the player moves while notes sound (decisions/0006); `is_choice` what
-    is one thing or another, with nothing between, such as a switch (on from `TURNED_ON` up).
+    `lo`, `hi` and `default` are in `unit`; `smooth_ms` is the ramp of a write that names none.
+    `owned` marks parameters that the player moves while notes sound (decisions/0006);
+    `is_choice` marks discrete ones, such as switches (on from `TURNED_ON` up).
     """
 
     address: str
@@ -69,7 +69,13 @@ class Param:
     is_choice: bool = False
 
     def accept(self, value: float) -> float:
-        """Return `value` clamped to the range. Errors: ParameterError unless finite."""
+        """Clamp a value to the range.
+
+        Raises
+        ------
+        ParameterError
+            Where the value is no finite number.
+        """
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ParameterError(f"{self.address}: expected a number, got {value!r}")
         try:
@@ -87,9 +93,9 @@ class Param:
         return f"{self.lo:g} to {self.hi:g}{unit}"
 
     def from_unit(self, unit: float) -> float:
-        """Map 0..1 over the whole range, along the parameter's curve."""
-        return self.curve.bend(min(max(unit, 0.0), 1.0), self.lo, self.hi)
+        """Map 0..1, clamped, to the range along the parameter's curve."""
+        return self.curve.from_unit(min(max(unit, 0.0), 1.0), self.lo, self.hi)
 
     def to_unit(self, value: float) -> float:
-        """Where a value lies in the range, as 0..1 along the parameter's curve."""
-        return self.curve.unbend(value, self.lo, self.hi)
+        """Map a value to 0..1, the inverse of `from_unit`."""
+        return self.curve.to_unit(value, self.lo, self.hi)

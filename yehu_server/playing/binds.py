@@ -1,4 +1,4 @@
-"""One bind: a source that moves a target, how far, along which curve and under which terms."""
+"""A bind: one source that moves one target, over what range, along which curve, for which notes."""
 
 from __future__ import annotations
 
@@ -9,47 +9,49 @@ from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing import sources
 
-NEAR = 1.0 / 64.0  # how near a controller comes to its target to pick it up
+# Distance from the target's value within which a soft bind takes over, as a fraction of the span.
+PICKUP_WINDOW = 1.0 / 64.0
 
 
 @dataclass(frozen=True)
-class Table:
-    """A curve by its points: of the controller's way, 0 to 1, and of the span, 0 to 1.
+class Breakpoints:
+    """A curve given by points and joined by straight lines; in files, a table of points.
 
-    The first are strictly rising, from 0 to 1; straight lines join the points.
+    Each point is (position of the source, fraction of the span), both 0 to 1. Positions rise
+    strictly from 0 to 1; fractions may fall or stay the same.
     """
 
     points: tuple[tuple[float, float], ...]
 
     @property
     def value(self) -> list[list[float]]:
-        """As a file has it."""
+        """The points as a file has them."""
         return [list(point) for point in self.points]
 
-    def at(self, unit: float) -> float:
-        """The share of the span at a place of the way."""
-        after = bisect_right(self.points, unit, key=lambda point: point[0])
+    def fraction_at(self, position: float) -> float:
+        """Fraction of the span at a position of the source."""
+        after = bisect_right(self.points, position, key=lambda point: point[0])
         after = min(max(after, 1), len(self.points) - 1)
         (x0, y0), (x1, y1) = self.points[after - 1], self.points[after]
-        return y1 if unit >= x1 else y0 + (y1 - y0) * (unit - x0) / (x1 - x0)
+        return y1 if position >= x1 else y0 + (y1 - y0) * (position - x0) / (x1 - x0)
 
-    def bend(self, unit: float, lo: float, hi: float) -> float:
-        """See `Curve.bend`."""
-        return lo + (hi - lo) * self.at(unit)
+    def from_unit(self, unit: float, lo: float, hi: float) -> float:
+        """See `Curve.from_unit`."""
+        return lo + (hi - lo) * self.fraction_at(unit)
 
-    def share(self, value: float, lo: float, hi: float) -> float:
-        """The share of the span at a value; a value beyond what the table reaches is at its end."""
-        shares = [share for _, share in self.points]
-        return min(max(Curve.LIN.unbend(value, lo, hi), min(shares)), max(shares))
+    def fraction_of(self, value: float, lo: float, hi: float) -> float:
+        """Fraction of the span at a value, clamped to the fractions that the points reach."""
+        fractions = [fraction for _, fraction in self.points]
+        return min(max(Curve.LIN.to_unit(value, lo, hi), min(fractions)), max(fractions))
 
-    def unbend(self, value: float, lo: float, hi: float) -> float:
-        """See `Curve.unbend`; the first such place where the table turns back."""
-        share = self.share(value, lo, hi)
+    def to_unit(self, value: float, lo: float, hi: float) -> float:
+        """See `Curve.to_unit`; the lowest such position where several map to the value."""
+        fraction = self.fraction_of(value, lo, hi)
         for (x0, y0), (x1, y1) in zip(self.points, self.points[1:], strict=False):
-            if y0 == share:
+            if y0 == fraction:
                 return x0
-            if min(y0, y1) <= share <= max(y0, y1):
-                return x0 + (x1 - x0) * (share - y0) / (y1 - y0)
+            if min(y0, y1) <= fraction <= max(y0, y1):
+                return x0 + (x1 - x0) * (fraction - y0) / (y1 - y0)
         return 1.0  # by rounding, past the last point
 
 
@@ -57,129 +59,136 @@ class Table:
 class Bind:
     """One source that moves one parameter.
 
-    The source's way, 0 to 1, is spread over `span` along `curve`; a span from high to low
-    inverts, as does `invert`. Without a span the bend is in semitones, by the bend range.
+    The source's position, 0 to 1, is mapped to `span` along `curve`; a span from high to low
+    inverts, as does `invert`. The pitch wheel without a span moves ``/playing/bend`` in
+    semitones, by the bend range.
 
     Attributes
     ----------
     source : str
-        By its canonical name (``sources``).
+        Canonical name of the source (``sources``).
+    target : str
+        Address of the parameter.
+    span : tuple of float, optional
+        The target's values at the two ends; by default its whole range.
     smoothing_ms : float
-        The least time a move takes; see `Performer.write`.
+        Shortest time in which a move changes a sounding note; see `Performer.write`.
     channels : tuple of int
-        The MIDI channels that are heard, as people count; all where none is named.
+        MIDI channels, 1 to 16, that it receives on; all if empty.
     is_soft : bool
-        Whether the target moves only once the source has come to where it is.
-    reach : tuple of float
-        The values that an OSC address sends at the two ends of its way.
-    is_alone : bool
-        Whether nothing of a base moves the target.
+        Soft take-over: the target moves only once the source has reached the target's value.
+    input_range : tuple of float
+        The values that an OSC address sends at its two ends.
+    is_exclusive : bool
+        Whether it replaces all binds of the base that move the same target; ``alone`` in files.
     is_global : bool
-        Whether it moves every note, wherever the source is moved; see ``scope``.
+        Whether it moves every note, on whichever port and channel the source is moved; see
+        ``scope``.
     """
 
     source: str
     target: str
     span: tuple[float, float] | None = None
-    curve: Curve | Table = Curve.LIN
+    curve: Curve | Breakpoints = Curve.LIN
     invert: bool = False
     smoothing_ms: float = 0.0
     channels: tuple[int, ...] = ()
     is_soft: bool = False
-    reach: tuple[float, float] = (0.0, 1.0)
-    is_alone: bool = False
+    input_range: tuple[float, float] = (0.0, 1.0)
+    is_exclusive: bool = False
     is_global: bool = False
 
     @property
     def is_by_range(self) -> bool:
-        """Whether it spans what the bend range (RPN 0) says."""
+        """Whether the bend range (RPN 0) sets its span."""
         return self.source == "bend" and self.span is None and self.target == "/playing/bend"
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The target's values at the two ends of the source's way, before `invert`."""
+        """The target's values at the two ends of the span, before `invert`."""
         param = find(self.target)
         return self.span or (param.lo, param.hi)
 
     @property
-    def way(self) -> tuple[float, float]:
+    def output_range(self) -> tuple[float, float]:
         """The target's values where the source is at 0 and at 1."""
         return self.ends[::-1] if self.invert else self.ends
 
     @property
     def curve_name(self) -> str:
-        """The curve in a word."""
+        """Name of the curve, for reading."""
         return self.curve.value if isinstance(self.curve, Curve) else "table"
 
     @property
     def terms(self) -> tuple[str, ...]:
-        """What else goes for it, for reading."""
+        """All settings that are not at their defaults, beside span and curve, for reading."""
         terms = []
-        if self.reach != (0.0, 1.0):
-            terms.append(f"sends {self.reach[0]:g} to {self.reach[1]:g}")
+        if self.input_range != (0.0, 1.0):
+            terms.append(f"sends {self.input_range[0]:g} to {self.input_range[1]:g}")
         if self.channels:
             terms.append(f"channel {', '.join(map(str, self.channels))}")
         if self.smoothing_ms:
             terms.append(f"within {self.smoothing_ms:g} ms")
         if self.is_soft:
             terms.append("soft")
-        if self.is_alone:
+        if self.is_exclusive:
             terms.append("alone")
         if self.is_global:
             terms.append("global")
         return tuple(terms)
 
-    def hears(self, channel: int) -> bool:
-        """Whether it is for a channel, counted from 0 over all ports; below 0 is no channel."""
+    def receives(self, channel: int) -> bool:
+        """Whether it receives on a channel, counted from 0 over all ports; negative: no channel."""
         return not self.channels or (
             channel >= 0 and channel % sources.CHANNELS + 1 in self.channels
         )
 
-    def place(self, argument: float) -> float:
-        """Where an OSC argument is on the way, 0 to 1."""
-        return Curve.LIN.unbend(argument, *self.reach)
+    def input_to_unit(self, argument: float) -> float:
+        """Map an OSC argument to a position, 0 to 1."""
+        return Curve.LIN.to_unit(argument, *self.input_range)
 
-    def apply(self, place: float) -> float:
-        """Map the source's place, 0 to 1, to the target's value."""
-        return self.curve.bend(self._turned(place), *self.ends)
+    def from_unit(self, position: float) -> float:
+        """Map the source's position, 0 to 1, to the target's value."""
+        return self.curve.from_unit(self._inverted(position), *self.ends)
 
-    def place_of(self, value: float) -> float:
-        """Find the place, 0 to 1, that `apply` maps to a value; one beyond an end is at it."""
-        return self._turned(self.curve.unbend(value, *self.ends))
+    def to_unit(self, value: float) -> float:
+        """Find the position, 0 to 1, that `from_unit` maps to a value, clamped to the span."""
+        return self._inverted(self.curve.to_unit(value, *self.ends))
 
-    def semitones(self, place: float, bend_range: float) -> float:
-        """Map the place of a wheel whose ends are the bend range."""
-        return (2.0 * self.curve.bend(self._turned(place), 0.0, 1.0) - 1.0) * bend_range
+    def semitones(self, position: float, bend_range: float) -> float:
+        """Map the position of a pitch wheel to semitones, for a bend range in semitones."""
+        return (2.0 * self.curve.from_unit(self._inverted(position), 0.0, 1.0) - 1.0) * bend_range
 
-    def meets(self, place: float, before: float | None, value: float) -> bool:
-        """Whether a source that comes to a place is, or passed, where the target is.
+    def picks_up(self, position: float, before: float | None, value: float) -> bool:
+        """Whether a source that moves to a position reaches or passes the target's value.
 
         Parameters
         ----------
         before : float, optional
-            Its place before, if it was ever moved.
+            The source's position before, if it was ever moved.
         value : float
-            The target's.
+            The target's present value.
         """
-        here, there = self._share(place), self._share_of(value)
-        if abs(here - there) <= NEAR or self.ends[0] == self.ends[1]:
+        here, there = self._fraction(position), self._fraction_of(value)
+        if abs(here - there) <= PICKUP_WINDOW or self.ends[0] == self.ends[1]:
             return True
-        return before is not None and (self._share(before) - there) * (here - there) < 0.0
+        return before is not None and (self._fraction(before) - there) * (here - there) < 0.0
 
-    def _turned(self, place: float) -> float:
-        return 1.0 - place if self.invert else place
+    def _inverted(self, position: float) -> float:
+        return 1.0 - position if self.invert else position
 
-    # A table may turn back or stand still, so places are compared by what comes of them.
+    # Breakpoints may fall or stay the same, so positions are compared by their fractions.
 
-    def _share(self, place: float) -> float:
-        turned = self._turned(place)
-        return self.curve.at(turned) if isinstance(self.curve, Table) else turned
+    def _fraction(self, position: float) -> float:
+        unit = self._inverted(position)
+        return self.curve.fraction_at(unit) if isinstance(self.curve, Breakpoints) else unit
 
-    def _share_of(self, value: float) -> float:
-        way = self.curve.share if isinstance(self.curve, Table) else self.curve.unbend
-        return way(value, *self.ends)
+    def _fraction_of(self, value: float) -> float:
+        curve = self.curve
+        inverse = curve.fraction_of if isinstance(curve, Breakpoints) else curve.to_unit
+        return inverse(value, *self.ends)
 
 
-def replaced(bind: Bind) -> tuple[str, tuple[int, ...]]:
-    """What a bind stands for: one of the same in a file replaces those of the file's base."""
+def override_key(bind: Bind) -> tuple[str, tuple[int, ...]]:
+    """Controller and channels of a bind; a file's binds replace those of its base of equal key."""
     return sources.controller(bind.source), bind.channels

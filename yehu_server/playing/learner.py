@@ -1,4 +1,4 @@
-"""MIDI learn: finding out which source somebody moves, so that it can be bound."""
+"""MIDI learn: detect which source the user moves, so that it can be bound."""
 
 from __future__ import annotations
 
@@ -7,32 +7,32 @@ from dataclasses import dataclass, field
 import mido
 
 from yehu_server.playing import sources
+from yehu_server.playing.midi_channel import DATA_ENTRY, NRPN, NRPN_FINE, RPN, RPN_FINE
 from yehu_server.playing.sources import COARSE, FINE_ABOVE, RESERVED, STEPS
 
-DATA_ENTRY, NRPN_FINE, NRPN, RPN_FINE, RPN = 6, 98, 99, 100, 101
-# A source is meant once it was moved so far: pedals and breath sensors tremble by themselves.
-MEANT = 1.0 / 16.0
+# How far a source has to move, 0 to 1: pedals and breath sensors are noisy at rest.
+DISTANCE = 1.0 / 16.0
 AT_REST = {sources.BEND: 0.5, sources.PRESSURE: 0.0, sources.POLY_PRESSURE: 0.0}
 
 
 @dataclass(frozen=True)
 class Found:
-    """A source that was moved, and the range of what it sends if it is an OSC address."""
+    """A source that was moved; of an OSC address also the range of its values."""
 
     source: str
-    reach: tuple[float, float] = (0.0, 1.0)
+    input_range: tuple[float, float] = (0.0, 1.0)
 
 
 @dataclass
 class _Channel:
-    """What was heard on one channel."""
+    """The control changes received on one channel."""
 
-    before: int | None = None  # the last control change
+    before: int | None = None  # the control change before
     nrpn: list[int | None] = field(default_factory=lambda: [None, None])
 
 
 class Learner:
-    """Listens until it is clear what is moved; `hear` and `hear_address` then say so."""
+    """Compares each source with where it began, until one has moved far enough to be meant."""
 
     def __init__(self) -> None:
         self._began_at: dict[tuple[int, str], float] = {}
@@ -40,7 +40,7 @@ class Learner:
         self._pairs: set[tuple[int, int]] = set()  # channel, coarse half
 
     def hear(self, message: mido.Message, port: int = 0) -> Found | None:
-        """Take in a MIDI message; return the source that is meant, once it is clear."""
+        """Receive a MIDI message; return the source, once one has moved far enough."""
         if not hasattr(message, "channel"):
             return None
         channel = sources.CHANNELS * port + message.channel
@@ -55,10 +55,10 @@ class Learner:
         return None
 
     def hear_address(self, address: str, argument: float) -> Found | None:
-        """Take in a number at an OSC address of the user's own; the same."""
-        reach = (0.0, 1.0) if 0.0 <= argument <= 1.0 else (0.0, float(STEPS))
-        found = self._moved(-1, address, argument / reach[1])
-        return Found(found.source, reach) if found else None
+        """Receive a number at an OSC address of the user's own; return as `hear` does."""
+        input_range = (0.0, 1.0) if 0.0 <= argument <= 1.0 else (0.0, float(STEPS))
+        found = self._moved(-1, address, argument / input_range[1])
+        return Found(found.source, input_range) if found else None
 
     def _control(self, channel: int, control: int, value: int) -> Found | None:
         state = self._channels.setdefault(channel, _Channel())
@@ -78,12 +78,12 @@ class Learner:
             if before == control - FINE_ABOVE:
                 self._pairs.add((channel, before))
             if (channel, control - FINE_ABOVE) in self._pairs:
-                return None  # the fine half of another
+                return None  # the fine half of a pair
         found = self._moved(channel, sources.control(control), value / STEPS)
         if found is not None and (channel, control) in self._pairs:
             return Found(sources.pair(control))
         return found
 
-    def _moved(self, channel: int, source: str, place: float) -> Found | None:
-        began = self._began_at.setdefault((channel, source), AT_REST.get(source, place))
-        return Found(source) if abs(place - began) >= MEANT else None
+    def _moved(self, channel: int, source: str, position: float) -> Found | None:
+        began = self._began_at.setdefault((channel, source), AT_REST.get(source, position))
+        return Found(source) if abs(position - began) >= DISTANCE else None

@@ -1,7 +1,7 @@
-"""The one way to the instrument while it plays: from MIDI, OSC, or whatever comes next.
+"""A thread-safe player: all live control of the instrument, from MIDI and OSC, goes through it.
 
-Handlers run in threads of their own and take turns here. Nothing below waits for them: they
-stamp what they decide with frames and post it, and the audio side applies it.
+Handlers run in threads of their own and hold a lock here. The audio side never waits for them:
+the player posts events with the frames at which the audio side applies them.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.performer import Key
 from yehu_server.playing.style import Style
 
-ELSEWHERE = -1  # the channel of notes that come from no MIDI port
+ELSEWHERE = -1  # the channel of notes that do not come from MIDI
 
 
 class Targets:
-    """Passes the player's moves on to the instrument, and remembers where each went."""
+    """Passes the player's writes on to the instrument, and keeps the values written."""
 
     def __init__(self, instrument: Instrument) -> None:
         self._instrument = instrument
@@ -48,10 +48,9 @@ class Targets:
 
 
 class Arrivals:
-    """Frames for what arrives from one source: none before the one before it.
+    """Assigns frames to the messages of one source, in the order of their arrival.
 
-    The clock that frames are read off is corrected now and then, by a little; messages that
-    come close together must not change places over that.
+    Small corrections of the clock must not swap messages that arrive close together.
     """
 
     def __init__(self, player: LivePlayer) -> None:
@@ -61,25 +60,25 @@ class Arrivals:
     def frame_of(self, arrived_ns: int) -> int:
         """See `LivePlayer.frame_of`."""
         frame = self._player.frame_of(arrived_ns)
-        if self._latest - frame > self._player.instrument.rate:  # no small correction
+        if self._latest - frame > self._player.instrument.rate:  # no small correction of the clock
             self._latest = frame
         self._latest = max(self._latest, frame)
         return self._latest
 
 
 class LivePlayer:
-    """A player that several threads may tell what to do.
+    """A player that several threads may call.
 
-    Every call takes the frame at which it shall be heard: that of the message's arrival, by
-    `frame_of`, or that of its time tag. What the player decides keeps its order: a message
-    that comes while a later one is already decided (`control.schedule` looks some
-    milliseconds ahead) is heard no earlier than that. Direct writes need not wait.
+    Every call takes the frame at which it is to sound: that of the message's arrival, by
+    `frame_of`, or that of its time tag. The player acts on messages in order: where a later one
+    was acted on already (`control.schedule` looks some milliseconds ahead), a message takes
+    the frame of that one. Direct writes to the engine keep their own frame.
 
     Parameters
     ----------
     delay_ms : float
-        From arrival to being heard. Constant, and long enough that the frame has not been
-        played yet, so that messages keep their rhythm.
+        From arrival to sound. Constant, and long enough that the frame has not been played
+        yet, so that messages keep their rhythm.
     """
 
     def __init__(
@@ -93,22 +92,23 @@ class LivePlayer:
         self.instrument = instrument
         self.presets = style.presets
         self.delay = instrument.frames(delay_ms)
-        self._turn = threading.RLock()
+        self._lock = threading.RLock()
         self._targets = Targets(instrument)
         self._performer = style.performer(self._targets, calibration, instrument.quantities)
         self._midi = style.midi(self._performer)
         self._learner = Learner()
         self._found: Callable[[Found], None] | None = None
-        self._decided = 0  # the latest frame of a decision
-        self._written = 0  # and of anything
+        self._decided = 0  # the latest frame that the player acted on
+        self._written = 0  # the latest frame of any write
 
     def frame_of(self, arrived_ns: int | None = None) -> int:
-        """The frame for a message that arrived at a moment of ``time.monotonic_ns()``."""
+        """The frame for a message that arrived at this ``time.monotonic_ns()``; by default, now."""
         moment = time.monotonic_ns() if arrived_ns is None else arrived_ns
         return int(self.instrument.frame_at(moment)) + self.delay
 
     def _in_order(self, frame: int) -> int:
-        if self._decided > frame + self.instrument.rate:  # the world's clock was set back
+        """The frame itself, or that of the latest action if it is later."""
+        if self._decided > frame + self.instrument.rate:  # the wall clock was set back
             self._decided = self._written = frame
         self._decided = max(self._decided, frame)
         self._written = max(self._written, self._decided)
@@ -117,90 +117,103 @@ class LivePlayer:
     # -- parameters --------------------------------------------------------------------------
 
     def value(self, address: str) -> float:
-        """Where a parameter is, or is on its way to. Errors: ParameterError."""
+        """The value of a parameter, or the one it is moving to.
+
+        Raises
+        ------
+        ParameterError
+            Where there is no such parameter.
+        """
         param = find(address)
-        with self._turn:
+        with self._lock:
             return self._targets.values[address] if param.owned else self._performer.value(address)
 
     def values(self) -> dict[str, float]:
-        """All parameters, by address."""
-        with self._turn:
+        """The values of all parameters, by address."""
+        with self._lock:
             return {param.address: self.value(param.address) for param in TABLE}
 
     def write(self, address: str, value: float, *, frame: int) -> float:
-        """Set a parameter; return the value accepted. Errors: ParameterError."""
-        with self._turn:
+        """Set a parameter; return the value accepted.
+
+        Raises
+        ------
+        ParameterError
+            As `Performer.write`.
+        """
+        with self._lock:
             if find(address).place is Place.PLAYER:
                 frame = self._in_order(frame)
             self._written = max(self._written, frame)
             return self._midi.write(address, value, frame=frame)
 
     def load(self, values: Values[str, float], *, frame: int) -> None:
-        """Set the parameters of a preset, but for those that are held, all at one frame."""
-        with self._turn:
+        """Set the parameters of a preset, except held ones, all at one frame."""
+        with self._lock:
             self._midi.load(values, frame=self._in_order(frame))
 
     def sound(self) -> dict[str, float]:
-        """The parameters as a preset is to keep them: see `Controllers.sound`."""
-        with self._turn:
+        """The parameters that a preset keeps: see `Controllers.sound`."""
+        with self._lock:
             return self._midi.sound()
 
     def hold(self, address: str, value: float) -> float:
-        """Set a parameter for as long as the program runs, from the first frame on."""
-        with self._turn:
+        """Set a parameter from the first frame on, and hold it as long as the program runs."""
+        with self._lock:
             return self._performer.write(address, value, frame=0, hold=True)
 
     def release(self) -> None:
-        """Give back to the player what direct writes took over."""
-        with self._turn:
+        """Return to the player what direct writes took over."""
+        with self._lock:
             self._performer.release()
 
     # -- the mapping -------------------------------------------------------------------------
 
     @property
     def addresses(self) -> tuple[str, ...]:
-        """The OSC addresses that the mapping gives a meaning."""
+        """The OSC addresses that the mapping binds."""
         return self._midi.mapping.addresses
 
     def move(self, address: str, argument: float, *, frame: int) -> None:
-        """Move what the mapping binds to one of its `addresses`; another moves nothing."""
-        with self._turn:
+        """Move the targets of one of the `addresses`; others move nothing."""
+        with self._lock:
             self._midi.move(address, argument, frame=self._in_order(frame))
 
     @property
     def mapping(self) -> Mapping:
-        """What controllers move."""
+        """The mapping in use."""
         return self._midi.mapping
 
     def remap(self, mapping: Mapping, *, frame: int) -> None:
         """See `MidiPlayer.remap`."""
-        with self._turn:
+        with self._lock:
             self._midi.remap(mapping, frame=self._in_order(frame))
 
     def bindings(self) -> list[tuple[Bind, float | None, float]]:
-        """Each bind, where its source was last moved to (0 to 1), and the target's value."""
-        with self._turn:
-            return [(bind, place, self.value(bind.target)) for bind, place in self._midi.places()]
+        """Each bind, the position (0 to 1) its source was last moved to, and the target's value."""
+        with self._lock:
+            positions = self._midi.positions()
+            return [(bind, position, self.value(bind.target)) for bind, position in positions]
 
     def listen(self, found: Callable[[Found], None] | None) -> None:
-        """Find out what somebody moves next; `found` is told of it, once, from any thread.
+        """Call `found` once with the source that the user moves next; with None, stop listening.
 
-        It must not wait. With None nothing is listened to.
+        It is called from any thread, and must not block.
         """
-        with self._turn:
+        with self._lock:
             self._learner, self._found = Learner(), found
 
     @property
     def listens(self) -> bool:
-        """Whether it is to find out what somebody moves."""
+        """Whether `listen` waits for a source to move."""
         return self._found is not None
 
     def hear(self, address: str, argument: float) -> None:
-        """Take in what came to an OSC address of the user's own."""
-        with self._turn:
-            self._tell(self._learner.hear_address(address, argument))
+        """Receive a number at an OSC address of the user's own, for `listen`."""
+        with self._lock:
+            self._report(self._learner.hear_address(address, argument))
 
-    def _tell(self, source: Found | None) -> None:
+    def _report(self, source: Found | None) -> None:
         if source is not None and self._found is not None:
             found, self._found = self._found, None
             found(source)
@@ -209,69 +222,78 @@ class LivePlayer:
 
     @property
     def pitch(self) -> float | None:
-        """The pitch (fractional MIDI note) that sounds."""
-        with self._turn:
+        """The sounding pitch (fractional MIDI note); None in silence."""
+        with self._lock:
             return self._performer.pitch
 
     def receive(self, message: mido.Message, *, frame: int, port: int) -> None:
-        """Act on a MIDI message of one of the ports, counted from 0."""
-        with self._turn:
+        """Act on a MIDI message of a port, counted from 0."""
+        with self._lock:
             if self._found is not None:
-                self._tell(self._learner.hear(message, port))
+                self._report(self._learner.hear(message, port))
             self._midi.receive(message, frame=self._in_order(frame), port=port)
 
     def let_go_of(self, port: int, *, frame: int) -> None:
-        """End what a port that is gone has left sounding."""
-        with self._turn:
+        """End the notes of a port that is gone."""
+        with self._lock:
             self._midi.let_go_of(port, frame=self._in_order(frame))
 
     def note_on(self, note: float, velocity: float, *, frame: int) -> None:
         """Begin a note (fractional MIDI note; velocity 0 to 127).
 
-        Errors: ParameterError where one is out of MIDI's range.
+        Raises
+        ------
+        ParameterError
+            Where one is out of MIDI's range.
         """
         key = _key(_within("note", note))
-        with self._turn:
+        with self._lock:
             self._midi.note_on(key, _within("velocity", velocity) / 127.0, self._in_order(frame))
 
     def note_off(self, note: float, *, frame: int) -> None:
         """End a note that `note_on` began."""
-        with self._turn:
+        with self._lock:
             self._midi.note_off(_key(note), self._in_order(frame))
 
     def slide(self, pitch: float, *, frame: int) -> float:
-        """See `Performer.slide`. Errors: ParameterError where it is out of MIDI's range."""
-        with self._turn:
+        """See `Performer.slide`.
+
+        Raises
+        ------
+        ParameterError
+            Where the pitch is out of MIDI's range.
+        """
+        with self._lock:
             return self._performer.slide(_within("pitch", pitch), frame=self._in_order(frame))
 
     def draw(self, speed: float, force: float, *, frame: int) -> tuple[float, float]:
         """See `Performer.draw`."""
-        with self._turn:
+        with self._lock:
             return self._performer.draw(speed, force, frame=self._in_order(frame))
 
     def end_notes(self, *, frame: int) -> None:
-        """End all notes, as if all keys and pedals were let go, and lift a bow drawn by hand."""
-        with self._turn:
+        """End all notes, as if all keys and pedals were released; lift a bow drawn by hand."""
+        with self._lock:
             frame = self._in_order(max(frame, self._written))
             self._midi.receive(mido.Message("reset"), frame=frame)
             self._performer.lift(frame=frame)
 
     def panic(self, *, frame: int) -> None:
         """End all notes and all sound at once."""
-        with self._turn:
+        with self._lock:
             self.end_notes(frame=frame)
             self._performer.all_sound_off(frame=self._decided)
 
     def reset(self, *, frame: int) -> None:
-        """The same, and put every parameter back to where it began."""
-        with self._turn:
+        """As `panic`, and set every parameter to its start value."""
+        with self._lock:
             frame = self._in_order(max(frame, self._written))
             self._midi.begin_again(frame=frame)
             self.panic(frame=frame)
 
 
 def _key(note: float) -> Key:
-    """The key of a note: the same for single and double precision."""
+    """The key of a note, rounded so that it is the same in single and double precision."""
     return Key(ELSEWHERE, round(note, 3))
 
 

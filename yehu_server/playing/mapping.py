@@ -1,8 +1,8 @@
-"""Mappings: which controllers move which parameters. Found by name, with the base each names.
+"""Mappings: which controllers move which parameters; found by name and merged with their bases.
 
-A plain name is a shipped mapping's first, so that what a render or a file names is the same for
-everyone; ``mine/NAME`` is the user's own. Only who plays live looks among their own first, where
-what was learned is kept.
+A plain name means a shipped mapping first, so that it means the same to every user;
+``mine/NAME`` is the user's own. Live playing alone looks at the user's own mappings first, as
+MIDI learn keeps its binds there.
 
 The format of the files is described in mappings/README.md.
 """
@@ -17,21 +17,26 @@ from platformdirs import user_config_path
 
 from yehu_server.errors import MappingError
 from yehu_server.files import shipped_folder
-from yehu_server.playing.binds import Bind, replaced
-from yehu_server.playing.mapping_file import Complaints, Sheet, read_sheet, text_of
+from yehu_server.playing.binds import Bind, override_key
+from yehu_server.playing.mapping_file import (
+    FileErrors,
+    MappingFile,
+    read_mapping_file,
+    text_of,
+)
 from yehu_server.playing.sources import is_address
 
 DEFAULT, MPE = "keyboard", "mpe"
-MINE = "mine/"  # before the name of one of the user's own
+MINE = "mine/"  # prefix of the names of the user's own mappings
 
 
 def mapping_folder() -> Path:
-    """Where the shipped mappings are."""
+    """The folder of the shipped mappings."""
     return shipped_folder("mappings")
 
 
 def own_folder() -> Path:
-    """Where the user's mappings are, if there are any."""
+    """The folder of the user's mappings, which need not exist."""
     return user_config_path("yehu-server") / "mappings"
 
 
@@ -39,9 +44,16 @@ def own_folder() -> Path:
 class Mapping:
     """A named set of binds; several may share a source or a target (the last move counts).
 
-    `start` are parameters with the values they begin with; `mpe` is whether every port begins
-    as an MPE zone; `about` says in a line what it is for; `files` are what it was read from,
-    its own first and then its bases'.
+    Attributes
+    ----------
+    start : tuple of (address, value)
+        Values that parameters start with.
+    mpe : bool
+        Whether every port starts as an MPE zone.
+    about : str
+        What it is for, in a line.
+    files : tuple of Path
+        The file it was read from, then those of its bases.
     """
 
     name: str
@@ -57,7 +69,7 @@ class Mapping:
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """All that moves something."""
+        """All sources that are bound."""
         return tuple(self._by_source)
 
     @cached_property
@@ -67,7 +79,7 @@ class Mapping:
 
     @cached_property
     def has_global(self) -> bool:
-        """Whether a bind is global."""
+        """Whether any bind is global."""
         return any(bind.is_global for bind in self.binds)
 
     @cached_property
@@ -93,7 +105,7 @@ def _names(folder: Path) -> list[str]:
 
 
 def is_own(mapping: Mapping) -> bool:
-    """Whether it comes from the user's folder."""
+    """Whether a mapping comes from the user's folder."""
     return any(_is_same(file.parent, own_folder()) for file in mapping.files[:1])
 
 
@@ -103,18 +115,27 @@ def load(name_or_path: str, *, own_first: bool = False) -> Mapping:
     Parameters
     ----------
     name_or_path : str
-        A name, ``mine/`` and the name of one of the user's own, or a path.
+        A name, ``mine/NAME`` for one of the user's own, or a path.
     own_first : bool
-        Whether a plain name is one of the user's own first; else a shipped one's.
+        Whether a plain name means the user's own mapping before a shipped one.
 
-    Errors: MappingError, naming file and line.
+    Raises
+    ------
+    MappingError
+        Naming file and line.
     """
     path = find_file(name_or_path, own_first=own_first)
-    return with_bases(path, read_sheet(path))
+    return with_bases(path, read_mapping_file(path))
 
 
 def find_file(name_or_path: str, *, own_first: bool = False) -> Path:
-    """The file of a mapping; what is no name is a path. Errors: MappingError."""
+    """Find the file of a mapping by its name; anything but a name is taken as a path.
+
+    Raises
+    ------
+    MappingError
+        Where there is no mapping of this name.
+    """
     if not _is_name(name_or_path):
         return Path(name_or_path)
     found = _named(name_or_path, own_first=own_first)
@@ -123,40 +144,50 @@ def find_file(name_or_path: str, *, own_first: bool = False) -> Path:
     return found
 
 
-def with_bases(path: Path, sheet: Sheet) -> Mapping:
-    """What a file says, over what its base and the bases of that say. Errors: MappingError."""
-    sheets, files = [sheet], [path]
-    while (base := sheets[-1].base) is not None:
-        wrong = Complaints(files[-1], text_of(files[-1]))
+def with_bases(path: Path, contents: MappingFile) -> Mapping:
+    """Merge the contents of a file with those of its base, and of the base's base.
+
+    Raises
+    ------
+    MappingError
+        Where a base is missing, wrong, or based on this file.
+    """
+    layers, files = [contents], [path]
+    while (base := layers[-1].base) is not None:
+        errors = FileErrors(files[-1], text_of(files[-1]))
         below = _named(base, files[-1]) if _is_name(base) else None
         if below is None:
-            wrong.add(("base",), f"base: {_unknown(base)}")
+            errors.add(("base",), f"base: {_unknown(base)}")
         elif any(_is_same(below, file) for file in files):
             chain = ", ".join(file.stem for file in (*files, below))
-            wrong.add(("base",), f"base: the bases go round in a circle ({chain})")
-        wrong.end()
+            errors.add(("base",), f"base: the bases go round in a circle ({chain})")
+        errors.raise_all()
         assert below is not None  # noqa: S101 - or the line before has raised
         files.append(below)
-        sheets.append(read_sheet(below))
-    mapping = Mapping(sheet.name, (), about=sheet.about, files=tuple(files))
-    for each in reversed(sheets):
-        mapping = _over(mapping, each)
+        layers.append(read_mapping_file(below))
+    mapping = Mapping(contents.name, (), about=contents.about, files=tuple(files))
+    for layer in reversed(layers):
+        mapping = _merged(mapping, layer)
     return mapping
 
 
-def _over(below: Mapping, sheet: Sheet) -> Mapping:
-    """A mapping with what a file adds; its binds replace those of the same controller.
+def _merged(below: Mapping, layer: MappingFile) -> Mapping:
+    """A mapping overridden by a file: its binds replace those of the same controller.
 
-    A bind that is alone also replaces what else moves its target.
+    An exclusive bind also replaces all others of its target.
     """
-    own = {replaced(bind) for bind in sheet.binds}
-    taken = {bind.target for bind in sheet.binds if bind.is_alone}
-    kept = [b for b in below.binds if replaced(b) not in own and b.target not in taken]
+    overridden = {override_key(bind) for bind in layer.binds}
+    exclusive = {bind.target for bind in layer.binds if bind.is_exclusive}
+    kept = [
+        bind
+        for bind in below.binds
+        if override_key(bind) not in overridden and bind.target not in exclusive
+    ]
     return Mapping(
         below.name,
-        (*kept, *sheet.binds),
-        tuple((dict(below.start) | dict(sheet.start)).items()),
-        below.mpe if sheet.mpe is None else sheet.mpe,
+        (*kept, *layer.binds),
+        tuple((dict(below.start) | dict(layer.start)).items()),
+        below.mpe if layer.mpe is None else layer.mpe,
         below.about,
         below.files,
     )
@@ -169,7 +200,7 @@ def _is_name(text: str) -> bool:
 
 
 def _named(name: str, of: Path | None = None, *, own_first: bool = False) -> Path | None:
-    """The file of a name; as the base `of` a file never that file itself."""
+    """The file of a name; where it is the base `of` a file, not that file itself."""
     folders = [mapping_folder(), own_folder()]
     if name.startswith(MINE):
         del folders[0]
@@ -178,7 +209,7 @@ def _named(name: str, of: Path | None = None, *, own_first: bool = False) -> Pat
         try:
             if file.is_file() and not (of is not None and _is_same(file, of)):
                 return file
-        except (OSError, ValueError):  # a name that no file could have
+        except (OSError, ValueError):  # no possible file name
             return None
     return None
 

@@ -1,4 +1,4 @@
-"""What each entry of a mapping file may be. All of these raise ParameterError for anything else."""
+"""Check and convert the values in a mapping file; all raise ParameterError for a wrong one."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import find
-from yehu_server.playing.binds import Table
+from yehu_server.playing.binds import Breakpoints
 
 LONGEST_SMOOTHING_MS = 5000.0
 MOST_POINTS = 1024
 
 
-def words(name: str) -> Callable[[Any], Any]:
-    """A line of text."""
+def line_of_text(name: str) -> Callable[[Any], Any]:
+    """Make a reader of a line of text."""
 
     def read(value: Any) -> str:
         if not isinstance(value, str) or not value.isprintable():
@@ -27,8 +27,8 @@ def words(name: str) -> Callable[[Any], Any]:
     return read
 
 
-def flag(name: str) -> Callable[[Any], Any]:
-    """True or false."""
+def boolean(name: str) -> Callable[[Any], Any]:
+    """Make a reader of true or false."""
 
     def read(value: Any) -> bool:
         if not isinstance(value, bool):
@@ -39,7 +39,7 @@ def flag(name: str) -> Callable[[Any], Any]:
 
 
 def free(address: str, instead: str) -> Param:
-    """The parameter at an address, one that the player does not move."""
+    """Find a parameter that the player does not move; `instead` begins the advice in the error."""
     param = find(address)
     if param.owned:
         raise ParameterError(f"{address} is moved by the player; {instead} under /playing")
@@ -47,7 +47,7 @@ def free(address: str, instead: str) -> Param:
 
 
 def start(address: str, value: Any) -> float:
-    """Where a parameter begins."""
+    """Read the value that a parameter starts with."""
     param = free(address, "set one")
     if param.accept(value) != value:
         raise ParameterError(f"{address}: {value} is not within {param.range_text}")
@@ -55,7 +55,7 @@ def start(address: str, value: Any) -> float:
 
 
 def _number(value: Any) -> float | None:
-    """A finite number of a file; None for anything else."""
+    """A finite number; None for anything else."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     try:
@@ -66,8 +66,8 @@ def _number(value: Any) -> float | None:
 
 
 def span(value: Any, param: Param | None) -> tuple[float, float]:
-    """Two values of a parameter, if that is known."""
-    ends = _two(value, "span: expected [from, to]")
+    """Read two values within the range of a parameter, if that is known."""
+    ends = _pair(value, "span: expected [from, to]")
     for end in ends:
         if param is not None and not param.lo <= end <= param.hi:  # also refuses NaN
             within = f"{param.lo:g} to {param.hi:g}"
@@ -75,16 +75,16 @@ def span(value: Any, param: Param | None) -> tuple[float, float]:
     return (float(ends[0]), float(ends[1])) if param else (0.0, 0.0)
 
 
-def reach(value: Any) -> tuple[float, float]:
-    """Two numbers that differ."""
-    numbers = [_number(end) for end in _two(value, "input: expected [from, to]")]
+def input_range(value: Any) -> tuple[float, float]:
+    """Read two different numbers."""
+    numbers = [_number(end) for end in _pair(value, "input: expected [from, to]")]
     lo, hi = numbers
     if lo is None or hi is None or not 0.0 < abs(hi - lo) < math.inf:
         raise ParameterError(f"input: expected two different numbers, got {_brief(value)}")
     return lo, hi
 
 
-def _two(value: Any, expected: str) -> list[Any]:
+def _pair(value: Any, expected: str) -> list[Any]:
     is_numbers = isinstance(value, list) and all(
         isinstance(end, int | float) and not isinstance(end, bool) for end in value
     )
@@ -93,10 +93,10 @@ def _two(value: Any, expected: str) -> list[Any]:
     return list(value)
 
 
-def curve(value: Any) -> Curve | Table:
-    """A curve by its name, or by its points."""
+def curve(value: Any) -> Curve | Breakpoints:
+    """Read a curve by its name or by its points."""
     if isinstance(value, list):
-        return _table(value)
+        return _breakpoints(value)
     try:
         return Curve(value)
     except ValueError:
@@ -106,7 +106,7 @@ def curve(value: Any) -> Curve | Table:
         ) from None
 
 
-def _table(value: list[Any]) -> Table:
+def _breakpoints(value: list[Any]) -> Breakpoints:
     points: list[tuple[float, float]] = []
     for point in value:
         pair = [_number(part) for part in point] if isinstance(point, list) else []
@@ -115,18 +115,18 @@ def _table(value: list[Any]) -> Table:
         if not 0.0 <= min(pair[0], pair[1]) <= max(pair[0], pair[1]) <= 1.0:
             raise ParameterError(f"curve: {_brief(point)} is not within 0 to 1")
         points.append((pair[0], pair[1]))
-    ways = [way for way, _ in points]
-    if len(ways) < 2 or (ways[0], ways[-1]) != (0.0, 1.0):
+    positions = [position for position, _ in points]
+    if len(positions) < 2 or (positions[0], positions[-1]) != (0.0, 1.0):
         raise ParameterError("curve: the points have to begin at 0 and end at 1")
-    if any(later <= way for way, later in itertools.pairwise(ways)):
+    if any(later <= position for position, later in itertools.pairwise(positions)):
         raise ParameterError("curve: each point has to lie beyond the one before it")
     if len(points) > MOST_POINTS:
         raise ParameterError(f"curve: {len(points)} points are more than {MOST_POINTS}")
-    return Table(tuple(points))
+    return Breakpoints(tuple(points))
 
 
 def smoothing(value: Any) -> float:
-    """A time (ms)."""
+    """Read a time (ms)."""
     number = _number(value)
     if number is None or not 0.0 <= number <= LONGEST_SMOOTHING_MS:
         raise ParameterError(
@@ -136,7 +136,7 @@ def smoothing(value: Any) -> float:
 
 
 def channels(value: Any) -> tuple[int, ...]:
-    """One MIDI channel or several, as people count."""
+    """Read one MIDI channel or several, 1 to 16."""
     numbers = value if isinstance(value, list) else [value]
     is_right = bool(numbers) and all(
         isinstance(number, int) and not isinstance(number, bool) and 1 <= number <= 16
@@ -148,8 +148,9 @@ def channels(value: Any) -> tuple[int, ...]:
 
 
 def _brief(value: Any) -> str:
+    """A value for an error message, cut short."""
     try:
         text = repr(value)
-    except ValueError:  # a number of more digits than Python likes to print
+    except ValueError:  # more digits than Python prints
         return "a very large number"
     return text if len(text) <= 80 else f"{text[:77]}..."

@@ -1,4 +1,4 @@
-"""Reading one mapping file: what it says, or all that is wrong with it, by line.
+"""Read one mapping file: its contents, or all errors in it with their lines.
 
 The format is described in mappings/README.md.
 """
@@ -17,8 +17,8 @@ from yehu_server.files import MAX_SETTINGS_BYTES, read_text
 from yehu_server.params.spec import Curve
 from yehu_server.playing import mapping_entries as entries
 from yehu_server.playing import sources
-from yehu_server.playing.binds import Bind, Table
-from yehu_server.playing.toml_lines import Way, line_at, lines_of
+from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.toml_lines import KeyPath, line_at, lines_of
 
 ENTRIES = ("name", "about", "base", "mpe", "start", "bind")
 BIND_ENTRIES = (
@@ -27,14 +27,14 @@ BIND_ENTRIES = (
 )  # fmt: skip
 _LINE = re.compile(r"\(at line ([0-9]+)")
 
-MOST_COMPLAINTS = 50
+MOST_ERRORS = 50  # a hint at a similar name takes milliseconds each
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Sheet:
-    """What one file says, without its base; `mpe` is None where it says nothing of it."""
+class MappingFile:
+    """The contents of one file, without its base; `mpe` is None where it is not given."""
 
     name: str
     binds: tuple[Bind, ...] = ()
@@ -44,39 +44,63 @@ class Sheet:
     about: str = ""
 
 
-class Complaints:
-    """What is wrong with a file, until all of it is known."""
+class FileErrors:
+    """Collects the errors in a file, to raise them all at once."""
 
     def __init__(self, path: Path, text: str) -> None:
         self._path = path
         self._text = text
-        self._lines: dict[Way, int] | None = None
-        self._said: list[tuple[int, str]] = []
+        self._lines: dict[KeyPath, int] | None = None
+        self._found: list[tuple[int, str]] = []
 
-    def add(self, way: Way, what: str) -> None:
-        """Keep what is wrong with an entry. Errors: as of `end`, where it is too much to go on."""
+    def add(self, key: KeyPath, reason: str) -> None:
+        """Add an error in an entry.
+
+        Raises
+        ------
+        MappingError
+            As `raise_all`, where there are MOST_ERRORS.
+        """
         if self._lines is None:
             self._lines = lines_of(self._text)
-        line = line_at(self._lines, way)
+        line = line_at(self._lines, key)
         where = f"{self._path}: " if line is None else f"{self._path}:{line}: "
-        self._said.append((line or 0, where + what))
-        if len(self._said) == MOST_COMPLAINTS:  # each takes milliseconds to find a near name for
-            self.end()
+        self._found.append((line or 0, where + reason))
+        if len(self._found) == MOST_ERRORS:
+            self.raise_all()
 
-    def end(self) -> None:
-        """Errors: MappingError, where something was wrong; its `more` are the others."""
-        if self._said:
-            raise MappingError(*(what for _, what in sorted(self._said, key=lambda one: one[0])))
+    def raise_all(self) -> None:
+        """Raise what was added, by line; return if nothing was.
+
+        Raises
+        ------
+        MappingError
+            The first error; its `more` are the others.
+        """
+        if self._found:
+            raise MappingError(*(what for _, what in sorted(self._found, key=lambda one: one[0])))
 
 
-def read_sheet(path: Path) -> Sheet:
-    """Read a TOML file. Errors: MappingError, naming file and line."""
+def read_mapping_file(path: Path) -> MappingFile:
+    """Read a TOML file.
+
+    Raises
+    ------
+    MappingError
+        Naming file and line.
+    """
     text = text_of(path)
-    return sheet_of(path, toml_of(path, text), text)
+    return mapping_file_from(path, toml_of(path, text), text)
 
 
 def text_of(path: Path) -> str:
-    """The text of a file. Errors: MappingError."""
+    """The text of a file.
+
+    Raises
+    ------
+    MappingError
+        Where it cannot be read or is not UTF-8.
+    """
     try:
         return read_text(path, MAX_SETTINGS_BYTES)
     except OSError as error:
@@ -86,7 +110,13 @@ def text_of(path: Path) -> str:
 
 
 def toml_of(path: Path, text: str) -> dict[str, Any]:
-    """The entries of a TOML text. Errors: MappingError."""
+    """The entries of a TOML text.
+
+    Raises
+    ------
+    MappingError
+        Where it is not TOML.
+    """
     try:
         return parse_toml(text)
     except ValueError as error:
@@ -96,7 +126,13 @@ def toml_of(path: Path, text: str) -> dict[str, Any]:
 
 
 def json_of(path: Path, text: str) -> dict[str, Any]:
-    """The entries of what ``yehu-server mappings show --json`` prints. Errors: MappingError."""
+    """The entries of what ``yehu-server mappings show --json`` prints.
+
+    Raises
+    ------
+    MappingError
+        Where it is not a JSON object.
+    """
     try:
         data = parse_json(text)
     except ValueError as error:
@@ -106,131 +142,137 @@ def json_of(path: Path, text: str) -> dict[str, Any]:
     binds = data.get("bind", [])
     if isinstance(binds, list):
         data["bind"] = [_of_json(bind) if isinstance(bind, dict) else bind for bind in binds]
-    return _present(data)
+    return _without_null(data)
 
 
 def _of_json(entry: dict[str, Any]) -> dict[str, Any]:
     ends = [entry.pop(name, None) for name in ("from", "to")]
-    # Once there was no span beside them, and both are null for the bend range.
+    # Older versions printed no span beside them; both are null for the bend range.
     if "span" not in entry and ends != [None, None]:
         entry["span"] = ends
-    return _present(entry)
+    return _without_null(entry)
 
 
-def _present(table: dict[str, Any]) -> dict[str, Any]:
+def _without_null(table: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in table.items() if value is not None}
 
 
-# ---------------------------------------------------------------- what a file says
+# ---------------------------------------------------------------- entries
 
 
-def sheet_of(path: Path, data: dict[str, Any], text: str = "") -> Sheet:
-    """Read the entries of a file, whose text tells their lines. Errors: MappingError."""
-    wrong = Complaints(path, text)
+def mapping_file_from(path: Path, data: dict[str, Any], text: str = "") -> MappingFile:
+    """Check and convert the entries of a file; its text gives the lines for errors.
+
+    Raises
+    ------
+    MappingError
+        Naming file and line.
+    """
+    errors = FileErrors(path, text)
     for name in data:
         if name not in ENTRIES:
-            wrong.add((name,), f"unknown entry {name!r} (known: {', '.join(ENTRIES)})")
+            errors.add((name,), f"unknown entry {name!r} (known: {', '.join(ENTRIES)})")
 
     def read(name: str, reader: Callable[[Any], T], default: T) -> T:
-        return _read(data, name, reader, default, lambda what: wrong.add((name,), what))
+        return _read(data, name, reader, default, lambda reason: errors.add((name,), reason))
 
-    sheet = Sheet(
-        name=read("name", entries.words("name"), path.stem),
-        binds=_binds(data.get("bind", []), wrong),
-        start=_start(data.get("start", {}), wrong),
-        base=read("base", entries.words("base"), None),
-        mpe=read("mpe", entries.flag("mpe"), None),
-        about=read("about", entries.words("about"), ""),
+    mapping_file = MappingFile(
+        name=read("name", entries.line_of_text("name"), path.stem),
+        binds=_binds(data.get("bind", []), errors),
+        start=_start(data.get("start", {}), errors),
+        base=read("base", entries.line_of_text("base"), None),
+        mpe=read("mpe", entries.boolean("mpe"), None),
+        about=read("about", entries.line_of_text("about"), ""),
     )
-    wrong.end()
-    return sheet
+    errors.raise_all()
+    return mapping_file
 
 
-def _start(values: Any, wrong: Complaints) -> tuple[tuple[str, float], ...]:
+def _start(values: Any, errors: FileErrors) -> tuple[tuple[str, float], ...]:
     if not isinstance(values, dict):
-        wrong.add(("start",), "start: expected a table of addresses and values")
+        errors.add(("start",), "start: expected a table of addresses and values")
         return ()
     start = []
     for address, value in values.items():
         try:
             start.append((address, entries.start(address, value)))
         except ParameterError as error:
-            wrong.add(("start", address), f"start: {error}")
+            errors.add(("start", address), f"start: {error}")
     return tuple(start)
 
 
-def _binds(tables: Any, wrong: Complaints) -> tuple[Bind, ...]:
+def _binds(tables: Any, errors: FileErrors) -> tuple[Bind, ...]:
     if not isinstance(tables, list):
-        wrong.add(("bind",), "write each bind as [[bind]]")
+        errors.add(("bind",), "write each bind as [[bind]]")
         return ()
     binds = []
-    for place, entry in enumerate(tables):
+    for index, entry in enumerate(tables):
 
-        def complain(name: str, what: str, place: int = place) -> None:
-            wrong.add(("bind", place, name), f"bind {place + 1}: {what}")
+        def add_error(name: str, reason: str, index: int = index) -> None:
+            errors.add(("bind", index, name), f"bind {index + 1}: {reason}")
 
-        bind = _bind(entry, complain)
+        bind = _bind(entry, add_error)
         if bind is not None:
             binds.append(bind)
     return tuple(binds)
 
 
-def _bind(entry: Any, wrong: Callable[[str, str], None]) -> Bind | None:
+def _bind(entry: Any, add_error: Callable[[str, str], None]) -> Bind | None:
     if not isinstance(entry, dict):
-        wrong("", "expected a table")
+        add_error("", "expected a table")
         return None
     for name in entry:
         if name not in BIND_ENTRIES:
-            wrong(name, f"unknown entry {name!r} (known: {', '.join(BIND_ENTRIES)})")
+            add_error(name, f"unknown entry {name!r} (known: {', '.join(BIND_ENTRIES)})")
 
     def read(name: str, reader: Callable[[Any], T], default: T) -> T:
-        return _read(entry, name, reader, default, lambda what: wrong(name, what))
+        return _read(entry, name, reader, default, lambda reason: add_error(name, reason))
 
     missing = [name for name in ("source", "target") if not isinstance(entry.get(name), str)]
     source, param = None, None
     if missing:
-        wrong(missing[0], "needs a source and a target")
+        add_error(missing[0], "needs a source and a target")
     else:
         source = read("source", sources.canonical, None)
         param = read("target", lambda text: entries.free(text, "map to one"), None)
-    curve: Curve | Table | None = read("curve", entries.curve, None)
+    curve: Curve | Breakpoints | None = read("curve", entries.curve, None)
     bind = Bind(
         source or "",
         param.address if param else "",
         span=read("span", lambda value: entries.span(value, param), None),
         curve=curve or (param.curve if param else Curve.LIN),
-        invert=read("invert", entries.flag("invert"), False),
+        invert=read("invert", entries.boolean("invert"), False),
         smoothing_ms=read("smoothing", entries.smoothing, 0.0),
         channels=read("channel", entries.channels, ()),
-        is_soft=read("soft", entries.flag("soft"), False),
-        reach=read("input", entries.reach, (0.0, 1.0)),
-        is_alone=read("alone", entries.flag("alone"), False),
-        is_global=read("global", entries.flag("global"), False),
+        is_soft=read("soft", entries.boolean("soft"), False),
+        input_range=read("input", entries.input_range, (0.0, 1.0)),
+        is_exclusive=read("alone", entries.boolean("alone"), False),
+        is_global=read("global", entries.boolean("global"), False),
     )
     if source is None or param is None:
         return None
-    for name, what in _disagreements(bind, entry):
-        wrong(name, what)
+    for name, reason in _conflicts(bind, entry):
+        add_error(name, reason)
     return bind
 
 
-def _disagreements(bind: Bind, entry: dict[str, Any]) -> list[tuple[str, str]]:
-    """Which entries of a bind do not go together, and why."""
+def _conflicts(bind: Bind, entry: dict[str, Any]) -> list[tuple[str, str]]:
+    """Entries of a bind that exclude each other, and why."""
     found = []
     if bind.curve is Curve.EXP and min(bind.ends) <= 0.0:
         found.append(("curve", "an exp curve needs a span above zero"))
     if sources.is_address(bind.source):
         if "channel" in entry:
-            found.append(("channel", "channel: an OSC address has none"))
+            found.append(("channel", "channel: an OSC address has no channel"))
         if bind.is_global:
-            found.append(("global", "global: an OSC address always is"))
+            found.append(("global", "global: an OSC address always is global"))
     elif "input" in entry:
-        found.append(("input", "input: only what an OSC address sends has a range of its own"))
+        found.append(("input", "input: only OSC addresses have an input range"))
     if bind.is_soft and (bind.source in sources.OF_ONE_NOTE or bind.is_by_range):
-        what = "the bend by its range" if bind.is_by_range else bind.source
+        what = "the bend by the bend range" if bind.is_by_range else bind.source
         found.append(("soft", f"soft: {what} cannot wait for the target"))
     if bind.is_global and bind.source in sources.OF_ONE_NOTE:
-        found.append(("global", f"global: {bind.source} is of one note"))
+        found.append(("global", f"global: {bind.source} belongs to one note"))
     return found
 
 
@@ -239,12 +281,12 @@ def _read(
     name: str,
     reader: Callable[[Any], T],
     default: T,
-    wrong: Callable[[str], None],
+    add_error: Callable[[str], None],
 ) -> T:
     if name not in table:
         return default
     try:
         return reader(table[name])
     except ParameterError as error:
-        wrong(str(error))
+        add_error(str(error))
         return default

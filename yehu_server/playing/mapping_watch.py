@@ -1,4 +1,4 @@
-"""A mapping that is taken up anew when one of its files changes."""
+"""Reload a mapping when one of its files changes."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from pathlib import Path
 from yehu_server.errors import MappingError
 from yehu_server.playing.mapping import Mapping
 
-# Of each file, what a change of it changes; None where there is none.
+# Modification time, size and inode of each file; None where there is no file.
 Marks = dict[Path, tuple[int, int, int] | None]
 
 
 class MappingWatch:
-    """Looks at the files of a mapping whenever it is told to.
+    """Polls the files of a mapping.
 
-    A change counts once the files have stood still from one look to the next, so that none
-    is read half written.
+    A change counts once the files were the same at two polls in a row, so that none is read
+    half written.
 
     Parameters
     ----------
     mapping : Mapping
-        The one in use.
+        The mapping in use.
     read : callable
-        Reads it anew. Errors: MappingError.
+        Reads it again; raises MappingError where it is wrong.
     """
 
     def __init__(self, mapping: Mapping, read: Callable[[], Mapping]) -> None:
@@ -33,10 +33,14 @@ class MappingWatch:
         self._refused: str | None = None
 
     def look(self) -> Mapping | None:
-        """The mapping as it now is, if it has changed.
+        """Poll the files; return the mapping if it has changed.
 
-        Errors: MappingError, once, where it is wrong; it is tried again at each look, as what
-        is missing may be in files that are not known yet.
+        A wrong mapping is read again at each poll, as the cause may lie in a file not known yet.
+
+        Raises
+        ------
+        MappingError
+            Where it is wrong; once for each reason.
         """
         before, self._seen = self._seen, _marks(self._mapping.files)
         if self._seen != before or (self._seen == self._known and self._refused is None):
@@ -56,7 +60,7 @@ class MappingWatch:
 
 
 def _check(files: tuple[Path, ...]) -> None:
-    """Errors: MappingError for a pipe or a device: who reads it might wait for ever."""
+    """Refuse pipes and devices, whose reading might never end."""
     for file in files:
         if file.exists() and not file.is_file():
             raise MappingError(f"{file}: is not a regular file")

@@ -1,4 +1,4 @@
-"""Writing mapping files in their canonical form, with the comments that were there."""
+"""Write mapping files in canonical form, keeping the comments of an older text."""
 
 from __future__ import annotations
 
@@ -13,95 +13,95 @@ from tomlkit.items import AoT
 
 from yehu_server.errors import MappingError
 from yehu_server.params.table import find
-from yehu_server.playing.binds import Bind, Table
-from yehu_server.playing.mapping_file import Sheet, sheet_of, toml_of
+from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.mapping_file import MappingFile, mapping_file_from, toml_of
 
 
 def entries_of(bind: Bind) -> dict[str, Any]:
-    """The entries of a bind; those that go without saying are left out."""
-    is_usual_curve = bind.curve is find(bind.target).curve
+    """The entries of a bind, without those at their defaults."""
+    is_default_curve = bind.curve is find(bind.target).curve
     entries: dict[str, Any] = {
         "source": bind.source,
         "target": bind.target,
-        "input": None if bind.reach == (0.0, 1.0) else list(map(_number, bind.reach)),
+        "input": None if bind.input_range == (0.0, 1.0) else list(map(_number, bind.input_range)),
         "span": None if bind.span is None else list(map(_number, bind.span)),
-        "curve": None if is_usual_curve else _curve(bind),
+        "curve": None if is_default_curve else _curve(bind),
         "invert": bind.invert or None,
         "smoothing": _number(bind.smoothing_ms) or None,
         "channel": _channels(bind),
         "soft": bind.is_soft or None,
-        "alone": bind.is_alone or None,
+        "alone": bind.is_exclusive or None,
         "global": bind.is_global or None,
     }
     return {name: value for name, value in entries.items() if value is not None}
 
 
-def as_toml(sheet: Sheet) -> str:
-    """A file that says this and nothing else."""
+def as_toml(contents: MappingFile) -> str:
+    """The text of a file with these contents, in canonical form."""
     document = tomlkit.document()
-    document["name"] = sheet.name
-    says_mpe = sheet.mpe or (sheet.base is not None and sheet.mpe is not None)
-    for name, value in (("about", sheet.about or None), ("base", sheet.base)):
+    document["name"] = contents.name
+    has_mpe = contents.mpe or (contents.base is not None and contents.mpe is not None)
+    for name, value in (("about", contents.about or None), ("base", contents.base)):
         if value is not None:
             document[name] = value
-    if says_mpe:
-        document["mpe"] = sheet.mpe
-    if sheet.start:
+    if has_mpe:
+        document["mpe"] = contents.mpe
+    if contents.start:
         document.add(tomlkit.nl())
-        document["start"] = {address: _number(value) for address, value in sheet.start}
-    if sheet.binds:
+        document["start"] = {address: _number(value) for address, value in contents.start}
+    if contents.binds:
         binds = tomlkit.aot()
-        for bind in sheet.binds:
+        for bind in contents.binds:
             table = tomlkit.table()
             table.update(entries_of(bind))
             binds.append(table)
-        if not sheet.start:
+        if not contents.start:
             document.add(tomlkit.nl())
         document["bind"] = binds
     return tomlkit.dumps(document).rstrip("\n") + "\n"
 
 
-def tidied(sheet: Sheet, text: str) -> str:
-    """The text of a file, so changed that it says this in canonical form.
+def canonical(contents: MappingFile, text: str) -> str:
+    """Change the text of a file so that it has these contents in canonical form.
 
-    Comments and order stay; where they cannot, the file is written anew.
+    Comments and order stay where possible; else the text is written from scratch.
     """
     try:
         document = tomlkit.parse(text)
         binds = document.get("bind", [])
-        if (binds and not isinstance(binds, AoT)) or len(binds) != len(sheet.binds):
-            return as_toml(sheet)
-        if "name" not in document or document["name"] != sheet.name:
-            _set_name(document, sheet.name)
-        for table, bind in zip(binds, sheet.binds, strict=True):
+        if (binds and not isinstance(binds, AoT)) or len(binds) != len(contents.binds):
+            return as_toml(contents)
+        if "name" not in document or document["name"] != contents.name:
+            _set_name(document, contents.name)
+        for table, bind in zip(binds, contents.binds, strict=True):
             for name, value in entries_of(bind).items():
                 if name in table and table[name] != value:
                     table[name] = value
         changed = tomlkit.dumps(document)
-        path = Path(sheet.name)
-        if sheet_of(path, toml_of(path, changed)) == sheet:
+        path = Path(contents.name)
+        if mapping_file_from(path, toml_of(path, changed)) == contents:
             return changed
     except (TOMLKitError, MappingError, ValueError, RecursionError):
         pass
-    return as_toml(sheet)
+    return as_toml(contents)
 
 
-def rebound(sheet: Sheet, text: str, dropped: Sequence[Bind], added: Sequence[Bind]) -> str:
-    """The text of a file without some of its binds, and with others at its end.
+def edited(contents: MappingFile, text: str, dropped: Sequence[Bind], added: Sequence[Bind]) -> str:
+    """Remove some binds from the text of a file and append others.
 
-    Comments and order stay; where they cannot, the file is written anew.
+    Comments and order stay where possible; else the text is written from scratch.
     """
-    kept = tuple(bind for bind in sheet.binds if bind not in dropped)
-    wanted = replace(sheet, binds=(*kept, *added))
+    kept = tuple(bind for bind in contents.binds if bind not in dropped)
+    wanted = replace(contents, binds=(*kept, *added))
     try:
         document = tomlkit.parse(text)
         if "bind" not in document:
             document.add(tomlkit.nl())
             document["bind"] = tomlkit.aot()
         binds = document["bind"]
-        for place in reversed(range(len(sheet.binds))):
-            if sheet.binds[place] in dropped:
-                del binds[place]
+        for index in reversed(range(len(contents.binds))):
+            if contents.binds[index] in dropped:
+                del binds[index]
         for bind in added:
             table = tomlkit.table()
             table.update(entries_of(bind))
@@ -109,8 +109,8 @@ def rebound(sheet: Sheet, text: str, dropped: Sequence[Bind], added: Sequence[Bi
         if not binds:
             del document["bind"]
         changed = tomlkit.dumps(document)
-        path = Path(sheet.name)
-        if sheet_of(path, toml_of(path, changed)) == wanted:
+        path = Path(contents.name)
+        if mapping_file_from(path, toml_of(path, changed)) == wanted:
             return changed
     except (TOMLKitError, MappingError, ValueError, TypeError, RecursionError):
         pass
@@ -121,10 +121,10 @@ def _set_name(document: tomlkit.TOMLDocument, name: str) -> None:
     if "name" in document:
         document["name"] = name
         return
-    # Before everything but the comment that a file begins with.
+    # First of all entries, after the comment at the head of the file.
     body = document.body
-    place = next((at for at, (key, _) in enumerate(body) if key is not None), len(body))
-    document._insert_at(place, "name", name)  # noqa: SLF001 - no other way to begin with it
+    index = next((at for at, (key, _) in enumerate(body) if key is not None), len(body))
+    document._insert_at(index, "name", name)  # noqa: SLF001 - tomlkit has no public way to do it
 
 
 def _number(value: float) -> int | float:
@@ -132,7 +132,7 @@ def _number(value: float) -> int | float:
 
 
 def _curve(bind: Bind) -> Any:
-    if isinstance(bind.curve, Table):
+    if isinstance(bind.curve, Breakpoints):
         return [list(map(_number, point)) for point in bind.curve.value]
     return bind.curve.value
 

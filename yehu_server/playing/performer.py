@@ -1,11 +1,10 @@
-"""A player of one instrument: notes and wishes in, moves of bow and fingers out.
+"""The player of one instrument: turns notes and parameters into moves of bow and fingers.
 
-Who owns the bow and the fingers: this player, as long as notes sound; see ``ownership``.
+The player owns bow and fingers while notes sound; see ``ownership``.
 """
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
@@ -26,13 +25,14 @@ from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.left_hand import LIFTING_MS, LeftHand
 from yehu_server.playing.ownership import Ownership, Sink
 from yehu_server.playing.right_hand import SLURRED_MS, RightHand
+from yehu_server.playing.variation import Variation
 
 
 @dataclass(frozen=True)
 class Key:
-    """What identifies a held note: where it came from and which key it is.
+    """Identifies a held note by its channel and key.
 
-    `channel` is any number that tells sources apart; `note` may lie between the keys.
+    `channel` is any number that distinguishes sources; `note` may be fractional.
     """
 
     channel: int
@@ -40,12 +40,9 @@ class Key:
 
 
 BEND_RAMP_MS = find("/playing/bend").smooth_ms
-# The power of dynamics that the level follows: with the slower bow 0.5 is some 12 dB below 1,
-# 0.1 some 35. By ear.
-SWELL = 1.5
-# Standard deviations at full variation. By ear.
-VARIED_SHARE = 0.1  # of bow speed and force
-VARIED_CENTS = 6.0
+# The level is this power of dynamics: together with the slower bow, dynamics 0.5 is some 12 dB
+# below 1, and 0.1 some 35 dB. By ear.
+DYNAMICS_EXPONENT = 1.5
 
 
 class Performer:
@@ -60,16 +57,14 @@ class Performer:
     open_strings : OpenStrings
         When C5 is played open.
     seed : int
-        Of the variation between notes; the same seed plays the same.
+        Seed of the variation between notes.
     tuning : callable
-        The pitch of a key, both as fractional MIDI notes; None for a key without one. By default
-        a key sounds its own number.
+        Maps a key to its pitch, both fractional MIDI notes, or None; by default to itself.
 
     Attributes
     ----------
     expression : callable
-        Asked at the beginning of each note, with its key, for parameters of the player that
-        this note is to have: how a channel's bend and touch come with its notes.
+        Returns values of parameters, by address, for the key of a note that begins.
     """
 
     def __init__(
@@ -89,22 +84,21 @@ class Performer:
         self._intonation = intonation or Intonation()
         self._policy = policy
         self._tuning = tuning
-        self._chance = random.Random(seed)  # noqa: S311 - for music, not secrets
+        self._variation = Variation(seed, self._value.__getitem__)
         self._value["/engine/seed"] = find("/engine/seed").accept(seed)
-        self._stray = 0.0  # of this note from its pitch, as a normal deviation
-        self._held: dict[Key, float] = {}  # in the order pressed; values are fitted notes
+        self._held: dict[Key, float] = {}  # in the order pressed; values are notes within range
         self._sounding: Key | None = None
-        self._began: int | None = None  # the frame of the stroke of the bow
-        self._place = float(OPEN_NOTES[0])  # the pitch that the finger was put to last
-        self._by_hand = False  # the bow is drawn by `draw`
-        self._speed = 0.0  # of the bow drawn so (m/s)
+        self._began: int | None = None  # the frame at which the stroke of the bow began
+        self._finger_pitch = float(OPEN_NOTES[0])  # the pitch that a finger last stopped
+        self._by_hand = False  # whether the bow is drawn by `draw`
+        self._speed = 0.0  # of a bow drawn by hand (m/s)
         self._evenness = Evenness(self._own, self._intonation, self._value.__getitem__)
-        # What a parameter of the player moves while a note sounds.
+        # The moves that follow a parameter of the player while a note sounds.
         self._followers: dict[str, tuple[Callable[[int | None], None], ...]] = {
             "/playing/bend": (self._follow_bend,),
             "/playing/press": (self._press,),
             "/playing/dynamics": (self._draw, self._follow_bend, self._set_level),
-            # A faster bow pulls the pitch.
+            # A faster bow changes the pitch.
             "/playing/speed": (self._draw, self._follow_bend),
             "/playing/pressure": (self._lean,),
             "/playing/bow_position": (self._lean,),
@@ -117,7 +111,7 @@ class Performer:
             "/playing/expression": (self._set_level,),
             "/body/evenness": (self._even_out,),
             "/engine/calibration": (self._trust, self._follow_bend),
-            "/engine/seed": (self._begin_chance,),
+            "/engine/seed": (self._seed,),
         }
         self.expression: Callable[[Key], Mapping[str, float]] = lambda _key: {}
         self.notes_played = 0
@@ -127,18 +121,24 @@ class Performer:
 
     @property
     def pitch(self) -> float | None:
-        """The pitch (fractional MIDI note) of the finger while a note sounds, or the bow does."""
+        """The pitch (fractional MIDI note) while a note sounds or the bow is drawn by hand."""
         if self._sounding is not None:
             return self._pitch
-        return self._place if self._by_hand else None
+        return self._finger_pitch if self._by_hand else None
 
     @property
     def sounding(self) -> Key | None:
-        """The key whose note sounds."""
+        """The key whose note sounds, if any."""
         return self._sounding
 
     def value(self, address: str) -> float:
-        """Where a parameter is that the player does not move. Errors: ParameterError."""
+        """The value of a parameter.
+
+        Raises
+        ------
+        ParameterError
+            Where there is no such parameter, or the player moves it.
+        """
         try:
             return self._value[find(address).address]
         except KeyError:
@@ -155,8 +155,12 @@ class Performer:
     ) -> float:
         """Set any parameter of the table; return the value it then has.
 
-        What follows from it at once, in bow and fingers, takes `glide_ms` at least.
-        Errors: ParameterError for an unknown address or a value that is not finite.
+        The moves of bow and fingers that follow take at least `glide_ms`.
+
+        Raises
+        ------
+        ParameterError
+            Where the address is unknown or the value is not finite.
         """
         param = find(address)
         accepted = param.accept(value)
@@ -182,7 +186,7 @@ class Performer:
         return accepted
 
     def release(self) -> None:
-        """Give every parameter that was taken over back to the player."""
+        """Return every parameter that was taken over to the player."""
         self._own.release()
         self._by_hand = False
 
@@ -201,10 +205,9 @@ class Performer:
         return [key for key in self._held if key.channel == channel]
 
     def note_on(self, key: Key, *, frame: int | None = None) -> bool:
-        """Begin a note: legato where another sounds, else with a new stroke of the bow.
+        """Begin a note, legato where another sounds, else with a new stroke of the bow.
 
-        Keys struck at one frame are one stroke, of the last of them.
-        Returns whether there is such a note.
+        Keys struck at one frame make one stroke. Returns whether the instrument has the note.
         """
         tuned = self._tuning(key.note)
         note = None if tuned is None else self._policy.fit(tuned)
@@ -225,7 +228,7 @@ class Performer:
         return True
 
     def note_off(self, key: Key, *, frame: int | None = None) -> None:
-        """End a note; the last one still held comes back, legato."""
+        """End a note; of those still held the last one sounds again, legato."""
         self.notes_off([key], frame=frame)
 
     def notes_off(self, keys: Iterable[Key], *, frame: int | None = None) -> None:
@@ -241,34 +244,34 @@ class Performer:
             self._right.lift(self._value["/playing/release"], frame)
 
     def all_notes_off(self, *, frame: int | None = None, channel: int | None = None) -> None:
-        """End every note, or every note of one channel, as if the keys were let go."""
+        """End all notes, or those of one channel, as if the keys were released."""
         ending = [key for key in self._held if channel in (None, key.channel)]
         self.notes_off(ending, frame=frame)
 
     def all_sound_off(self, *, frame: int | None = None, channel: int | None = None) -> None:
-        """The same, and what still rings ends at once, unless another channel's note sounds."""
+        """As `all_notes_off`, and stop the sound at once, unless another channel's note sounds."""
         self.all_notes_off(frame=frame, channel=channel)
         if self._sounding is None:
             self._by_hand = False
             self._own.take_back("/bow/speed", "/bow/side")
             self._right.lift(LIFTING_MS, frame)
             self._left.leave(frame)
-            self._place = float(OPEN_NOTES[0])
+            self._finger_pitch = float(OPEN_NOTES[0])
             self._own.sink.silence(frame=frame)
 
     # -- by hand -----------------------------------------------------------------------------
 
     def slide(self, pitch: float, *, frame: int | None = None) -> float:
-        """Move the finger to a pitch (fractional MIDI note); return the one it takes.
+        """Slide the finger to a pitch (fractional MIDI note); return the pitch within range.
 
-        The sounding note goes there; without one, the finger waits there for the bow.
+        The sounding note slides; in silence, the finger waits there for the bow.
         """
         pitch = RangePolicy.CLAMP.fit(pitch) or pitch
         if self._sounding is not None:
             self._held[self._sounding] = pitch
             self._follow_bend(frame)
             return pitch
-        self._place = pitch
+        self._finger_pitch = pitch
         self._left.stop(self._choose(pitch), frame, slide_ms=BEND_RAMP_MS)
         if self._by_hand:
             self._own.sink.write("/bow/side", self._left.side, frame=frame)
@@ -276,10 +279,9 @@ class Performer:
         return pitch
 
     def draw(self, speed: float, force: float, *, frame: int | None = None) -> tuple[float, float]:
-        """Draw the bow by hand: m/s and newtons, on the string that the finger or note chose.
+        """Draw the bow by hand at a speed (m/s) and force (N), on the string of the fingering.
 
-        Takes the bow over as direct writes do; no speed and no force lifts it.
-        Returns speed and force accepted.
+        Takes the bow over as direct writes do; 0 and 0 lift it. Returns both as accepted.
         """
         speed = self.write("/bow/speed", speed, frame=frame)
         force = self.write("/bow/force", force, frame=frame)
@@ -291,14 +293,14 @@ class Performer:
         return speed, force
 
     def lift(self, *, frame: int | None = None) -> None:
-        """Lift the bow where it is drawn by hand, and take it back."""
+        """Lift a bow drawn by hand, and return it to the player."""
         if self._by_hand:
             for address in ("/bow/speed", "/bow/side"):
                 self._own.sink.write(address, 0.0, frame=frame)
         self._own.take_back()
         self._by_hand = False
 
-    # -- what a note takes -------------------------------------------------------------------
+    # -- the moves of a note -------------------------------------------------------------------
 
     def _start(self, key: Key, frame: int | None, *, legato: bool, at_once: bool = False) -> None:
         self._sounding = key
@@ -308,15 +310,14 @@ class Performer:
                 self.write(address, wish, frame=frame)
             elif not self._own.keeps(address):
                 self._value[address] = param.accept(wish)
-        hurry, weight, self._stray = (self._chance.gauss(0.0, 1.0) for _ in range(3))
-        varied = self._value["/playing/variation"] * VARIED_SHARE
-        self._right.hurry, self._right.weight = 1.0 + varied * hurry, 1.0 + varied * weight
+        self._variation.next_note()
+        self._right.hurry, self._right.weight = self._variation.bow_factors()
         slide_ms = None
         if at_once:
             slide_ms = 0.0
         elif self._is_on("/playing/portamento"):
             slide_ms = self._value["/playing/portamento_time"]
-        pitch = self._place = self._pitch
+        pitch = self._finger_pitch = self._pitch
         self._left.stop(self._choose(pitch), frame, pitch=pitch, slide_ms=slide_ms)
         self._left.rock(frame)
         self._left.begin_rocking(frame)
@@ -339,16 +340,15 @@ class Performer:
 
     @property
     def _string(self) -> int | None:
-        """The string that is wished for."""
+        """The string wished for; None for either."""
         wish = round(self._value["/playing/string"])
         return None if wish == 0 else wish - 1
 
     @property
     def _pitch(self) -> float:
-        """Fractional MIDI note the finger aims at."""
+        """Pitch (fractional MIDI note) of the sounding key, with its bend."""
         note = self._held[self._sounding] if self._sounding is not None else 0
-        stray = self._value["/playing/variation"] * self._stray * VARIED_CENTS / 100.0
-        return note + self._value["/playing/bend"] + stray
+        return note + self._value["/playing/bend"] + self._variation.semitones
 
     def _is_on(self, address: str) -> bool:
         return self._value[address] >= TURNED_ON
@@ -356,15 +356,15 @@ class Performer:
     def _trust(self, _frame: int | None) -> None:
         self._intonation.trust = self._value["/engine/calibration"]
 
-    def _begin_chance(self, _frame: int | None) -> None:
-        self._chance.seed(int(self._value["/engine/seed"]))
+    def _seed(self, _frame: int | None) -> None:
+        self._variation.seed(int(self._value["/engine/seed"]))
 
     def _set_assist(self, frame: int | None) -> None:
         self._own.move("/bow/assist", self._value["/playing/assist"], frame)
 
     def _set_level(self, frame: int | None) -> None:
         level = (self._value["/playing/volume"] * self._value["/playing/expression"]) ** 2
-        level *= self._value["/playing/dynamics"] ** SWELL
+        level *= self._value["/playing/dynamics"] ** DYNAMICS_EXPONENT
         self._own.move("/output/level", level, frame)
 
     def _draw(self, frame: int | None, ramp_ms: float | None = None) -> None:
@@ -378,7 +378,7 @@ class Performer:
         self._left.press(frame, None if self._sounding is None else self._pitch)
 
     def _even_out(self, frame: int | None) -> None:
-        """Let the note be as loud as the others, as far as asked."""
+        """Set the gain that evens out the loudness of notes."""
         if (pitch := self.pitch) is not None:
             speed = self._speed if self._by_hand else self._right.wished_speed
             self._evenness.follow(self._left.fingering, pitch, speed, frame)
@@ -387,7 +387,7 @@ class Performer:
         if self._sounding is None or self._left.fingering is None:
             return
         pitch, string = self._pitch, self._left.fingering.string
-        self._place = pitch
+        self._finger_pitch = pitch
         speed = self._right.wished_speed
         fingering = stay(pitch, string, self._intonation, speed, self._string)
         if not self._right.bows_alike(pitch):

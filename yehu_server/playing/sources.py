@@ -1,6 +1,6 @@
-"""The names of what a player can move: controllers, a note's own, addresses of their OSC.
+"""The names of sources: MIDI controllers, properties of a note, OSC addresses of the user's own.
 
-Each has one canonical name, by which what arrives finds its binds (``mapping.Mapping.of``).
+Each source has one canonical name, by which its binds are found (``mapping.Mapping.of``).
 """
 
 from __future__ import annotations
@@ -15,29 +15,29 @@ VELOCITY, NOTE = "velocity", "note"
 WORDS = (BEND, PRESSURE, POLY_PRESSURE, VELOCITY, NOTE)
 OF_ONE_NOTE = (POLY_PRESSURE, VELOCITY, NOTE)
 # Data entry, RPN and NRPN, channel mode messages: see messages.py.
-# Sustain (64) has its meaning unless a mapping gives it another.
+# Sustain (64) holds notes unless a mapping binds it.
 RESERVED = {6, 38, *range(96, 102), *range(120, 128)}
-COARSE = range(32)  # these have a fine half, FINE_ABOVE higher
+COARSE = range(32)  # controllers with a fine half, FINE_ABOVE higher
 FINE_ABOVE = 32
-STEPS, FINEST = 127, 16383  # of 7 and of 14 bits
+STEPS, FINEST = 127, 16383  # largest values of 7 and of 14 bits
 NO_NRPN = FINEST  # 127/127 means that none is selected
-CHANNELS = 16  # of a port
+CHANNELS = 16  # in each port
 
 _CC = re.compile(r"cc (0|[1-9][0-9]{0,2})(?:/(0|[1-9][0-9]{0,2}))?")
 _NRPN = re.compile(r"nrpn (0|[1-9][0-9]{0,4})(?:/(0|[1-9][0-9]{0,2}))?")
-# What an OSC address may hold: no space, and nothing that makes it a pattern.
+# An OSC address has no spaces, and none of the characters of patterns.
 _ADDRESS = re.compile(r"(?:/[!-.0-~]+)+")
 _NOT_IN_ADDRESSES = frozenset("#*,?[]{}")
 LONGEST_ADDRESS = 255
 
 
 def control(number: int) -> str:
-    """The source of one control change in 7 bits."""
+    """The source of a 7-bit control change."""
     return f"cc {number}"
 
 
 def pair(coarse: int) -> str:
-    """The source of two control changes that make 14 bits, by the coarse one."""
+    """The source of two control changes that make 14 bits, by the number of the coarse one."""
     return f"cc {coarse}/{coarse + FINE_ABOVE}"
 
 
@@ -52,7 +52,7 @@ def is_address(source: str) -> bool:
 
 
 def is_own(address: str) -> bool:
-    """Whether it may be an OSC address of the user's own."""
+    """Whether a text is a possible OSC address of the user's own."""
     try:
         return is_address(address) and canonical(address) == address
     except ParameterError:
@@ -60,12 +60,18 @@ def is_own(address: str) -> bool:
 
 
 def controller(source: str) -> str:
-    """What is moved by hand: the same for a control change in 7 bits and in 14."""
+    """The controller of a source: the same for a control change in 7 bits and in 14."""
     return source.partition("/")[0] if source.startswith("cc ") else source
 
 
 def canonical(text: str) -> str:
-    """The canonical name of a source. Errors: ParameterError where there is no such source."""
+    """The canonical name of a source.
+
+    Raises
+    ------
+    ParameterError
+        Where there is no such source.
+    """
     if text in WORDS:
         return text
     if is_address(text):

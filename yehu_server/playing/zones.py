@@ -1,4 +1,4 @@
-"""MPE zones: channels of single notes, and the master channel that speaks for all of them.
+"""MPE zones: member channels of one note each, and a master channel for all of them.
 
 Source: MIDI Polyphonic Expression, version 1.0 (MIDI Association).
 """
@@ -7,23 +7,23 @@ from __future__ import annotations
 
 LOWER_MASTER, UPPER_MASTER = 0, 15  # channels, counted from 0
 MOST_MEMBERS = 15
-MEMBER_BEND, MASTER_BEND = 48.0, 2.0  # semitones, until RPN 0 says otherwise
+MEMBER_BEND, MASTER_BEND = 48.0, 2.0  # semitones, until RPN 0 sets another range
 
 
 class Zones:
-    """The zones of one MIDI port; none to begin with, or one of all channels."""
+    """The zones of one MIDI port: at first none, or one of all channels."""
 
     def __init__(self, *, whole: bool = False) -> None:
         self._lower = MOST_MEMBERS if whole else 0
         self._upper = 0
 
     def configure(self, channel: int, members: int) -> bool:
-        """Act on an MPE configuration message; return whether the channel can be a master's.
+        """Act on an MPE configuration message; return whether the channel can be a master.
 
-        Of two zones that overlap the one configured last takes the channels.
+        Where two zones overlap, the one configured last keeps its channels.
         """
         members = min(members, MOST_MEMBERS)
-        room = MOST_MEMBERS - 1 - members  # for the other zone, between the two masters
+        room = MOST_MEMBERS - 1 - members  # left for the other zone, between the two masters
         if channel == LOWER_MASTER:
             self._lower = members
             self._upper = min(self._upper, max(room, 0))
@@ -49,7 +49,7 @@ class Zones:
         return range(0)
 
     def bend_range(self, channel: int) -> float | None:
-        """Semitones of a channel's bend until RPN 0 sets them; None outside all zones."""
+        """Default bend range of a channel (semitones); None outside all zones."""
         if self.master(channel) is not None:
             return MEMBER_BEND
         return MASTER_BEND if self.members(channel) else None

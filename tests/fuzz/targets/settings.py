@@ -12,13 +12,20 @@ from pathlib import Path
 from fuzz.target import scratch, target, written
 
 from yehu_server import cli
-from yehu_server.cli.config import expand
+from yehu_server.cli.config import parse
 from yehu_server.errors import MappingError, ParameterError, PresetError
 from yehu_server.params.preset import SAVED
 from yehu_server.params.table import BY_ADDRESS, TABLE, find
 from yehu_server.playing.mapping import with_bases
-from yehu_server.playing.mapping_file import Sheet, json_of, read_sheet, sheet_of, text_of, toml_of
-from yehu_server.playing.mapping_writer import as_toml, rebound, tidied
+from yehu_server.playing.mapping_file import (
+    MappingFile,
+    json_of,
+    mapping_file_from,
+    read_mapping_file,
+    text_of,
+    toml_of,
+)
+from yehu_server.playing.mapping_writer import as_toml, canonical, edited
 from yehu_server.playing.presets import Presets, read_preset
 
 ADDRESSES = tuple(f'"{address}"'.encode() for address in list(BY_ADDRESS)[::4])
@@ -65,8 +72,7 @@ def config(data: bytes) -> None:
     out, err = io.StringIO(), io.StringIO()
     try:
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            expanded = expand(words, parser())
-            parser().parse_args(expanded)
+            parse(words, parser())
     except SystemExit as end:
         code = end.code
     else:
@@ -145,33 +151,33 @@ MAPPING_WORDS = (
 MOST_WRITTEN = 4000  # characters; tomlkit is slow
 
 
-def meant(sheet: Sheet) -> Sheet:
+def meant(contents: MappingFile) -> MappingFile:
     """The mapping without what is implied: without a base there is no MPE."""
-    return sheet if sheet.base is not None else replace(sheet, mpe=sheet.mpe or None)
+    return contents if contents.base is not None else replace(contents, mpe=contents.mpe or None)
 
 
-def check(sheet: Sheet, path: Path, text: str) -> None:
+def check(contents: MappingFile, path: Path, text: str) -> None:
     """Check that binds move their targets within range, and that it reads the same when written."""
-    for address, value in sheet.start:
+    for address, value in contents.start:
         assert find(address).lo <= value <= find(address).hi
-    for bind in sheet.binds:
+    for bind in contents.binds:
         lo, hi = find(bind.target).lo, find(bind.target).hi
         room = 1e-9 * (hi - lo)
-        for place in (0.0, 0.3, 1.0):
-            value = bind.apply(place)
+        for position in (0.0, 0.3, 1.0):
+            value = bind.from_unit(position)
             assert lo - room <= value <= hi + room, (bind, value)
-            assert 0.0 <= bind.place_of(value) <= 1.0, (bind, value)
+            assert 0.0 <= bind.to_unit(value) <= 1.0, (bind, value)
         for argument in (0.0, 0.5, 1e30, -1e30):
-            assert 0.0 <= bind.place(argument) <= 1.0, bind
+            assert 0.0 <= bind.input_to_unit(argument) <= 1.0, bind
         bind.terms, bind.curve_name  # noqa: B018 - are worked out as they are read
     if len(text) > MOST_WRITTEN:
         return
-    for again in (as_toml(sheet), tidied(sheet, text), rebound(sheet, text, [], [])):
-        assert meant(sheet_of(path, toml_of(path, again))) == meant(sheet)
-    less = rebound(sheet, text, sheet.binds[:1], sheet.binds[:1])
-    assert set(sheet_of(path, toml_of(path, less)).binds) == set(sheet.binds)
+    for again in (as_toml(contents), canonical(contents, text), edited(contents, text, [], [])):
+        assert meant(mapping_file_from(path, toml_of(path, again))) == meant(contents)
+    less = edited(contents, text, contents.binds[:1], contents.binds[:1])
+    assert set(mapping_file_from(path, toml_of(path, less)).binds) == set(contents.binds)
     with contextlib.suppress(MappingError):  # of its base
-        mapping = with_bases(path, sheet)
+        mapping = with_bases(path, contents)
         assert all(math.isfinite(value) for _, value in mapping.start)
 
 
@@ -179,7 +185,7 @@ def check(sheet: Sheet, path: Path, text: str) -> None:
 def mapping(data: bytes) -> None:
     """A mapping has binds within range and reads the same when written, or is a MappingError."""
     path = written(data, "mapping.toml")
-    check(read_sheet(path), path, text_of(path))
+    check(read_mapping_file(path), path, text_of(path))
 
 
 @target(
@@ -203,5 +209,5 @@ def mapping_json(data: bytes) -> None:
     """JSON as ``mappings show`` prints it is a mapping under the same law."""
     path = written(data, "mapping.json")
     text = text_of(path)
-    sheet = sheet_of(path, json_of(path, text))
-    check(sheet, path, as_toml(sheet))
+    contents = mapping_file_from(path, json_of(path, text))
+    check(contents, path, as_toml(contents))

@@ -1,1 +1,1 @@
-"""The one table of what can be set from outside: addresses, ranges, units, defaults."""
+"""The parameter table: addresses, ranges, units and defaults of all that can be set."""

@@ -1,4 +1,4 @@
-"""Presets: values of parameters by address, as a file has them, and what lies between two.
+"""Presets: values of parameters by address, read from a text, and morphed.
 
 The format is described in presets/README.md.
 """
@@ -16,22 +16,22 @@ from yehu_server.params.table import BY_ADDRESS, TABLE
 
 VERSION = 1
 ENTRIES = ("version", "about", "program", "values")
-PROGRAMS = range(1, 129)  # as people count them
+PROGRAMS = range(1, 129)  # MIDI programs, counted from 1
 MOST_REMARKS = 10
-# What a preset may name: all but what the player moves as notes sound.
+# A preset may have all parameters except those that the player moves as notes sound.
 POSSIBLE = {param.address: param for param in TABLE if not param.owned}
-# What hands and feet do just now, and the course of chance, are no part of a sound; still, a
-# file may name them.
+# The present state of controllers, and the seed, are no part of a sound and are not saved; a file
+# may have them all the same.
 NOT_SAVED = {"/playing/bend", "/playing/dynamics", "/playing/expression", "/engine/seed"}
 SAVED = tuple(address for address in POSSIBLE if address not in NOT_SAVED)
 
 
 @dataclass(frozen=True)
 class Preset:
-    """A sound: some parameters and their values.
+    """A sound: values of some parameters, by address.
 
-    `program` is the MIDI program, 1 to 128, that selects it; `unknown` are addresses that the
-    file names and the table does not have.
+    `program` is the MIDI program, 1 to 128, that selects it; `unknown` are addresses in the
+    file that the parameter table does not have.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Preset:
     unknown: tuple[str, ...] = ()
 
     def remarks(self) -> list[str]:
-        """What a player should know of a file that was read, a line each."""
+        """Warnings about the unknown addresses of a file, a line each."""
         lines = []
         for address in self.unknown[:MOST_REMARKS]:
             near = difflib.get_close_matches(address[:100], POSSIBLE, n=1, cutoff=0.6)
@@ -53,10 +53,12 @@ class Preset:
 
 
 def parse(text: str, name: str) -> Preset:
-    """Read the text of a preset's file.
+    """Read the text of a preset file.
 
-    Errors: PresetError for what is no preset, one of a newer version, or wrong values, all of
-    which it names; the whole is refused then.
+    Raises
+    ------
+    PresetError
+        Where it is no preset, is of a newer version, or has wrong values; it names all of them.
     """
     try:
         data = parse_toml(text)
@@ -105,7 +107,7 @@ def _has(address: str) -> bool:
 
 def _value(address: str, value: Any) -> float:
     if address not in POSSIBLE:
-        raise PresetError(f"{address} is moved by the player as notes sound; no preset has it")
+        raise PresetError(f"{address} is moved by the player as notes sound; no preset may have it")
     param = POSSIBLE[address]
     try:
         accepted = param.accept(value)
@@ -117,10 +119,10 @@ def _value(address: str, value: Any) -> float:
 
 
 def morph(one: Preset, other: Preset, amount: float) -> dict[str, float]:
-    """The values between two presets, each along its parameter's curve.
+    """Interpolate between two presets, each value along its parameter's curve.
 
-    `amount` is 0 for `one`, 1 for `other`, and held to these ends. Switches and other
-    choices turn over at a half. What only one of them names goes to or from its default.
+    `amount` is 0 for `one` and 1 for `other`, and is clamped. Choices, such as switches, change
+    at a half. A parameter that only one of them has is interpolated with its default.
     """
     amount = min(max(amount, 0.0), 1.0)
     return {

@@ -1,4 +1,4 @@
-"""The one parameter table. Everything that names, scales or documents a parameter reads it."""
+"""The parameter table, the only source of their names, ranges, defaults and descriptions."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ def _finger(number: int) -> tuple[Param, Param]:
     return (
         Param(
             f"/finger/{number}/position", "x_f", "m", 0.008, 0.28, 0.05,
-            f"Where finger {number} stops the strings, from the restraining loop.",
+            f"Position of finger {number} on the strings, measured from the restraining loop.",
             place=Place.ENGINE, owned=True,
         ),
         Param(
             f"/finger/{number}/press", "-f_ext", "N", 0.0, 10.0, 0.0,
-            f"How hard finger {number} presses the strings; 0 lifts it.",
+            f"Force of finger {number} on the strings; 0 lifts it.",
             place=Place.ENGINE, smooth_ms=10.0, owned=True,
         ),
     )  # fmt: skip
@@ -31,12 +31,12 @@ def _string(name: str, which: str) -> tuple[Param, Param]:
     return (
         Param(
             f"/string/{name}/tuning", "T", "cents", -200.0, 40.0, 0.0,
-            f"Tension of the {which} string, as cents from where it is in tune.",
+            f"Detuning of the {which} string by its tension; 0 is in tune.",
             place=Place.ENGINE, smooth_ms=50.0,
         ),
         Param(
             f"/string/{name}/loss", "sigma_0, sigma_1", "1", 0.25, 4.0, 1.0,
-            f"Damping of the {which} string, as a factor of the measured one.",
+            f"Damping of the {which} string, as a factor on the measured one.",
             place=Place.ENGINE, curve=Curve.EXP, smooth_ms=50.0,
         ),
     )  # fmt: skip
@@ -55,64 +55,65 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/bow/force", "|F_N|", "N", 0.0, 5.0, 0.5,
-        "How hard the bow leans on the string, in newtons; heard as far as /bow/assist is below 1.",
+        "Bow force in newtons; effective where /bow/assist is below 1.",
         place=Place.ENGINE, owned=True,
     ),
     Param(
         "/bow/pressure", "F_N / F_max", "1", 0.0, 12.0, 0.4,
-        "How hard the bow leans for its speed, as a share of Schelleng's upper limit; fast strokes "
+        "Bow force relative to bow speed, as a fraction of Schelleng's upper limit; fast strokes "
         "get up to 0.6 more.",
         place=Place.ENGINE, smooth_ms=10.0, owned=True,
     ),
     Param(
         "/bow/assist", "", "1", 0.0, 1.0, 1.0,
-        "1: the bow leans by /bow/pressure, so that the string speaks; 0: by /bow/force, newtons.",
+        "1: /bow/pressure sets the bow force, so that the string speaks; 0: /bow/force does.",
         place=Place.ENGINE, owned=True,
     ),
     Param(
         "/bow/position", "beta", "1", 0.04, 0.5, 0.13,
-        "Distance of the bow from the bridge as a share of the sounding length.",
+        "Distance of the bow from the bridge as a fraction of the sounding length.",
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
         "/bow/tremolo", "", "1/s", 0.0, 20.0, 0.0,
-        "Strokes a second, back and forth; 0 leaves the bow's direction to speed.",
+        "Tremolo: strokes a second, back and forth; 0: the sign of /bow/speed is the direction.",
         place=Place.ENGINE, owned=True,
     ),
     Param(
         "/bow/noise", "", "1", 0.0, 1.0, 0.0,
-        "Bow force trembles by this share of itself: 0.1 breathes, from 0.5 the tone breaks.",
+        "Random variation of the bow force, as a fraction of it: 0.1 is breathy, from 0.5 the tone "
+        "breaks.",
         place=Place.ENGINE, smooth_ms=20.0,
     ),
     *(row for number in FINGERS for row in _finger(number)),
     Param(
         "/vibrato/depth", "", "cents", 0.0, 200.0, 0.0,
-        "How far the fingers that are down rock to either side.",
+        "Depth of the vibrato to either side, of all fingers that are down.",
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
         "/vibrato/press", "", "1", 0.0, 1.0, 0.0,
-        "How much harder and softer they press in turn, as a share of how hard they press.",
+        "Variation of the finger force with the vibrato, as a fraction of it.",
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
         "/vibrato/rate", "", "Hz", 0.5, 12.0, 5.5,
-        "How often they rock.",
+        "Rate of the vibrato.",
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
         "/vibrato/onset", "", "1", 0.0, 1.0, 1.0,
-        "How far the vibrato has come in: nothing up to 0.4, then gently to all of it.",
+        "Fade-in of the vibrato: none up to 0.4, then gradually to its full depth at 1.",
         place=Place.ENGINE, owned=True,
     ),
     Param(
         "/pluck/force", "F_p", "N", -5.0, 5.0, 0.0,
-        "Plucks: pulls a string aside as hard as this, and lets go. Above 0 the inner (F4).",
+        "Plucks: pulls a string aside with this force and releases it; above 0 the inner (F4).",
         place=Place.ENGINE, smooth_ms=12.0, owned=True,
     ),
     Param(
         "/pluck/position", "", "1", 0.05, 0.9, 0.3,
-        "Where, from the bridge, as a share of the sounding length.",
+        "Distance of the pluck from the bridge as a fraction of the sounding length.",
         place=Place.ENGINE, owned=True,
     ),
     *(row for name, note in zip(STRING_NAMES, ("F4", "C5"), strict=True)
@@ -124,7 +125,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/output/level", "", "1", 0.0, 1.0, 1.0,
-        "Amplitude factor of the output: the player's volume times expression.",
+        "Amplitude factor of the output, from the player's volume and expression.",
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
@@ -134,43 +135,43 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/output/limiter", "", "dB", -24.0, 0.0, -3.0,
-        "Level above which peaks are bent; at 0 they are cut off at full scale.",
+        "Level above which peaks are limited; at 0 they are clipped at full scale.",
         place=Place.ENGINE, smooth_ms=20.0,
     ),
     Param(
         "/body/gain", "", "dB", -24.0, 24.0, 0.0,
-        "Gain of what the body radiates, before the blend.",
+        "Gain of the sound that the body radiates, before the blend.",
         place=Place.ENGINE, smooth_ms=20.0,
     ),
     Param(
         "/body/blend", "", "1", 0.0, 1.0, 0.0,
-        "From the radiated sound (0) to the bare force of the strings on the bridge (1).",
+        "Mix from the radiated sound (0) to the force of the strings on the bridge (1).",
         place=Place.ENGINE, smooth_ms=20.0,
     ),
     Param(
         "/body/evenness", "", "1", 0.0, 1.0, 0.9,
-        "From the body's own loudness of each note (0) to notes that are equally loud (1).",
+        "From the body's own loudness of each note (0) to equal loudness of all notes (1).",
     ),
     Param(
         "/playing/dynamics", "", "1", 0.0, 1.0, 1.0,
-        "From nothing, where the bow is lifted, to all that speed and volume give.",
+        "Dynamics, by bow speed and level: 1 gives the full /playing/speed; 0 lifts the bow.",
     ),
     Param(
         "/playing/speed", "", "m/s", 0.03, 0.6, 0.2,
-        "Bow speed of a note at full dynamics, as far as the note bears it.", curve=Curve.EXP,
+        "Bow speed at full dynamics; less for notes that do not speak at it.", curve=Curve.EXP,
     ),
     Param(
         "/playing/pressure", "", "1", 0.05, 2.0, 0.4,
-        "How hard the bow leans for its speed: flautando up to 0.2, ordinary to 0.6, scratching "
+        "Bow force relative to bow speed: flautando up to 0.2, ordinary to 0.6, scratching "
         "from 1.",
     ),
     Param(
         "/playing/bow_position", "", "1", 0.05, 0.3, 0.13,
-        "Distance of the bow from the bridge as a share of the sounding length.",
+        "Distance of the bow from the bridge as a fraction of the sounding length.",
     ),
     Param(
         "/playing/tremolo", "", "1/s", 0.0, 20.0, 0.0,
-        "Strokes a second, back and forth; 0 for one stroke a note.",
+        "Tremolo: strokes a second, back and forth; 0: one stroke a note.",
     ),
     Param(
         "/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
@@ -178,40 +179,40 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/string", "", "1", 0.0, 2.0, 0.0,
-        "Which string takes the notes: 0 whichever fits, 1 the inner (F4), 2 the outer (C5).",
+        "String on which notes are played: 0 either, 1 the inner (F4), 2 the outer (C5).",
         is_choice=True,
     ),
     Param(
         "/playing/direction", "", "1", -1.0, 1.0, 0.0,
-        "Of new strokes: 0 back and forth in turn, 1 always down, -1 always up.", is_choice=True,
+        "Direction of new strokes: 0 alternating, 1 always down, -1 always up.", is_choice=True,
     ),
     Param(
         "/playing/press", "", "N", 0.3, 6.0, 1.5,
-        "How hard the finger presses the string (the bow has /playing/pressure).",
+        "Force of the finger on the string (that of the bow: /playing/pressure).",
     ),
     Param(
         "/playing/vibrato", "", "cents", 0.0, 100.0, 0.0,
-        "How far the finger rocks to either side.",
+        "Depth of the vibrato to either side.",
     ),
     Param(
         "/playing/vibrato_press", "", "1", 0.0, 1.0, 0.0,
-        "How much harder and softer the finger presses in turn, as a share of how hard it presses.",
+        "Variation of the finger force with the vibrato, as a fraction of it.",
     ),
     Param(
         "/playing/vibrato_rate", "", "Hz", 2.0, 10.0, 5.5,
-        "How often it rocks.",
+        "Rate of the vibrato.",
     ),
     Param(
         "/playing/vibrato_delay", "", "ms", 0.0, 3000.0, 500.0,
-        "Time in which the vibrato of a note comes in: none for 0.4 of it, then gently.",
+        "Fade-in time of each note's vibrato: none for 0.4 of it, then gradually.",
     ),
     Param(
         "/playing/bend", "", "semitones", -48.0, 48.0, 0.0,
-        "How far the finger has slid from the note.", smooth_ms=8.0,
+        "Pitch bend: distance of the finger from the note.", smooth_ms=8.0,
     ),
     Param(
         "/playing/bend_range", "", "semitones", 0.0, 48.0, 2.0,
-        "Bend at the end of the pitch wheel's way, until RPN 0 sets it.",
+        "Pitch bend range: the bend at either end of the pitch wheel, until RPN 0 sets it.",
     ),
     Param(
         "/playing/volume", "", "1", 0.0, 1.0, 1.0,
@@ -223,40 +224,41 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/assist", "", "1", 0.0, 1.0, 1.0,
-        "1: the player's bow force follows bow speed, so the string speaks; 0: it does not.",
+        "1: the player's bow force follows bow speed, so that the string speaks; 0: it does not.",
     ),
     Param(
         "/playing/variation", "", "1", 0.0, 1.0, 0.25,
-        "How much one note differs from the next in speed, force and finger, by chance.",
+        "Random differences between notes, in bow speed, bow force and intonation.",
     ),
     Param(
         "/playing/attack", "", "ms", 5.0, 500.0, 40.0,
-        "Time in which bow speed and force reach a new note.",
+        "Time in which the bow reaches the speed and force of a new note.",
     ),
     Param(
         "/playing/release", "", "ms", 5.0, 2000.0, 60.0,
-        "Time in which the bow leaves the string at the end of a note (no kin of "
-        f"{PREFIX}/release).",
+        "Time in which the bow leaves the string at the end of a note; not the call "
+        f"{PREFIX}/release.",
     ),
     Param(
         "/playing/portamento", "", "1", 0.0, 1.0, 0.0,
-        "From 0.5 up the finger slides from note to note; else it steps.", is_choice=True,
+        "From 0.5 up the finger slides from note to note; below, it steps.", is_choice=True,
     ),
     Param(
         "/playing/portamento_time", "", "ms", 5.0, 2000.0, 120.0,
-        "How long such a slide takes.",
+        "Duration of a portamento slide.",
     ),
     Param(
         "/engine/calibration", "", "1", 0.0, 1.0, 1.0,
-        "1: fingers go to where the model was measured to be in tune; 0: to an ideal string's.",
+        "1: fingers stop where the model was measured to be in tune; 0: where an ideal string is.",
     ),
     Param(
         "/engine/seed", "", "1", 0.0, 65535.0, 0.0,
-        "Of the chance in /playing/variation; a new one begins its sequence anew.", is_choice=True,
+        "Seed of the random numbers of /playing/variation; a new one restarts their sequence.",
+        is_choice=True,
     ),
 )  # fmt: skip
 
-UNIT = "/unit"  # an address with this at its end is the parameter as 0 to 1
+UNIT = "/unit"  # suffix of an address: the same parameter as 0 to 1
 
 BY_ADDRESS = {param.address: param for param in TABLE}
 ENGINE: tuple[Param, ...] = tuple(param for param in TABLE if param.place is Place.ENGINE)
@@ -264,13 +266,19 @@ SLOT = {param.address: slot for slot, param in enumerate(ENGINE)}
 
 
 def find(address: str) -> Param:
-    """Return the row of an address. Errors: ParameterError, with a near name if there is one."""
+    """Find the row of an address.
+
+    Raises
+    ------
+    ParameterError
+        Where there is none; with a similar address if there is one.
+    """
     try:
         return BY_ADDRESS[address]
     except KeyError:
         import difflib
 
-        # The whole of a last name is nearer than any likeness, such as that of /bow/position.
+        # An address that ends in this name comes before one that is merely similar.
         near = [known for known in BY_ADDRESS if known.endswith(f"/{address.lstrip('/')}")]
         near = near or difflib.get_close_matches(address, BY_ADDRESS, n=1, cutoff=0.4)
         hint = f"; did you mean {near[0]}?" if near else ""
@@ -278,14 +286,20 @@ def find(address: str) -> Param:
 
 
 def read(values: Mapping[str, float], address: str) -> float:
-    """Look up a parameter's value, or at ADDRESS/unit the same as 0 to 1."""
+    """Look up the value of a parameter; at ADDRESS/unit, as 0 to 1."""
     plain = address.removesuffix(UNIT)
     value = values[plain]
     return value if plain == address else BY_ADDRESS[plain].to_unit(value)
 
 
 def assignment(text: str) -> tuple[str, float]:
-    """Read ``ADDRESS=VALUE``. Errors: ParameterError, also for a value out of range."""
+    """Read ``ADDRESS=VALUE``.
+
+    Raises
+    ------
+    ParameterError
+        Where the text has another form, the address is unknown, or the value is out of range.
+    """
     address, equals, value = text.partition("=")
     if not equals:
         raise ParameterError(f"{text!r}: expected ADDRESS=VALUE, such as /playing/bow_position=0.1")

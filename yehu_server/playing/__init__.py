@@ -1,1 +1,1 @@
-"""Decisions a player makes: from MIDI messages and notes to what bow and finger shall do."""
+"""The player: turns MIDI messages, notes and mappings into moves of bow and fingers."""

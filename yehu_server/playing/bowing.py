@@ -1,10 +1,11 @@
-"""How each note wants to be bowed, so that it speaks in its own register.
+"""Bow speed, force and position for each note, so that it speaks in its own register.
 
 Notes near the body's modes (A4 at 439 Hz above all) and the open F string jump to other
-registers under a fast or a firm bow. Chosen after bowing each note at 44.1 kHz, struck and slurred
-from its neighbours, with several speeds, places and shares of Schelleng's limit, for where it comes
-soonest and stays; scripts/playability.py shows what comes of it. The F string wants the bow
-farther from the bridge: there the body's pull is less, and its wedge wider.
+registers under a fast or a heavy bow. The values were chosen by bowing each note at 44.1 kHz,
+separate and slurred from its neighbours, at several speeds, positions and fractions of Schelleng's
+limit, for the soonest and most stable onset; scripts/playability.py measures the result. On the F
+string the bow is farther from the bridge: there the body disturbs less, and Schelleng's wedge is
+wider.
 """
 
 from __future__ import annotations
@@ -12,10 +13,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-# /playing/pressure over which the leans below are given, and where a note begins to scratch.
+# Values of /playing/pressure: the two for which `lean` is given, and where notes begin to scratch.
 LIGHT, FIRM, SCRATCHY = 0.3, 0.55, 1.0
-# Shares of Schelleng's limit at which it does, on the F and on the C string: measured at 0.12 and
-# 0.2 m/s on eight notes, 1 to 2 and 3 to 6.
+# Fractions of Schelleng's limit at which notes begin to scratch, on the F and on the C string;
+# measured at 0.12 and 0.2 m/s on eight notes: 1 to 2, and 3 to 6.
 EDGES, FIRST_ON_C = (1.3, 4.0), 71.5
 
 
@@ -23,9 +24,16 @@ EDGES, FIRST_ON_C = (1.3, 4.0), 71.5
 class Manner:
     """How a note is bowed.
 
-    `top_speed` is the fastest bow (m/s) that it bears; `lean` what becomes of the pressures
-    LIGHT and FIRM, as values of ``/bow/pressure``. `farther` from the bridge by this factor
-    goes the bow, and the finger presses at least with `press` (N).
+    Attributes
+    ----------
+    top_speed : float
+        Highest bow speed (m/s) at which it speaks.
+    lean : tuple of float
+        Values of ``/bow/pressure`` for the player's pressures LIGHT and FIRM.
+    farther : float
+        Factor on the distance of the bow from the bridge.
+    press : float
+        Least finger force (N).
     """
 
     top_speed: float = 0.6
@@ -34,7 +42,7 @@ class Manner:
     press: float = 0.0
 
     def pressure(self, wish: float, pitch: float) -> float:
-        """The value of ``/bow/pressure`` for one of ``/playing/pressure``, at a pitch."""
+        """Map a value of ``/playing/pressure`` to one of ``/bow/pressure``, for a pitch."""
         light, firm = self.lean
         edge = EDGES[1 if pitch >= FIRST_ON_C else 0]
         if wish <= LIGHT:
@@ -64,7 +72,7 @@ MANNERS = {
 
 
 def manner(pitch: float) -> Manner:
-    """How a pitch (fractional MIDI note) is bowed; between notes, in between."""
+    """How a pitch (fractional MIDI note) is bowed; interpolated between notes."""
     below = math.floor(pitch)
     low, high = (MANNERS.get(note, ORDINARY) for note in (below, below + 1))
     part = pitch - below

@@ -1,8 +1,8 @@
-"""Where to stop a string for a pitch, and how tight it is: measured by bowing the model itself.
+"""Tune the model by bowing it: string tensions, and finger positions for each pitch.
 
 Each open string is tuned by its tension; each stopped note is bowed at several speeds, and the
-finger moved until it is in tune. What comes of it is kept by `playing.calibrations`, under a
-key made from everything it depends on.
+finger moved until it is in tune. `playing.calibrations` keeps the results, under a key of
+everything that they depend on.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Progress = Callable[[float, float], None]
 OPEN_NOTES = (65, 72)  # F4 and C5
 SPEEDS = (0.12, 0.16, 0.2, 0.26)  # m/s
 # The stopped pitches measured on each string: semitones, and quarter tones where the body's mode
-# at 439 Hz bends them most, and where it radiates best, at 850 Hz: 9 dB louder than on both sides.
+# at 439 Hz bends pitches most, and at 850 Hz, where the body radiates 9 dB more than beside it.
 PITCHES = (
     (*(66.0 + 0.5 * step for step in range(13)), *(float(note) for note in range(73, 78))),
     (*(float(note) for note in range(73, 81)), 80.5, *(float(note) for note in range(81, 90))),
@@ -39,20 +39,25 @@ PITCHES = (
 PRESS = 1.5  # N
 SETTLE_S, LISTEN_S, OPEN_SETTLE_S, OPEN_LISTEN_S = 0.3, 0.12, 0.6, 0.3
 ROUNDS = 6
-PLAUSIBLE_CENTS = 90.0  # further off, the note is not in its register
-IN_TUNE_CENTS, ENOUGH_CENTS = 15.0, 0.7  # within which a place is found, and good
-STEP_CENTS = 1.5  # a bracket as narrow as this holds a step of the pitch
-USUAL_CENTS = (50.0, 25.0)  # sharpening where nothing could be measured
+PLAUSIBLE_CENTS = 90.0  # beyond, the note is in another register
+IN_TUNE_CENTS, ENOUGH_CENTS = 15.0, 0.7  # accepted at the end, and enough to stop
+STEP_CENTS = 1.5  # in a bracket as narrow as this the pitch jumps
+USUAL_CENTS = (50.0, 25.0)  # sharpening to begin with, and where nothing could be measured
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """An instrument in tune.
+    """The measurements that tune an instrument.
 
-    `tensions` of the strings (N); `sharpening` how much sharper than c/2f promises a stopped
-    note sounds (cents): for each string a row for each of PITCHES, and in
-    each a value for each of SPEEDS. `levels` how loud each note is (dB, A-weighted), the open
-    string first.
+    Attributes
+    ----------
+    tensions : tuple of float
+        Tensions of the strings (N).
+    sharpening : tuple
+        How much sharper (cents) a stopped note sounds than c/2f of its length: for each string
+        a row for each of PITCHES, with a value for each of SPEEDS.
+    levels : tuple
+        Level of each note (dB, A-weighted), in the same form, the open string first.
     """
 
     a4: float
@@ -61,7 +66,7 @@ class Calibration:
     levels: Tables = ()
 
     def tuned(self, quantities: Quantities) -> Quantities:
-        """The instrument with its strings at pitch."""
+        """The quantities with the tensions of this calibration."""
         first, second = self.tensions
         return replace(
             quantities,
@@ -76,7 +81,7 @@ def frequency_hz(pitch: float, a4: float) -> float:
 
 
 def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
-    """What a calibration depends on, in 16 hex digits."""
+    """Hash of everything that a calibration depends on (16 hex digits)."""
     package = Path(__file__).parent.parent
     sources = [*sorted((package / "physics").glob("*.py")), package / "playing" / "bowing.py"]
     sources += [package / "engine" / f"{name}.py" for name in ("controls", "one_pole", "output")]
@@ -87,7 +92,17 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
 def calibrate(
     rate: float, quantities: Quantities, *, a4: float = 440.0, progress: Progress | None = None
 ) -> Calibration:
-    """Bow the model until it is in tune."""
+    """Measure a calibration by bowing the model.
+
+    Parameters
+    ----------
+    rate : float
+        Sample rate (Hz).
+    a4 : float
+        Reference pitch (Hz).
+    progress : callable, optional
+        Called with the number of notes done and of all notes.
+    """
     jobs = [(string, pitch) for string, pitches in enumerate(PITCHES) for pitch in pitches]
     rows: list[Any] = []
     with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
@@ -109,7 +124,7 @@ def calibrate(
 
 
 def ideal_position(quantities: Quantities, string: int, frequency: float) -> float:
-    """Finger position (m) that leaves c/2f of an ideal string to the bridge."""
+    """Finger position (m) at which an ideal string has a frequency (Hz): c/2f from the bridge."""
     silk = quantities.strings[string]
     return quantities.bridge_x - math.sqrt(silk.T / silk.rho_A) / (2.0 * frequency)
 
@@ -117,7 +132,7 @@ def ideal_position(quantities: Quantities, string: int, frequency: float) -> flo
 def _bow(
     rate: float, quantities: Quantities, string: int, pitch: float, speed: float, x_f: float | None
 ) -> tuple[float, float]:
-    """Pitch (Hz) and level (dB) of a string bowed as the player would at medium pressure."""
+    """Pitch (Hz) and level (dB) of a string, bowed as the player does at medium pressure."""
     instrument = Instrument(rate, quantities)
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
@@ -138,12 +153,12 @@ def _bow(
 
 
 def starting_tension(quantities: Quantities, a4: float, string: int) -> float:
-    """Tension (N) that tuning an open string begins with."""
+    """Tension (N) from which an open string is tuned."""
     return quantities.strings[string].T * (a4 / 440.0) ** 2
 
 
 def _tension(rate: float, quantities: Quantities, a4: float, string: int) -> float:
-    """Tension (N) that tunes an open string."""
+    """Tension (N) at which an open string is in tune."""
     note = OPEN_NOTES[string]
     target = frequency_hz(note, a4)
     tension = starting_tension(quantities, a4, string)
@@ -162,7 +177,7 @@ def _tension(rate: float, quantities: Quantities, a4: float, string: int) -> flo
 def _stopped_note(
     rate: float, quantities: Quantities, a4: float, string: int, note: float
 ) -> list[tuple[float, float]]:
-    """Sharpening (cents) and level (dB) at each speed; NaN where it leaves its register."""
+    """Sharpening (cents) and level (dB) at each speed; NaN where the note leaves its register."""
     found = []
     guess = USUAL_CENTS[string]
     bowed_at = 0.0
@@ -185,14 +200,14 @@ def _search(
     speed: float,
     sharp: float,
 ) -> tuple[float, float]:
-    """Sharpening (cents) that brings a note nearest to its pitch, and its level (dB) there.
+    """Sharpening (cents) at which a note is nearest to its pitch, and its level (dB) there.
 
-    Pitch does not follow the finger everywhere: it locks to the other string and to the body,
-    and may step over the note. So the search keeps a bracket, and the best it has heard.
+    The pitch does not follow the finger everywhere: it locks to the other string and to the
+    body, and may jump over the note. So the search keeps a bracket, and the best result.
     """
     target = frequency_hz(note, a4)
     best, nearest = (math.nan, math.nan), IN_TUNE_CENTS
-    flat, high = math.inf, -math.inf  # the least sharpening heard flat, the most heard sharp
+    flat, high = math.inf, -math.inf  # the least sharpening that was flat, the most that was sharp
     for _ in range(ROUNDS):
         x_f = ideal_position(quantities, string, target * math.exp2(-sharp / 1200.0))
         heard, level = _bow(rate, quantities, string, note, speed, x_f)
@@ -216,7 +231,7 @@ def _search(
 
 
 def _completed(table: Any, usual: float) -> tuple[tuple[float, ...], ...]:
-    """Fill what could not be measured from the note's other speeds, or from its neighbours."""
+    """Fill gaps from the note's other speeds, or by interpolation between its neighbours."""
     for column in range(table.shape[1]):
         missing = np.isnan(table[:, column])
         known = np.flatnonzero(~missing)

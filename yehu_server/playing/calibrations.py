@@ -1,6 +1,7 @@
-"""The calibration of an instrument: as shipped, as kept on disk, or measured now.
+"""Find the calibration of an instrument: shipped, cached on disk, or measured now.
 
-The usual sample rates come with the package; another is measured once, and kept sealed.
+The package ships those of the usual sample rates; others are measured once and cached in
+sealed files.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from yehu_server.sealed import SealError, read_sealed, write_sealed
 log = logging.getLogger(__name__)
 
 SHIPPED = Path(__file__).parent / "calibrations.json"
-# A calibration moves no tension, and no finger, further than its rounds can take it.
+# Bounds of what the rounds of a calibration can reach.
 MOST_CENTS = ROUNDS * PLAUSIBLE_CENTS
 MOST_SHARPENING_CENTS = max(USUAL_CENTS) + len(SPEEDS) * MOST_CENTS
 MOST_LEVEL_DB = 200.0
@@ -50,9 +51,16 @@ def calibration_for(
     a4: float = 440.0,
     progress: Progress | None = None,
 ) -> Calibration:
-    """The calibration of an instrument.
+    """Find the calibration of an instrument, or measure it, in some seconds.
 
-    Takes some seconds where it is measured; `progress` is told notes done and notes in all.
+    Parameters
+    ----------
+    rate : float
+        Sample rate (Hz).
+    a4 : float
+        Reference pitch (Hz).
+    progress : callable, optional
+        Called with the number of notes done and of all notes, where it is measured.
     """
     quantities = quantities or Quantities()
     key = calibration_key(rate, quantities, a4)
@@ -66,7 +74,7 @@ def calibration_for(
 
 
 def as_data(calibration: Calibration) -> dict[str, Any]:
-    """What JSON can hold of a calibration."""
+    """A calibration as JSON values; `read_calibration` reads them."""
     return {
         "a4": calibration.a4,
         "tensions": list(calibration.tensions),
@@ -76,9 +84,12 @@ def as_data(calibration: Calibration) -> dict[str, Any]:
 
 
 def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibration:
-    """The calibration of an instrument out of what `as_data` gave.
+    """Read the JSON values of a calibration of an instrument.
 
-    Errors: ParameterError for what no measuring of this instrument could have found.
+    Raises
+    ------
+    ParameterError
+        Where they are none, are for another pitch, or beyond what can be measured.
     """
     try:
         first, second = map(float, data["tensions"])
@@ -86,7 +97,7 @@ def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibratio
         sharpening = _tables(data["sharpening"], 0, -MOST_SHARPENING_CENTS, MOST_SHARPENING_CENTS)
         levels = _tables(data["levels"], 1, -MOST_LEVEL_DB, MOST_LEVEL_DB)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise ParameterError("is no calibration") from error
+        raise ParameterError("is not a calibration") from error
     if found != a4:
         raise ParameterError(f"is for another A4, {found:g} Hz")
     for i, tension in enumerate((first, second)):
@@ -98,7 +109,7 @@ def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibratio
 
 
 def _tables(data: Any, more_rows: int, lo: float, hi: float) -> Tables:
-    """A table of notes and speeds for each string. Errors: TypeError, ValueError."""
+    """A table of notes and speeds for each string; raises TypeError or ValueError for no table."""
     tables = []
     for rows, pitches in zip(data, PITCHES, strict=True):
         table = np.array(rows, np.float64)
@@ -121,7 +132,7 @@ def _file(key: str) -> Path:
 
 
 def _kept(key: str, quantities: Quantities, a4: float) -> Calibration | None:
-    """What was measured before; None where it was not, or cannot be believed."""
+    """The calibration cached under a key; None where there is none, or the file is damaged."""
     path = _file(key)
     try:
         payload = read_sealed(path)
@@ -137,4 +148,4 @@ def _keep(key: str, calibration: Calibration) -> None:
         write_sealed(path, json.dumps(as_data(calibration)).encode())
     except OSError as error:
         reason = error.strerror or error
-        log.warning("%s: %s; what was measured is not kept for the next start", path, reason)
+        log.warning("%s: %s; the calibration is not kept for the next start", path, reason)

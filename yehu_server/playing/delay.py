@@ -1,4 +1,4 @@
-"""How long what arrives waits until it is heard, so that it keeps its rhythm."""
+"""The delay from arrival of a message to its sound, constant so that messages keep their rhythm."""
 
 from __future__ import annotations
 
@@ -7,27 +7,27 @@ from collections import deque
 
 from yehu_server.engine.instrument import Instrument
 
-# What Python takes to act on a message, on top of what the device plays ahead of its time.
+# Time in which Python acts on a message, beside the device's buffer.
 HANDLING_MS = 1.0
-# The device's callbacks begin this much early or late as a matter of course.
+# Ordinary jitter of the device's callbacks.
 LEEWAY_MS = 0.5
 HELD_WINDOWS = 50  # of telemetry.AHEAD_WINDOW_S, before the delay becomes shorter
-TOLD_WINDOWS = 10  # since a system that is held up may tear a request in two
+PERIOD_WINDOWS = 10  # as a busy system may split one request of the device in two
 
 
 class Delay:
-    """Follows how far ahead of its time the device lets us play.
+    """Measures how far ahead of playback the device requests blocks, and sets the delay by it.
 
-    Sound servers with a period of several blocks ask for all of them in a row, and then for
-    nothing until the next period: what arrives meanwhile can be heard only after those blocks.
-    Whole blocks are waited for, so that the delay stays the same as long as the device does.
+    A sound server whose period is several blocks requests all of them in a row, then nothing
+    until the next period: a message that arrives meanwhile can sound only after those blocks.
+    The delay is in whole blocks, so that it changes only with the device's period.
 
     Parameters
     ----------
     block : int
         Frames of one callback.
     fixed_ms : float, optional
-        Wait for this long, whatever the device does.
+        Use this delay, whatever the device does.
     """
 
     def __init__(self, instrument: Instrument, block: int, fixed_ms: float | None = None) -> None:
@@ -37,24 +37,24 @@ class Delay:
         self._window = 0
         self._last = (1, block)
         self._blocks = deque([1], HELD_WINDOWS)
-        self._periods = deque([block], TOLD_WINDOWS)
+        self._periods = deque([block], PERIOD_WINDOWS)
 
     @property
     def period(self) -> int:
-        """Frames that the device asks for at once, at most."""
+        """Largest number of frames that the device requests at once."""
         return max(self._periods)
 
     @property
     def frames(self) -> int:
-        """The delay."""
+        """The delay, in frames."""
         if self._fixed_ms is not None:
             return self._instrument.frames(self._fixed_ms)
         return max(self._blocks) * self._block + self._instrument.frames(HANDLING_MS)
 
     def look(self) -> None:
-        """Take in what the audio side tells; to be called twice in an ``AHEAD_WINDOW_S``.
+        """Read the meters of the audio side; to be called twice in an ``AHEAD_WINDOW_S``.
 
-        What only one window shows is an accident: the system held us up, and we caught up.
+        The lesser of two windows in a row counts: a single one may show a delay of the system.
         """
         meters = self._instrument.meters()
         if meters["ahead_window"] == self._window:

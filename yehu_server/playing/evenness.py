@@ -1,4 +1,4 @@
-"""How loud a note is beside the others: what the body makes of it, turned up or down."""
+"""Evens out the loudness of notes, which the body radiates differently."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from yehu_server.playing.fingering import Fingering
 from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.ownership import Ownership
 
-# A loud note before a soft one has to die away before it may be turned up.
+# A gain that rises slowly does not amplify the end of a loud note before.
 RISING_MS, FALLING_MS = 90.0, 15.0
 
 
 class Evenness:
-    """Moves ``/output/balance`` from pitch to pitch.
+    """Sets ``/output/balance`` for each pitch.
 
     Parameters
     ----------
     wish : callable
-        The present value of a parameter of the player.
+        Returns the present value of a parameter of the player.
     """
 
     def __init__(
@@ -33,10 +33,14 @@ class Evenness:
     def follow(
         self, fingering: Fingering | None, pitch: float, speed: float, frame: int | None
     ) -> None:
-        """Let a pitch (fractional MIDI note) be as loud as the others, as far as asked.
+        """Set the gain for a pitch (fractional MIDI note), scaled by ``/body/evenness``.
 
-        `fingering` is None where no finger was chosen yet, so that the inner string is open;
-        `speed` is the bow's (m/s).
+        Parameters
+        ----------
+        fingering : Fingering, optional
+            None before the first note, where the inner string is open.
+        speed : float
+            Bow speed (m/s).
         """
         string = 0 if fingering is None else fingering.string
         is_open = fingering is None or fingering.position is None

@@ -1,4 +1,4 @@
-"""Which string takes a pitch, and where the finger goes."""
+"""Choose the string and finger position for a pitch."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from yehu_server.playing.calibration import OPEN_NOTES
 from yehu_server.playing.intonation import Intonation
 
 LOWEST_NOTE, HIGHEST_NOTE = 65, 89  # F4 to F6
-# Semitones about an open string that need no finger: nearer to the loop than 8 mm, which is
-# this much, no finger fits.
+# Semitones around an open string that are played without a finger: no finger fits nearer to the
+# loop than 8 mm, which is this interval.
 OPEN_WITHIN = 0.45
 ON_PITCH_WITHIN = 0.05
-# Farther up the F string notes jump and scratch: bowed at four speeds and three pressures, F5 and
-# G5 hold in none to a third of the cases, up to E5 in four fifths at least.
+# Above this pitch notes on the F string jump and scratch: bowed at four speeds and three pressures,
+# F5 and G5 hold in at most a third of the cases, notes up to E5 in at least four fifths.
 HIGHEST_ON_F = 76.5
 
 
 class RangePolicy(Enum):
-    """What happens to a note the instrument does not have."""
+    """What happens to a note outside the range of the instrument."""
 
     TRANSPOSE = "transpose"
     CLAMP = "clamp"
     SKIP = "skip"
 
     def fit(self, note: float) -> float | None:
-        """Return the note to play instead of `note`, or None for none.
+        """Return the note to play for `note`, or None for none.
 
-        One that a tuning has put less than a quarter tone beyond an end is the last there is.
+        A note that a tuning puts less than a quarter tone out of range is moved to its end.
         """
         if LOWEST_NOTE - OPEN_WITHIN < note < HIGHEST_NOTE + OPEN_WITHIN:
             return min(max(note, LOWEST_NOTE), HIGHEST_NOTE)
@@ -42,7 +42,7 @@ class RangePolicy(Enum):
 
 
 class OpenStrings(Enum):
-    """When the open C string sounds; below the first finger on the F string there is no choice."""
+    """When the C string is played open; the F string is, wherever no finger fits."""
 
     ALWAYS = "always"  # wherever no finger fits on the C string
     ON_PITCH = "on-pitch"
@@ -56,7 +56,7 @@ class OpenStrings(Enum):
 
 @dataclass(frozen=True)
 class Fingering:
-    """A string (0: F4, 1: C5) and the finger's place on it (m); None for an open string."""
+    """A string (0: F4, 1: C5) and the finger's position on it (m); None for an open string."""
 
     string: int
     position: float | None
@@ -82,14 +82,20 @@ def choose(
     open_strings: OpenStrings = OpenStrings.ALWAYS,
     wish: int | None = None,
 ) -> Fingering:
-    """Finger a pitch (fractional MIDI note) for a bow of some speed (m/s).
+    """Choose the fingering of a pitch (fractional MIDI note) at a bow speed (m/s).
 
-    Below C5 there is only the F string; from C5 up the C string, unless the finger is down
-    on the F string (`hand`) and has a shorter way to the pitch there, not too far up. A string
-    wished for is taken wherever it has the pitch.
+    Below C5 it is on the F string; from C5 up on the C string, unless the finger is on the F
+    string and nearer to the pitch there, up to HIGHEST_ON_F.
+
+    Parameters
+    ----------
+    hand : Fingering, optional
+        The present fingering.
+    wish : int, optional
+        The string to play on, wherever it has the pitch.
     """
     if pitch < OPEN_NOTES[0] + OPEN_WITHIN:
-        return Fingering(0, None)  # the lowest there is
+        return Fingering(0, None)  # the lowest note of the instrument
     if wish == 0:
         return _stop(0, pitch, intonation, speed)
     if open_strings.takes(pitch):
@@ -106,10 +112,10 @@ def choose(
 def stay(
     pitch: float, string: int, intonation: Intonation, speed: float, wish: int | None = None
 ) -> Fingering:
-    """Follow a bent pitch on the string it sounds on, as far as that goes.
+    """Follow a bent pitch on the string that sounds, as far as that has it.
 
-    Below the open C string it goes on on the F string, and far up the F string on the C, unless
-    the F string is wished for.
+    Below the open C string it changes to the F string, and above HIGHEST_ON_F to the C string,
+    unless the F string is wished for.
     """
     string = string if wish is None else wish
     open_note = OPEN_NOTES[string]

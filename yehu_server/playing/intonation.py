@@ -1,4 +1,4 @@
-"""Where the finger goes for a pitch."""
+"""Finger positions for pitches, and gains for even loudness, from a calibration."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ LOG_SPEEDS = [math.log(speed) for speed in SPEEDS]
 
 
 class Intonation:
-    """Finger positions in equal temperament, for one calibrated instrument.
+    """Finger positions and gains of one calibrated instrument.
 
     Attributes
     ----------
     trust : float
-        From 0, fingers go to where an ideal string would be in tune, to 1, where this one is.
+        Weight of the calibration: 0 gives the finger positions of an ideal string.
     """
 
     def __init__(
@@ -40,25 +40,25 @@ class Intonation:
     def position(self, string: int, pitch: float, speed: float) -> float:
         """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1.
 
-        The pitch is that of a bow whose player wishes for `speed` (m/s): a faster one pulls it.
-        Some notes are bowed more slowly, and were measured so.
+        A faster bow changes the pitch: `speed` (m/s) is the one the player wishes for. Notes
+        that are bowed more slowly were measured so.
         """
         sharp = self.trust * self._sharpening(string, pitch, speed)
         frequency = frequency_hz(pitch - sharp / 100.0, self._calibration.a4)
         return ideal_position(self._quantities, string, frequency)
 
     def balance_db(self, string: int, pitch: float, speed: float) -> float:
-        """Gain (dB) that makes a note as loud as notes are on average, at a wished `speed` (m/s).
+        """Gain (dB) that makes a note as loud as the average note, at a wished `speed` (m/s).
 
-        The open string is the pitch of its note.
+        The pitch of an open string is that of its note.
         """
         levels = self._calibration.levels
         if not levels:
             return 0.0
-        usual = [_at_speed(row, speed) for table in levels for row in table]
+        all_notes = [_at_speed(row, speed) for table in levels for row in table]
         pitches = (float(OPEN_NOTES[string]), *PITCHES[string])
         own = _read(levels[string], pitches, pitch, speed)
-        return sum(usual) / len(usual) - own
+        return sum(all_notes) / len(all_notes) - own
 
     def _sharpening(self, string: int, pitch: float, speed: float) -> float:
         return _read(self._calibration.sharpening[string], PITCHES[string], pitch, speed)
@@ -67,7 +67,7 @@ class Intonation:
 def _read(
     table: tuple[tuple[float, ...], ...], pitches: tuple[float, ...], pitch: float, speed: float
 ) -> float:
-    """A table of pitches and SPEEDS, read between its entries; its ends go on beyond it."""
+    """Interpolate a table of pitches and SPEEDS; beyond its ends, the end values apply."""
     row = min(max(bisect_right(pitches, pitch) - 1, 0), len(pitches) - 2)
     part = (pitch - pitches[row]) / (pitches[row + 1] - pitches[row])
     low, high = _at_speed(table[row], speed), _at_speed(table[row + 1], speed)

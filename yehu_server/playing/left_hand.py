@@ -1,8 +1,7 @@
-"""The left hand: four fingers that step from place to place, slide, press and rock.
+"""The left hand: four fingers that stop the strings, step, slide, press and play vibrato.
 
-A step puts the next finger down while the one before still holds, and then lifts that: up or
-down, in runs and trills, the string is never let go in between. A slide moves the finger
-that is down.
+A step puts the next finger down while the one before still holds, and then lifts that, so that
+the string is never open in between. A slide moves the finger that is down.
 """
 
 from __future__ import annotations
@@ -14,22 +13,22 @@ from yehu_server.playing.bowing import manner
 from yehu_server.playing.fingering import Fingering
 from yehu_server.playing.ownership import Ownership
 
-# A finger lands in about three milliseconds and leaves a little more gently. Chosen by trying
-# landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps up and down both strings; half of these
-# are within 10 cents of their pitch after 21 ms (scripts/playability.py legato tries more).
+# Ramps of finger force. Chosen by trying landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps
+# up and down both strings; half of these are within 10 cents of their pitch after 21 ms
+# (scripts/playability.py legato tries more).
 LANDING_MS, LIFTING_MS = 3.0, 5.0
-# The next place is reached by a slide if it is this near: no finger fits beside another.
-SAME_PLACE = 2e-3  # m
+# A position nearer than this is reached by a slide, as no second finger fits beside the first.
+NEAREST_STEP = 2e-3  # m
 SETTLING_MS = 8.0
 
 
 class LeftHand:
-    """Where the strings are stopped, and by which finger.
+    """Moves the fingers, and keeps the present fingering.
 
     Parameters
     ----------
     wish : callable
-        The present value of a parameter under ``/playing``.
+        Returns the present value of a parameter under ``/playing``.
     """
 
     def __init__(self, own: Ownership, wish: Callable[[str], float]) -> None:
@@ -41,7 +40,7 @@ class LeftHand:
 
     @property
     def side(self) -> float:
-        """The value of ``/bow/side`` that bows the string it is on; 0 where it is on none."""
+        """The value of ``/bow/side`` that bows the string of the fingering; 0 without one."""
         return self.fingering.side if self.fingering else 0.0
 
     def stop(
@@ -57,31 +56,31 @@ class LeftHand:
         Parameters
         ----------
         pitch : float
-            The sounding pitch (fractional MIDI note), which may want a firmer finger.
+            The sounding pitch (fractional MIDI note), which may need a larger finger force.
         slide_ms : float
-            Time that the finger which is down takes to slide there; None for a step to it.
+            Time in which the finger that is down slides there; None for a step.
         """
-        was = None if self.fingering is None else self.fingering.position
+        before = None if self.fingering is None else self.fingering.position
         self.fingering = fingering
-        place = fingering.position
-        if place is None or was is None:
-            if place is not None:
-                self._land(place, frame)
+        position = fingering.position
+        if position is None or before is None:
+            if position is not None:
+                self._land(position, frame)
             self.press(frame, pitch)
             return
-        if slide_ms is None and abs(place - was) < SAME_PLACE:
+        if slide_ms is None and abs(position - before) < NEAREST_STEP:
             slide_ms = SETTLING_MS
         if slide_ms is not None:
-            self._own.move(self._address("position"), place, frame, slide_ms)
+            self._own.move(self._address("position"), position, frame, slide_ms)
             self.press(frame, pitch)
             return
-        before = self._address("press")
-        self._land(place, frame)
+        lifted = self._address("press")
+        self._land(position, frame)
         self.press(frame, pitch)
-        self._own.move(before, 0.0, frame, LIFTING_MS)
+        self._own.move(lifted, 0.0, frame, LIFTING_MS)
 
     def press(self, frame: int | None, pitch: float | None = None) -> None:
-        """Press as hard as wished, or lift the finger where the string is open."""
+        """Set the wished finger force, or lift the finger where the string is open."""
         is_down = self.fingering is not None and self.fingering.position is not None
         press = self._wish("/playing/press") if is_down else 0.0
         if is_down and pitch is not None:
@@ -93,30 +92,30 @@ class LeftHand:
         self._pressing = press
 
     def leave(self, frame: int | None) -> None:
-        """Take the hand off the strings, whoever holds a finger down."""
+        """Lift all fingers, also those that a direct write put down."""
         self.fingering, self._pressing = None, 0.0
         for number in FINGERS:
             self._own.take_back(f"/finger/{number}/press")
             self._own.move(f"/finger/{number}/press", 0.0, frame, LIFTING_MS)
 
     def rock(self, frame: int | None) -> None:
-        """Let the vibrato be as wished."""
+        """Set depth and rate of the vibrato as wished."""
         self._own.move("/vibrato/depth", self._wish("/playing/vibrato"), frame)
         self._own.move("/vibrato/press", self._wish("/playing/vibrato_press"), frame)
         self._own.move("/vibrato/rate", self._wish("/playing/vibrato_rate"), frame)
 
     def begin_rocking(self, frame: int | None) -> None:
-        """Let the vibrato of a new note come in, in its own time."""
+        """Fade in the vibrato of a new note, in ``/playing/vibrato_delay``."""
         delay_ms = self._wish("/playing/vibrato_delay")
         self._own.move("/vibrato/onset", 0.0 if delay_ms > 0.0 else 1.0, frame, 0.0)
         if delay_ms > 0.0:
             self._own.move("/vibrato/onset", 1.0, frame, delay_ms)
 
-    def _land(self, place: float, frame: int | None) -> None:
-        """Put the next finger over a place."""
+    def _land(self, position: float, frame: int | None) -> None:
+        """Put the next finger over a position (m)."""
         self._finger = (self._finger + 1) % len(FINGERS)
         self._pressing = 0.0
-        self._own.move(self._address("position"), place, frame, 0.0)
+        self._own.move(self._address("position"), position, frame, 0.0)
 
     def _address(self, what: str) -> str:
         return f"/finger/{FINGERS[self._finger]}/{what}"

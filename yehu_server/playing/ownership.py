@@ -1,7 +1,7 @@
-"""Who moves the bow and the fingers: the player, as long as nobody took them over.
+"""Keeps which parameters of bow and fingers the player may move.
 
-A direct write to a parameter marked ``owned`` takes that one over until the next note begins.
-Any parameter written with ``hold`` stays as it is, whatever notes and controllers say
+A direct write to a parameter marked ``owned`` takes it over until the next note begins. A
+parameter written with ``hold`` keeps its value, whatever notes and controllers do
 (decisions/0006).
 """
 
@@ -15,19 +15,19 @@ from yehu_server.params.table import find
 
 
 class Sink(Protocol):
-    """What a player moves: an ``engine.instrument.Instrument``, or a stand-in."""
+    """The instrument that a player moves: ``engine.instrument.Instrument``, or a stand-in."""
 
     def write(
         self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
     ) -> float:
-        """Let a parameter of the engine move to a value."""
+        """Ramp a parameter of the engine to a value; return the value accepted."""
 
     def silence(self, *, frame: int | None = None) -> None:
         """Stop the sound at once."""
 
 
 class Ownership:
-    """The instrument, as far as it is the player's."""
+    """Passes on the player's moves of parameters that nobody has taken over."""
 
     def __init__(self, sink: Sink) -> None:
         self.sink = sink
@@ -39,17 +39,17 @@ class Ownership:
     def move(
         self, address: str, value: float, frame: int | None, ramp_ms: float | None = None
     ) -> None:
-        """Move a parameter, unless somebody else has it, or it is on its way there already."""
+        """Move a parameter, unless it is taken over or already moving to this value."""
         if self.has(address) and self._sent.get(address) != value:
             self._sent[address] = value
             if self._glide_ms > 0.0:
-                usual_ms = find(address).smooth_ms if ramp_ms is None else ramp_ms
-                ramp_ms = max(usual_ms, self._glide_ms)
+                own_ms = find(address).smooth_ms if ramp_ms is None else ramp_ms
+                ramp_ms = max(own_ms, self._glide_ms)
             self.sink.write(address, value, frame=frame, ramp_ms=ramp_ms)
 
     @contextlib.contextmanager
     def gliding(self, glide_ms: float) -> Iterator[None]:
-        """Let each move take this long at least."""
+        """Make each move take at least this time (ms)."""
         before, self._glide_ms = self._glide_ms, glide_ms
         try:
             yield
@@ -57,7 +57,7 @@ class Ownership:
             self._glide_ms = before
 
     def forget(self, address: str) -> None:
-        """Let the next move of a parameter be made, wherever it is."""
+        """Forget the value last sent, so that the next move is sent in any case."""
         self._sent.pop(address, None)
 
     def has(self, address: str) -> bool:
@@ -65,21 +65,21 @@ class Ownership:
         return address not in self._taken and address not in self._kept
 
     def keeps(self, address: str) -> bool:
-        """Whether a parameter was taken over for good."""
+        """Whether a parameter is held."""
         return address in self._kept
 
     def give_up(self, address: str, *, hold: bool) -> None:
-        """Leave a parameter to who wrote it: until the next note, or for good."""
+        """Record that a direct write took a parameter over, until the next note or as held."""
         (self._kept if hold else self._taken).add(address)
         self.forget(address)
 
     def take_back(self, *addresses: str) -> None:
-        """Have these again, to move them at once; all but what is held where none is named."""
+        """Own these parameters again; without any, all that are not held."""
         self._taken -= set(addresses) if addresses else set(self._taken)
         for address in addresses:
             self.forget(address)
 
     def release(self) -> None:
-        """Have everything again."""
+        """Own all parameters again, held ones too."""
         self._taken.clear()
         self._kept.clear()

@@ -1,4 +1,4 @@
-"""The folders of presets: those that come along, and the player's own."""
+"""Find, read, save and delete presets: shipped ones, and the user's own."""
 
 from __future__ import annotations
 
@@ -16,17 +16,23 @@ from yehu_server.files import PLAIN_NAME, inside, read_text, shipped_folder, wri
 from yehu_server.params.preset import SAVED, VERSION, Preset, parse
 
 ENDING = ".toml"
-MINE = "mine/"  # before the name of one of the player's own
-# What may be asked for while the instrument plays takes some milliseconds to read.
-MOST_OWN = 128  # presets: as many as there are MIDI programs
-MOST_BYTES = 1 << 14  # of one; it takes under 1000, and the rest are comments
-MOST_NAMED = 20  # in an error
+MINE = "mine/"  # prefix of the names of the user's own presets
+# Presets are read while the instrument plays, which must take some milliseconds only.
+MOST_OWN = 128  # as many as there are MIDI programs
+MOST_BYTES = 1 << 14  # of one preset; all values take under 1000, the rest is for comments
+MOST_NAMED = 20  # names in an error message
 EMPTY = f'version = {VERSION}\nabout = ""\n\n[values]\n'
 Stamp = tuple[int, int]
 
 
 def read_preset(path: Path, name: str | None = None) -> Preset:
-    """Read a file of any place. Errors: PresetError, naming it."""
+    """Read a preset from a file.
+
+    Raises
+    ------
+    PresetError
+        Naming the file, or `name`.
+    """
     try:
         return parse(read_text(path, MOST_BYTES), name or path.stem)
     except UnicodeDecodeError as error:
@@ -39,31 +45,31 @@ def read_preset(path: Path, name: str | None = None) -> Preset:
 
 
 def is_name(name_or_path: str) -> bool:
-    """Whether it is the name of a preset; else it is a path."""
+    """Whether a text is the name of a preset, not a path."""
     name = name_or_path.removeprefix(MINE)
     return PLAIN_NAME.fullmatch(name) is not None and not name.endswith(ENDING)
 
 
 class Presets:
-    """Presets by plain name, or by ``mine/`` and the name of one of the player's own.
+    """All presets, by plain name, or ``mine/NAME`` for one of the user's own.
 
     Files are read again when they have changed.
 
     Parameters
     ----------
     own : Path, optional
-        The player's folder, made when something is saved; by default among the settings that
-        the system keeps for this program.
+        The user's folder, created by the first `save`; by default in the user's configuration
+        folder for this program.
     own_first : bool
-        Whether one of the player's own hides a shipped one of its name or program, as it does
-        live. Else the shipped one counts, and own ones have no program.
+        Whether the user's own presets take precedence over shipped ones of the same name or
+        program, as in live playing. Else shipped ones do, and own ones have no program.
     """
 
     def __init__(self, own: Path | None = None, *, own_first: bool = True) -> None:
         self._own_first = own_first
         self.own = own or user_config_path("yehu-server") / "presets"
         self.shipped = shipped_folder("presets")
-        # What was read, or why it could not be.
+        # The presets read, or why they could not be.
         self._known: dict[Path, tuple[Stamp, Preset | str]] = {}
 
     def names(self) -> list[str]:
@@ -71,16 +77,22 @@ class Presets:
         return sorted({*_names(self.own)[:MOST_OWN], *_names(self.shipped)})
 
     def is_own(self, name: str) -> bool:
-        """Whether it is the player's own."""
+        """Whether the user has a preset of this name."""
         return self._own_file(name).is_file()
 
     def file(self, name: str) -> Path:
-        """Where one of them is. Errors: PresetError."""
-        places = [self._own_file, self._shipped_file]
+        """The file of a preset.
+
+        Raises
+        ------
+        PresetError
+            Where there is no such preset.
+        """
+        lookups = [self._own_file, self._shipped_file]
         if name.startswith(MINE):
-            del places[1]
-        for place in places if self._own_first else reversed(places):
-            path = place(name.removeprefix(MINE))
+            del lookups[1]
+        for lookup in lookups if self._own_first else reversed(lookups):
+            path = lookup(name.removeprefix(MINE))
             if _is_there(path):
                 return path
         names = self.names()
@@ -88,21 +100,39 @@ class Presets:
         raise PresetError(f"no preset {name!r} (there are: {', '.join(names[:MOST_NAMED])}{more})")
 
     def load(self, name: str) -> Preset:
-        """Read one of them. Errors: PresetError."""
+        """Read a preset by its name.
+
+        Raises
+        ------
+        PresetError
+            Where there is no such preset, or it is wrong.
+        """
         return self._read(self.file(name), name.removeprefix(MINE))
 
     def find(self, name_or_path: str) -> Preset:
-        """Read one of them, or a file of any place. Errors: PresetError."""
+        """Read a preset by its name or path.
+
+        Raises
+        ------
+        PresetError
+            As `load`.
+        """
         if is_name(name_or_path):
             return self.load(name_or_path)
         return read_preset(Path(name_or_path))
 
     def find_file(self, name_or_path: str) -> Path:
-        """The file that `find` reads. Errors: PresetError."""
+        """The file that `find` reads.
+
+        Raises
+        ------
+        PresetError
+            As `file`.
+        """
         return self.file(name_or_path) if is_name(name_or_path) else Path(name_or_path)
 
     def all(self) -> tuple[list[Preset], list[PresetError]]:
-        """All of them by name, and what is wrong with files that cannot be read."""
+        """All presets by name, and the errors in files that cannot be read."""
         presets, errors = [], []
         excess = len(_names(self.own)) - MOST_OWN
         if excess > 0:
@@ -118,7 +148,7 @@ class Presets:
         return not self._shipped_file(name).is_file()
 
     def of_program(self, program: int) -> Preset | None:
-        """The preset of a MIDI program, 1 to 128: the player's own first, then by name."""
+        """The preset of a MIDI program, 1 to 128: the user's own first, then by name."""
         found = [
             preset
             for preset in self.all()[0]
@@ -127,12 +157,16 @@ class Presets:
         return min(found, key=lambda preset: not self.is_own(preset.name), default=None)
 
     def save(self, name: str, values: Mapping[str, float]) -> None:
-        """Keep those of the values that make up a sound, as one of the player's own.
+        """Save the values that make up a sound as one of the user's own presets.
 
-        The rest of an older file of this name (comments, `about`, `program`, what it names
-        besides) stays; it is as it was where writing fails.
-        Errors: PresetError for a shipped one's name, an older file that cannot be read, or where
-        there are MOST_OWN already.
+        The rest of an older file of this name (comments, `about`, `program`, other entries)
+        stays, and the whole file where writing fails.
+
+        Raises
+        ------
+        PresetError
+            Where the name is a shipped preset's, an older file cannot be read, there are
+            MOST_OWN already, or writing fails.
         """
         path = self._own_file(name)
         text = EMPTY
@@ -149,7 +183,7 @@ class Presets:
             raise PresetError(f"{name}: {error}") from error
         table = document.setdefault("values", tomlkit.table())
         for address in SAVED:
-            value = float(f"{values[address]:.7g}")  # what a 32-bit float of OSC was meant to be
+            value = float(f"{values[address]:.7g}")  # undoes the rounding to a 32-bit float of OSC
             if table.get(address) != value:
                 table[address] = value
         try:
@@ -159,7 +193,13 @@ class Presets:
             raise PresetError(f"{self.own}: {error.strerror}") from error
 
     def delete(self, name: str) -> None:
-        """Remove one of the player's own. Errors: PresetError."""
+        """Delete one of the user's own presets.
+
+        Raises
+        ------
+        PresetError
+            Where there is no such preset, or it cannot be deleted.
+        """
         path = self._own_file(name)
         if not path.is_file():
             shipped = self._shipped_file(name).exists()
@@ -171,7 +211,7 @@ class Presets:
             raise PresetError(f"{name}: {error.strerror}") from error
 
     def _read(self, path: Path, name: str) -> Preset:
-        """Read a file, unless it is known as it is now. Errors: PresetError."""
+        """Read a file, unless it is unchanged since it was read; raises PresetError."""
         try:
             status = path.stat()
         except OSError as error:
@@ -186,24 +226,24 @@ class Presets:
         return known[1]
 
     def _own_file(self, name: str) -> Path:
-        """Where one of the player's own is. Errors: PresetError, as of `inside`."""
+        """The path of an own preset; raises PresetError for what is no plain name, as `inside`."""
         try:
             return inside(self.own, name, ENDING)
         except OutputError as error:
             raise PresetError(str(error)) from error
 
     def _shipped_file(self, name: str) -> Path:
-        """Where a shipped one is: by a link, as some installers have it, or not."""
+        """The path of a shipped preset, which may be a link, as some installers make them."""
         return self.shipped / f"{name}{ENDING}"
 
 
 def _is_there(path: Path) -> bool:
-    """Whether there is a file, or something whose trouble reading it will tell."""
+    """Whether there is a file, or something that reading will give an error for."""
     try:
         return stat.S_ISREG(path.stat().st_mode)
     except (FileNotFoundError, NotADirectoryError):
         return False
-    except OSError:  # such as a ring of links
+    except OSError:  # such as a loop of links
         return True
 
 

@@ -1,4 +1,4 @@
-"""How the instrument is tuned and played: what live and rendered playing have in common."""
+"""The options of playing that live playing and rendering share: mapping, tuning, preset."""
 
 from __future__ import annotations
 
@@ -19,10 +19,16 @@ from yehu_server.playing.tuning import EQUAL, Tuning
 
 @dataclass(frozen=True)
 class Style:
-    """See ``yehu-server render --help``.
+    """How to play; see ``yehu-server render --help``.
 
-    `settings` are held parameters and their values, `start` those that a preset begins with;
-    `preset` is its file.
+    Attributes
+    ----------
+    settings : tuple of (address, value)
+        Held parameters.
+    start : tuple of (address, value)
+        The values of the preset.
+    preset : Path, optional
+        The file of the preset.
     """
 
     mapping: Mapping = field(default_factory=lambda: load(DEFAULT))
@@ -39,7 +45,7 @@ class Style:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """What was read for it."""
+        """All files that it was read from."""
         preset = () if self.preset is None else (self.preset,)
         return (*self.mapping.files, *preset, *self.tuning.files)
 
@@ -60,6 +66,6 @@ class Style:
         )
 
     def midi(self, performer: Performer, channels: set[int] | None = None) -> MidiPlayer:
-        """What MIDI means to this player; `channels` as of `MidiPlayer`."""
+        """A MIDI player of this style; `channels` as in `MidiPlayer`."""
         programs = self.presets.of_program if self.programs else None
         return MidiPlayer(performer, self.mapping, channels, start=self.start, programs=programs)

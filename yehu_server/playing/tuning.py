@@ -1,7 +1,7 @@
-"""Scala tunings: which pitch a key sounds.
+"""Scala tunings: the pitch of each key.
 
-A scale (``.scl``) lists intervals above its first note, 1/1; a keyboard map (``.kbm``) says
-which key plays which of them, and which key is how many Hz.
+A scale (``.scl``) lists intervals above its first note, 1/1; a keyboard map (``.kbm``) assigns
+them to keys and gives the frequency of a reference key.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from yehu_server.files import MAX_SETTINGS_BYTES, read_text, shipped_folder
 
 KEYS = range(128)
 MIDDLE_C, A4 = 60, 69
-# Hz; the pitches of a tuning that is fixed in Hz are kept relative to this A4.
-USUAL_A4 = 440.0
-MOST_NOTES = 1024  # of a scale or a map
+# Hz; the pitches of a tuning that is fixed in Hz are stored relative to this A4.
+STANDARD_A4 = 440.0
+MOST_NOTES = 1024  # in a scale or a map
 MOST_DEGREE = 100_000
-# No key may be further off: the frequency of such a pitch is still a finite number.
+# Bound on the pitch of a key, so that its frequency is a finite number.
 MOST_SEMITONES = 10_000.0
 LEAST_HZ, MOST_HZ = 1e-6, 1e9
 
-# What follows a pitch is ignored, unless it looks as if the pitch went on.
+# Text after a pitch is ignored, unless it could be part of the number.
 _CENTS = re.compile(r"([+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+))(?![0-9./]|,[0-9]|[eE][+-]?[0-9])")
 _RATIO = re.compile(
     r"([+-]?[0-9]{1,1000}+)(?:[ \t]*/[ \t]*([+-]?[0-9]{1,1000}+))?+(?![0-9./]|,[0-9])"
@@ -39,10 +39,15 @@ _NO_TEXT = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f]")  # 1a (hex) ends a DOS t
 class Tuning:
     """The pitch of every key.
 
-    `keys` has the pitches of keys 0 to 127 (fractional MIDI notes; None for an unmapped
-    key), or is None where each key sounds its own number. They are relative to A4, whatever
-    it is; if `fixed`, to an A4 of 440 Hz, and stay where they are when A4 moves. `files` are
-    what it was read from.
+    Attributes
+    ----------
+    keys : tuple of float, optional
+        Pitches of keys 0 to 127 (fractional MIDI notes; None for an unmapped key), relative to
+        A4; None where each key sounds its own number.
+    fixed : bool
+        Whether pitches are relative to an A4 of 440 Hz, whatever the instrument's A4 is.
+    files : tuple of Path
+        The files that it was read from.
     """
 
     name: str
@@ -51,10 +56,10 @@ class Tuning:
     files: tuple[Path, ...] = field(default=(), compare=False)
 
     def pitch(self, note: float, a4: float) -> float | None:
-        """Return what a key sounds, as a fractional MIDI note relative to `a4` (Hz).
+        """Return the pitch of a key as a fractional MIDI note relative to `a4` (Hz).
 
-        Between keys (a fractional `note`) the pitch goes straight from the next mapped key
-        below to the next above. None for an unmapped key and beyond the outermost mapped ones.
+        A fractional `note` is interpolated between the mapped keys below and above. None for an
+        unmapped key, and beyond the outermost mapped keys.
         """
         if self.keys is None:
             return note
@@ -71,18 +76,22 @@ class Tuning:
             return None
         if below != above:
             low += (high - low) * (note - below) / (above - below)
-        return low - 12.0 * math.log2(a4 / USUAL_A4) if self.fixed else low
+        return low - 12.0 * math.log2(a4 / STANDARD_A4) if self.fixed else low
 
 
 EQUAL = Tuning("12-tone equal temperament")
 
 
 def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
-    """Read a Scala scale and, if given, a Scala keyboard map; a bare name is a shipped one's.
+    """Read a Scala scale and, if given, a Scala keyboard map; a bare name means a shipped file.
 
-    Without a map the scale's 1/1 is on key 60, which keeps its place in equal temperament,
-    and every key plays the next note of the scale. With a map the pitches are fixed in Hz.
-    Errors: ParameterError, naming the file and mostly the line.
+    Without a map the scale's 1/1 is key 60 at its pitch in equal temperament, and each key plays
+    the next note of the scale. With a map the pitches are fixed in Hz.
+
+    Raises
+    ------
+    ParameterError
+        Naming the file, and the line where that is known.
     """
     scale = _found(scale, ".scl")
     keyboard = None if keyboard is None else _found(keyboard, ".kbm")
@@ -108,7 +117,7 @@ def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
 
 
 def _found(path: Path, ending: str) -> Path:
-    """The file of a path, or of the name of a shipped one."""
+    """The file of a path, or of the name of a shipped file."""
     if path.suffix or path.name != str(path) or path.exists():
         return path
     folder = shipped_folder("tunings")
@@ -121,10 +130,10 @@ def _found(path: Path, ending: str) -> Path:
 
 @dataclass(frozen=True)
 class _Keyboard:
-    """A keyboard map; as it is, the one for scales that come without.
+    """A keyboard map; its defaults are the map of a scale without one.
 
-    `degrees` are the scale's notes from the `middle` key up, None for no note; they repeat
-    `octave` degrees higher (0: one scale higher). Without any, keys follow the scale.
+    `degrees` are those of the scale from the `middle` key up, None for no note; they repeat
+    `octave` degrees higher (0: one scale higher). Without degrees, keys follow the scale.
     """
 
     first: int = KEYS[0]
@@ -141,30 +150,30 @@ class _Keyboard:
         steps = key - self.middle
         if not self.degrees:
             return _interval(steps, notes)
-        turns, place = divmod(steps, len(self.degrees))
-        degree = self.degrees[place]
+        octaves, index = divmod(steps, len(self.degrees))
+        degree = self.degrees[index]
         octave = _interval(self.octave or len(notes), notes)
         own = None if degree is None else _interval(degree, notes)
-        return None if own is None or octave is None else own + turns * octave
+        return None if own is None or octave is None else own + octaves * octave
 
 
 def _interval(degree: int, notes: tuple[float, ...]) -> float | None:
-    """Semitones from 1/1 to a degree; the last note of a scale is the 1/1 of its repetition.
+    """Semitones from 1/1 to a degree; the last note of a scale is the 1/1 of the next octave.
 
     A scale without notes has only degree 0.
     """
     if not notes:
         return 0.0 if degree == 0 else None
-    turns, place = divmod(degree, len(notes))
-    return turns * notes[-1] + (notes[place - 1] if place else 0.0)
+    octaves, index = divmod(degree, len(notes))
+    return octaves * notes[-1] + (notes[index - 1] if index else 0.0)
 
 
 class _Lines:
-    """The lines of a file without its comments, taken one by one."""
+    """The lines of a file, without its comments."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.number = 0  # of the line taken last
+        self.number = 0  # of the line read last
         try:
             text = read_text(path, MAX_SETTINGS_BYTES)
         except UnicodeDecodeError as error:
@@ -177,11 +186,11 @@ class _Lines:
         self._lines = _LINE_END.split(text.removeprefix("\ufeff").partition("\x1a")[0])
 
     def error(self, message: str) -> ParameterError:
-        """Make an error about the line taken last."""
+        """Make an error about the line read last."""
         return ParameterError(f"{self.path}: line {max(self.number, 1)}: {message}")
 
     def title(self) -> str:
-        """Take the first line, which may be empty."""
+        """Read the first line, which may be empty."""
         while self.number < len(self._lines):
             line = self._lines[self.number]
             self.number += 1
@@ -190,7 +199,7 @@ class _Lines:
         raise self.error("the file ends before the description")
 
     def next(self) -> str | None:
-        """Take the next line that says anything; None at the end."""
+        """Read the next line that is not empty; None at the end."""
         while self.number < len(self._lines):
             line = self._lines[self.number].partition("!")[0].strip()
             self.number += 1
@@ -199,18 +208,18 @@ class _Lines:
         return None
 
     def take(self, what: str) -> str:
-        """Take the next line, which there must be."""
+        """Read the next line; raises where the file ends."""
         line = self.next()
         if line is None:
             raise self.error(f"the file ends before {what}")
         return line
 
     def whole(self, what: str, lo: int, hi: int) -> int:
-        """Take a whole number within bounds."""
+        """Read the next line as an integer within bounds."""
         return self.check(self.take(what), what, lo, hi)
 
     def check(self, line: str, what: str, lo: int, hi: int) -> int:
-        """Read a line just taken as a whole number within bounds."""
+        """Convert a line just read to an integer within bounds."""
         if not _WHOLE.fullmatch(line):
             raise self.error(f"expected {what}, got {_quote(line)}")
         if not lo <= int(line) <= hi:
@@ -257,15 +266,15 @@ def _read_keyboard(path: Path) -> _Keyboard:
     if not LEAST_HZ <= float(line) <= MOST_HZ:
         bounds = f"{LEAST_HZ:g} to {MOST_HZ:g} Hz"
         raise lines.error(f"the reference frequency: {_quote(line)} is not within {bounds}")
-    pitch = A4 + 12.0 * math.log2(float(line) / USUAL_A4)
+    pitch = A4 + 12.0 * math.log2(float(line) / STANDARD_A4)
     octave = lines.whole("the degree of the octave", 0, MOST_DEGREE)
     degrees: list[int | None] = [None] * size  # unmapped keys at the end may be left out
-    for place in range(size):
+    for index in range(size):
         entry = lines.next()
         if entry is None:
             break
         if entry not in {"x", "X"}:
-            degrees[place] = lines.check(entry, "a degree of the scale, or x", 0, MOST_DEGREE)
+            degrees[index] = lines.check(entry, "a degree of the scale, or x", 0, MOST_DEGREE)
     return _Keyboard(first, last, middle, reference, reference_line, pitch, octave, tuple(degrees))
 
 

@@ -45,23 +45,23 @@ def test_a_take_does_not_go_over_what_is_read_nor_over_a_link_to_it(
         link(files[name])
         for more in ([], ["--overwrite"]):
             err = refused(*serving(name, output), *more)
-            assert f"out: {output} would overwrite what is read" in err
+            assert f"out: {output} would overwrite an input" in err
         out.unlink()
     plain = [word if word != "out" else name for word in serving(name, output)]
-    assert "would overwrite what is read" in refused(*plain, "--overwrite")
+    assert "would overwrite an input" in refused(*plain, "--overwrite")
     assert files[name].read_text() == before
 
 
 def test_a_take_does_not_go_over_the_config_that_names_it(refused, tmp_path):
     (tmp_path / "c.toml").write_text('capture = "c.toml"\noverwrite = true\n')
-    assert "--capture would overwrite what is read" in refused("serve", "--config", "c.toml")
+    assert "--capture would overwrite an input" in refused("serve", "--config", "c.toml")
 
 
 def test_two_things_do_not_go_to_one_file(refused, tmp_path):
     (tmp_path / "folder").symlink_to(tmp_path)
     for other in ("x.wav", "./x.wav", tmp_path / "x.wav", "folder/x.wav"):
         err = refused("serve", "--record", "x.wav", "--capture", other, "--overwrite")
-        assert "--record and --capture would write to one file" in err
+        assert "--record and --capture would write to the same file" in err
     (tmp_path / "x.wav").write_text("older")
     (tmp_path / "y.wav").hardlink_to(tmp_path / "x.wav")
     (tmp_path / "z.wav").symlink_to("x.wav")
@@ -78,15 +78,15 @@ def test_a_rendering_does_not_go_over_what_is_read(refused, files, tmp_path, opt
     texts = {"--mapping": MAPPING, "--preset": files["p.toml"].read_text(), "--instrument": ""}
     (tmp_path / "read").write_text(texts[option])
     named = ["render", "tune.mid", option, "./read", "-o", "read", "--overwrite"]
-    assert "-o would overwrite what is read" in refused(*named)
+    assert "-o would overwrite an input" in refused(*named)
     over = ["render", "tune.mid", "-o", tmp_path / "tune.mid", "--overwrite"]
-    assert "-o would overwrite what is read" in refused(*over)
+    assert "-o would overwrite an input" in refused(*over)
 
 
 def test_a_replay_does_not_go_over_its_capture(refused, tmp_path):
     (tmp_path / "c").write_text("{}")
     err = refused("replay", "c", "-o", "c", "--overwrite")
-    assert "-o would overwrite what is read" in err
+    assert "-o would overwrite an input" in err
 
 
 def test_a_mapping_is_converted_into_a_new_file(mappings, refused, tmp_path):

@@ -52,7 +52,7 @@ def test_what_was_learned_live_changes_no_rendering(rendered, words):
     after, told, err = rendered(*words)
     assert after == before
     assert told["mapping"]["files"] == [str(shipped)]
-    assert "--mapping mine/keyboard takes yours" in err
+    assert "--mapping mine/keyboard is your own" in err
     for name in ("mine/keyboard", own):
         sound, told, err = rendered("--mapping", name)
         assert sound != before

@@ -155,7 +155,7 @@ def test_what_no_index_tells_of_is_never_removed(swept, tmp_path, capsys):
     (tmp_path / "runs").mkdir()
     (tmp_path / "runs" / "07.npz").write_text("of a sweep that was killed")
     assert swept("0.7", "--overwrite", code=2) == {"07.npz"}
-    assert "07.npz: is of no sweep" in capsys.readouterr().err
+    assert "07.npz: is in no index" in capsys.readouterr().err
     (tmp_path / "runs" / "07.npz").unlink()
     (tmp_path / "runs" / "index.json").write_text("<html>")
     assert swept("0.7", "--overwrite", code=2) == {"index.json"}

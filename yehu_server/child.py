@@ -1,8 +1,8 @@
-"""Helper processes that can be replaced.
+"""Helper processes that can be restarted.
 
-PortAudio and RtMidi may hang or crash when the sound server under them dies. Each lives in a
-process of its own that speaks lines of JSON: orders in, events out. It ends when its input
-does, so none outlives its parent.
+PortAudio and RtMidi may hang or crash when the sound server under them dies. Each runs in a
+process of its own and exchanges lines of JSON: orders in, events out. The process ends when its
+input does, so none outlives its parent.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ Message = dict[str, Any]
 log = logging.getLogger(__name__)
 
 GOODBYE_S = 1.0
-PIPE_BYTES = 1 << 20  # events that wait while the parent is stopped
-F_SETPIPE_SZ = 1031  # Linux's
+PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
+F_SETPIPE_SZ = 1031  # of Linux
 
 
 class Child:
@@ -32,14 +32,17 @@ class Child:
     Parameters
     ----------
     module : str
-        What to run, as ``python -m``.
+        The module to run, as ``python -m``.
     heard : callable
-        Called with each event, in a thread of its own; lastly with ``{"event": "gone"}``,
+        Called with each event, in a thread of its own; at the end with ``{"event": "gone"}``,
         however the process ended.
     share : sequence of int
-        File descriptors that the process gets, under the same numbers.
+        File descriptors that the process inherits, under the same numbers.
 
-    Errors: OSError, MemoryError or RuntimeError where the system has no room for it.
+    Raises
+    ------
+    OSError, MemoryError, RuntimeError
+        Where the system cannot start it.
     """
 
     def __init__(
@@ -62,7 +65,7 @@ class Child:
         try:
             overheard.start()
             events.start()
-        except BaseException:  # nobody would hear it
+        except BaseException:  # nobody would read its output
             self.kill()
             for pipe in (self._process.stdout, self._process.stderr):
                 if pipe is not None:
@@ -75,7 +78,7 @@ class Child:
         return self._process.poll() is None
 
     def send(self, order: str, **details: Any) -> None:
-        """Give an order; one that comes too late is lost."""
+        """Send an order; without effect where the process has ended."""
         line = json.dumps({"order": order, **details}) + "\n"
         pipe = self._process.stdin
         try:
@@ -87,14 +90,14 @@ class Child:
             log.debug("%s: gone before it got %s", self._name, order)
 
     def stop(self) -> None:
-        """Let the process end by itself, and make it where it does not."""
+        """Let the process end by itself; kill it if it does not."""
         self._hang_up()
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(GOODBYE_S)
         self.kill()
 
     def kill(self) -> None:
-        """End the process now; when this returns, it touches nothing any more."""
+        """Kill the process, and wait until it has ended."""
         self._process.kill()
         self._process.wait()
         self._hang_up()
@@ -106,7 +109,7 @@ class Child:
                 pipe.close()
 
     def _widen(self) -> None:
-        """Let no process wait for us in the midst of what it has to do."""
+        """Enlarge the pipe of events, so that the process does not block while we are stopped."""
         with contextlib.suppress(ImportError, OSError, AttributeError):
             from fcntl import fcntl
 
@@ -117,7 +120,7 @@ class Child:
         try:
             for line in self._lines(self._process.stdout):
                 self._read(line)
-        except (OSError, MemoryError):  # who is not heard is as good as gone
+        except (OSError, MemoryError):  # it could not be heard any more
             self._process.kill()
         self._process.wait()
         self._hang_up()
@@ -134,7 +137,7 @@ class Child:
     def _tell(self, message: Message) -> None:
         try:
             self._heard(message)
-        except Exception:  # whoever listens, we go on
+        except Exception:  # later events still count
             log.exception("%s: could not act on %s", self._name, message)
 
     def _overhear(self) -> None:
@@ -151,21 +154,21 @@ class Child:
 
 
 def _claim_stdout() -> int:
-    """Keep what libraries print out of the conversation."""
+    """Keep what libraries print apart from the events."""
     channel = os.dup(1)
     os.dup2(2, 1)
     return channel
 
 
 class Parent:
-    """The other side, seen from the helper process."""
+    """The parent, seen from the helper process."""
 
     def __init__(self) -> None:
         self._channel = _claim_stdout()
         self._sending = threading.Lock()
 
     def tell(self, event: str, **details: Any) -> None:
-        """Tell of an event; where nobody listens any more, the process ends."""
+        """Send an event; exit where the parent is gone."""
         line = json.dumps({"event": event, **details}) + "\n"
         try:
             with self._sending:
@@ -174,6 +177,6 @@ class Parent:
             os._exit(0)
 
     def orders(self) -> Iterator[Message]:
-        """The orders as they come, until there will be none."""
+        """Yield the orders as they come, until the input ends."""
         for line in sys.stdin.buffer:
             yield json.loads(line)

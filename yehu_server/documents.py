@@ -1,4 +1,4 @@
-"""TOML and JSON of a person's own files: what comes out can be looked at, and told of, safely."""
+"""Parse TOML and JSON of users, refusing values that are not safe to process and print."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import tomllib
 from typing import Any
 
 MOST_DEPTH = 32
-MOST_INTEGER_BITS = 8192  # of more than 4,300 digits, Python prints none
+MOST_INTEGER_BITS = 8192  # Python prints no integers of more than 4,300 digits
 # tomllib takes time by the square of a key's parts: 20 s for one of 64 kB.
 MOST_KEY_PARTS = 16
 _LONG_KEY = re.compile(
@@ -19,7 +19,13 @@ _LONG_KEY = re.compile(
 
 
 def parse_toml(text: str) -> dict[str, Any]:
-    """The entries of a TOML text. Errors: ValueError, with the line where that is known."""
+    """Parse a TOML text.
+
+    Raises
+    ------
+    ValueError
+        With the line where that is known.
+    """
     if _LONG_KEY.search(text):
         raise ValueError(f"a key has more than {MOST_KEY_PARTS} parts")
     try:
@@ -29,7 +35,13 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def parse_json(text: str) -> Any:
-    """The value of a JSON text. Errors: ValueError."""
+    """Parse a JSON text.
+
+    Raises
+    ------
+    ValueError
+        Where it is not JSON, or refused.
+    """
     try:
         return _checked(json.loads(text))
     except RecursionError:
@@ -37,7 +49,7 @@ def parse_json(text: str) -> Any:
 
 
 def _checked(value: Any) -> Any:
-    """Refuse what Python reads and cannot print: deep nests, and numbers of many digits."""
+    """Refuse what Python parses but cannot print: deep nesting, and integers of many digits."""
     level = [value]
     for _ in range(MOST_DEPTH):
         inner: list[Any] = []

@@ -1,4 +1,4 @@
-"""The errors a user can meet; each message is one clear line.
+"""The errors that users see; each message is one line.
 
 Everything the package raises on purpose derives from :class:`YehuError`, so that
 the command line can print the message and leave with exit code 2.
@@ -16,10 +16,7 @@ class ParameterError(YehuError):
 
 
 class SettingsError(YehuError):
-    """A file of the user's that cannot be read or does not make sense.
-
-    `more` has a line for everything else that is wrong with it.
-    """
+    """A file of settings that cannot be read or is wrong; `more` are its further errors."""
 
     def __init__(self, message: str, *more: str) -> None:
         super().__init__(message)
@@ -27,11 +24,11 @@ class SettingsError(YehuError):
 
 
 class MappingError(SettingsError):
-    """A mapping that is not there, cannot be read or written, or does not make sense."""
+    """A mapping that is missing, wrong, or cannot be read or written."""
 
 
 class PresetError(SettingsError):
-    """A preset that is not there, cannot be read or written, or does not make sense."""
+    """A preset that is missing, wrong, or cannot be read or written."""
 
 
 class RefusedError(YehuError):
@@ -43,8 +40,8 @@ class ScoreError(YehuError):
 
 
 class DeviceError(YehuError):
-    """An audio or MIDI device that is missing or refuses."""
+    """An audio or MIDI device that is missing or cannot be opened."""
 
 
 class OutputError(YehuError):
-    """A result that cannot be written where it should go."""
+    """A result that cannot be written."""

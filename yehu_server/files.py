@@ -1,4 +1,4 @@
-"""Reading what is small; writing results whole or not at all, and never over what is kept."""
+"""Read files of bounded size; write results atomically, and replace only what may be replaced."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from yehu_server.errors import OutputError
 
 MAX_TEXT_BYTES = 64 * 2**20
 MAX_LINE_BYTES = 64 * 1024
-MAX_SETTINGS_BYTES = 2**20  # of files that are read while the instrument plays
-# What a name that comes over the network must look like: no path, nothing hidden.
+MAX_SETTINGS_BYTES = 2**20  # for files that are read while the instrument plays
+# Names that come over the network: no path, no hidden file.
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
-MOST_SHOWN = 40  # characters of what is none
+MOST_SHOWN = 40  # characters of other names in errors
 
 
 def _open_at_once(path: str, flags: int) -> int:
-    """Open without waiting, as a pipe would for who writes to it."""
+    """Open without blocking: opening a pipe would wait for its writer."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def _open_regular(path: Path, most_bytes: int) -> BinaryIO:
-    """Open a regular file of reasonable size: devices and pipes may never end. Errors: OSError."""
-    file = open(path, "rb", opener=_open_at_once)  # noqa: SIM115 - for who asks to close
+    """Open a regular file up to a size; devices and pipes, which may never end, raise OSError."""
+    file = open(path, "rb", opener=_open_at_once)  # noqa: SIM115 - the caller closes it
     status = os.fstat(file.fileno())
     if stat.S_ISREG(status.st_mode) and status.st_size <= most_bytes:
         return file
@@ -46,16 +46,30 @@ def _too_large(most_bytes: int) -> OSError:
 
 
 def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
-    """Read a regular file of reasonable size. Errors: OSError."""
+    """Read a regular file.
+
+    Raises
+    ------
+    OSError
+        Also where it is larger than `most_bytes`, or no regular file.
+    """
     with _open_regular(path, most_bytes) as file:
         data = file.read(most_bytes + 1)
-    if len(data) > most_bytes:  # it has grown, or its file system tells no sizes
+    if len(data) > most_bytes:  # it has grown, or its file system reports no sizes
         raise _too_large(most_bytes)
     return data
 
 
 def read_lines(path: Path, most_bytes: int) -> Iterator[str]:
-    """Read a text file line by line, each with its end. Errors: OSError, UnicodeDecodeError."""
+    """Read a text file line by line, each with its line end.
+
+    Raises
+    ------
+    OSError
+        As `read_bytes`, or where a line is too long.
+    UnicodeDecodeError
+        Where it is not UTF-8.
+    """
     with _open_regular(path, most_bytes) as file:
         while line := file.readline(MAX_LINE_BYTES + 1):
             if len(line) > MAX_LINE_BYTES:
@@ -64,25 +78,36 @@ def read_lines(path: Path, most_bytes: int) -> Iterator[str]:
 
 
 def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
-    """Read a text file of reasonable size. Errors: OSError, UnicodeDecodeError."""
+    """Read a text file.
+
+    Raises
+    ------
+    OSError
+        As `read_bytes`.
+    UnicodeDecodeError
+        Where it is not UTF-8.
+    """
     return read_bytes(path, most_bytes).decode("utf-8")
 
 
 def why(error: OSError) -> str:
-    """Why the system refused, in words."""
+    """The reason of an error, for a message."""
     return error.strerror or str(error)
 
 
 def inside(folder: Path, name: str, ending: str = "") -> Path:
-    """The file of a name that came over the network: one of this folder, wherever its links lead.
+    """The path in a folder for a name that came over the network.
 
-    Errors: OutputError for what is no plain name, or a symbolic link that leads out of the folder.
+    Raises
+    ------
+    OutputError
+        Where it is no plain name, or a symbolic link that leads out of the folder.
     """
     if not PLAIN_NAME.fullmatch(name):
         shown = name if len(name) <= MOST_SHOWN else f"{name[:MOST_SHOWN]}..."
         raise OutputError(f"{shown!r} is not a plain name of letters, digits, . _ - and spaces")
     path = folder / f"{name}{ending}"
-    # Of a link to nowhere, too: writing through it would make the file it names.
+    # A dangling link too: writing through it would create the file it names.
     if os.path.islink(path) and not _is_within(path, folder):  # noqa: PTH114 - Path's raises
         raise OutputError(f"{path.name} is a link that leads out of {folder}")
     return path
@@ -93,10 +118,12 @@ def _is_within(path: Path, folder: Path) -> bool:
 
 
 def check_target(target: Path) -> None:
-    """Refuse a target that could not be written.
+    """Check that a target can be written.
 
-    Errors: OutputError where the folder is missing or not writable, or the target is not a
-    regular file.
+    Raises
+    ------
+    OutputError
+        Where the folder is missing or not writable, or the target is not a regular file.
     """
     folder = target.parent
     try:
@@ -115,27 +142,31 @@ def check_target(target: Path) -> None:
 
 
 def check_apart(outputs: Mapping[str, Path], inputs: Iterable[Path] = ()) -> None:
-    """Refuse outputs that would be one file, or be one that is read; also by links to it.
+    """Check that outputs are different files from each other and from the inputs.
 
     Parameters
     ----------
     outputs : dict
         The files to be written, by the options that name them.
     inputs : iterable of Path
+        The files to be read.
 
-    Errors: OutputError.
+    Raises
+    ------
+    OutputError
+        Where two are the same file, also by links.
     """
     read = list(inputs)
     for (name, target), (other, another) in itertools.combinations(outputs.items(), 2):
         if is_same(target, another):
-            raise OutputError(f"{target}: {name} and {other} would write to one file")
+            raise OutputError(f"{target}: {name} and {other} would write to the same file")
     for name, target in outputs.items():
         if any(is_same(target, path) for path in read):
-            raise OutputError(f"{target}: {name} would overwrite what is read")
+            raise OutputError(f"{target}: {name} would overwrite an input")
 
 
 def is_same(one: Path, other: Path) -> bool:
-    """Whether two paths are one file, or would be."""
+    """Whether two paths are the same file, or will be once created."""
     try:
         return one.samefile(other)
     except OSError:  # one of them is not there yet
@@ -143,34 +174,43 @@ def is_same(one: Path, other: Path) -> bool:
 
 
 def anything(_target: Path) -> bool:
-    """Let any file be replaced; see `replacing`."""
+    """Allow to replace any file; see `replacing`."""
     return True
 
 
 def nothing(_target: Path) -> bool:
-    """Let no file be replaced; see `replacing`."""
+    """Allow to replace no file; see `replacing`."""
     return False
 
 
 def check_free(target: Path, may_replace: Callable[[Path], bool] = nothing) -> None:
-    """Refuse a target that is there, unless it may be replaced. Errors: OutputError."""
+    """Check that a target does not exist, or may be replaced.
+
+    Raises
+    ------
+    OutputError
+        Where it exists and may not be replaced.
+    """
     if os.path.lexists(target) and not may_replace(target):
         raise OutputError(f"{target}: exists; --overwrite replaces it")
 
 
 def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.FileIO:
-    """Open a new file, to be written as things happen.
+    """Open a new file that is written bit by bit.
 
     Parameters
     ----------
     overwrite : bool
-        Whether the new file may take the place of an older one, at once. Other links to that
-        keep what they have.
+        Whether the new file replaces an older one, at once. Other hard links to that keep its
+        contents.
     room_bytes : int
-        What must fit on the disk.
+        Free space that the disk must have.
 
-    Errors: OutputError, as of `check_target`, where there is an older one, or on a full disk;
-    an older one is as it was then.
+    Raises
+    ------
+    OutputError
+        As `check_target`, where there is an older file, or on a full disk; an older file is not
+        changed then.
     """
     check_target(target)
     path = _beside(target.resolve()) if overwrite else target
@@ -194,14 +234,20 @@ def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.
 
 
 def discard(file: io.FileIO, path: Path) -> None:
-    """Remove an open file, unless another has taken its place."""
+    """Remove an open file, unless another file has replaced it."""
     with contextlib.suppress(OSError):
         if os.path.samestat(os.fstat(file.fileno()), path.stat()):
             path.unlink()
 
 
 def write_all(file: io.FileIO, data: bytes) -> None:
-    """Write to an unbuffered file, all of it. Errors: OSError, where some of it may be written."""
+    """Write all data to an unbuffered file.
+
+    Raises
+    ------
+    OSError
+        Where some of it may have been written.
+    """
     rest = memoryview(data)
     while rest:
         rest = rest[file.write(rest) :]
@@ -211,15 +257,19 @@ def write_all(file: io.FileIO, data: bytes) -> None:
 def replacing(target: Path, may_replace: Callable[[Path], bool] = anything) -> Iterator[Path]:
     """Yield a path beside `target` to write to; move it there when the block succeeds.
 
-    Whatever ends the block early (an error, an interrupt) removes the partial file and
-    leaves an older `target` as it was.
+    An error or interrupt within the block removes the partial file and leaves an older `target`
+    unchanged.
 
     Parameters
     ----------
     may_replace : callable
-        Told an older target, at the beginning and at the end; whether it may be replaced.
+        Called with an older target, at the beginning and at the end; returns whether it may be
+        replaced.
 
-    Errors: OutputError as `check_target` and `check_free`, or where writing fails (a full disk).
+    Raises
+    ------
+    OutputError
+        As `check_target` and `check_free`, or where writing fails, as on a full disk.
     """
     check_target(target)
     check_free(target, may_replace)
@@ -236,18 +286,18 @@ def replacing(target: Path, may_replace: Callable[[Path], bool] = anything) -> I
 
 
 def _move(partial: Path, target: Path, may_replace: Callable[[Path], bool]) -> None:
-    """Move a file to its place; what another has put there meanwhile cannot come between."""
-    place = target.resolve()
+    """Move a file to its target without a race with other writers."""
+    destination = target.resolve()
     try:
-        place.touch(exist_ok=False)
+        destination.touch(exist_ok=False)
     except FileExistsError:
         check_free(target, may_replace)
-        partial.replace(place)
+        partial.replace(destination)
         return
     try:
-        partial.replace(place)
+        partial.replace(destination)
     except OSError:
-        place.unlink(missing_ok=True)
+        destination.unlink(missing_ok=True)
         raise
 
 
@@ -257,9 +307,12 @@ def _beside(target: Path) -> Path:
 
 
 def write_text(target: Path, text: str) -> None:
-    """Write a text file: after a crash or a power cut it is the new one or the old one, whole.
+    """Write a text file atomically: after a power cut it is complete, the new or the old one.
 
-    Errors: OutputError, as of `replacing`.
+    Raises
+    ------
+    OutputError
+        As `replacing`.
     """
     with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
         file.write(text)
@@ -268,7 +321,7 @@ def write_text(target: Path, text: str) -> None:
 
 
 def shipped_folder(name: str) -> Path:
-    """Where files that come along are: in the package, or beside it in a checkout."""
+    """The folder of shipped files: in the package, or beside it in a checkout."""
     package = Path(__file__).parent
     inside = package / name
     return inside if inside.is_dir() else package.parent / name

@@ -1,7 +1,7 @@
-"""What keeps a thread at work through the system's troubles, and through its own sleep.
+"""Keep background threads running through temporary failures, and measure time without sleep.
 
-For want of files, memory or threads anything may fail, for a moment. A thread that ended over
-that would be missed for the rest of the session.
+When files, memory or threads run short, anything may fail for a moment. A thread that ended then
+would be missing for the rest of the session.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ SHORTAGES = (OSError, MemoryError, RuntimeError)  # of files, of memory, of thre
 
 
 def why(error: BaseException) -> str:
-    """What went wrong, in a few words."""
+    """The reason of an error, for a message."""
     if isinstance(error, OSError) and error.errno is not None:
         return os.strerror(error.errno)
     return str(error) or type(error).__name__
 
 
 class Backoff:
-    """Waits longer with each failure in a row, and tells of the first only."""
+    """Exponential backoff: a longer wait after each failure in a row, and one report for all."""
 
     def __init__(
         self, first_s: float = AGAIN_AFTER_S, most_s: float = AGAIN_AFTER_AT_MOST_S
@@ -38,26 +38,25 @@ class Backoff:
         self._told = ""
 
     def failed(self) -> float:
-        """Seconds to wait after a failure."""
+        """Record a failure; return the seconds to wait."""
         now_s, self._next_s = self._next_s, min(2.0 * self._next_s, self._most_s)
         return now_s
 
     def is_news(self, reason: str) -> bool:
-        """Whether a reason is another one than the last time."""
+        """Whether a reason differs from the last one."""
         is_news, self._told = reason != self._told, reason
         return is_news
 
     def worked(self) -> None:
-        """Begin anew: all is well."""
+        """Record a success: the wait is short again."""
         self._next_s, self._told = self._first_s, ""
 
 
 class AwakeTime:
-    """Counts the time in which we run.
+    """A clock that stands still while the process is stopped or the machine sleeps.
 
-    A process that is stopped, or whose machine sleeps, hears nothing of others meanwhile; they
-    must not be taken for dead. To be asked at least every `LONGEST_TURN_S`: what is longer
-    between two questions, we slept.
+    Peers that could not be heard meanwhile must not be taken for dead. It must be called at
+    least every `LONGEST_TURN_S`: longer gaps count as sleep.
     """
 
     def __init__(self) -> None:
@@ -65,7 +64,7 @@ class AwakeTime:
         self._awake_s = 0.0
 
     def __call__(self) -> float:
-        """Seconds since the first call, or so."""
+        """Seconds awake since the clock was made."""
         now = time.monotonic()
         self._awake_s += min(now - self._asked, LONGEST_TURN_S)
         self._asked = now
@@ -79,21 +78,21 @@ def keep_on(
     what: str,
     told: Callable[[str], None],
 ) -> None:
-    """Call `turn` every so often until an event; whatever fails is tried again.
+    """Call `turn` periodically until an event is set; after an error, try again later.
 
     Parameters
     ----------
     what : str
-        What is at work, for a line that says why it is not.
+        Name of the work, for error messages.
     told : callable
-        Gets that line, once for each reason in a row.
+        Called with an error message, once for equal reasons in a row.
     """
     backoff = Backoff()
     wait_s = every_s
     while not ending.wait(wait_s):
         try:
             turn()
-        except Exception as error:  # whatever it is, the thread is needed
+        except Exception as error:  # the thread must go on
             wait_s = backoff.failed()
             with contextlib.suppress(*SHORTAGES):
                 if backoff.is_news(why(error)):

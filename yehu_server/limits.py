@@ -1,4 +1,4 @@
-"""How many files the system lets us have open: sockets and pipes count."""
+"""Raise the limit of open files, which include sockets and pipes."""
 
 from __future__ import annotations
 
@@ -11,13 +11,16 @@ try:
 except ImportError:  # not on Windows, where there is no such limit
     resource = None  # type: ignore[assignment]
 
-MOST_FILES = 4096  # more than all clients together may need
+MOST_FILES = 4096  # more than all clients together need
 
 
 def allow_files(needed: int) -> None:
-    """Take as many open files as this user may have; macOS grants 256 unless asked.
+    """Raise the limit of open files as far as allowed; the default of macOS is 256.
 
-    Errors: YehuError where there are fewer than needed.
+    Raises
+    ------
+    YehuError
+        Where it is below `needed`.
     """
     if resource is None:
         return

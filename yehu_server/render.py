@@ -1,4 +1,4 @@
-"""MIDI files into a sound file, offline: score, player, instrument, file."""
+"""Render a score to a sound file, faster than real time."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from yehu_server.score.smf import Score
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 
-BLOCK = 4096  # frames at a time; what is heard does not depend on it
-QUIET = 1e-4  # 80 dB under full scale
-QUIET_S = 0.2  # how long it has to stay so
+BLOCK = 4096  # frames; the sound does not depend on it
+QUIET = 1e-4  # 80 dB below full scale
+QUIET_S = 0.2  # the tail ends after this time of quiet
 LONGEST_TAIL_S = 5.0
 NORMALIZED_PEAK = 10.0 ** (-1.0 / 20.0)
 
@@ -41,17 +41,17 @@ class Options:
     subtype: str = "24"
     channels: frozenset[int] | None = None  # counted from 0; None: all but percussion
     tail_s: float | None = None  # None: until it is quiet
-    gain_db: float | None = None  # None: as the preset has it
+    gain_db: float | None = None  # None: that of the preset
     normalize: bool = False
     style: Style = field(default_factory=Style)
     quantities: Quantities = field(default_factory=Quantities)
-    calibration: Calibration | None = None  # None: found, or measured
+    calibration: Calibration | None = None  # None: looked up or measured
     block: int = BLOCK
 
 
 @dataclass(frozen=True)
 class Summary:
-    """What came of a rendering; levels are of full scale."""
+    """The result of a rendering; levels are relative to full scale."""
 
     duration_s: float
     real_time_factor: float
@@ -69,7 +69,7 @@ class Summary:
 
 
 class Performance:
-    """A score played on an instrument, block by block."""
+    """Plays a score on an instrument, block by block."""
 
     def __init__(self, score: Score, options: Options) -> None:
         self._score = score
@@ -89,7 +89,7 @@ class Performance:
         self.score_frames = self.instrument.frames(score.duration_s * 1e3)
 
     def blocks(self) -> Iterator[Samples]:
-        """Yield the samples of score and tail, in full scale."""
+        """Yield the samples of score and tail, relative to full scale."""
         events = iter(self._score.events)
         event = next(events, None)
         position = 0
@@ -140,15 +140,24 @@ def render(
 ) -> Summary:
     """Render a score to a sound file.
 
-    `progress` is told seconds done and seconds of the score; `may_replace` an older target.
-    Errors: YehuError; nothing is left behind.
+    Parameters
+    ----------
+    progress : callable, optional
+        Called with the seconds done and those of the score.
+    may_replace : callable
+        Returns whether an older target may be replaced.
+
+    Raises
+    ------
+    YehuError
+        Where it fails; no partial file is left.
     """
     check_format(options.format_name, options.subtype)
     performance = Performance(score, options)
     start = time.perf_counter()
     form = (options.format_name, options.subtype)
     with sound_file(target, options.rate, *form, may_replace) as file:
-        blocks = _told(performance.blocks(), options.rate, score.duration_s, progress)
+        blocks = _with_progress(performance.blocks(), options.rate, score.duration_s, progress)
         if options.normalize:
             _write_normalized(blocks, file, target.parent)
         else:
@@ -174,7 +183,7 @@ def render(
 
 
 def _write_normalized(blocks: Iterator[Samples], file: SoundWriter, folder: Path) -> None:
-    """Two passes through a scratch file, so that memory does not grow with the score."""
+    """Write blocks scaled to NORMALIZED_PEAK, in two passes through a temporary file."""
     peak = 0.0
     with contextlib.ExitStack() as stack:
         try:
@@ -190,7 +199,7 @@ def _write_normalized(blocks: Iterator[Samples], file: SoundWriter, folder: Path
             file.write(np.frombuffer(data, np.float32) * factor)
 
 
-def _told(
+def _with_progress(
     blocks: Iterator[Samples],
     rate: int,
     total: float,

@@ -1,4 +1,4 @@
-"""A captured session into a sound file: the same samples as when it was played."""
+"""Render a captured session to a sound file: the same samples as when it was played."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from yehu_server.files import anything
 from yehu_server.physics.quantities import Quantities, override
 from yehu_server.score.capture import Capture
 
-BLOCK = 1024  # frames; the ring takes whatever can be applied in them
+BLOCK = 1024  # frames; the ring holds all events that can be applied in one block
 
 
 @dataclass(frozen=True)
 class Replayed:
-    """What came of a replay; levels are of full scale."""
+    """The result of a replay; levels are relative to full scale."""
 
     duration_s: float
     real_time_factor: float
@@ -37,10 +37,10 @@ class Replayed:
 
 
 def blocks(capture: Capture, instrument: Instrument) -> Iterator[Any]:
-    """The samples of a capture, block by block [shape=(frames,), float32]."""
+    """Yield the samples of a capture in blocks [shape=(frames,), float32]."""
     frames = capture.events["frame"]
-    places = merge(range(0, capture.frames, BLOCK), sorted(capture.rests), [capture.frames])
-    for start, stop in pairwise(place for place, _ in groupby(places)):
+    borders = merge(range(0, capture.frames, BLOCK), sorted(capture.rests), [capture.frames])
+    for start, stop in pairwise(border for border, _ in groupby(borders)):
         if start in capture.rests:
             instrument.come_to_rest()
         for event in capture.events[np.searchsorted(frames, start) : np.searchsorted(frames, stop)]:
@@ -63,7 +63,13 @@ def replay(
     progress: Callable[[float, float], None] | None = None,
     may_replace: Callable[[Path], bool] = anything,
 ) -> Replayed:
-    """Render a capture to a sound file. Errors: YehuError; nothing is left behind."""
+    """Render a capture to a sound file.
+
+    Raises
+    ------
+    YehuError
+        Where it fails; no partial file is left.
+    """
     hours = capture.frames / capture.rate / 3600.0
     if hours > max_duration_h:
         raise ScoreError(

@@ -1,6 +1,6 @@
-"""Files that carry their checksum: what is damaged, or was not written whole, is not believed.
+"""Files with a checksum, so that damaged and incomplete ones are refused.
 
-They hold what can be made anew at any time, such as compiled code and calibrations.
+They hold what can be computed again, such as compiled code and calibrations.
 """
 
 from __future__ import annotations
@@ -17,20 +17,23 @@ DIGEST_BYTES = 16
 
 
 class SealError(Exception):
-    """A file that does not hold what was written into it."""
+    """A sealed file that is damaged."""
 
 
 def _digest(path: Path, payload: bytes) -> bytes:
-    # With its name, so that no file passes for another.
+    # The name is included, so that no file is taken for another.
     digest = hashlib.blake2b(path.name.encode() + b"\0", digest_size=DIGEST_BYTES)
     digest.update(payload)
     return digest.digest()
 
 
 def read_sealed(path: Path) -> bytes | None:
-    """What was written; None where there is no file.
+    """Read the payload of a sealed file; None where there is no file.
 
-    Errors: SealError for a file that is damaged, or cannot be read.
+    Raises
+    ------
+    SealError
+        Where it is damaged or cannot be read.
     """
     try:
         data = read_bytes(path, MOST_BYTES)
@@ -45,9 +48,14 @@ def read_sealed(path: Path) -> bytes | None:
 
 
 def write_sealed(path: Path, payload: bytes) -> None:
-    """Write or replace a file at once: whoever reads finds the old one or the new one, whole.
+    """Write or replace a sealed file atomically.
 
-    A power cut may leave less, which its seal shows. Errors: OSError.
+    A power cut may leave it incomplete, which its checksum shows.
+
+    Raises
+    ------
+    OSError
+        Where it cannot be written.
     """
     partial = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:

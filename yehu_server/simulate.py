@@ -1,7 +1,6 @@
-"""The model run through a gesture, every signal kept: for whoever studies it.
+"""Run the model with a gesture and keep every signal, to study the model.
 
-The same kernel that plays notes; the gesture file and the arrays are described in
-docs/simulate.md.
+It uses the kernel that plays notes. docs/simulate.md describes the gesture file and the arrays.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ CHUNK = 1 << 14  # frames between two progress reports
 
 @dataclass(frozen=True)
 class Simulation:
-    """The signals of one run, by name, one value a sample; and its meta data."""
+    """The signals of one run, by name, with one value a sample; and its metadata."""
 
     arrays: Mapping[str, Floats]
     meta: Mapping[str, Any]
@@ -40,7 +39,10 @@ class Simulation:
     def save(self, target: Path) -> None:
         """Write an uncompressed ``.npz``; ``meta`` is JSON text within it.
 
-        Errors: OutputError.
+        Raises
+        ------
+        OutputError
+            Where it cannot be written.
         """
         with replacing(target) as partial, partial.open("wb") as file:
             np.savez(
@@ -58,7 +60,7 @@ def simulate(
     strings_every: int = 0,
     progress: Callable[[float, float], None] | None = None,
 ) -> Simulation:
-    """Run the model through a gesture.
+    """Run the model with a gesture.
 
     Parameters
     ----------
@@ -67,9 +69,14 @@ def simulate(
     strings_every : int
         Keep the shapes of both strings every so many samples; 0 for never.
     progress : callable
-        Told seconds done and seconds in all.
+        Called with the seconds done and in all.
 
-    Errors: ParameterError where the quantities make no stable model at this rate.
+    Raises
+    ------
+    ParameterError
+        Where the quantities make no stable model at this rate.
+    OutputError
+        Where the arrays would take more than MAX_BYTES.
     """
     model = kernel.prepare(gesture.quantities, gesture.sample_rate)
     m = model[0]

@@ -1,6 +1,6 @@
-"""One gesture run again and again with other figures, on all cores: for whoever studies the model.
+"""Run one gesture with all combinations of some values, on all cores, to study the model.
 
-The files are described in docs/simulate.md.
+docs/simulate.md describes the files.
 """
 
 from __future__ import annotations
@@ -32,24 +32,28 @@ _RESULT = re.compile(r"[0-9]+\.npz")
 
 @dataclass(frozen=True)
 class Axis:
-    """What is varied: an entry of a gesture file by its path, and the values it takes."""
+    """An entry of a gesture file that is varied, by its path, and its values."""
 
     path: tuple[str, ...]
     values: tuple[float, ...]
 
     @property
     def name(self) -> str:
-        """The path as it is written."""
+        """The path as it is written on the command line."""
         return ".".join(self.path[1:] if self.path[0] == "controls" else self.path)
 
     def vary(self, data: Any, value: float) -> None:
-        """Put a value into the data of a gesture file, in place.
+        """Set the entry in the data of a gesture file, in place.
 
-        A control that is a curve keeps its shape: its largest point becomes the value.
-        Errors: ParameterError where the path is none.
+        A curve is scaled so that its largest point becomes the value.
+
+        Raises
+        ------
+        ParameterError
+            Where there is no such entry.
         """
-        *way, last = self.path
-        for name in way:
+        *tables, last = self.path
+        for name in tables:
             data = data.setdefault(name, {}) if isinstance(data, dict) else None
         if not isinstance(data, dict):
             raise ParameterError(f"{self.name}: no such entry")
@@ -58,7 +62,13 @@ class Axis:
 
 
 def axis_of(text: str) -> Axis:
-    """Read ``NAME=V1,V2,...`` or ``NAME=FROM:TO:STEPS``. Errors: ParameterError."""
+    """Read ``NAME=V1,V2,...`` or ``NAME=FROM:TO:STEPS``.
+
+    Raises
+    ------
+    ParameterError
+        Where the text has another form.
+    """
     name, equals, values = text.partition("=")
     path = tuple(name.strip().split("."))
     if not equals or not all(path):
@@ -78,14 +88,22 @@ def axis_of(text: str) -> Axis:
 def variations(
     source: Mapping[str, Any], axes: Sequence[Axis], folder: Path = Path()
 ) -> list[tuple[dict[str, float], Gesture]]:
-    """Every combination of the axes' values, the last one changing fastest.
+    """All combinations of the axes' values, the last axis changing fastest.
 
     Parameters
     ----------
     source : mapping
         The data of a gesture file in `folder`.
 
-    Returns the values by name, and the gesture with them. Errors: ParameterError.
+    Returns
+    -------
+    list of tuple
+        The values by name, and the gesture with them.
+
+    Raises
+    ------
+    ParameterError
+        Where there are more than MOST_RUNS, or a gesture is wrong.
     """
     count = math.prod(len(axis.values) for axis in axes)
     if count > MOST_RUNS:
@@ -111,26 +129,33 @@ def sweep(
     overwrite: bool = False,
     progress: Callable[[float, float], None] | None = None,
 ) -> list[dict[str, Any]]:
-    """Run gestures on several cores; write their arrays and an index into a folder.
+    """Run gestures on several cores; write their arrays and an index to a folder.
 
-    Where one fails, or all are interrupted, those that are done stay, with an index of them;
-    the KeyboardInterrupt then tells so.
+    Where a run fails, or the sweep is interrupted, the finished runs are kept and indexed; the
+    KeyboardInterrupt then has the number of them.
 
     Parameters
     ----------
     energy, strings_every
         As of `simulate`.
     keep : bool
-        Whether the arrays are written, beside the index.
+        Whether to write the arrays, beside the index.
     workers : int
-        How many run at a time; as many as there are cores by default.
+        Number of runs at a time; by default one per core.
     overwrite : bool
-        Whether the results of a sweep before may be in the folder; they are removed then.
+        Whether to remove the results of an earlier sweep from the folder.
     progress : callable
-        Told runs done, and all runs.
+        Called with the number of runs done and of all runs.
 
-    Returns the rows of the index: what was varied, the file, and what came of it.
-    Errors: OutputError.
+    Returns
+    -------
+    list of dict
+        The rows of the index: varied values, file, and findings.
+
+    Raises
+    ------
+    OutputError
+        Where the folder has other results, or writing fails.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -167,10 +192,13 @@ def sweep(
 
 
 def make_room(folder: Path, *, overwrite: bool = False) -> None:
-    """Let a folder hold no results of another sweep: its index, and the files that names.
+    """Remove the results of an earlier sweep from a folder: its index and the files in that.
 
-    Errors: OutputError where there are some, unless they may be overwritten; where there is a
-    file like a result that no index names, as a killed sweep leaves it; where one stays.
+    Raises
+    ------
+    OutputError
+        Where there are results and `overwrite` is false, files like results that are in no
+        index, as a killed sweep leaves them, or files that cannot be removed.
     """
     index = folder / INDEX
     try:
@@ -178,7 +206,7 @@ def make_room(folder: Path, *, overwrite: bool = False) -> None:
         strays = sorted({*folder.glob("*.npz")} - {*files})
         strays = [file for file in strays if _RESULT.fullmatch(file.name)]
         if strays:
-            raise OutputError(f"{strays[0]}: is of no sweep that an index tells of; remove it")
+            raise OutputError(f"{strays[0]}: is in no index of a sweep; remove it")
         if not index.exists():
             return
         if not overwrite:
@@ -190,7 +218,7 @@ def make_room(folder: Path, *, overwrite: bool = False) -> None:
 
 
 def _indexed(index: Path) -> list[str]:
-    """Names of the files that an index tells of."""
+    """Names of the files in an index."""
     try:
         rows = json.loads(read_text(index))
     except FileNotFoundError:
@@ -202,7 +230,7 @@ def _indexed(index: Path) -> list[str]:
 
 
 def findings(result: Simulation) -> dict[str, Any]:
-    """What a run came to: pitch and level of its second half, and what went wrong."""
+    """Pitch and level of the second half of a run, and counts of numerical failures."""
     pressure = result.arrays["pressure"]
     half = pressure[len(pressure) // 2 :]
     swing = half - half.mean() if len(half) else half
@@ -220,7 +248,7 @@ def _in_order(
 ) -> Iterator[dict[str, Any]]:
     try:
         yield from pool.map(run, range(count))
-    except BaseException:  # an interrupt, or one that fails: the others need not run
+    except BaseException:  # an interrupt or a failed run: the others need not run
         pool.shutdown(cancel_futures=True)
         raise
 

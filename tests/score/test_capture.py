@@ -233,7 +233,7 @@ DEEP = "[" * 20_000
 def test_a_line_that_no_instrument_wrote_is_named_and_refused(tmp_path, line):
     path = write(tmp_path / "c", EVENTS[:1])
     path.write_text(path.read_text() + line + "\n" + '{"end": 100}\n')
-    with pytest.raises(ScoreError, match="line 3: not of a capture") as error:
+    with pytest.raises(ScoreError, match="line 3: not a line of a capture") as error:
         read_capture(path)
     assert len(str(error.value)) < 300
 

@@ -1,1 +1,1 @@
-"""Performances as files: Standard MIDI Files now, captured sessions next."""
+"""Files of performances: Standard MIDI Files, captured sessions, gestures."""

@@ -1,7 +1,7 @@
-"""Captured sessions: every event that reached the instrument, with its frame.
+"""Read and write captures of sessions: every event that reached the instrument, with its frame.
 
-The format is described in docs/capture.md: one JSON value a line, so that what was written
-before a crash can be read.
+docs/capture.md describes the format: one JSON value a line, so that a capture that was cut short
+by a crash can be read.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from yehu_server.physics.grid import check_rate
 
 FORMAT, VERSION = "yehu-server capture", 1
 MOST_BYTES = 1 << 30
-ROOM_BYTES = 1 << 16  # what must fit on the disk for a capture to begin
+ROOM_BYTES = 1 << 16  # free space needed to begin a capture
 MOST_EVENTS = 20_000_000  # each takes 32 bytes
 MOST_RESTS = 1000
 MOST_FRAMES = 1 << 53
@@ -41,7 +41,7 @@ INDICES = {address: slot for slot, address in ADDRESSES.items()}
 
 
 def build() -> dict[str, str]:
-    """What the samples depend on beside the events: the same build gives the same bits."""
+    """Versions and machine on which the samples depend: the same build gives the same bits."""
     return {
         "yehu-server": __version__,
         "sources": source_hash(),
@@ -53,14 +53,17 @@ def build() -> dict[str, str]:
 
 
 class CaptureWriter:
-    """A capture being written; whatever ends it, each line of the file is whole.
+    """Writes a capture; each line of the file is complete, however writing ends.
 
     Parameters
     ----------
     overwrite : bool
-        Whether to take the place of an older file.
+        Whether to replace an older file.
 
-    Errors: OutputError.
+    Raises
+    ------
+    OutputError
+        Where it cannot be written.
     """
 
     def __init__(
@@ -81,14 +84,14 @@ class CaptureWriter:
         self._write([{**header, "build": build(), "values": values}])
 
     def events(self, events: Any) -> None:
-        """Add events [shape=(events,), dtype=EVENT] as applied."""
+        """Add events [shape=(events,), dtype=EVENT] that were applied."""
         self._write(
             [int(e["frame"]), ADDRESSES[int(e["index"])], float(e["target"]), int(e["ramp"])]
             for e in events
         )
 
     def note(self, what: str, frame: int, **details: int) -> None:
-        """Add what else happened: ``rest`` (after a gap `since` a frame), ``lost`` `events`."""
+        """Add a ``rest`` (after a gap `since` a frame), or ``lost`` `events`."""
         self._write([{what: frame, **details}])
 
     def close(self, frame: int) -> None:
@@ -97,7 +100,7 @@ class CaptureWriter:
         self._file.close()
 
     def discard(self) -> None:
-        """End it, and leave no file."""
+        """End the capture and remove its file."""
         discard(self._file, self._target)
         self._file.close()
 
@@ -107,7 +110,7 @@ class CaptureWriter:
             write_all(self._file, data)
             self._whole_bytes += len(data)
         except OSError as error:
-            with contextlib.suppress(OSError):  # what is no whole line is taken back
+            with contextlib.suppress(OSError):  # remove an incomplete line
                 written = self._file.seek(0, io.SEEK_END) - self._whole_bytes
                 self._file.truncate(self._whole_bytes + data.rfind(b"\n", 0, written) + 1)
             self._file.close()
@@ -122,21 +125,29 @@ class Capture:
     tensions: tuple[float, float]  # N, of the strings as tuned
     build: dict[str, str]
     events: Any = field(default_factory=lambda: np.zeros(0, EVENT))  # by frame
-    rests: dict[int, int] = field(default_factory=dict)  # frames of rest, and since when silent
-    end: int | None = None  # frames in all
+    rests: dict[int, int] = field(
+        default_factory=dict
+    )  # frame of each rest, and since when it was silent
+    end: int | None = None  # number of frames
     lost: int = 0  # events that were not captured
     warnings: list[str] = field(default_factory=list)
 
     @property
     def frames(self) -> int:
-        """How long it is: where its end is missing, a second after the last event."""
+        """Number of frames; where the end is missing, until a second after the last event."""
         last = int(self.events["frame"][-1]) + 1 if len(self.events) else 0
         last = max([last, *self.rests])
         return max(last, last + round(self.rate) if self.end is None else self.end)
 
 
 def read_capture(path: Path) -> Capture:
-    """Read a capture, also one that a crash has cut short. Errors: ScoreError."""
+    """Read a capture, also one that a crash has cut short.
+
+    Raises
+    ------
+    ScoreError
+        Where it cannot be read or is no capture.
+    """
     lines = read_lines(path, MOST_BYTES)
     try:
         capture = _header(path, next(lines, ""))
@@ -147,9 +158,11 @@ def read_capture(path: Path) -> Capture:
                 if line.strip():
                     _take(json.loads(line), capture, events)
             except _WRONG as error:
-                if not line.endswith("\n"):  # the line that was being written
+                if not line.endswith("\n"):  # cut short by a crash
                     break
-                raise ScoreError(f"{path}: line {number}: not of a capture ({error})") from error
+                raise ScoreError(
+                    f"{path}: line {number}: not a line of a capture ({error})"
+                ) from error
             if len(events) == CHUNK:
                 chunks.append(np.array(events, EVENT))
                 events.clear()
@@ -205,14 +218,14 @@ def _take(entry: Any, capture: Capture, events: list[tuple[int, int, float, int]
 
 
 def _frames(value: Any) -> int:
-    """A number of frames, or another count. Errors: ValueError."""
+    """A number of frames, or another count; raises ValueError."""
     if type(value) is not int or not 0 <= value <= MOST_FRAMES:
         raise ValueError("expected a whole number of frames")
     return value
 
 
 def _target(index: int, value: Any) -> float:
-    """What a parameter was told to go to. Errors: ValueError, TypeError."""
+    """The target of a parameter within its range; raises ValueError or TypeError."""
     target = float(value)
     lo, hi = (0.0, 0.0) if index == SILENCE else (ENGINE[index].lo, ENGINE[index].hi)
     if not lo <= target <= hi:  # also refuses NaN

@@ -1,4 +1,4 @@
-"""Gesture files: what bow and finger do, in physical units. See docs/simulate.md."""
+"""Read gesture files: motion of bow and finger in physical units; see docs/simulate.md."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOST_BYTES = 16 * 2**20
 
 @dataclass(frozen=True)
 class Control:
-    """One control of a gesture: its column, bounds, and value when not given."""
+    """One control of a gesture: its column in the kernel's array, bounds, default and unit."""
 
     column: int
     lo: float
@@ -49,7 +49,7 @@ HAMMER_LIMIT = 1e4  # N
 
 @dataclass(frozen=True)
 class Pluck:
-    """A string let go from a triangle: string 1 or 2, position and amplitude in metres."""
+    """A string released from a triangle: string 1 or 2, position and amplitude in metres."""
 
     string: int
     position: float
@@ -58,7 +58,7 @@ class Pluck:
 
 @dataclass(frozen=True)
 class Gesture:
-    """What a gesture file says. Curves are ((time in s, value), ...), linear between."""
+    """The contents of a gesture file. Curves are ((time in s, value), ...), linear between."""
 
     sample_rate: float = 44100.0
     duration: float = 1.0
@@ -66,7 +66,7 @@ class Gesture:
     controls: Mapping[str, Curve] = field(default_factory=dict)
     pluck: Pluck | None = None
     hammer: Curve = ()
-    source: Mapping[str, Any] = field(default_factory=dict)  # as in the file, to repeat it by
+    source: Mapping[str, Any] = field(default_factory=dict)  # the data of the file
 
     @property
     def frames(self) -> int:
@@ -90,7 +90,12 @@ class Gesture:
 def read_gesture(path: Path) -> Gesture:
     """Read a gesture file.
 
-    Errors: ScoreError or ParameterError, naming the file and what is wrong in it.
+    Raises
+    ------
+    ScoreError
+        Where it cannot be read or is not JSON.
+    ParameterError
+        Where an entry is wrong.
     """
     try:
         text = read_text(path, MOST_BYTES)
@@ -109,9 +114,12 @@ def read_gesture(path: Path) -> Gesture:
 
 
 def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
-    """Build a gesture from the nested names and values of a gesture file in `folder`.
+    """Build a gesture from the data of a gesture file in `folder`.
 
-    Errors: ParameterError.
+    Raises
+    ------
+    ParameterError
+        Where an entry is wrong.
     """
     known = ("sample_rate", "duration", "instrument", "controls", "pluck", "hammer")
     data = _names(data, "gesture", known)

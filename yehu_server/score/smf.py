@@ -1,8 +1,8 @@
-"""A tolerant reader of Standard MIDI Files: what can be played is played.
+"""A tolerant reader of Standard MIDI Files.
 
-Files in the wild are cut short, miscount their tracks, hide in RIFF wrappers and
-write velocities above 127. This reader keeps what makes sense, says in
-`Score.warnings` what did not, and refuses only where nothing is left to play.
+Real files are cut short, have wrong counts of tracks, come in RIFF wrappers and have velocities
+above 127. This reader keeps all valid messages, lists the damage in `Score.warnings`, and refuses
+only files with nothing to play.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class ScoreEvent:
 
 @dataclass(frozen=True)
 class Score:
-    """A performance: events in order, and what was wrong with the file.
+    """A performance: events in order, and warnings about damage in the file.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Score:
     name : str
         The file's name, without folder and extension.
     warnings : tuple of str
-        One line for each kind of damage met, with how often.
+        One line for each kind of damage, with its count.
 
     Raises
     ------
@@ -106,9 +106,9 @@ def read_score(path: str | os.PathLike[str]) -> Score:
 
 
 def concatenate(scores: Sequence[Score]) -> Score:
-    """Play several scores one after another, each when the one before has lasted its time.
+    """Join several scores, each beginning at the end of the one before.
 
-    Between two stands a system reset, so that no note, pedal, bend or fade reaches across.
+    A system reset between them ends all notes, pedals and bends.
     """
     events: list[ScoreEvent] = []
     start = 0.0
@@ -188,7 +188,7 @@ def _chunks(
     while pos + 8 <= len(data):
         tag = data[pos : pos + 4]
         if not all(0x20 <= byte < 0x7F for byte in tag):
-            # The chunk before lied about its length, or padding follows it.
+            # The length of the chunk before is wrong, or padding follows it.
             found["bytes outside any chunk skipped"] += 1
             pos = data.find(b"MTrk", pos)
             if pos < 0:
@@ -210,12 +210,12 @@ class _Track:
     messages: list[tuple[int, mido.Message]] = field(default_factory=list)  # at ticks
     tempos: list[tuple[int, int]] = field(default_factory=list)  # at ticks, in us a quarter
     end: int = 0  # ticks
-    events: int = 0  # of any kind, those that were dropped too
+    events: int = 0  # of any kind, dropped ones too
 
 
 @dataclass
 class _Cursor:
-    """A place in a track; every step past the end is an EOFError."""
+    """A position in a track; a step past the end raises EOFError."""
 
     data: bytes
     pos: int = 0
@@ -245,7 +245,7 @@ class _Cursor:
         self.pos = found.start()
 
     def number(self) -> int:
-        """A variable-length number; four bytes at most, as the format has it."""
+        """A variable-length number; at most four bytes, as in the format."""
         value = 0
         for _ in range(4):
             byte = self.byte()
@@ -257,18 +257,18 @@ class _Cursor:
 
 @lru_cache(maxsize=1 << 16)
 def _message(status: int, body: bytes) -> mido.Message:
-    """A message, which nobody changes: making one takes longer than all else of its reading."""
+    """A message, cached and never changed: making one takes longer than the rest of reading."""
     return mido.Message.from_bytes([status, *body])
 
 
 def _decode(data: bytes, room: int, found: Counter[str]) -> _Track:
-    """Read one track as far as it goes. Errors: ScoreError for more than `room` events."""
+    """Read one track as far as possible; raises ScoreError for more than `room` events."""
     track = _Track()
     cursor = _Cursor(data)
     tick = 0
-    running = 0  # kept across metas and sysex: some writers rely on it
+    running = 0  # kept across metas and sysex, as some writers rely on it
     try:
-        while cursor.pos < len(data):  # a missing end-of-track harms nobody
+        while cursor.pos < len(data):  # a missing end-of-track does no harm
             tick += cursor.number()
             if not running and not cursor.at_status():
                 found["data without a status byte skipped"] += 1
@@ -294,8 +294,8 @@ def _decode(data: bytes, room: int, found: Counter[str]) -> _Track:
                 if max(body) < 0x80:
                     track.messages.append((tick, _message(status, body)))
                 else:
-                    # Dropped at its full length: mostly this is a velocity above 127,
-                    # and what follows is in step again.
+                    # Dropped at its full length: mostly this is a velocity above 127, and the
+                    # next message is intact.
                     found["a damaged message dropped"] += 1
             track.end = tick
             if status == META and kind == END_OF_TRACK:
@@ -312,7 +312,7 @@ def _decode(data: bytes, room: int, found: Counter[str]) -> _Track:
 
 
 class _Clock:
-    """Seconds at a tick, summed in whole numbers so that long files do not drift."""
+    """Converts ticks to seconds, in integers so that long files do not drift."""
 
     def __init__(self, division: int, tempos: Sequence[tuple[int, int]]) -> None:
         if division >= 0x8000:  # SMPTE: no tempo, frames a second and ticks a frame

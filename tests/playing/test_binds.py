@@ -131,4 +131,4 @@ def test_an_osc_argument_is_spread_over_what_the_address_sends(sent, argument, p
 def test_channels_count_from_one_and_over_all_ports():
     bind = Bind("cc 4", PRESSURE, channels=(2, 16))
     assert [channel for channel in range(-16, 40) if bind.receives(channel)] == [1, 15, 17, 31, 33]
-    assert Bind("cc 4", PRESSURE).hears(-1)
+    assert Bind("cc 4", PRESSURE).receives(-1)

@@ -49,7 +49,7 @@ def test_every_parameter_that_the_player_does_not_move_can_be_learned(param):
     mapping, _ = learn(load("keyboard"), param.address, KNOB, soft=True)
     (bind,) = mapping.of("cc 20")
     assert bind.is_soft
-    assert [bind.apply(0.0), bind.apply(1.0)] == pytest.approx([param.lo, param.hi])
+    assert [bind.from_unit(0.0), bind.from_unit(1.0)] == pytest.approx([param.lo, param.hi])
     assert load("mine/keyboard") == mapping
 
 

@@ -80,7 +80,7 @@ def test_every_way_leads_to_the_target_without_a_jump(make, at, bind, goes_up):
     heard = [at(midi, value) for value in way]
     picked = next(place for place, value in enumerate(heard) if value != 0.4)
     assert abs(heard[picked] - 0.4) < 0.1  # the table is steep there
-    assert heard[picked:] == [bind.apply(value / 127) for value in way][picked:]
+    assert heard[picked:] == [bind.from_unit(value / 127) for value in way][picked:]
     assert 0 < picked < 127
 
 

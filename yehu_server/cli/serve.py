@@ -54,7 +54,6 @@ def run(arguments: argparse.Namespace) -> int:
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), ending)
     set_up_log(arguments)
-    warn_of_compiling(arguments)
     return _serve(arguments, ending)
 
 
@@ -94,6 +93,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     log = logging.getLogger("yehu_server")
     say = log.info
     options = options_of(arguments)
+    warn_of_compiling(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress:
         server = Server(options, say, progress)
     if server.output.state.problem and arguments.audio_device != "null":

@@ -66,7 +66,7 @@ def test_two_things_do_not_go_to_one_file(refused, tmp_path):
     (tmp_path / "y.wav").hardlink_to(tmp_path / "x.wav")
     (tmp_path / "z.wav").symlink_to("x.wav")
     for other in ("y.wav", "z.wav"):
-        assert "one file" in refused(
+        assert "to the same file" in refused(
             "serve", "--record", "x.wav", "--capture", other, "--overwrite"
         )
     assert (tmp_path / "x.wav").read_text() == "older"

@@ -215,8 +215,8 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
     },
     "mappings/README.md": {
         "up to {:g}: what": (mapping_entries.LONGEST_SMOOTHING_MS,),
-        "within a {:g}th of": (1.0 / binds.NEAR,),
-        "by {} of its": (TIMES[learner.MEANT],),
+        "within a {:g}th of": (1.0 / binds.PICKUP_WINDOW,),
+        "by {} of its": (TIMES[learner.DISTANCE],),
         "one zone of {} member channels": (zones.MOST_MEMBERS,),
         "±{:g} semitones a note, ±{:g} on the master": (zones.MEMBER_BEND, zones.MASTER_BEND),
     },

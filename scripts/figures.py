@@ -2,8 +2,8 @@
 
     .venv/bin/python scripts/figures.py [FOLDER]
 
-writes PNG files to FOLDER (docs/figures). Where the paper compares with measurements this
-has the model's own theory instead: the measured curves are not published.
+It writes PNG files to FOLDER (default: docs/figures). Where the paper compares with measurements,
+these figures compare with the model's theory, because the measured curves are not published.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ BLUE, RED, GREY = "#1f5fa8", "#c03a2b", "0.6"
 
 
 def paper(data: dict[str, Any]) -> Gesture:
-    """A gesture of the paper's own model, whose strings keep their tension."""
+    """Return a gesture for the paper's model, in which string tension is constant."""
     return gesture_from({"instrument": {"tension_modulation": 0.0}, **data})
 
 
 def points(times: Any, values: Any) -> list[list[float]]:
-    """A curve of a gesture file."""
+    """Return a curve in the form that gesture files use: pairs of time and value."""
     return [[float(t), float(v)] for t, v in zip(times, values, strict=True)]
 
 
 def admittance(folder: Path) -> None:
-    """Figure 2: bridge admittance and response to a hammer."""
+    """Draw figure 2: the admittance of the bridge and its response to a hammer."""
     rate = 44100.0
     quantities = Quantities(tension_modulation=0.0)
     body = quantities.body
@@ -59,7 +59,7 @@ def admittance(folder: Path) -> None:
     velocity = np.concatenate([velocity[1:], [0.0]])  # centred: sample n needs q at n + 1
 
     f = np.fft.rfftfreq(frames, 1 / rate)
-    band = (f > 0.0) & (f < 6e3)  # where the pulse has something to say
+    band = (f > 0.0) & (f < 6e3)  # where the pulse has enough energy
     f = f[band]
     omega = 2.0 * np.pi * f
     theory = sum(
@@ -90,7 +90,7 @@ def admittance(folder: Path) -> None:
 
 
 def bowed(folder: Path) -> None:
-    """Figure 3: steady bridge velocity, F string at 0.7 N and 0.3 m/s."""
+    """Draw figure 3: steady bridge velocity, with the F string bowed at 0.7 N and 0.3 m/s."""
     gesture = paper(
         {
             "duration": 1.0,
@@ -113,7 +113,7 @@ def bowed(folder: Path) -> None:
 
 
 def shapes(folder: Path) -> None:
-    """Figure 4: shapes of both strings, bowed and pressed."""
+    """Draw figure 4: the shapes of both strings, bowed and pressed."""
     gesture = paper(
         {
             "duration": 0.5,
@@ -137,7 +137,7 @@ def shapes(folder: Path) -> None:
 
 
 def draw_strings(axes: Any, arrays: Any, moment: float) -> None:
-    """Both strings, finger, bow and bridge at one moment."""
+    """Draw both strings, the finger, the bow and the bridge at one moment."""
     row = int(np.searchsorted(arrays["strings_time"], moment))
     at = int(np.searchsorted(arrays["time"], moment))
     axes.plot(arrays["x_1"], 1e3 * arrays["string_1"][row], "k", lw=1.2)
@@ -149,7 +149,7 @@ def draw_strings(axes: Any, arrays: Any, moment: float) -> None:
 
 
 def gestures(folder: Path) -> None:
-    """Figure 5: two gestures. Their exact curves are not printed in the paper."""
+    """Draw figure 5: two gestures. The paper does not give their exact curves."""
     t = np.arange(0.0, 2.0, 0.002)
     crossing = paper(
         {
@@ -184,7 +184,7 @@ def gestures(folder: Path) -> None:
 
 
 def draw_spectrogram(axes: Any, signal: Any, rate: float, top_hz: float = 6000.0) -> None:
-    """Spectrogram over 80 dB."""
+    """Draw a spectrogram with a range of 80 dB."""
     _, _, _, image = axes.specgram(signal + 1e-12, NFFT=2048, Fs=rate, noverlap=1792, cmap="magma")
     peak = image.get_array().max()
     image.set_clim(peak - 80, peak)
@@ -192,7 +192,7 @@ def draw_spectrogram(axes: Any, signal: Any, rate: float, top_hz: float = 6000.0
 
 
 def energy(folder: Path) -> None:
-    """Figure 6: the energy error, bowed for ten seconds with a finger pressing at random."""
+    """Draw figure 6: the energy error over ten seconds of bowing with random finger presses."""
     chance = np.random.default_rng(6)
     moments = np.arange(0.0, 10.0, 0.4)
     gesture: Gesture = paper(
@@ -217,7 +217,7 @@ def energy(folder: Path) -> None:
 
 
 def picture(folder: Path) -> None:
-    """The README's picture: strings in motion, and the tune they play."""
+    """Draw the README's picture: moving strings, and the spectrogram of a tune."""
     gesture = paper(
         {
             "duration": 0.5,
@@ -251,7 +251,7 @@ def picture(folder: Path) -> None:
 
 
 def save(figure: Any, path: Path) -> None:
-    """Write a figure and say so."""
+    """Write a figure to a file and print its path."""
     if figure.get_layout_engine() is None:
         figure.tight_layout()
     figure.savefig(path, dpi=90)
@@ -260,7 +260,7 @@ def save(figure: Any, path: Path) -> None:
 
 
 def main() -> None:
-    """Draw everything."""
+    """Draw all figures."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "figures"
     folder.mkdir(parents=True, exist_ok=True)
     for draw in (admittance, bowed, shapes, gestures, energy, picture):

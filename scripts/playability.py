@@ -1,18 +1,20 @@
-"""Play every note in many ways and print whether it is in tune, in time and without clicks.
+"""Play every note in many ways and measure intonation, timing, clicks and loudness.
 
     .venv/bin/python scripts/playability.py [MEASURE] [--rate HZ]
 
-grid      F4 to F6 with velocities 20 to 127 and the mod wheel untouched, at 0, 64 and 127,
-          through the keyboard mapping: 500 notes of 0.8 s. A dot is a note within 10 cents
-          (open strings 12) from 0.1 s to its end; `a` one whose attack takes longer; a number how
-          many cents it is off in the end; `O` and `U` a register above or below, `?` none.
-steady    Cents off at steady state, velocities 40 to 127 and six places of the wheel.
-legato    Slurred steps of 1 to 5 semitones: when the new note is within 10 cents, for good.
-bends     Two semitones up and back within a second, and glides of a fourth: cents off the aim.
-clicks    The largest jump between two samples where notes meet, of that in the notes around.
+grid      Pitch of 500 notes of 0.8 s: F4 to F6 with the keyboard mapping, at velocities 20 to 127,
+          with the mod wheel untouched and at 0, 64 and 127. Marks: `.` within 10 cents (open
+          strings 12) from 0.1 s on; `a` in tune only after a longer attack; a number is the
+          final error in cents; `O` a higher register, `U` a lower one, `?` no pitch.
+steady    Pitch error in the steady state, at velocities 40 to 127 and six wheel positions.
+legato    Time until a slurred note stays within 10 cents (open strings 12), after steps of 1 to
+          5 semitones.
+bends     Pitch error while the bend wheel moves: by two semitones and back within a second, and
+          by a fourth.
+clicks    Largest step between two samples where notes meet, relative to the largest inside them.
 evenness  Loudness (dB, A-weighted) of every note at several dynamics.
-presets   Every shipped preset on F4 to F6 at velocities 30, 64 and 110: how many notes are in
-          tune, from 0.3 s on or, where plucked, from 0.05 s; how loud, and how bright (Hz).
+presets   Share of notes in tune, loudness and spectral centroid (Hz) of every shipped preset, on
+          F4 to F6 at velocities 30, 64 and 110, measured from 0.3 s on (plucked: from 0.05 s).
 """
 
 from __future__ import annotations
@@ -49,13 +51,13 @@ Sound = Any
 
 @cache
 def calibrated(rate: float) -> tuple[Calibration, Quantities]:
-    """The instrument in tune."""
+    """Return the calibration for a sample rate, and the quantities that it tunes."""
     calibration = calibration_for(rate)
     return calibration, calibration.tuned(Quantities())
 
 
 class Take:
-    """One performance on one instrument, through the keyboard mapping, without chance."""
+    """One performance on one instrument, with the keyboard mapping and no random variation."""
 
     def __init__(self, rate: float, preset: str = "ordinary") -> None:
         self.rate = rate
@@ -67,32 +69,32 @@ class Take:
         self.midi = style.midi(self.performer)
 
     def at(self, seconds: float, kind: str, **fields: int) -> None:
-        """Send a message at a time."""
+        """Schedule a MIDI message for a time."""
         frame = self.instrument.frames(1e3 * seconds)
         self.midi.receive(mido.Message(kind, **fields), frame=frame)
 
     def on(self, seconds: float, note: int, velocity: int = 80) -> None:
-        """Strike a key."""
+        """Schedule a note-on."""
         self.at(seconds, "note_on", note=note, velocity=velocity)
 
     def off(self, seconds: float, note: int) -> None:
-        """Let it go."""
+        """Schedule a note-off."""
         self.at(seconds, "note_off", note=note)
 
     def wheel(self, place: int | None) -> None:
-        """Put the mod wheel somewhere before the first note; None leaves it alone."""
+        """Set the mod wheel before the first note; None leaves it untouched."""
         if place is not None:
             self.at(0.0, "control_change", control=1, value=place)
 
     def play(self, seconds: float) -> Sound:
-        """What it sounds like."""
+        """Return the sound of the performance."""
         out = np.zeros(self.instrument.frames(1e3 * seconds), np.float32)
         self.instrument.process(out)
         return out
 
 
 def off_by(sound: Sound, rate: float, start_s: float, seconds: float, pitch: float) -> float:
-    """How many cents a part of a sound is off a pitch (fractional MIDI note); NONE without one."""
+    """Return the error (cents) from a pitch (fractional MIDI note); NONE if no pitch is found."""
     wanted = frequency_hz(pitch, 440.0)
     part = sound[round(start_s * rate) : round((start_s + seconds) * rate)]
     found = pitch_hz(part, rate, lo=0.4 * wanted, hi=3.2 * wanted)
@@ -100,12 +102,12 @@ def off_by(sound: Sound, rate: float, start_s: float, seconds: float, pitch: flo
 
 
 def bound(note: int) -> float:
-    """Within how many cents a note counts as right."""
+    """Return the largest error (cents) with which a note counts as in tune."""
     return 12.0 if note in OPEN_NOTES else 10.0
 
 
 def in_parallel(work: Callable[..., Any], jobs: Iterable[Sequence[Any]]) -> list[Any]:
-    """Do each job; the model runs without the GIL."""
+    """Run jobs in threads and return their results; the model runs without the GIL."""
     with ThreadPoolExecutor(os.cpu_count()) as workers:
         return list(workers.map(lambda job: work(*job), jobs))
 
@@ -113,11 +115,11 @@ def in_parallel(work: Callable[..., Any], jobs: Iterable[Sequence[Any]]) -> list
 # ---------------------------------------------------------------- grid
 
 MOMENTS_S = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
-STEADY = 4  # moments from which on a note has settled
+STEADY = 4  # index of the first moment in the steady state
 
 
 def struck(rate: float, note: int, wheel: int | None, velocity: int) -> str:
-    """One place of the map."""
+    """Play one note and return its mark in the grid."""
     take = Take(rate)
     take.wheel(wheel)
     take.on(0.0, note, velocity)
@@ -137,7 +139,7 @@ def struck(rate: float, note: int, wheel: int | None, velocity: int) -> str:
 
 
 def grid(rate: float) -> None:
-    """Print the map and the sum."""
+    """Print the marks of all notes and the share of notes in tune."""
     jobs = [(rate, n, w, v) for n in NOTES for w in WHEELS for v in VELOCITIES]
     marks = in_parallel(struck, jobs)
     print("note   wheel untouched       wheel 0               wheel 64              wheel 127")
@@ -158,7 +160,7 @@ STEADY_VELOCITIES = (40, 60, 80, 100, 127)
 
 
 def sustained(rate: float, note: int, wheel: int | None, velocity: int) -> float:
-    """Cents off in the end."""
+    """Return the error (cents) of a note in the steady state."""
     take = Take(rate)
     take.wheel(wheel)
     take.on(0.0, note, velocity)
@@ -166,7 +168,7 @@ def sustained(rate: float, note: int, wheel: int | None, velocity: int) -> float
 
 
 def steady(rate: float) -> None:
-    """Print each note's largest error."""
+    """Print the largest steady-state error of each note."""
     cases = [(w, v) for w in STEADY_WHEELS for v in STEADY_VELOCITIES]
     errors = in_parallel(sustained, [(rate, note, *case) for note in NOTES for case in cases])
     table = np.abs(np.array(errors)).reshape(len(NOTES), len(cases))
@@ -185,7 +187,7 @@ STEP_S, WINDOW_S = 0.4, 0.02
 
 
 def slurred(rate: float, note: int, target: int, wheel: int) -> float:
-    """Milliseconds until the second note is right for good, at most 200."""
+    """Return the time (ms, at most 200) after which a slurred note stays in tune."""
     take = Take(rate)
     take.wheel(wheel)
     take.on(0.0, note)
@@ -200,7 +202,7 @@ def slurred(rate: float, note: int, target: int, wheel: int) -> float:
 
 
 def legato(rate: float) -> None:
-    """Print how soon slurred notes come, by the note they go to."""
+    """Print how long slurred notes take to be in tune, for each target note."""
     steps = [step for size in range(1, 6) for step in (-size, size)]
     jobs = [
         (rate, target + step, target, wheel)
@@ -223,7 +225,7 @@ def legato(rate: float) -> None:
 
 
 def bent(rate: float, note: int, semitones: float) -> list[float]:
-    """Cents off the aim while the wheel goes up and comes back, 12 ms later than it moves."""
+    """Return the errors (cents) while a bend goes up and back, allowing a delay of 12 ms."""
     take = Take(rate)
     take.performer.write("/playing/bend_range", abs(semitones), hold=True)
     take.on(0.0, note)
@@ -243,7 +245,7 @@ def bent(rate: float, note: int, semitones: float) -> list[float]:
 
 
 def bends(rate: float) -> None:
-    """Print how well bends are followed."""
+    """Print how closely the pitch follows bends."""
     for semitones in (2.0, -2.0, 5.0):
         notes = [n for n in NOTES if n + semitones in NOTES and n not in OPEN_NOTES]
         found = np.abs(np.array(in_parallel(bent, [(rate, n, semitones) for n in notes])))
@@ -258,7 +260,10 @@ def bends(rate: float) -> None:
 
 
 def jump(rate: float, note: int, target: int, gap_s: float | None) -> float:
-    """The largest jump where two notes meet, of the largest inside them; None: slurred."""
+    """Return the largest step between samples where notes meet or end.
+
+    It is relative to the largest step inside the notes. A gap of None slurs them.
+    """
     take = Take(rate)
     take.on(0.0, note)
     if gap_s is None:
@@ -281,7 +286,7 @@ def jump(rate: float, note: int, target: int, gap_s: float | None) -> float:
 
 
 def clicks(rate: float) -> None:
-    """Print the ratios."""
+    """Print the jumps of slurred, rebowed and detached pairs of notes."""
     steps = (-12, -7, -5, -3, -2, -1, 1, 2, 3, 5, 7, 12)
     pairs = [(n, n + step) for n in NOTES for step in steps if n + step in NOTES]
     for name, gap_s in (("slurred", None), ("bow changes", 0.0), ("detached", 0.02)):
@@ -297,7 +302,7 @@ def clicks(rate: float) -> None:
 
 
 def loudness(rate: float, note: int, wheel: int | None, velocity: int) -> float:
-    """Of a held note (dB, A-weighted)."""
+    """Return the loudness of a held note (dB, A-weighted)."""
     take = Take(rate)
     take.wheel(wheel)
     take.on(0.0, note, velocity)
@@ -305,7 +310,7 @@ def loudness(rate: float, note: int, wheel: int | None, velocity: int) -> float:
 
 
 def evenness(rate: float) -> None:
-    """Print how much notes differ, and neighbours."""
+    """Print the loudness range of all notes, and the largest difference of neighbours."""
     for wheel, velocity in ((None, 80), (0, 80), (64, 110), (127, 127)):
         levels = np.array(in_parallel(loudness, [(rate, n, wheel, velocity) for n in NOTES]))
         print(
@@ -318,7 +323,7 @@ def evenness(rate: float) -> None:
 
 
 def in_preset(rate: float, preset: str, note: int, velocity: int) -> tuple[float, float, float]:
-    """Cents off, loudness (dB, A-weighted) and the middle of the spectrum (Hz) of a held note."""
+    """Return error (cents), loudness (dB, A-weighted) and spectral centroid (Hz) of a note."""
     take = Take(rate, preset)
     take.on(0.0, note, velocity)
     start, seconds = (0.05, 0.2) if preset == "pizzicato" else (0.3, 0.5)
@@ -331,7 +336,7 @@ def in_preset(rate: float, preset: str, note: int, velocity: int) -> tuple[float
 
 
 def presets(rate: float) -> None:
-    """Print a line for each."""
+    """Print the results of each preset, and its notes that are out of tune."""
     cases = [(note, velocity) for note in NOTES for velocity in (30, 64, 110)]
     for name in Presets(Path(os.devnull)).names():
         found = np.array(in_parallel(in_preset, [(rate, name, *case) for case in cases]))
@@ -351,7 +356,7 @@ MEASURES = {
 
 
 def main() -> None:
-    """Measure what is asked."""
+    """Run the measure named on the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("measure", nargs="?", choices=MEASURES, default="grid")
     parser.add_argument("--rate", type=float, default=44100.0)

@@ -1,8 +1,9 @@
-"""Where notes speak: one stopped note of each string, bowed in all ways, beside Schelleng's limits.
+"""Draw Schelleng diagrams: the kind of motion over bow force, bow position and bow speed.
 
     .venv/bin/python scripts/schelleng_map.py [-o OUT.png] [--note F C] [--rate HZ]
 
-The notes are bowed at many forces, places and speeds of the bow, in raw newtons.
+One stopped note on each string is bowed in all combinations, with the force set in newtons. The
+lines show Schelleng's upper and lower limits of the force.
 """
 
 from __future__ import annotations
@@ -49,8 +50,8 @@ MANY_SPEEDS = np.geomspace(0.03, 0.6, 16)
 USUAL_BETA = find("/bow/position").default
 RAMP_MS, CELL_S, LAST_S = 40.0, 0.45, 0.15
 ON_NOTE_CENTS, REGISTER_CENTS = 30.0, 600.0
-# Shares of the bridge force of Helmholtz motion. Notes on pitch have 0.9 to 1.1 of it with one
-# slip a period (near nodes, far from the bridge, up to 2) and 0.3 to 0.6 with several.
+# Limits of the bridge force relative to that of Helmholtz motion. Notes on pitch reach 0.9 to 1.1
+# with one slip per period (up to 2 near nodes, far from the bridge), and 0.3 to 0.6 with several.
 FULL, BARELY = 0.7, 0.15
 
 KINDS = (
@@ -67,7 +68,7 @@ HELMHOLTZ, WEAK, HIGHER, PULLED, LOWER, SCRATCH, FAINT = range(len(KINDS))
 
 @dataclass(frozen=True)
 class Stop:
-    """A stopped note of one string, on the instrument in tune."""
+    """A stopped note on one string of the tuned instrument."""
 
     string: int
     note: int
@@ -77,41 +78,42 @@ class Stop:
 
     @property
     def silk(self) -> StringQuantities:
-        """The string."""
+        """Return the quantities of the string."""
         return self.quantities.strings[self.string]
 
     @property
     def impedance(self) -> float:
-        """Wave impedance Z of the string (kg/s)."""
+        """Return the wave impedance Z of the string (kg/s)."""
         return math.sqrt(self.silk.T * self.silk.rho_A)
 
     @property
     def grip(self) -> float:
-        """How much more the hair holds sticking than sliding."""
+        """Return the difference of the static and the dynamic friction coefficient."""
         return self.quantities.bow.mu_S - self.quantities.bow.mu_C
 
     @property
     def frequency(self) -> float:
-        """What it should sound (Hz)."""
+        """Return the nominal frequency (Hz)."""
         return frequency_hz(self.note, 440.0)
 
     def highest_force(self, speed: Array, beta: Array) -> Array:
-        """Schelleng's upper limit (N)."""
+        """Return Schelleng's upper limit of the bow force (N)."""
         return 2.0 * self.impedance * speed / (beta * self.grip)
 
     def lowest_force(self, speed: Array, beta: Array) -> Array:
-        """Schelleng's lower limit (N)."""
+        """Return Schelleng's lower limit of the bow force (N)."""
         resistance = bridge_resistance(self.quantities.body, self.frequency)
         return self.impedance**2 * speed / (2.0 * resistance * beta**2 * self.grip)
 
 
 def bridge_resistance(body: Body, frequency: float) -> float:
-    """The resistance R (kg/s) of Schelleng's lower limit, Re(1/Y) at the note's fundamental.
+    """Return the resistance R (kg/s) of Schelleng's lower limit: Re(1/Y) at the fundamental.
 
-    Y is the bridge's admittance, the sum of the body's modes: j w / (M (w_m^2 - w^2) + j w R_m)
-    each. Schelleng's bridge is a bare resistance, where Re(1/Y) and 1/Re(Y) are the same; between
-    its modes this one is mostly mass or spring, and Re(1/Y) is then by far the smaller, so that
-    the limit comes out high: about where the model, whose finger and strings lose too, has it.
+    Y is the admittance of the bridge, the sum over the body's modes of
+    j w / (M (w_m^2 - w^2) + j w R_m). Schelleng's bridge is a pure resistance, for which Re(1/Y)
+    equals 1/Re(Y). Between its modes this bridge is mostly mass or spring, and Re(1/Y) is much
+    smaller than 1/Re(Y). This makes the limit high, and close to that of the model, where finger
+    and strings lose energy too.
     """
     w = 2.0 * math.pi * frequency
     admittance = sum(
@@ -122,10 +124,10 @@ def bridge_resistance(body: Body, frequency: float) -> float:
 
 
 def bow(stop: Stop, speed: float, beta: float, force: float) -> int:
-    """Bow a note in raw newtons and tell the kind of motion at its end.
+    """Bow a note with a force in newtons and return the kind of motion at its end.
 
-    Listens to the bare force on the bridge, which the body does not colour: Helmholtz motion makes
-    it a sawtooth with jumps of 2 Z v_b / beta, whatever the bow force.
+    The output is the force on the bridge without the body's resonances. In Helmholtz motion this
+    force is a sawtooth with jumps of 2 Z v_b / beta, independent of the bow force.
     """
     instrument = Instrument(stop.rate, stop.quantities)
     place = stop.intonation.position(stop.string, stop.note, speed)
@@ -151,7 +153,7 @@ def bow(stop: Stop, speed: float, beta: float, force: float) -> int:
 
 
 def kind(error: float, strength: float) -> int:
-    """The kind of motion by its error in pitch (cents) and its part of the full force."""
+    """Classify motion by pitch error (cents) and strength (bridge force over Helmholtz's)."""
     if strength < BARELY:
         return FAINT
     if math.isnan(error):
@@ -164,25 +166,25 @@ def kind(error: float, strength: float) -> int:
 
 
 def edges(values: Array) -> Array:
-    """The edges of cells about values that lie evenly on a logarithmic axis."""
+    """Return the edges of cells centred on logarithmically spaced values."""
     half = math.sqrt(values[1] / values[0])
     return np.append(values / half, values[-1] * half)
 
 
 def along(values: Array) -> Array:
-    """Points of a line over all cells about values."""
+    """Return points of a line across all cells of these values."""
     first, *_, last = edges(values)
     return np.geomspace(float(first), float(last), 60)
 
 
 def player_force(stop: Stop, speed: Array, beta: float, wish: float) -> Array:
-    """The force (N) that the player's assist chooses for a value of ``/playing/pressure``."""
+    """Return the force (N) that the player's assist sets for a value of ``/playing/pressure``."""
     fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
     return (manner(stop.note).pressure(wish, stop.note) + fast) * stop.highest_force(speed, beta)
 
 
 def draw_map(axes: Any, x: Array, kinds: Sequence[int]) -> None:
-    """Cells of force over `x`, in rows of FORCES."""
+    """Draw the kinds of motion as cells of force over `x`, one row for each of FORCES."""
     colours = ListedColormap([colour for _, colour in KINDS])
     norm = BoundaryNorm(np.arange(len(KINDS) + 1) - 0.5, len(KINDS))
     cells = np.reshape(kinds, (len(FORCES), len(x)))
@@ -194,14 +196,14 @@ def draw_map(axes: Any, x: Array, kinds: Sequence[int]) -> None:
 
 
 def draw_limits(axes: Any, x: Array, highest: Array, lowest: Array) -> None:
-    """Schelleng's two lines, with a halo."""
+    """Draw Schelleng's two limits as lines with a white outline."""
     halo = [withStroke(linewidth=3.5, foreground="w")]
     axes.plot(x, highest, "k-", lw=1.6, path_effects=halo)
     axes.plot(x, lowest, "k--", lw=1.6, path_effects=halo)
 
 
 def draw_over_beta(axes: Any, stop: Stop, speed: float, kinds: Sequence[int]) -> None:
-    """Force over the bow's place, at one speed."""
+    """Draw force over bow position, at one bow speed."""
     draw_map(axes, BETAS, kinds)
     x = along(BETAS)
     draw_limits(axes, x, stop.highest_force(speed, x), stop.lowest_force(speed, x))
@@ -215,7 +217,7 @@ def draw_over_beta(axes: Any, stop: Stop, speed: float, kinds: Sequence[int]) ->
 
 
 def draw_over_speed(axes: Any, stop: Stop, kinds: Sequence[int]) -> None:
-    """Force over speed, where the bow is usually."""
+    """Draw force over bow speed, at the usual bow position."""
     draw_map(axes, MANY_SPEEDS, kinds)
     x = along(MANY_SPEEDS)
     draw_limits(axes, x, stop.highest_force(x, USUAL_BETA), stop.lowest_force(x, USUAL_BETA))
@@ -229,12 +231,12 @@ def draw_over_speed(axes: Any, stop: Stop, kinds: Sequence[int]) -> None:
 
 
 def title(stop: Stop) -> str:
-    """The note and its string."""
+    """Return the title of a panel: the note and its string."""
     return f"{note_name(stop.note)} on {STRINGS[stop.string]}"
 
 
 def schelleng_picture(arguments: argparse.Namespace) -> None:
-    """Bow every cell, print and draw."""
+    """Simulate every cell, print a summary and write the picture."""
     for string, note, lowest, highest in zip(
         STRINGS, arguments.note, OPEN_NOTES, [max(each) for each in PITCHES], strict=True
     ):
@@ -271,7 +273,7 @@ def schelleng_picture(arguments: argparse.Namespace) -> None:
 
 
 def summary(what: str, kinds: Sequence[int]) -> str:
-    """One line: how much of a panel is of each kind, in per cent."""
+    """Return a line with the percentage of each kind of motion in a panel."""
     counts = np.bincount(kinds, minlength=len(KINDS)) * 100.0 / len(kinds)
     words = ("full", "weak", "higher", "pulled", "lower", "scratch", "faint")
     parts = (f"{word} {count:2.0f}" for word, count in zip(words, counts, strict=True))
@@ -279,7 +281,7 @@ def summary(what: str, kinds: Sequence[int]) -> str:
 
 
 def legend() -> list[Any]:
-    """What colours and lines mean."""
+    """Return the legend of colours and lines."""
     patches = [Patch(facecolor=colour, edgecolor="0.6", label=text) for text, colour in KINDS]
     lines = [
         Line2D([], [], color="k", ls="-", label="Schelleng's upper limit"),
@@ -294,7 +296,7 @@ def legend() -> list[Any]:
 
 
 def main() -> None:
-    """Draw what is asked for."""
+    """Parse the command line and draw the picture."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("-o", "--output", type=Path, metavar="OUT.png")
     parser.add_argument("--rate", type=int, default=44100, metavar="HZ")
@@ -304,7 +306,7 @@ def main() -> None:
         type=int,
         default=(70, 77),
         metavar=STRINGS,
-        help="a MIDI note stopped on each string (default: 70 77)",
+        help="MIDI note of the stopped note on each string (default: 70 77)",
     )
     try:
         schelleng_picture(parser.parse_args())

@@ -1,10 +1,10 @@
-"""A score as it sounds: waveform and level, pitches heard and aimed at, spectrogram.
+"""Play a score and draw its waveform, level, pitch and spectrogram.
 
     .venv/bin/python scripts/score_picture.py IN.mid [-o OUT.png] [--mapping NAME] [--rate HZ]
                                               [--from S] [--to S]
 
-It also prints how many notes are in tune, which are worst, and how large the jumps of the
-waveform are where notes meet.
+The pitch panel shows the pitch heard, the pitch aimed at and the score. The script also prints
+how many notes are in tune, the worst notes, and the jumps of the waveform where notes meet.
 """
 
 from __future__ import annotations
@@ -37,21 +37,21 @@ Array = Any
 
 # ---------------------------------------------------------------- a score, played
 
-BLOCK = 128  # frames between two looks at the player
-WINDOW_S, STEP_S = 0.04, 0.01  # of pitch
+BLOCK = 128  # frames between two readings of the player
+WINDOW_S, STEP_S = 0.04, 0.01  # of the pitch analysis
 LEVEL_S = 0.03
 IN_TUNE_CENTS, ASTRAY_CENTS = 10.0, 50.0
-FEWEST = 3  # windows in the middle of a note that can be checked
-WORST = 8  # notes to name
-BEFORE_S, AFTER_S, SETTLED_S = 0.002, 0.015, 0.03  # about a border, and where a note is inside
-COLUMNS = 4000  # of the picture
+FEWEST = 3  # windows in the middle of a note that are needed to check it
+WORST = 8  # notes to list
+BEFORE_S, AFTER_S, SETTLED_S = 0.002, 0.015, 0.03  # before and after a border; until a note settles
+COLUMNS = 4000  # of the picture, at most
 FFT_S, TOP_HZ, RANGE_DB = 0.046, 6000.0, 80.0
 PAPER, INK, AIM, WAVE = "#d5dfeb", "#8ea5c0", "#e08a00", "#9db8d6"
 
 
 @dataclass(frozen=True)
 class Span:
-    """A time (frames) in which one note sounds."""
+    """The time (frames) during which one note sounds."""
 
     start: int
     end: int
@@ -59,7 +59,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Take:
-    """What was played: samples, and what the player aimed at from each of `starts` (frames) on."""
+    """A played score: samples, and the pitch aimed at from each of `starts` (frames)."""
 
     rate: float
     samples: Array
@@ -68,28 +68,28 @@ class Take:
     spans: tuple[Span, ...]
 
     def aim(self, start: int, end: int) -> float:
-        """The mean pitch aimed at between two frames of a note."""
+        """Return the mean pitch aimed at between two frames of a note."""
         first, last = np.searchsorted(self.starts, (start, end - 1), side="right")
         return float(np.nanmean(self.aims[first - 1 : last]))
 
 
 @dataclass(frozen=True)
 class Heard:
-    """Pitch in one window of a note."""
+    """The pitch found in one window of a note."""
 
     time_s: float
     aim: float
-    pitch: float  # fractional MIDI note; NaN for none
+    pitch: float  # fractional MIDI note; NaN if none was found
 
     @property
     def error(self) -> float:
-        """Cents above the aim."""
+        """Return the pitch error in cents; positive is sharp."""
         return 100.0 * (self.pitch - self.aim)
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """How a note came out: error (cents) in its middle, NaN where it has no pitch there."""
+    """The pitch error (cents) in the middle of a note; NaN if it has no pitch there."""
 
     time_s: float
     seconds: float
@@ -98,7 +98,7 @@ class Verdict:
 
 
 def take(score: Score, options: Options, end_s: float) -> Take:
-    """Play a score, up to a time at most, and watch the player."""
+    """Play a score, up to `end_s` at most, and record what the player aims at."""
     performance = Performance(score, options)
     performer = performance.performer
     blocks, starts, aims, marks = [], [], [], []
@@ -112,7 +112,7 @@ def take(score: Score, options: Options, end_s: float) -> Take:
         if frame >= end:
             break
     if not blocks:
-        raise ScoreError(f"{score.name}: has nothing to play")
+        raise ScoreError(f"{score.name}: nothing to play")
     borders = [at for at in range(1, len(marks)) if marks[at] != marks[at - 1]]
     places = pairwise([0, *borders, len(marks)])
     spans = tuple(
@@ -125,10 +125,11 @@ def take(score: Score, options: Options, end_s: float) -> Take:
 
 
 def listen(played: Take, span: Span, a4: float) -> list[Heard]:
-    """Pitch in every window that lies within a note, from half an octave below it up.
+    """Return the pitch in every window of a note.
 
-    Not from lower down: a finger stops both strings, a fifth apart, and where the other one rings
-    along, both together repeat an octave below a note that nobody would hear there.
+    The search begins half an octave below the pitch aimed at. A finger stops both strings, which
+    are a fifth apart; if the other string rings too, the sound of both is periodic an octave
+    below the note, although nobody hears that pitch.
     """
     window, step = round(WINDOW_S * played.rate), round(STEP_S * played.rate)
     heard = []
@@ -143,7 +144,7 @@ def listen(played: Take, span: Span, a4: float) -> list[Heard]:
 
 
 def judge(played: Take, span: Span, heard: Sequence[Heard]) -> Verdict | None:
-    """How far the middle half of a note is off; None where it is too short to tell."""
+    """Return the pitch error of the middle half of a note; None if it is too short."""
     start, end = span.start / played.rate, span.end / played.rate
     quarter = 0.25 * (end - start)
     middle = [one for one in heard if start + quarter <= one.time_s <= end - quarter]
@@ -156,7 +157,7 @@ def judge(played: Take, span: Span, heard: Sequence[Heard]) -> Verdict | None:
 
 
 def jumps(played: Take) -> list[tuple[float, float]]:
-    """Times (s) of the borders of notes, and the jump there as a share of the largest inside."""
+    """Return the time (s) of each border of notes and its jump relative to those inside."""
     size = np.abs(np.diff(played.samples))
     before, after, settled = (round(s * played.rate) for s in (BEFORE_S, AFTER_S, SETTLED_S))
     around: dict[int, list[float]] = {}
@@ -174,7 +175,7 @@ def jumps(played: Take) -> list[tuple[float, float]]:
 
 
 def score_bars(score: Score, options: Options) -> list[tuple[float, float, float]]:
-    """The keys of a score (no pedal), fitted into the range: begin and end (s), note."""
+    """Return start (s), end (s) and note of each key, fitted into the range, without pedal."""
     held: dict[tuple[int, int], float] = {}
     bars = []
 
@@ -199,7 +200,7 @@ def score_bars(score: Score, options: Options) -> list[tuple[float, float, float
 
 
 def draw_wave(axes: Any, played: Take, begin: int, end: int) -> None:
-    """The waveform as an envelope, and over it the level."""
+    """Draw the envelope of the waveform, and the level over it."""
     part = played.samples[begin:end]
     size = max(1, len(part) // COLUMNS)
     columns = part[: len(part) // size * size].reshape(-1, size)
@@ -221,7 +222,7 @@ def draw_wave(axes: Any, played: Take, begin: int, end: int) -> None:
 def draw_pitches(
     axes: Any, played: Take, heard: Sequence[Heard], bars: Sequence[tuple[float, float, float]]
 ) -> None:
-    """The score as bars, the aim as a line, what is heard as dots; red where it is astray."""
+    """Draw the score as bars, the aim as a line and pitches as dots, red if far off."""
     begins, ends, notes = (np.array(column) for column in zip(*bars, strict=True))
     axes.barh(notes, ends - begins, 0.8, begins, color=PAPER, edgecolor=INK, lw=0.5, label="score")
     axes.plot(played.starts / played.rate, played.aims, color=AIM, lw=1.4, label="aim")
@@ -251,14 +252,14 @@ def draw_pitches(
 
 
 def reach(pitches: Sequence[float]) -> tuple[float, float]:
-    """The pitches that a picture shows: those given and a little more."""
+    """Return the pitch range of the picture: that of the given pitches, and a margin."""
     return min(pitches) - 2.5, max(pitches) + 2.5
 
 
 def draw_spectrogram(axes: Any, played: Take, begin: int, end: int) -> None:
-    """Spectrogram over RANGE_DB, in at most COLUMNS columns however long it is."""
+    """Draw a spectrogram with a range of RANGE_DB and at most COLUMNS columns."""
     size = round(FFT_S * played.rate)
-    part = np.pad(played.samples, size // 2 + 1)[begin:]  # a column is at its window's middle
+    part = np.pad(played.samples, size // 2 + 1)[begin:]  # centres each column on its window
     count = max(2, min(COLUMNS, (end - begin) // (size // 8)))
     starts = np.linspace(0, end - begin, count).astype(int)
     rows = int(min(TOP_HZ * size / played.rate + 2, size // 2))
@@ -283,13 +284,13 @@ def draw_spectrogram(axes: Any, played: Take, begin: int, end: int) -> None:
 
 
 def table(checked: Sequence[Verdict], spans: int, borders: Sequence[tuple[float, float]]) -> str:
-    """What is printed of a take."""
+    """Return the printed summary of a take."""
     good = [one for one in checked if abs(one.error) <= IN_TUNE_CENTS]
     lines = [
         f"notes that sounded          {spans}",
         f"long enough to be checked   {len(checked)}",
         f"within {IN_TUNE_CENTS:g} cents             {len(good)} ({share(good, checked)})",
-        "worst:    at s  lasts s   note   off by cents",
+        "worst:    at s  lasts s   note   error, cents",
     ]
     worst = sorted(checked, key=lambda one: -size_of(one.error))
     for one in worst[:WORST]:
@@ -300,30 +301,30 @@ def table(checked: Sequence[Verdict], spans: int, borders: Sequence[tuple[float,
         time_s, ratio = max(borders, key=lambda border: border[1])
         usual = float(np.median([border[1] for border in borders]))
         lines.append(
-            f"jumps where notes meet, of the largest inside the notes around: "
-            f"{ratio:.2f} at most ({time_s:.3f} s), usually {usual:.2f}"
+            f"jumps where notes meet, relative to the largest inside these notes: "
+            f"{ratio:.2f} at most (at {time_s:.3f} s), median {usual:.2f}"
         )
     return "\n".join(lines)
 
 
 def size_of(error: float) -> float:
-    """How bad an error is: no pitch is the worst."""
+    """Return the absolute error for sorting; no pitch is the largest error."""
     return abs(error) if math.isfinite(error) else math.inf
 
 
 def share(some: Sequence[Any], of_all: Sequence[Any]) -> str:
-    """Per cent."""
+    """Return the share of some items as a percentage text."""
     return f"{100.0 * len(some) / max(len(of_all), 1):.1f} %"
 
 
 def score_picture(arguments: argparse.Namespace) -> None:
-    """Play, print and draw."""
+    """Play the score, print the summary and write the picture."""
     options = Options(
         rate=arguments.rate, style=Style(mapping=load(arguments.mapping)), block=BLOCK
     )
     score = read_score(arguments.midi)
     if not arguments.begin < arguments.end:
-        raise ScoreError(f"{score.name}: --from has to be before --to")
+        raise ScoreError(f"{score.name}: --from must be less than --to")
     for warning in score.warnings:
         print(f"{score.name}: {warning}", file=sys.stderr)
     played = take(score, options, arguments.end + FFT_S)
@@ -367,7 +368,7 @@ def score_picture(arguments: argparse.Namespace) -> None:
 
 
 def main() -> None:
-    """Draw what is asked for."""
+    """Parse the command line and draw the picture."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("midi", type=Path, metavar="IN.mid")
     parser.add_argument("-o", "--output", type=Path, metavar="OUT.png")

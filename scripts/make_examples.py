@@ -2,13 +2,15 @@
 
     python scripts/make_examples.py [NAME...] [-o FOLDER]
 
-- slow_air: swells (CC 11), late vibrato (CC 1), slides (CC 65, CC 5); keyboard-expressive.
-- bow_pressure: from flautando to scratch (CC 71), from tasto to ponticello (CC 74); the same.
-- mpe_phrase: bend, pressure and bow position of each note's own, drawn by hand; mpe.
+- slow_air: swells (CC 11), late vibrato (CC 1) and slides (CC 65, CC 5), for the mapping
+  keyboard-expressive.
+- bow_pressure: from flautando to scratch (CC 71) and from sul tasto to sul ponticello (CC 74),
+  for the same mapping.
+- mpe_phrase: pitch bend, pressure and bow position for each note, for the mapping mpe.
 
-The tunes are new, in B flat: the open strings are its sol and re. Where they turn to A flat
-or a low A, and to E flat or a high one, that is the colour of Chaozhou's "heavy" mode.
-All by rule and without chance: each run writes the same bytes.
+The tunes were written for this project, in B flat: the open strings are its fifth and second
+degrees (sol and re). A flat or a lowered A, and E flat or a raised E flat, imitate the "heavy"
+mode of Chaozhou music. Everything follows fixed rules: each run writes the same bytes.
 """
 
 from __future__ import annotations
@@ -26,10 +28,10 @@ from mido import Message, MetaMessage, MidiFile, bpm2tempo
 
 FOLDER = Path(__file__).resolve().parent.parent / "examples"
 
-# PITCH:BEATS, r:BEATS a rest, (N) the dynamics from there on, smoothly up to the next (N).
-# A pitch may have cents (81-35) or glide by semitones within its note (74^5). Marks:
-# ~ slurred into the next note, > slides into it, / slides into this one from below,
-# p a soft attack, f a firm one.
+# Notation of a part: PITCH:BEATS is a note, r:BEATS a rest, and (N) sets the dynamics, which move
+# smoothly to the next (N). A pitch may have an offset in cents (81-35) or glide by semitones
+# within its note (74^5). Marks: ~ slurs the note into the next, > slides into the next,
+# / slides into this note from below, p is a soft attack, f a firm one.
 TOKEN = re.compile(
     r"(?P<pitch>\d+|r)(?P<cents>[+-]\d+)?(\^(?P<glide>\d+))?:(?P<beats>[\d.]+)(?P<marks>[~>/pf]*)"
 )
@@ -43,13 +45,13 @@ r:0.5 (48) 77:1~ 80:1 82:2 (80) 80:0.5~ 82:0.5~ 80:1> (92) 84:3f (100) 82:0.5~ 8
 75:1.5~ (70) 72:0.5 75:1~ 77:2.5 (32)
 r:0.5 (44) 74:1.5p~ 72:0.5~ 70:1~ (66) 67:1 72:1~ 70:1> 67:2 (40) 65:0.5p~ 67:0.5~ 70:4 (8)
 """
-RITARDANDO = ((8, 60), (6, 57), (5, 54))  # beats from the end, and the tempo from there on
+RITARDANDO = ((8, 60), (6, 57), (5, 54))  # (beats before the end, tempo from there)
 
 STUDY_BPM = 88
 SWEEPS = "67:3.75 r:0.25 70:3.75 r:0.25 74:3.75 r:0.25 79:3.75 r:0.25"
 PHRASE = "67:0.5~ 70:0.5 74:0.75~ 77:0.25 74:0.5~ 72:0.5 70:0.75 r:0.25"
 STUDY = f"r:2 (84) {SWEEPS} {SWEEPS} {PHRASE} {PHRASE} {PHRASE}"
-FORCES = (8, 40, 100)  # flautando, ordinary, pressed: CC 71 in the three phrases
+FORCES = (8, 40, 100)  # CC 71 in the three phrases: flautando, ordinary, pressed
 
 MPE_BPM = 76
 MPE = """
@@ -59,36 +61,36 @@ r:1 (40) 74:1.5/p 77:0.5~ (68) 79:2 77:0.5~ 75+35:0.5~ 77:1 (44)
 77:0.5~ 75+35:0.5~ 72:0.5~ 70:0.5~ 67:1.5/ (76) 70:0.5~ 72:0.5~ 74:0.5 (58) 70:4/ (10)
 """
 MEMBERS = 15
-MASTER_RANGE, MEMBER_RANGE = 200, 4800  # cents either way, as the MPE specification has them
+MASTER_RANGE, MEMBER_RANGE = 200, 4800  # cents up or down, from the MPE specification
 
 VELOCITY = {"p": 28, "": 68, "f": 106}
-OVERLAP = 16  # ticks by which a slurred note reaches into the next
-GAP = 20  # ticks of air between two bow strokes
+OVERLAP = 16  # ticks by which a slurred note overlaps the next
+GAP = 20  # ticks of silence between two bow strokes
 TAIL = 2 * QUARTER  # from the end of the last note to the end of the track
 SAMPLE_S, BEND_SAMPLE_S = 0.020, 0.010
-OPEN_STRINGS = (65, 72)  # where no finger could shake
-LONG = 3 * QUARTER // 2  # from here on a note has vibrato
-SWELL = 14  # what a note of two beats or more adds to the dynamics in its middle
+OPEN_STRINGS = (65, 72)  # notes without vibrato, as no finger stops them
+LONG = 3 * QUARTER // 2  # shortest note with vibrato
+SWELL = 14  # added to the dynamics in the middle of notes of two beats or more
 VIBRATO_HZ, VIBRATO_CENTS = 5.5, 25.0
-VIBRATO_FROM_S, VIBRATO_FADE_S = 0.5, 0.4  # after the note's begin, before its end
+VIBRATO_FROM_S, VIBRATO_FADE_S = 0.5, 0.4  # after the start of the note, before its end
 SLIDE_CENTS, SLIDE_S = 180.0, 0.22
 
 ORDINARY_FORCE, ORDINARY_POSITION = 40, 64  # CC 71, CC 74
 EXPRESSION, VIBRATO, FORCE, POSITION, GLIDE_TIME, GLIDE = 11, 1, 71, 74, 5, 65
 
-Event = tuple[int, Message]  # at its tick
-Curve = Callable[[float], float]  # of ticks
+Event = tuple[int, Message]  # tick and message
+Curve = Callable[[float], float]  # a value for each tick
 
 
 @dataclass
 class Note:
-    """One note of a part; times are ticks."""
+    """One note of a part, with times in ticks."""
 
     pitch: int
     cents: float
-    glide: float  # semitones that it moves up
+    glide: float  # semitones up
     start: int
-    length: int  # up to the next note or rest
+    length: int  # to the next note or rest
     marks: str
 
     @property
@@ -97,7 +99,7 @@ class Note:
 
     @property
     def until(self) -> int:
-        """Where its own curves stop."""
+        """Return the tick at which the curves of this note stop."""
         return self.start + self.length - (0 if self.slurred else GAP)
 
     @property
@@ -113,7 +115,7 @@ class Note:
         return self.length >= LONG and self.pitch not in OPEN_STRINGS
 
     def place(self, tick: float) -> float:
-        """0 at its begin, 1 at its end."""
+        """Return the position of a tick within the note, from 0 at its start to 1 at its end."""
         return min(max((tick - self.start) / (self.until - self.start), 0.0), 1.0)
 
 
@@ -121,18 +123,18 @@ class Note:
 
 
 def step(x: float) -> float:
-    """From 0 to 1 as `x` does, level at both ends."""
+    """Return a smooth step from 0 to 1 with zero slope at both ends (smoothstep)."""
     x = min(max(x, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
 
 
 def hill(x: float) -> float:
-    """0 at the ends, 1 in the middle, level at all three."""
+    """Return a smooth bump: 0 at both ends, 1 in the middle, with zero slope at all three."""
     return 16.0 * x * x * (1.0 - x) * (1.0 - x)
 
 
 def sampled(curve: Curve, start: int, end: int, every: int) -> Iterator[tuple[int, int]]:
-    """The curve as whole numbers: the first one, then each that differs, to the end itself."""
+    """Sample a curve as integers; yield the first value, then each value that changes."""
     before = None
     for tick in (*range(start, end, every), end):
         value = round(curve(tick))
@@ -142,7 +144,7 @@ def sampled(curve: Curve, start: int, end: int, every: int) -> Iterator[tuple[in
 
 
 def dynamics(notes: list[Note], levels: list[tuple[int, int]]) -> Curve:
-    """The levels joined smoothly, and a swell on each note of two beats or more."""
+    """Join levels smoothly and add a swell to each note of two beats or more."""
 
     def curve(tick: float) -> float:
         level = float(levels[0][1] if tick < levels[0][0] else levels[-1][1])
@@ -156,7 +158,7 @@ def dynamics(notes: list[Note], levels: list[tuple[int, int]]) -> Curve:
 
 
 def vibrato(note: Note, bpm: int, depth: float) -> Curve:
-    """How deep: none as the note begins (or glides), growing, calm again at its end."""
+    """Return vibrato depth: 0 at the start or during a glide, then growing, 0 at the end."""
     second = QUARTER * bpm / 60
     fade = note.until - VIBRATO_FADE_S * second
     first = note.start + (0.75 * note.length if note.glide else VIBRATO_FROM_S * second)
@@ -172,7 +174,7 @@ def vibrato(note: Note, bpm: int, depth: float) -> Curve:
 
 
 def read(part: str) -> tuple[list[Note], list[tuple[int, int]]]:
-    """The notes of a part, and its dynamics as levels at ticks."""
+    """Parse a part; return its notes and its dynamics (tick and level)."""
     notes: list[Note] = []
     levels: list[tuple[int, int]] = []
     now = 0
@@ -200,7 +202,7 @@ def control(number: int, value: int, channel: int = 0) -> Message:
 
 
 def parameter(number: int, value: int, channel: int = 0) -> list[Event]:
-    """Set a registered parameter (RPN), and leave none selected."""
+    """Return messages that set a registered parameter (RPN) and then deselect it."""
     words = ((101, 0), (100, number), (6, value), (38, 0), (101, 127), (100, 127))
     return [(0, control(*word, channel)) for word in words]
 
@@ -214,9 +216,9 @@ def strokes(note: Note, channel: int = 0) -> list[Event]:
 
 
 def file(name: str, about: str, tempos: list[tuple[int, float]], events: list[Event]) -> MidiFile:
-    """A file of a conductor's track and the yehu's.
+    """Return a MIDI file with a conductor track and a track for the yehu.
 
-    At one tick, controls come before the notes they shape, as `events` has them.
+    Events at the same tick keep their order in `events`: controls before the notes they shape.
     """
     conductor = [
         (0, MetaMessage("text", text=about)),
@@ -234,7 +236,7 @@ def file(name: str, about: str, tempos: list[tuple[int, float]], events: list[Ev
 
 
 def at_rest() -> list[Event]:
-    """All that a keyboard-expressive score moves, as it is before the first note."""
+    """Return the initial values of all controllers that a keyboard-expressive score uses."""
     rest = (
         (VIBRATO, 0),
         (GLIDE_TIME, 64),
@@ -249,7 +251,7 @@ def at_rest() -> list[Event]:
 
 
 def vibrato_depths(notes: list[Note], loudness: Curve, bpm: int) -> list[Event]:
-    """CC 1 over the long notes, deeper where they are louder."""
+    """Return CC 1 for the vibrato of long notes, deeper on louder notes."""
     events: list[Event] = []
     for note in notes:
         if note.shaken:
@@ -261,7 +263,7 @@ def vibrato_depths(notes: list[Note], loudness: Curve, bpm: int) -> list[Event]:
 
 
 def slides(notes: list[Note]) -> list[Event]:
-    """Portamento on from just before the second note of a slide to its end; wide ones slower."""
+    """Turn portamento on for the second note of each slide; wide slides are slower."""
     events: list[Event] = []
     for note, target in pairwise(notes):
         if ">" in note.marks:
@@ -290,7 +292,7 @@ def slow_air() -> MidiFile:
 
 
 def sweep(note: Note, number: int) -> Iterator[Event]:
-    """A controller from 0 to 127 and back, over one note."""
+    """Move a controller from 0 to 127 and back during one note."""
 
     def curve(tick: float) -> float:
         return 127.0 * hill(note.place(tick))
@@ -320,7 +322,7 @@ def bow_pressure() -> MidiFile:
 
 
 def pitch_of(note: Note) -> Curve:
-    """Cents from the written pitch: slide, glide and vibrato."""
+    """Return the pitch curve of a note in cents from its MIDI note: slide, glide and vibrato."""
     shaking = vibrato(note, MPE_BPM, VIBRATO_CENTS)
     second = QUARTER * MPE_BPM / 60
 
@@ -339,7 +341,7 @@ def pitch_of(note: Note) -> Curve:
 
 
 def drawn_note(note: Note, channel: int, loudness: Curve) -> Iterator[Event]:
-    """A note on its own channel, with all that is drawn of it; each first value precedes it."""
+    """Write a note and its curves on its own channel; first values precede the note."""
     pitch = pitch_of(note)
     steps = sampled(
         lambda tick: pitch(tick) / MEMBER_RANGE * 8192,
@@ -352,7 +354,7 @@ def drawn_note(note: Note, channel: int, loudness: Curve) -> Iterator[Event]:
     every = ticks(SAMPLE_S, MPE_BPM)
     for tick, value in sampled(loudness, note.start, note.until, every):
         yield tick, Message("aftertouch", channel=channel, value=value)
-    # A louder bow goes nearer to the bridge.
+    # The louder the note, the nearer the bow is to the bridge.
     places = sampled(lambda tick: 36.0 + 0.45 * loudness(tick), note.start, note.until, every)
     for tick, value in places:
         yield tick, control(POSITION, value, channel)
@@ -360,7 +362,7 @@ def drawn_note(note: Note, channel: int, loudness: Curve) -> Iterator[Event]:
 
 
 def zone() -> list[Event]:
-    """The MPE Configuration Message, the bend ranges, and everything at rest."""
+    """Return the MPE Configuration Message, the bend ranges and the initial controller values."""
     members = range(1, MEMBERS + 1)
     events = [*parameter(6, MEMBERS), *parameter(0, MASTER_RANGE // 100)]
     for channel in members:

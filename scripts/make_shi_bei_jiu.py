@@ -2,8 +2,9 @@
 
     python scripts/make_shi_bei_jiu.py [OUT]
 
-The notes were read from a performance, one every 0.125 s. Bowing, dynamics, slides and
-vibrato are added here, all `By ear:` and all from fixed rules: each run writes the same bytes.
+The notes were transcribed from a performance, one every 0.125 s. This script adds bowing,
+dynamics, slides and vibrato, chosen by ear and following fixed rules: each run writes the same
+bytes.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ from mido import Message, MetaMessage, MidiFile, MidiTrack, bpm2tempo
 
 OUT = Path(__file__).resolve().parent.parent / "examples" / "shi_bei_jiu.mid"
 
-# One MIDI note a slot, one line a bar of 2/4, one paragraph a phrase; 0 prolongs the note
-# before. The yehu's open strings are 65 (F4) and 72 (C5); the leaps between 69 and 76
-# are one finger position on both strings, and 65 between high notes is the open string.
+# Each number is the MIDI note of a slot, each line a bar of 2/4, each paragraph a phrase; 0
+# prolongs the note before it. The yehu's open strings are 65 (F4) and 72 (C5). Leaps between 69
+# and 76 use one finger position on both strings; 65 between high notes is the open string.
 PHRASES = """
 65 67 65 74 65 67 65 67
 72 74 72 69 72 74 72 77
@@ -64,28 +65,28 @@ PHRASES = """
 QUARTER = 480  # ticks
 SLOT = QUARTER // 4  # a sixteenth: 0.125 s at 120 bpm
 BEAT, BAR = 4, 8  # slots
-FINAL = 13  # slots of the last note: its own, and a bar and a half more
-OVERLAP = 6  # ticks by which a slurred note reaches into the next
-GAP = 14  # ticks of air between two bow strokes
-BREATH = 30  # ticks of air after a phrase
-LOWEST = 65  # the open string, which no finger slides into
-CROSSING = 5  # semitones: from here on a leap takes a new bow stroke, mostly on the other string
+FINAL = 13  # slots of the last note: one, and a bar and a half more
+OVERLAP = 6  # ticks by which a slurred note overlaps the next
+GAP = 14  # ticks of silence between two bow strokes
+BREATH = 30  # ticks of silence after a phrase
+LOWEST = 65  # the open string: no slide into it
+CROSSING = 5  # semitones: a leap this wide or wider starts a new bow stroke
 
 BEND_RANGE_CENTS = 200
 VIBRATO_HZ, VIBRATO_CENTS = 5.5, 15.0
 
-# Slots from the end of the slotted tune, and the speed from there on (bpm).
+# (slots before the end of the tune, without the longer last note; tempo from there in bpm).
 RITARDANDO = ((8, 116), (6, 112), (4, 106), (2, 99), (1, 92))
 
 
 @dataclass
 class Note:
-    """One note: where it starts, how long it is (slots), and how it is bowed."""
+    """One note: its start and length in slots, and how it is bowed."""
 
     pitch: int
     slot: int
     slots: int
-    arch: float  # 0 at the ends of its phrase, 1 in the middle
+    arch: float  # position in the phrase: 0 at its ends, 1 in its middle
     opens_phrase: bool
     closes_phrase: bool
     slurred: bool = False  # into the next note
@@ -101,7 +102,7 @@ class Note:
 
     @property
     def shaped_end(self) -> int:
-        """Where its own bends and pressure stop: before the next note, slurred or not."""
+        """Return the tick where bends and aftertouch stop: before the next note, slurred or not."""
         return min(self.end, self.start + self.slots * SLOT)
 
     @property
@@ -117,12 +118,12 @@ class Note:
 
 
 def read_phrases() -> list[list[int]]:
-    """The pitches of each phrase, a number a slot."""
+    """Return the pitches of each phrase, one for each slot."""
     return [[int(pitch) for pitch in phrase.split()] for phrase in PHRASES.split("\n\n")]
 
 
 def make_notes() -> list[Note]:
-    """The tune as notes; equal neighbours and unclear slots (0) make longer ones."""
+    """Return the notes of the tune; slots with the same pitch or 0 prolong the note before."""
     notes: list[Note] = []
     slot = 0
     for phrase in read_phrases():
@@ -142,7 +143,7 @@ def make_notes() -> list[Note]:
 
 
 def slur(phrase: list[Note]) -> None:
-    """Two notes a bow; four in every other bar, where the beat lies within a fourth."""
+    """Slur two notes a stroke, or four in every other bar if the beat spans a fourth at most."""
     for note, following in pairwise(phrase):
         beat = [other for other in phrase if other.slot // BEAT == note.slot // BEAT]
         pitches = [other.pitch for other in beat]
@@ -151,12 +152,12 @@ def slur(phrase: list[Note]) -> None:
         note.slurred = (
             note.slot // together == following.slot // together
             and abs(following.pitch - note.pitch) < CROSSING
-            and not following.held  # a long note has its own stroke, for its slide
+            and not following.held  # a long note begins a stroke, because of its slide
         )
 
 
 def tempo_changes(slots: int) -> list[tuple[int, int]]:
-    """Ticks and microseconds a quarter."""
+    """Return tempo changes: tick, and microseconds for each quarter note."""
     slowing = [((slots - left) * SLOT, bpm2tempo(bpm)) for left, bpm in RITARDANDO]
     return [(0, bpm2tempo(120)), *slowing]
 
@@ -166,7 +167,7 @@ def bend(cents: float) -> Message:
 
 
 def bends(note: Note, tempos: list[tuple[int, int]]) -> Iterator[tuple[int, Message]]:
-    """A slide into long and phrase-opening notes, vibrato on the long ones, then straight."""
+    """Return pitch bends: a slide into the note, then vibrato if it is long."""
     depth, slide = (50.0, 84) if note.held else (35.0, 60)  # cents, ticks
     for tick in range(0, slide, 12):
         yield note.start + tick, bend(-depth * (1.0 - tick / slide) ** 2)
@@ -182,7 +183,7 @@ def bends(note: Note, tempos: list[tuple[int, int]]) -> Iterator[tuple[int, Mess
 
 
 def swell(note: Note) -> Iterator[tuple[int, Message]]:
-    """Aftertouch that leans into a held note and lets go before its end."""
+    """Return aftertouch that rises to the middle of a note and falls to 0 at its end."""
     length = note.shaped_end - note.start
     for tick in range(0, length, 24):
         yield (
@@ -193,7 +194,7 @@ def swell(note: Note) -> Iterator[tuple[int, Message]]:
 
 
 def bow_speed(notes: list[Note]) -> Iterator[tuple[int, Message]]:
-    """CC 1 rises and falls with each phrase, and dies away on the last note."""
+    """Return CC 1, which rises and falls with each phrase and falls on the last note."""
     for note in notes:
         yield note.start, Message("control_change", control=1, value=round(56 + 40 * note.arch))
     last = notes[-1]
@@ -203,14 +204,14 @@ def bow_speed(notes: list[Note]) -> Iterator[tuple[int, Message]]:
 
 
 def setup() -> Iterator[tuple[int, Message]]:
-    """A bend range of two semitones (RPN 0), then the null RPN."""
+    """Set the bend range to two semitones (RPN 0), then deselect the RPN."""
     for control, value in ((101, 0), (100, 0), (6, 2), (38, 0), (101, 127), (100, 127)):
         yield 0, Message("control_change", control=control, value=value)
     yield 0, bend(0.0)
 
 
 def performance(notes: list[Note], tempos: list[tuple[int, int]]) -> list[tuple[int, Message]]:
-    """All messages with their ticks; at one tick, controls come before the note they shape."""
+    """Return all messages with their ticks; at the same tick, controls precede notes."""
     events = [*setup(), *bow_speed(notes)]
     for note in notes:
         if note.held or (note.opens_phrase and note.pitch > LOWEST):
@@ -226,7 +227,7 @@ def performance(notes: list[Note], tempos: list[tuple[int, int]]) -> list[tuple[
 def track(
     name: str, events: list[tuple[int, Message]] | list[tuple[int, MetaMessage]]
 ) -> MidiTrack:
-    """A track from messages at absolute ticks."""
+    """Return a track made of messages at absolute ticks."""
     written = MidiTrack([MetaMessage("track_name", name=name)])
     now = 0
     for tick, message in events:

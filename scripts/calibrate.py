@@ -1,9 +1,9 @@
-"""Write yehu_server/playing/calibrations.json: the instrument in tune at the usual rates.
+"""Write yehu_server/playing/calibrations.json, the calibrations for the usual sample rates.
 
     .venv/bin/python scripts/calibrate.py [--keep]
 
-With --keep nothing is measured: the figures get the keys of the code as it is now. For changes of
-names and order alone, which leave each sample as it was.
+With --keep nothing is measured: the stored values get the keys of the current code. Use it after
+changes that leave every sample as it was, such as new names or another order of the code.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ RATES = (44100.0, 48000.0, 96000.0)
 
 
 def main() -> None:
-    """Measure and write."""
+    """Measure the calibrations, or keep the stored ones, and write the file."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--keep", action="store_true", help="keep the figures under new keys")
+    parser.add_argument("--keep", action="store_true", help="keep the stored values, with new keys")
     keep = parser.parse_args().keep
     kept = {data["rate"]: data for data in json.loads(SHIPPED.read_text(encoding="utf-8")).values()}
     quantities = Quantities()

@@ -14,7 +14,7 @@ TARGET = Path(__file__).resolve().parent.parent / "docs" / "parameters.md"
 
 
 def page() -> str:
-    """The page as text."""
+    """Return the text of the page."""
     lines = [
         "# Parameters",
         "",

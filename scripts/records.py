@@ -1,4 +1,4 @@
-"""Write yehu_server/physics/records.py, the types of the model's records, from layout.py.
+"""Generate yehu_server/physics/records.py, the types of the model's records, from layout.py.
 
 .venv/bin/python scripts/records.py
 """
@@ -40,7 +40,7 @@ Records = NDArray[np.void]  # of layout.MODEL or layout.STATE
 
 
 def of(kind: np.dtype[np.void], name: str) -> str:
-    """The type of one field."""
+    """Return the type annotation of one field."""
     field = kind[name]
     for record, (other, _) in RECORDS.items():
         if field == other:
@@ -52,7 +52,7 @@ def of(kind: np.dtype[np.void], name: str) -> str:
 
 
 def module() -> str:
-    """The module as text."""
+    """Return the source text of the module."""
     parts = [HEAD]
     for record, (kind, doc) in RECORDS.items():
         lines = [f"    {name}: {of(kind, name)}" for name in kind.names or ()]

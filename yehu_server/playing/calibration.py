@@ -84,7 +84,8 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     """Hash of everything that a calibration depends on (16 hex digits)."""
     package = Path(__file__).parent.parent
     sources = [*sorted((package / "physics").glob("*.py")), package / "playing" / "bowing.py"]
-    sources += [package / "engine" / f"{name}.py" for name in ("controls", "one_pole", "output")]
+    engine = ("controls", "native", "one_pole", "output")
+    sources += [package / "engine" / f"{name}.py" for name in engine]
     sources += [Path(__file__)]
     return key_of(sources, repr((rate, a4, quantities)))
 

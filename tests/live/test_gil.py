@@ -155,4 +155,4 @@ def test_holding_the_gil_holds_python():
     ending.set()
     thread.join()
     assert before > 20
-    assert during < 5
+    assert during < before / 3

@@ -1,8 +1,8 @@
 """The bridge: a bank of measured modes to which both strings are tied.
 
-[Yehu] eqs. (10)-(12) and (41)-(45), (59). Differs: cubic interpolation at the bridge; C_q carries
-4 k^2, and the modes'
-stiffness is pre-warped so that each rings at its measured frequency (decisions/0002).
+[Yehu] eqs. (10)-(12) and (41)-(45), (59). Differs: interpolation at the bridge is
+cubic; C_q carries 4 k^2; the modes' stiffness is pre-warped so that each rings at its measured
+frequency (decisions/0002).
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def set_bridge_compliance(model: Model) -> None:
 
 @compiled
 def advance_bridge(model: Model, q_next: Array, q: Array, q_prev: Array, f_hammer: float) -> float:
-    """Advance the modes, free of string forces; return their sum Q* (m). Eq. (42)."""
+    """Advance the modes, free of string forces; return their sum (m). Eq. (42)."""
     total = 0.0
     for m in range(whole_vectors(model.modes)):
         q_next[m] = model.A_q[m] * q[m] + model.B_q[m] * q_prev[m] + model.C_q[m] * f_hammer
@@ -82,7 +82,9 @@ def advance_bridge(model: Model, q_next: Array, q: Array, q_prev: Array, f_hamme
 
 
 @compiled
-def eliminate_tension_and_bridge(model: Model, s: Motion, w: Work, u_next: Array, Q: float) -> None:
+def eliminate_tension_and_bridge(
+    model: Model, s: Motion, w: Work, u_next: Array, q_sum: float
+) -> None:
     """Eliminate tau and f_c of both strings: solve them as if no contact touched the strings.
 
     Writes ``w.tau`` and ``w.f_c`` (N) so solved, and the inverse of their joint system, by which
@@ -95,8 +97,8 @@ def eliminate_tension_and_bridge(model: Model, s: Motion, w: Work, u_next: Array
     tau_2, tau_per_sum_2, pivot_2 = eliminate_tension(model, w, 1)
     Delta_1 = read(s.Delta_u[0], first[0], weights[0])
     Delta_2 = read(s.Delta_u[1], first[1], weights[1])
-    gap_1 = Q - read(u_next[0], first[0], weights[0]) - tau_1 * Delta_1
-    gap_2 = Q - read(u_next[1], first[1], weights[1]) - tau_2 * Delta_2
+    gap_1 = q_sum - read(u_next[0], first[0], weights[0]) - tau_1 * Delta_1
+    gap_2 = q_sum - read(u_next[1], first[1], weights[1]) - tau_2 * Delta_2
 
     # S_c, its diagonal lowered by tension, each row multiplied by its pivot (S_12 below by both),
     # so that no division waits for another.

@@ -8,7 +8,7 @@ complement that is left (friction.py); the fingers' forces follow by back substi
 There are two ways through it. Mostly a finger shares nodes with its neighbours at most: apart
 from those, fingers act on each other only through tension and bridge, that is through two sums,
 the forces on each string times Delta u^n under them. The system is then a block-tridiagonal
-chain plus a term of rank two, solved block by block and closed by Woodbury's identity. Where a
+chain plus a term of rank two, solved block by block and by Woodbury's identity. Where a
 finger shares a node with the bow, the bridge or a finger beyond its neighbour, the matrix G
 is dense, and contacts are eliminated one after the other (decisions/0003).
 Derivation: docs/derivation.md, sections 4 and 5.
@@ -153,12 +153,12 @@ def factor_fingers(model: Model, s: Motion, c: Contacts, w: Work, near: int) -> 
         C_pp, C_pq, C_qq = c.self_compliance[p] + C_f, C_f, c.self_compliance[q] + C_f
         B_11, B_12, B_21, B_22 = w.Delta_u_at[p], 0.0, 0.0, w.Delta_u_at[q]
         if c.meets_previous[a]:
-            E_p, E_q = c.previous_coupling[a, 0], c.previous_coupling[a, 1]
-            C_pp -= E_p * E_p * W_11
-            C_pq -= E_p * E_q * W_12
-            C_qq -= E_q * E_q * W_22
-            B_11, B_12 = B_11 - E_p * WB_11, -E_p * WB_12
-            B_21, B_22 = -E_q * WB_21, B_22 - E_q * WB_22
+            X_p, X_q = c.previous_coupling[a, 0], c.previous_coupling[a, 1]
+            C_pp -= X_p * X_p * W_11
+            C_pq -= X_p * X_q * W_12
+            C_qq -= X_q * X_q * W_22
+            B_11, B_12 = B_11 - X_p * WB_11, -X_p * WB_12
+            B_21, B_22 = -X_q * WB_21, B_22 - X_q * WB_22
         A_p, A_q = contact_stiffness(model, s, w, p), contact_stiffness(model, s, w, q)
         W_11, W_12, W_22, per_determinant, on_p, on_q = pivot_block(A_p, A_q, C_pp, C_pq, C_qq)
         w.W[a, 0], w.W[a, 1], w.W[a, 2] = W_11, W_12, W_22
@@ -185,7 +185,7 @@ def eliminate_chain(
     """
     sum_1, sum_2 = substitute_forward(c, w, near)
     inverse = inverse_of_sums(Q, w.K_tt[0, 0], w.K_tt[0, 1], w.K_tt[1, 1])
-    return close_sums(w, Q, inverse, sum_1, sum_2, bow_response)
+    return couple_sums(w, Q, inverse, sum_1, sum_2, bow_response)
 
 
 @compiled
@@ -223,7 +223,7 @@ def inverse_of_sums(Q: Symmetric, K_11: float, K_12: float, K_22: float) -> Matr
 
 
 @compiled
-def close_sums(
+def couple_sums(
     w: Work, Q: Symmetric, inverse: Matrix, sum_1: float, sum_2: float, bow_response: Response
 ) -> tuple[float, float]:
     """Let tension and bridge follow the fingers' sums; returns as `eliminate_fingers` does."""
@@ -231,10 +231,8 @@ def close_sums(
     i_11, i_12, i_21, i_22 = inverse
     K_11, K_12, K_22 = w.K_tt[0, 0], w.K_tt[0, 1], w.K_tt[1, 1]
     bow_1, bow_2 = bow_response[0], bow_response[1]
-    sum_1_per_f_b, sum_2_per_f_b = (
-        Q_11 * bow_1 + Q_12 * bow_2,
-        Q_12 * bow_1 + Q_22 * bow_2,
-    )  # for each newton
+    # The sums for no change of tau per newton of the bow's, then both with tension following.
+    sum_1_per_f_b, sum_2_per_f_b = Q_11 * bow_1 + Q_12 * bow_2, Q_12 * bow_1 + Q_22 * bow_2
     sum_1, sum_2 = i_11 * sum_1 + i_12 * sum_2, i_22 * sum_2 + i_21 * sum_1
     sum_1_per_f_b, sum_2_per_f_b = (
         i_11 * sum_1_per_f_b + i_12 * sum_2_per_f_b,

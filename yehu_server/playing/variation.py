@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-import random
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from yehu_server.engine.controls import chance
+
+# A sum of so many uniform numbers is all but normal.
+ADDED = 12
 # Standard deviations at full variation. By ear.
 VARIED_FRACTION = 0.1  # of bow speed and pressure
 VARIED_CENTS = 6.0
@@ -30,17 +34,25 @@ class Variation:
     """
 
     def __init__(self, seed: int, wish: Callable[[str], float]) -> None:
-        self._random = random.Random(seed)  # noqa: S311 - for music, not secrets
+        self._seed, self._drawn = seed, 0
         self._wish = wish
         self._note = Deviates()
 
     def seed(self, seed: int) -> None:
         """Begin the sequence of a seed."""
-        self._random.seed(seed)
+        self._seed, self._drawn = seed, 0
 
     def next_note(self) -> None:
         """Draw the deviates of a new note."""
-        self._note = Deviates(*(self._random.gauss(0.0, 1.0) for _ in range(3)))
+        self._note = Deviates(self._deviate(), self._deviate(), self._deviate())
+
+    def _deviate(self) -> float:
+        """A number of mean 0 and variance 1; each of the uniform ones has a variance of 1/3."""
+        total = 0.0
+        for _ in range(ADDED):
+            total += chance((self._seed << 32) + self._drawn)
+            self._drawn += 1
+        return total / math.sqrt(ADDED / 3.0)
 
     @property
     def _amount(self) -> float:

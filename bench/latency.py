@@ -7,7 +7,7 @@ throughout, and each message opens or closes its volume, so the message is heard
 that is not zero. The sample's time is the start of JACK's cycle on the monotonic clock plus its
 place in the cycle; where JACK is late, so is the sample. The device's own latency, the last
 column, comes on top. The instrument's own share is the time from the message's arrival, as stamped,
-to the frame at which it is applied.
+to the frame at which the player fulfils it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ from rich.table import Table
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control.packets import pack, unpack
 from yehu_server.control.ports import MidiOptions
-from yehu_server.params.table import SLOT
+from yehu_server.player.rows import ROW
+from yehu_server.player.wishes import WRITE
 from yehu_server.server import ServeOptions, Server
 
 RATE = 48000
@@ -109,12 +110,12 @@ def measure(kind: str, port: int, trials: int, answer: Any) -> None:
 
 
 class Witness:
-    """Notes the frames at which messages arrived and were applied."""
+    """Notes the frames at which messages arrived and were fulfilled."""
 
     def __init__(self, server: Server, kind: str) -> None:
         self._instrument = server.instrument
         self._arrived: list[float] = []
-        self._instrument.report_events()
+        self._instrument.report_wishes()
         if kind == "OSC":
             handle = server.handler.handle
 
@@ -136,10 +137,10 @@ class Witness:
             vars(server.midi)["_receive"] = listen
 
     def shares(self) -> list[float]:
-        """Time from arrival to application (ms) of each message that opened the volume."""
-        events: Any = self._instrument.applied_events()
-        level = events[(events["index"] == SLOT["/output/level"])]
-        opened = level["frame"][level["target"] == 1.0]
+        """Time from arrival to fulfilment (ms) of each message that opened the volume."""
+        wishes: Any = self._instrument.applied_wishes()
+        is_volume = (wishes["kind"] == WRITE) & (wishes["index"] == ROW["/playing/volume"])
+        opened = wishes["frame"][is_volume & (wishes["value"] == 1.0)]
         nexts = np.searchsorted(opened, self._arrived)
         return [
             1e3 * float(opened[at] - came) / RATE

@@ -33,11 +33,8 @@ import numpy as np
 
 from yehu_server.analysis.level import a_weighted_db
 from yehu_server.analysis.pitch import cents, pitch_hz
-from yehu_server.engine.instrument import Instrument
-from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import OPEN_NOTES, Calibration, frequency_hz
+from yehu_server.player.calibration import OPEN_NOTES, Calibration, frequency_hz
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.performer import Performer
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.style import Style
 
@@ -50,10 +47,9 @@ Sound = Any
 
 
 @cache
-def calibrated(rate: float) -> tuple[Calibration, Quantities]:
-    """Return the calibration for a sample rate, and the quantities that it tunes."""
-    calibration = calibration_for(rate)
-    return calibration, calibration.tuned(Quantities())
+def calibrated(rate: float) -> Calibration:
+    """Return the calibration for a sample rate."""
+    return calibration_for(rate)
 
 
 class Take:
@@ -61,12 +57,11 @@ class Take:
 
     def __init__(self, rate: float, preset: str = "ordinary") -> None:
         self.rate = rate
-        calibration, quantities = calibrated(rate)
-        self.instrument = Instrument(rate, quantities)
         style = Style(start=tuple(Presets().load(preset).values.items()))
-        self.performer: Performer = style.performer(self.instrument, calibration)
-        self.performer.write("/playing/variation", 0.0, hold=True)
-        self.midi = style.midi(self.performer)
+        self.instrument = style.instrument(rate, calibrated(rate))
+        self.wishes = style.wishes(self.instrument)
+        self.wishes.write("/playing/variation", 0.0, frame=0, hold=True)
+        self.midi = style.midi(self.wishes)
 
     def at(self, seconds: float, kind: str, **fields: int) -> None:
         """Schedule a MIDI message for a time."""
@@ -227,7 +222,7 @@ def legato(rate: float) -> None:
 def bent(rate: float, note: int, semitones: float) -> list[float]:
     """Return the errors (cents) while a bend goes up and back, allowing a delay of 12 ms."""
     take = Take(rate)
-    take.performer.write("/playing/bend_range", abs(semitones), hold=True)
+    take.wishes.write("/playing/bend_range", abs(semitones), frame=0, hold=True)
     take.on(0.0, note)
     begin, length, lag, window = 0.3, 1.0, 0.012, 0.03
 

@@ -26,16 +26,28 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from yehu_server.analysis.pitch import cents, note_name, pitch_hz
-from yehu_server.engine.controls import FAST, FAST_SHARE
+from yehu_server.controls.hands import FAST, FAST_SHARE
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.output import BRIDGE_PRESSURE
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Body, Quantities, StringQuantities
-from yehu_server.playing.bowing import FIRM, LIGHT, Manner, manner
-from yehu_server.playing.calibration import OPEN_NOTES, PITCHES, frequency_hz
+from yehu_server.player.bowing import (
+    AT_FIRM,
+    AT_LIGHT,
+    FARTHER,
+    FIRM,
+    LEAST_PRESS,
+    LIGHT,
+    TOP_SPEED,
+    manner,
+    share,
+)
+from yehu_server.player.calibration import OPEN_NOTES, PITCHES, frequency_hz
+from yehu_server.player.intonation import position_of
+from yehu_server.player.record import prepare_player
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.intonation import Intonation
+from yehu_server.playing.style import Style
 
 Array = Any
 
@@ -73,8 +85,12 @@ class Stop:
     string: int
     note: int
     quantities: Quantities
-    intonation: Intonation
+    player: Any  # a record of player.record.PLAYER
     rate: float
+
+    def manner(self, column: int) -> float:
+        """Return how the player bows the note; see player.bowing."""
+        return manner(self.player["bowing"], float(self.note), column)
 
     @property
     def silk(self) -> StringQuantities:
@@ -130,8 +146,8 @@ def bow(stop: Stop, speed: float, beta: float, force: float) -> int:
     force is a sawtooth with jumps of 2 Z v_b / beta, independent of the bow force.
     """
     instrument = Instrument(stop.rate, stop.quantities)
-    place = stop.intonation.position(stop.string, stop.note, speed)
-    press = max(find("/playing/press").default, manner(stop.note).press)
+    place = position_of(stop.player, stop.string, float(stop.note), speed)
+    press = max(find("/playing/press").default, stop.manner(LEAST_PRESS))
     for address, value in (
         ("/body/blend", 1.0),
         ("/bow/assist", 0.0),
@@ -180,7 +196,8 @@ def along(values: Array) -> Array:
 def player_force(stop: Stop, speed: Array, beta: float, wish: float) -> Array:
     """Return the force (N) that the player's assist sets for a value of ``/playing/pressure``."""
     fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
-    return (manner(stop.note).pressure(wish, stop.note) + fast) * stop.highest_force(speed, beta)
+    usual = share(stop.manner(AT_LIGHT), stop.manner(AT_FIRM), wish, stop.note)
+    return (usual + fast) * stop.highest_force(speed, beta)
 
 
 def draw_map(axes: Any, x: Array, kinds: Sequence[int]) -> None:
@@ -207,9 +224,8 @@ def draw_over_beta(axes: Any, stop: Stop, speed: float, kinds: Sequence[int]) ->
     draw_map(axes, BETAS, kinds)
     x = along(BETAS)
     draw_limits(axes, x, stop.highest_force(speed, x), stop.lowest_force(speed, x))
-    bowing = manner(stop.note)
-    if speed <= bowing.top_speed:
-        beta = USUAL_BETA * bowing.farther
+    if speed <= stop.manner(TOP_SPEED):
+        beta = USUAL_BETA * stop.manner(FARTHER)
         ends = [float(player_force(stop, speed, beta, wish)) for wish in (LIGHT, FIRM)]
         axes.plot([beta, beta], ends, color="k", lw=2.5, marker="_", ms=9, mew=2.5)
     axes.set_xticks([0.05, 0.1, 0.2, 0.4], labels=["0.05", "0.1", "0.2", "0.4"])
@@ -221,9 +237,8 @@ def draw_over_speed(axes: Any, stop: Stop, kinds: Sequence[int]) -> None:
     draw_map(axes, MANY_SPEEDS, kinds)
     x = along(MANY_SPEEDS)
     draw_limits(axes, x, stop.highest_force(x, USUAL_BETA), stop.lowest_force(x, USUAL_BETA))
-    bowing: Manner = manner(stop.note)
-    if bowing.farther == 1.0:
-        borne = x[x <= bowing.top_speed]
+    if stop.manner(FARTHER) == 1.0:
+        borne = x[x <= stop.manner(TOP_SPEED)]
         for wish in (LIGHT, FIRM):
             axes.plot(borne, player_force(stop, borne, USUAL_BETA, wish), "k:", lw=2.0)
     axes.set_xticks([0.03, 0.1, 0.2, 0.3, 0.6], labels=["0.03", "0.1", "0.2", "0.3", "0.6"])
@@ -244,8 +259,12 @@ def schelleng_picture(arguments: argparse.Namespace) -> None:
             raise ParameterError(f"{string} string: stopped notes are {lowest + 1} to {highest}")
     rate = float(arguments.rate)
     calibration = calibration_for(rate)
-    quantities, intonation = calibration.tuned(Quantities()), Intonation(calibration)
-    stops = [Stop(i, note, quantities, intonation, rate) for i, note in enumerate(arguments.note)]
+    instrument = Style().instrument(rate, calibration)
+    values = instrument.start_values
+    player = prepare_player(instrument.quantities, rate, values, calibration=calibration)[0]
+    stops = [
+        Stop(i, note, instrument.quantities, player, rate) for i, note in enumerate(arguments.note)
+    ]
     jobs = []
     for stop in stops:
         for speed in BOW_SPEEDS:

@@ -25,7 +25,7 @@ from figures import BLUE, RED, save
 from yehu_server.analysis.level import a_weighted_db
 from yehu_server.analysis.pitch import cents, note_name, pitch_hz
 from yehu_server.errors import ScoreError, YehuError
-from yehu_server.playing.calibration import frequency_hz
+from yehu_server.player.calibration import frequency_hz
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.messages import PERCUSSION
 from yehu_server.playing.style import Style
@@ -100,14 +100,14 @@ class Verdict:
 def take(score: Score, options: Options, end_s: float) -> Take:
     """Play a score, up to `end_s` at most, and record what the player aims at."""
     performance = Performance(score, options)
-    performer = performance.performer
+    wishes = performance.wishes
     blocks, starts, aims, marks = [], [], [], []
     frame, end = 0, end_s * options.rate
     for samples in performance.blocks():
         blocks.append(samples)
         starts.append(frame)
-        aims.append(math.nan if performer.pitch is None else performer.pitch)
-        marks.append((performer.notes_played, performer.sounding))
+        aims.append(math.nan if wishes.pitch is None else wishes.pitch)
+        marks.append((wishes.notes_played, wishes.sounding))
         frame += len(samples)
         if frame >= end:
             break

@@ -32,18 +32,17 @@ from yehu_server.files import MAX_LINE_BYTES
 from yehu_server.params.table import find
 from yehu_server.physics import grid, layout
 from yehu_server.physics.quantities import FingerQuantities, read_body
+from yehu_server.player import left_hand, right_hand
 from yehu_server.playing import (
     binds,
     delay,
     learner,
-    left_hand,
     mapping_entries,
     presets,
-    right_hand,
     zones,
 )
 from yehu_server.playing.calibrations import SHIPPED
-from yehu_server.score import capture, gesture
+from yehu_server.score import capture, capture_format, gesture
 from yehu_server.surfaces import layout as panel
 from yehu_server.surfaces import max as max_patch
 from yehu_server.surfaces import stage
@@ -153,7 +152,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
     "docs/capture.md": {
         '"version": {},': (capture.VERSION,),
         "fades within {:g} ms": (1e3 * output.FADE_S,),
-        "above 2^{}": (capture.MOST_FRAMES.bit_length() - 1,),
+        "above 2^{}": (capture_format.MOST_FRAMES.bit_length() - 1,),
         "longer than {} KiB": (MAX_LINE_BYTES // KB,),
         "may last {:g} hours": (REPLAYED.max_duration,),
     },

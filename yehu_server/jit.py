@@ -10,12 +10,14 @@ import errno
 import os
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
+from llvmlite import binding
+from numba import extending, types
 from numba.core import sigutils
 from numba.core.ccallback import CFunc
 from numba.core.compiler import Compiler
@@ -26,7 +28,6 @@ from yehu_server.code_key import key_of
 from yehu_server.errors import YehuError
 
 # NUMBA_DISABLE_JIT=1: what would be compiled runs as plain Python, under a debugger or coverage.
-# The model does (physics/); the audio callback cannot, and says so.
 IS_PLAIN = bool(numba.config.DISABLE_JIT)
 
 P = ParamSpec("P")
@@ -43,10 +44,13 @@ def source_hash() -> str:
     package = Path(__file__).parent
     sources = [
         source
-        for folder in ("physics", "params", "engine")
+        for folder in ("physics", "params", "controls", "player", "engine")
         for source in sorted((package / folder).glob("*.py"))
     ]
-    return key_of([*sources, package / "jit.py", package / "code_cache.py"], numba.__version__)
+    return key_of(
+        [*sources, *(package / f"{name}.py" for name in ("jit", "code_cache", "memory"))],
+        numba.__version__,
+    )
 
 
 def cache_folder() -> Path:
@@ -132,17 +136,56 @@ def compiled_to_share(function: Callable[P, R]) -> Callable[P, R]:
     return _compiled(function)
 
 
-class Native:
-    """A function compiled on its first use, to be called by address, from C or by ctypes."""
+def compiled_exactly(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a function that decides: with Python's arithmetic, to the bit.
 
-    def __init__(self, signature: str, function: Callable[..., Any]) -> None:
+    No sum is reordered and no multiply-add fused, so that a decision doesn't depend on the
+    processor. Constants make no versions of their own.
+    """
+    if IS_PLAIN:
+        return function
+    made = numba.njit(
+        nogil=True,
+        error_model="numpy",
+        fastmath=False,  # said, as a function without the word has its caller's
+        no_cfunc_wrapper=True,
+        _nrt=False,
+    )(function)
+    versions = made.get_call_template
+
+    def one_version(arguments: Any, named: Any) -> Any:
+        return versions([types.unliteral(argument) for argument in arguments], named)
+
+    made.get_call_template = one_version
+    return cast("Callable[P, R]", _cached(made, function))
+
+
+def intrinsic(plain: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:
+    """numba's ``intrinsic``; without the JIT, a plain function instead."""
+    if IS_PLAIN:
+        return lambda _function: plain
+    return cast("Callable[..., Any]", extending.intrinsic)
+
+
+class Native:
+    """A function compiled on its first use, to be called by address, from C or by ctypes.
+
+    Parameters
+    ----------
+    calls : sequence of Native
+        Those that it calls by their `symbol`.
+    """
+
+    def __init__(
+        self, signature: str, function: Callable[..., Any], calls: Sequence[Native] = ()
+    ) -> None:
         self._signature = signature
         self._function = function
+        self._calls = calls
+        self.name = f"yehu_{function.__name__}"
 
     @cached_property
     def _made(self) -> Any:
-        if IS_PLAIN:
-            raise YehuError("NUMBA_DISABLE_JIT: only the model runs uncompiled, not the engine")
         signature = sigutils.normalize_signature(self._signature)
         options = {"nopython": True, "error_model": "numpy", "fastmath": FASTMATH}
         return _cached(CFunc(self._function, signature, {}, options), self._function)
@@ -150,6 +193,8 @@ class Native:
     @cached_property
     def compiled(self) -> Any:
         """numba's object for it, with ``inspect_llvm()``."""
+        for other in self._calls:
+            binding.add_symbol(other.name, other.address)
         self._made.compile()
         return self._made
 
@@ -161,14 +206,35 @@ class Native:
     @cached_property
     def call(self) -> Callable[..., Any]:
         """The function for Python, which runs without the GIL."""
+        if IS_PLAIN:
+            return self._function
         return cast("Callable[..., Any]", self.compiled.ctypes)
 
     @property
+    def symbol(self) -> Any:
+        """The function for other compiled ones, which find it by its name.
+
+        It is compiled apart from them: in a process of its own, where there is one to spare.
+        """
+        if IS_PLAIN:
+            return self._function
+        arguments, returned = sigutils.normalize_signature(self._signature)
+        return types.ExternalFunction(self.name, returned(*arguments))
+
+    @property
     def address(self) -> int:
-        """The function's address, for C."""
+        """The function's address, for C.
+
+        Raises
+        ------
+        YehuError
+            Where nothing is compiled.
+        """
+        if IS_PLAIN:
+            raise YehuError("NUMBA_DISABLE_JIT: plain Python has no address for C")
         return int(self.compiled.address)
 
 
-def native(signature: str) -> Callable[[Callable[..., Any]], Native]:
+def native(signature: str, calls: Sequence[Native] = ()) -> Callable[[Callable[..., Any]], Native]:
     """Compile a function to be called by address; see `Native`."""
-    return lambda function: Native(signature, function)
+    return lambda function: Native(signature, function, calls)

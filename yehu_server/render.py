@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 
 from yehu_server.audio.file import SoundWriter, check_format, sound_file
-from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.files import anything, why
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import Calibration
+from yehu_server.player.calibration import Calibration
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.fingering import RangePolicy
+from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.style import Style
 from yehu_server.score.smf import Score
 
@@ -77,15 +76,15 @@ class Performance:
         calibration = options.calibration or calibration_for(
             float(options.rate), options.quantities, a4=options.style.a4
         )
-        self.instrument = Instrument(float(options.rate), calibration.tuned(options.quantities))
         style = options.style
-        self.performer = style.performer(self.instrument, calibration, options.quantities)
-        self.midi = style.midi(self.performer, _set(options.channels))
+        self.instrument = style.instrument(float(options.rate), calibration, options.quantities)
+        self.wishes = style.wishes(self.instrument)
+        self.midi = style.midi(self.wishes, _set(options.channels))
         if options.gain_db is not None:
-            self.performer.write("/output/gain", options.gain_db, hold=True)
+            self.wishes.write("/output/gain", options.gain_db, hold=True)
             self.instrument.write("/output/gain", options.gain_db, ramp_ms=0.0)
         for address, value in style.settings:
-            self.performer.write(address, value, hold=True)
+            self.wishes.write(address, value, hold=True)
         self.score_frames = self.instrument.frames(score.duration_s * 1e3)
 
     def blocks(self) -> Iterator[Samples]:
@@ -106,7 +105,7 @@ class Performance:
         while event is not None:  # on the very last frame
             self.midi.receive(event.message, frame=position)
             event = next(events, None)
-        self.performer.all_notes_off(frame=position)
+        self.midi.end_all(frame=position)
         yield from self._tail()
 
     def _tail(self) -> Iterator[Samples]:
@@ -170,8 +169,8 @@ def render(
         real_time_factor=duration_s / elapsed,
         peak=file.peak,
         rms=file.rms,
-        notes_played=performance.performer.notes_played,
-        notes_out_of_range=performance.performer.notes_out_of_range,
+        notes_played=performance.wishes.notes_played,
+        notes_out_of_range=performance.wishes.notes_out_of_range,
         policy=options.style.policy,
         unconverged_solves=performance.instrument.unconverged_solves,
         lost_states=performance.instrument.lost_states,

@@ -17,10 +17,9 @@ from yehu_server.audio.file import sound_file
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ScoreError
 from yehu_server.files import anything
-from yehu_server.physics.quantities import Quantities, override
 from yehu_server.score.capture import Capture
 
-BLOCK = 1024  # frames; the ring holds all events that can be applied in one block
+BLOCK = 1024  # frames; the ring holds all wishes that can be fulfilled in one block
 
 
 @dataclass(frozen=True)
@@ -38,13 +37,17 @@ class Replayed:
 
 def blocks(capture: Capture, instrument: Instrument) -> Iterator[Any]:
     """Yield the samples of a capture in blocks [shape=(frames,), float32]."""
-    frames = capture.events["frame"]
+    frames = capture.wishes["frame"]
     borders = merge(range(0, capture.frames, BLOCK), sorted(capture.rests), [capture.frames])
     for start, stop in pairwise(border for border, _ in groupby(borders)):
         if start in capture.rests:
-            instrument.come_to_rest()
-        for event in capture.events[np.searchsorted(frames, start) : np.searchsorted(frames, stop)]:
-            instrument.post(*event.item())
+            if capture.version == 1:  # whose notes went on
+                instrument.come_to_rest()
+            else:
+                instrument.end_all()
+        due = slice(np.searchsorted(frames, start), np.searchsorted(frames, stop))
+        for frame, kind, index, value, other in capture.wishes[due].tolist():
+            instrument.post(kind, frame=frame, index=index, value=value, other=other)
         samples = np.zeros(stop - start, np.float32)
         instrument.process(samples)
         for rest, since in capture.rests.items():
@@ -75,9 +78,7 @@ def replay(
         raise ScoreError(
             f"the capture lasts {hours:.3g} hours, more than {max_duration_h:g}: see --max-duration"
         )
-    first, second = capture.tensions
-    changes = {"string_1": {"T": first}, "string_2": {"T": second}}
-    instrument = Instrument(capture.rate, override(Quantities(), changes))
+    instrument = capture.beginning.instrument()
     start = time.perf_counter()
     rate = round(capture.rate)
     with sound_file(target, rate, format_name, subtype, may_replace) as file:
@@ -91,7 +92,7 @@ def replay(
         real_time_factor=duration_s / (time.perf_counter() - start),
         peak=file.peak,
         rms=file.rms,
-        events=len(capture.events),
+        events=len(capture.wishes),
         lost_states=instrument.lost_states,
         warnings=capture.warnings,
     )

@@ -15,8 +15,8 @@ from yehu_server.audio.devices import AudioDevice
 from yehu_server.control.addresses import shown
 from yehu_server.lines import one_line
 from yehu_server.params.table import PREFIX, find
-from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.mapping import Mapping as ControllerMapping
+from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.render import Summary
 from yehu_server.replay import Replayed
 from yehu_server.simulate import Simulation

@@ -2,7 +2,7 @@
 
 web thread ─> OSC thread ──┐
                            ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
-              MIDI process ┘                              └─> meters, applied events, tape
+              MIDI process ┘                              └─> meters, applied wishes, tape
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ from yehu_server.control.status import StatusSources, read_status
 from yehu_server.control.troubles import Troubles
 from yehu_server.control.web import Sources, WebOptions, WebServer
 from yehu_server.engine import native
-from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import YehuError
 from yehu_server.files import anything, check_free, check_target, nothing, shipped_folder
+from yehu_server.jit import IS_PLAIN
 from yehu_server.lasting import keep_on
-from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.delay import Delay
@@ -86,6 +86,8 @@ class Server:
 
     Raises
     ------
+    YehuError
+        Where nothing is compiled.
     DeviceError
         Where a named device is not there, or the address of OSC or OSCQuery cannot be used.
     OutputError
@@ -98,6 +100,8 @@ class Server:
         said: Callable[[str], None] = log.info,
         progress: Progress | None = None,
     ) -> None:
+        if IS_PLAIN:
+            raise YehuError("NUMBA_DISABLE_JIT: plain Python cannot play live, only render")
         for target in filter(None, (options.record, options.capture)):
             check_target(target)
             check_free(target, anything if options.overwrite else nothing)
@@ -110,13 +114,12 @@ class Server:
             native.warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
             calibration = calibration_for(rate, a4=options.style.a4, progress=progress)
-            tuned, memory = calibration.tuned(Quantities()), self.output.memory.buffer
-            self.instrument = Instrument(rate, tuned, memory=memory)
+            memory = self.output.memory.buffer
+            self.instrument = options.style.instrument(rate, calibration, memory=memory)
             self._delay = Delay(self.instrument, options.output.blocksize, options.jitter_ms)
             self.player = LivePlayer(
                 self.instrument,
                 options.style,
-                calibration=calibration,
                 delay_ms=1e3 * self._delay.frames / rate,
             )
             self.player.presets.all()  # read now, so that listing them is quick later
@@ -130,7 +133,7 @@ class Server:
                 self.web = WebServer(options.http, self.osc, self.handler.clients, sources)
                 undo.callback(self.web.stop)
             if options.capture is not None:
-                self.instrument.report_events()
+                self.instrument.report_wishes()
             for address, value in options.style.settings:
                 self.player.hold(address, value)
             undo.pop_all()
@@ -172,7 +175,6 @@ class Server:
                 self._capture = LiveCapture(
                     self.instrument,
                     self.options.capture,
-                    self.options.style.seed,
                     self._said,
                     overwrite=self.options.overwrite,
                 )

@@ -16,24 +16,25 @@ from typing import Any
 
 import numpy as np
 import pytest
+from moves import Moves
 from wire import Ear, Heard, StillTime, Wire
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control import clients, osc, schedule
 from yehu_server.control.status import STATUS
 from yehu_server.control.web import WebOptions
-from yehu_server.engine.controls import SILENCE
 from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.errors import OutputError
 from yehu_server.params.table import SLOT
+from yehu_server.player.record import SILENT
 from yehu_server.playing import live
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.server import ServeOptions, Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0  # for other threads, on a busy machine
 QUIET_S = 0.15  # silence after which nothing more is expected
-ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: "silence"}
 
 
 def until(condition: Callable[[], Any], what: str, within_s: float = PATIENCE_S) -> Any:
@@ -119,13 +120,15 @@ class Stage:
     def __init__(self, clock: StillTime, block: int = 128) -> None:
         self.clock = clock
         self.block = block
-        self.instrument = Instrument(self.RATE, memory=bytearray(RIG_BYTES))
-        self.instrument.report_events()
+        style = Style()
+        calibration = calibration_for(float(self.RATE))
+        self.instrument = style.instrument(self.RATE, calibration, memory=bytearray(RIG_BYTES))
+        self._moves = Moves(self.instrument)
         self.instrument.frame_at = self._frame_at
         self.pace = 1.0  # of the device, relative to its nominal rate
         self._began = (clock.now, 0)
         self.player = live.LivePlayer(
-            self.instrument, Style(), delay_ms=1e3 * block / self.RATE + 1.0
+            self.instrument, style, delay_ms=1e3 * block / self.RATE + 1.0
         )
         self.player.write("/playing/variation", 0.0, frame=0)
         self.desk = Desk()
@@ -164,10 +167,8 @@ class Stage:
                 out.append(sound)
             self.clock.now += 0.001
             self.handler.tick()
-        self.events += [
-            (int(e["frame"]), ADDRESSES[int(e["index"])], float(e["target"]))
-            for e in self.instrument.applied_events()
-        ]
+        self.events += [move[:3] for move in self._moves.seen()]
+        assert self._moves.are_those_of_the_audio_side()
         return np.concatenate(out) if out else np.zeros(0, np.float32)
 
     def target(self, address: str) -> float:
@@ -333,7 +334,7 @@ class Hall:
         self.handler = self.server.handler
         self.instrument = self.server.instrument
         self.player = self.server.player
-        self.instrument.report_events()
+        self._moves = Moves(self.instrument)
         self._ending = ending
         self.server.start()
         ending.callback(self.end)
@@ -352,15 +353,12 @@ class Hall:
         return stream
 
     def moves(self) -> list[tuple[int, str, float]]:
-        """The events applied since the last call: frame, address, value."""
+        """What was moved since the last call: frame, address, value."""
         self.wait_frames(1)
-        return [
-            (int(e["frame"]), ADDRESSES[int(e["index"])], float(e["target"]))
-            for e in self.instrument.applied_events()
-        ]
+        return [move[:3] for move in self._moves.seen()]
 
     def settle(self) -> list[tuple[int, str, float]]:
-        """Wait until everything decided so far is played; return the events applied."""
+        """Wait until everything decided so far is played; return what was moved."""
         self.wait_frames(2 * self.player.delay + 1024)
         return self.moves()
 
@@ -380,10 +378,12 @@ class Hall:
 
     def is_at_rest(self) -> bool:
         """Whether no note sounds or is held."""
-        performer = self.player._performer
+        performer = self.instrument._rig["player"][0]
         return (
             self.player.pitch is None
-            and not performer._held
+            and not self.player._wishes.held()
+            and performer["held"] == 0
+            and performer["sounding"] == SILENT
             and self.target("/bow/speed") == 0.0
             and self.target("/bow/side") == 0.0
             and self.handler.waiting == 0

@@ -70,24 +70,74 @@ def test_a_bundle_of_the_future_makes_no_other_message_wait(stage, wire):
     arrived = stage.instrument.frame_at(stage.clock.monotonic_ns())
     stage.tell("/bow/position", 0.3)
     stage.tell("/note", 72, 90)
-    assert stage.player.pitch == 72.0
     stage.pass_time(0.05)
+    assert stage.player.pitch == 72.0
     for address in ("/bow/position", "/bow/side"):
         frame = stage.frames(address)[0]
         assert 0 <= frame - arrived <= stage.player.delay + 1
+
+
+# Bundles are handled so long before their time that what arrives then is heard before them.
+
+
+def ahead_of_its_time(stage, wire, *packets: bytes) -> float:
+    """Let the packets of a bundle be handled some milliseconds ahead; return their frame."""
+    due_s = stage.clock.time() + 0.03
+    stage.take(wire.bundle(due_s, *packets))
+    while stage.handler.waiting:
+        stage.pass_time(0.001)
+    return stage.instrument.frame_at(round(1e9 * (due_s - stage.clock.since_1970)))
+
+
+def test_a_note_of_now_waits_for_no_note_that_a_bundle_has_sent_ahead(stage, wire):
+    stage.pass_time(0.05)
+    tagged = ahead_of_its_time(stage, wire, wire.message("/yehu/note", 74, 90))
+    arrived = stage.instrument.frame_at(stage.clock.monotonic_ns())
+    stage.tell("/note", 67, 90)
+    assert tagged - arrived > stage.player.delay + 48
+    stage.pass_time(0.05)
+    first, second = sorted(set(stage.frames("/vibrato/onset")))  # begins anew with each note
+    assert 0 <= first - arrived <= stage.player.delay + 1
+    assert abs(second - tagged) <= stage.RATE / 1000
+    assert stage.player.pitch == 74.0
+    assert stage.late() == 0
+
+
+@pytest.mark.parametrize(
+    ("address", "moved"),
+    [
+        ("/playing/volume", "/output/level"),  # the player's
+        ("/bow/position", "/bow/position"),  # owned
+        ("/body/blend", "/body/blend"),  # the engine's
+    ],
+)
+def test_of_values_of_now_and_of_a_bundle_the_one_of_the_later_frame_stays(
+    stage, wire, address, moved
+):
+    stage.pass_time(0.05)
+    tagged = ahead_of_its_time(stage, wire, wire.message("/yehu" + address, 0.25))
+    arrived = stage.instrument.frame_at(stage.clock.monotonic_ns())
+    stage.tell(address, 0.5)
+    stage.pass_time(0.05)
+    first, second = stage.frames(moved)
+    assert 0 <= first - arrived <= stage.player.delay + 1
+    assert abs(second - tagged) <= stage.RATE / 1000
+    assert stage.target(moved) == (0.25**2 if moved == "/output/level" else 0.25)
 
 
 def test_a_bundle_that_comes_too_late_plays_at_once_and_is_counted(stage, wire):
     stage.pass_time(0.05)
     for lateness_s in (0.0, 0.001, 5.0, 1e9):
         stage.take(wire.bundle(stage.clock.time() - lateness_s, wire.message("/yehu/note", 67, 90)))
-    assert stage.player.pitch == 67.0
     assert stage.handler.counts.late_bundles == 4
     assert stage.handler.waiting == 0
+    stage.pass_time(0.01)
+    assert stage.player.pitch == 67.0
 
 
 def test_a_bundle_for_at_once_is_not_late(stage, wire):
     stage.take(wire.bundle(None, wire.message("/yehu/note", 67, 90)))
+    stage.pass_time(0.01)
     assert stage.player.pitch == 67.0
     assert stage.handler.counts.late_bundles == 0
 

@@ -97,6 +97,7 @@ def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(hall, wire, pat
     listener.tell("/reset")  # whatever was set
     listener.tell("/note", 67, 90)
     listener.sync()
+    hall.settle()
     assert hall.player.pitch == pytest.approx(67.0, abs=0.5)
 
 
@@ -122,6 +123,7 @@ def test_a_stream_of_anything_else_is_survived(house, stream):
     good.sync()
     good.tell("/note", 67, 90)
     good.sync()
+    house.settle()
     assert house.player.pitch == pytest.approx(67.0, abs=0.5)
     good.tell("/panic")
     assert bad.has_ended()

@@ -97,5 +97,6 @@ def test_a_faders_burst_costs_no_note(own_stage, wire):
     own_stage.tell("/note", 67.0, 90.0)
     for step in range(200):
         say(own_stage, wire, "/fader1", step % 128)
+    own_stage.pass_time(0.01)
     assert own_stage.player.pitch is not None
     assert own_stage.handler.counts.errors == 0

@@ -140,6 +140,7 @@ def speaking(port: int, address: str, arguments: str, ends_after_ms: int = 10_00
 def test_pure_data_plays_a_note(hall, tmp_path):
     pd(tmp_path, speaking(hall.ports.port, "/yehu/note", "67 90", 500))
     assert hall.handler.counts.messages == 1
+    hall.settle()
     assert hall.player.pitch == pytest.approx(67.0, abs=0.5)
     assert hall.is_well()
 

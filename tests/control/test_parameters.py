@@ -136,6 +136,54 @@ def test_a_value_is_asked_for_with_or_without_the_prefix(stage, asked):
     assert stage.ask("/get", asked)[0] == ("/yehu/bow/force", [0.75])
 
 
+@pytest.mark.parametrize("played", [False, True], ids=["in silence", "while a note sounds"])
+def test_a_value_that_was_set_is_answered_before_and_after_the_audio_side_has_it(stage, played):
+    for param in TABLE:
+        stage.tell("/reset")
+        if played:
+            stage.tell("/note", 72.0, 90.0)
+        stage.pass_time(0.02)
+        value = f32(param.lo + (param.hi - param.lo) / 3.0)
+        stage.tell(param.address, value)
+        assert stage.player.value(param.address) == value
+        assert values(stage.ask("/get", param.address)) == {"/yehu" + param.address: value}
+        for _ in range(30):  # ms; the audio side takes it up meanwhile
+            if param.address == "/pluck/force" and stage.frames(param.address):
+                break  # the string slips off soon
+            assert stage.player.value(param.address) == value
+            stage.pass_time(0.001)
+        if param.place is Place.ENGINE and param.address != "/pluck/force":
+            assert stage.target(param.address) == value
+
+
+def test_a_bow_drawn_by_hand_is_answered_at_once(stage):
+    stage.tell("/note", 72.0, 90.0)
+    stage.pass_time(0.1)
+    stage.tell("/bow", 0.25, 0.75)
+    drawn = {"/bow/speed": 0.25, "/bow/force": 0.75, "/bow/assist": 0.0}
+    for _ in range(12):  # ms; the audio side takes it up meanwhile
+        assert {address: stage.player.value(address) for address in drawn} == drawn
+        stage.pass_time(0.001)
+    assert {address: stage.target(address) for address in drawn} == drawn
+
+
+def test_newtons_are_answered_with_the_assist_that_they_end(stage):
+    assert stage.player.value("/bow/assist") == 1.0
+    stage.tell("/bow/force", 0.75)
+    assert stage.player.value("/bow/assist") == 0.0
+    stage.pass_time(0.01)
+    assert stage.target("/bow/assist") == 0.0
+
+
+def test_what_the_hands_do_with_a_parameter_that_was_set_is_answered_once_they_do_it(stage):
+    stage.tell("/bow/speed", 0.5)
+    stage.pass_time(0.02)
+    stage.tell("/note", 74.0, 90.0)
+    assert stage.player.value("/bow/speed") == 0.5
+    stage.pass_time(0.02)
+    assert stage.player.value("/bow/speed") == stage.target("/bow/speed") == pytest.approx(0.2)
+
+
 def test_values_are_asked_for_by_pattern(stage):
     heard = stage.ask("/get", "/finger/[1-2]/p*")
     assert {message.address for message in heard} == {

@@ -87,6 +87,7 @@ def test_who_is_not_allowed_hears_nothing_and_does_nothing(make_hall, patience):
     assert client.all() == []
     assert hall.server.status()["osc_refused"] == 4
     assert hall.handler.counts.messages == 0
+    hall.settle()
     assert hall.player.pitch is None
 
 

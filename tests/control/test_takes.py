@@ -87,13 +87,13 @@ def test_a_full_disk_keeps_take_and_capture_as_far_as_they_got(
     patience(lambda: hall.server.takes.names == "", "the disk to be full")
     disk(capture.stat().st_size + 10)
     client.tell("/note", 69, 90)
-    patience(lambda: any("capture ended" in line for line in hall.said), "no room for events")
+    patience(lambda: any("capture ended" in line for line in hall.said), "no room for wishes")
     disk(resource.RLIM_INFINITY)
     hall.end()
     assert not hall.server.kept_all
     assert soundfile.info(take).frames == (100_000 - 58) // 4
     assert capture.read_bytes().endswith(b"]\n")
-    assert len(read_capture(capture).events) > 0
+    assert len(read_capture(capture).wishes) > 0
 
 
 def test_older_takes_are_refused_before_anything_else(make_hall, tmp_path):

@@ -9,9 +9,11 @@ from sound import bow, run
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import ENGINE, SLOT
+from yehu_server.player.rows import ROWS
+from yehu_server.player.wishes import BEGIN, KINDS, RAMP
 
 BAD = (math.nan, math.inf, -math.inf, 1e308, -1e308)
-STAGES = ("state", "controls", "output")
+STAGES = ("state", "controls", "player", "output")
 
 
 def fields(stage: str) -> list[str]:
@@ -63,7 +65,7 @@ def test_no_ramp_leads_out_of_a_parameters_range(instrument, playing, target, ra
     instrument._rig[:] = playing
     start = instrument.frame
     for slot in SLOT.values():
-        instrument.post(start, slot, target, ramp)
+        instrument.post(RAMP, frame=start, index=slot, value=target, other=ramp)
     out = np.zeros(128, np.float32)
     instrument.process(out)
     values = instrument._rig["controls"]["value"][0]
@@ -78,6 +80,23 @@ def test_a_target_that_is_no_number_is_passed_over(instrument, playing):
     instrument._rig[:] = playing
     before = instrument._rig["controls"]["target"].copy()
     for slot in SLOT.values():
-        instrument.post(instrument.frame, slot, math.nan, 100)
+        instrument.post(RAMP, index=slot, value=math.nan, other=100)
     instrument.process(np.zeros(64, np.float32))
     assert np.array_equal(instrument._rig["controls"]["target"], before)
+
+
+@pytest.mark.parametrize("kind", range(len(KINDS)), ids=KINDS)
+@pytest.mark.parametrize("sounds", [False, True], ids=["in silence", "in a note"])
+def test_whatever_is_wished_for_every_sample_is_finite(instrument, playing, kind, sounds):
+    for bad in BAD:
+        instrument._rig[:] = playing
+        if sounds:
+            instrument.post(BEGIN, value=69.0, other=69.0)
+        for index in range(ROWS):
+            instrument.post(kind, index=index, value=bad, other=bad)
+            instrument.post(kind, index=index, value=0.5, other=bad)
+            instrument.post(kind, index=index, value=bad, other=0.0)
+        instrument.post(BEGIN, value=70.0, other=70.0)
+        out = np.full(1024, np.nan, np.float32)
+        instrument.process(out)
+        assert (np.abs(out) <= 1.0).all()  # also refuses NaN

@@ -24,6 +24,7 @@ from yehu_server.engine.telemetry import (
     SHAPE_POINTS,
 )
 from yehu_server.physics.layout import GHOST, STRINGS
+from yehu_server.player.wishes import RAMP
 
 RATE = 44100
 PATIENCE_S = 60.0  # for another thread, on a busy machine
@@ -549,18 +550,19 @@ def test_while_a_block_is_being_told_of_the_one_before_is_read():
 def test_meters_of_a_new_instrument_are_empty():
     meters = Instrument(RATE).meters()
     assert meters["rate"] == RATE
-    for name in set(METERS.names) - {"rate", "loop"}:
+    assert np.isnan(meters["pitch"])  # no note sounds
+    for name in set(METERS.names) - {"rate", "loop", "pitch"}:
         assert not np.asarray(meters[name]).any(), name
     loop = {name: meters["loop"][name] for name in METERS["loop"].names}
     assert loop == {"due_ns": 0, "error_ns": 0, "ns_per_frame": 1e9 / RATE}
 
 
-def test_lost_states_and_events_are_told():
+def test_lost_states_and_wishes_are_told():
     instrument = bowed()
     run(instrument, 4096)
     instrument._rig["state"]["motion"]["u"] = np.nan
-    instrument.post(0, 0, 0.1, 0)  # for a frame that has passed
-    instrument.post(10**9, 0, 0.1, 0)
+    instrument.post(RAMP, frame=0, value=0.1)  # for a frame that has passed
+    instrument.post(RAMP, frame=10**9, value=0.1)
     run(instrument, 64)
     meters = instrument.meters()
     assert meters["lost"] == instrument.lost_states == 1

@@ -27,7 +27,7 @@ def watched() -> Iterator[None]:
     package = ROOT / "yehu_server"
     compiled = [
         f"yehu_server.{folder}.{file.stem}"
-        for folder in ("physics", "engine")
+        for folder in ("physics", "controls", "player", "engine")
         for file in (package / folder).glob("*.py")
         if file.stem != "quantities"  # reads body and instrument files
     ]

@@ -1,13 +1,20 @@
-"""An instrument that only checks its events, and a calibration for it."""
+"""An instrument that fulfils its wishes and makes no sound, and a calibration for it."""
 
 from __future__ import annotations
 
+import heapq
 import math
 
-from yehu_server.params.spec import Place
-from yehu_server.params.table import TABLE, find
+import numpy as np
+
+from yehu_server.controls.record import prepare_controls
+from yehu_server.controls.slots import HIGHEST, LOWEST
+from yehu_server.params.table import SLOT, TABLE
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.player.notes import told_pitch
+from yehu_server.player.record import prepare_player
+from yehu_server.player.wishes import KINDS, fulfil
 from yehu_server.playing.live import LivePlayer
 
 # Near a measured calibration, which takes seconds to make.
@@ -17,17 +24,32 @@ CALIBRATION = Calibration(
     tuple(tuple((20.0,) * len(SPEEDS) for _ in pitches) for pitches in PITCHES),
     tuple(tuple((-30.0,) * len(SPEEDS) for _ in (None, *pitches)) for pitches in PITCHES),
 )
+QUANTITIES = CALIBRATION.tuned(Quantities())
+DEFAULTS = {param.address: param.default for param in TABLE}
+RATE = 48000.0
+PLAYER = prepare_player(QUANTITIES, RATE, DEFAULTS, calibration=CALIBRATION)
+CONTROLS = prepare_controls(QUANTITIES, RATE, DEFAULTS)
+_ = fulfil.call, told_pitch(PLAYER[0])  # compile now, not within an input's bounds
+# Of the player's record, what may not be a number: where nothing was sent yet.
+MAY_BE_NAN = {"sent"}
 
 
 class Instrument:
     """Stands in for ``engine.instrument.Instrument``; `now_s` is its time."""
 
-    rate = 48000.0
+    rate = RATE
+    seed = 0
 
     def __init__(self) -> None:
-        self.quantities = Quantities()
         self.now_s = 0.0
-        self.values: dict[str, float] = {}
+        self.posted = 0
+        self.rests: list[tuple[int, int]] = []
+        self._player, self._controls = PLAYER.copy(), CONTROLS.copy()
+        self._waiting: list[tuple[int, int, int, int, float, float]] = []
+
+    @property
+    def frame(self) -> int:
+        return int(self.now_s * self.rate)
 
     def frames(self, ms: float) -> int:
         return round(ms * 1e-3 * self.rate)
@@ -35,19 +57,50 @@ class Instrument:
     def frame_at(self, _time_ns: int) -> float:
         return self.now_s * self.rate
 
-    def write(
-        self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
-    ) -> float:
-        param = find(address)
-        assert param.place is Place.ENGINE, address
-        assert math.isfinite(value), address
-        assert ramp_ms is None or 0.0 <= ramp_ms < math.inf, address
+    def post(
+        self,
+        kind: int,
+        *,
+        frame: int | None = None,
+        index: int = 0,
+        value: float = 0.0,
+        other: float = 0.0,
+    ) -> bool:
+        assert 0 <= kind < len(KINDS)
+        assert isinstance(index, (int, np.integer))
         assert frame is None or isinstance(frame, int)
-        self.values[address] = param.accept(value)
-        return self.values[address]
+        assert math.isfinite(value), KINDS[kind]
+        assert math.isfinite(other), KINDS[kind]
+        at = self.frame if frame is None else frame
+        heapq.heappush(self._waiting, (at, self.posted, kind, int(index), value, other))
+        self.posted += 1
+        return True
 
-    def silence(self, *, frame: int | None = None) -> None:
-        assert frame is None or isinstance(frame, int)
+    def play(self) -> None:
+        """Fulfil what is due, by frame and then as posted."""
+        while self._waiting and self._waiting[0][0] <= self.frame:
+            self.fulfil(heapq.heappop(self._waiting)[2:])
+
+    def fulfil(self, wish: tuple[int, int, float, float]) -> None:
+        """Fulfil a wish at this frame; every parameter stays within its range."""
+        fulfil.call(self._player.ctypes.data, self._controls.ctypes.data, self.frame, *wish)
+        target = self._controls["target"][0]
+        assert ((target >= LOWEST) & (target <= HIGHEST)).all(), wish  # also refuses NaN
+
+    def check_player(self) -> None:
+        """All that the player decides by is a number."""
+        for name in set(self._player.dtype.names) - MAY_BE_NAN:
+            assert np.isfinite(self._player[name]).all(), name
+
+    def meters(self) -> dict[str, float]:
+        self.play()
+        pitch = told_pitch(self._player[0])
+        drained = self.posted - len(self._waiting)
+        return {"pitch": pitch, "drained": drained, "next_frame": self.frame + 1}
+
+    def target(self, address: str) -> float:
+        self.play()
+        return float(self._controls["target"][0, SLOT[address]])
 
 
 def check_values(player: LivePlayer) -> None:
@@ -55,3 +108,12 @@ def check_values(player: LivePlayer) -> None:
     values = player.values()
     for param in TABLE:
         assert param.lo <= values[param.address] <= param.hi, param.address
+
+
+def check_silence(player: LivePlayer, instrument: Instrument) -> None:
+    """After a panic and a second, no note sounds and the bow is lifted and at rest."""
+    instrument.now_s += 1.0
+    assert player.pitch is None
+    assert not instrument._player["held"][0]
+    assert instrument.target("/bow/speed") == instrument.target("/bow/side") == 0.0
+    instrument.check_player()

@@ -21,7 +21,8 @@ from yehu_server.control.packets import unpack
 from yehu_server.control.ports import MidiOptions
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.telemetry import BINS_PER_DEADLINE
-from yehu_server.params.table import SLOT
+from yehu_server.player.rows import ROW
+from yehu_server.player.wishes import WRITE
 from yehu_server.server import ServeOptions, Server
 
 RATE = 48000
@@ -41,7 +42,7 @@ def server_of(blocksize: int) -> Iterator[Server]:
         ),
         lambda _line: None,
     )
-    server.instrument.report_events()
+    server.instrument.report_wishes()
     server.start()
     try:
         yield server
@@ -109,7 +110,7 @@ def test_under_load_the_callback_keeps_its_deadlines(jackd, until):
             start = time.monotonic()
             while time.monotonic() < start + 4.0:
                 time.sleep(0.1)
-                server.instrument.applied_events()
+                server.instrument.applied_wishes()
             seconds = time.monotonic() - start
             after = {"idle": idle.meters(), "playing": server.instrument.meters()}
             heard = server.midi.received - received[0], server.osc.traffic.packets - received[1]
@@ -137,7 +138,6 @@ def test_under_load_the_callback_keeps_its_deadlines(jackd, until):
 def test_an_event_is_heard_one_block_and_a_millisecond_after_its_arrival(jackd, until):
     jackd.start(64)
     shortest = math.ceil(64 + 0.001 * RATE)
-    slot = SLOT["/bow/position"]
     arrived: dict[float, tuple[float, int]] = {}  # the frame, and the delay at that time
     with server_of(64) as server:
         instrument, handle = server.instrument, server.handler.handle
@@ -159,9 +159,9 @@ def test_an_event_is_heard_one_block_and_a_millisecond_after_its_arrival(jackd, 
         try:
             while client.poll() is None:
                 time.sleep(0.05)
-                for event in instrument.applied_events():
-                    if event["index"] == slot:
-                        applied[np.float32(event["target"]).item()] = int(event["frame"])
+                for wish in instrument.applied_wishes():
+                    if (wish["kind"], wish["index"]) == (WRITE, ROW["/bow/position"]):
+                        applied[np.float32(wish["value"]).item()] = int(wish["frame"])
         finally:
             client.wait()
     heard = [

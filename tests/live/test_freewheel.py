@@ -10,19 +10,24 @@ import pytest
 
 from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.engine.instrument import Instrument
+from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Performer
+from yehu_server.playing.style import Style
 
 RATE = 48000
 FIRST = 20 * RATE  # by then the device has taken over
 FRAMES = 4 * RATE
 BLOCKS = [64, 100, 128, 333, 1024]
+STYLE = Style(mapping=load("keyboard"), seed=3)
+
+
+def instrument_of(memory: object = None) -> Instrument:
+    return STYLE.instrument(float(RATE), calibration_for(float(RATE)), memory=memory)
 
 
 def play(instrument: Instrument) -> None:
     """Schedule notes and controllers from frame FIRST on."""
-    midi = MidiPlayer(Performer(instrument, seed=3), load("keyboard"))
+    midi = STYLE.midi(STYLE.wishes(instrument))
     score = [
         (0, mido.Message("note_on", note=67, velocity=90)),
         (9001, mido.Message("control_change", control=1, value=110)),
@@ -46,7 +51,7 @@ def play(instrument: Instrument) -> None:
 
 @pytest.fixture(scope="module")
 def offline() -> np.ndarray:
-    instrument = Instrument(RATE)
+    instrument = instrument_of()
     play(instrument)
     out = np.zeros(FIRST + FRAMES, np.float32)
     for start in range(0, len(out), 4096):
@@ -65,8 +70,8 @@ def test_live_and_offline_give_the_same_samples(offline, block, jackd, recorder)
     jackd.start(128)
     output = Output(OutputOptions(device="system, JACK", blocksize=block), lambda _line: None)
     try:
-        instrument = Instrument(output.find(), memory=output.memory.buffer)
-        assert instrument.rate == RATE
+        assert output.find() == RATE
+        instrument = instrument_of(output.memory.buffer)
         play(instrument)
         output.begin(instrument)
         listener = recorder().connected()

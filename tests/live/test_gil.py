@@ -14,10 +14,10 @@ import numpy as np
 from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.engine.instrument import Instrument
 from yehu_server.replay import blocks
-from yehu_server.score.capture import CaptureWriter, read_capture
+from yehu_server.score.capture import read_capture
+from yehu_server.score.capture_writer import CaptureWriter
 
 RATE, BLOCK = 48000, 128
-TENSIONS = (49.5, 64.1)  # N
 A_SECOND_US = 1_000_000
 
 
@@ -54,13 +54,13 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     output = Output(OutputOptions(device="system, JACK", blocksize=BLOCK), lambda _line: None)
     try:
         instrument = Instrument(output.find(), memory=output.memory.buffer)
-        instrument.report_events()
-        capture = CaptureWriter(tmp_path / "take.jsonl", rate=RATE, seed=0, tensions=TENSIONS)
+        instrument.report_wishes()
+        capture = CaptureWriter(tmp_path / "take.jsonl", instrument=instrument)
         output.begin(instrument)
         listener = recorder(1).connected()
         bow(instrument)
         time.sleep(0.1)
-        capture.events(instrument.applied_events())
+        capture.wishes(instrument.applied_wishes())
 
         listener.forget()
         time.sleep(1.0)
@@ -76,9 +76,8 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     assert after["frame"] - before["frame"] > 0.7 * RATE
     assert after["callbacks"] - before["callbacks"] > 0.7 * RATE / BLOCK
 
-    replayed = np.concatenate(
-        list(blocks(read_capture(tmp_path / "take.jsonl"), Instrument(float(RATE))))
-    )
+    captured = read_capture(tmp_path / "take.jsonl")
+    replayed = np.concatenate(list(blocks(captured, captured.beginning.instrument())))
     np.testing.assert_array_equal(replayed, tape[:end])
 
     found = places(recording.samples[0], tape)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -19,12 +21,16 @@ from yehu_server.audio.output import Output, OutputOptions, SharedMemory
 from yehu_server.child import Child
 from yehu_server.cli import main
 from yehu_server.engine.instrument import Instrument
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.style import Style
+from yehu_server.playing.wishes import Key, Wishes
 from yehu_server.replay import blocks
-from yehu_server.score.capture import CaptureWriter, read_capture
+from yehu_server.score.capture import read_capture
+from yehu_server.score.capture_writer import CaptureWriter
+from yehu_server.server import ServeOptions, Server
 
 DEVICE = "system, JACK Audio Connection Kit"
 SOUNDS = 1e-3
-TENSIONS = (49.5, 64.1)  # N
 
 
 def peak(samples: np.ndarray) -> float:
@@ -157,7 +163,8 @@ def test_an_audio_process_that_crashes_is_replaced(jackd, serve, tmp_path):
     os.kill(audio, signal.SIGKILL)
     server.said(f"playing on {DEVICE}", 10.0, said)
     after = wait_for_frames(osc, 4_000)
-    assert after["note"] == before["note"]
+    # It is killed between two blocks or, more rarely, in one, which ends all notes.
+    assert after["note"] in (before["note"], -1.0)
     assert server.end() == 0
 
 
@@ -181,6 +188,121 @@ def test_a_server_that_starts_before_its_audio_server_takes_it_up_when_it_comes(
 
 # ---------------------------------------------------------------- killed while it played
 
+
+class Stopped:
+    """A server that plays G4 on JACK, and its audio process, stopped in a block or between two."""
+
+    def __init__(self, server: Server, until: Callable, *, in_block: bool) -> None:
+        self.server, self.player = server, server.player
+        self.instrument = server.instrument
+        self._until = until
+        assert server.output.state.device == DEVICE
+        self.player.note_on(67.0, 90.0, frame=self.player.frame_of())
+        until(lambda: self.player.pitch == 67.0, 5.0, "the note")
+        self._audio = server.output._child._process.pid
+        until(lambda: self._stop(in_block=in_block), 60.0, "the audio process to be there")
+
+    def _stop(self, *, in_block: bool) -> bool:
+        """Stop the process; let it go on if it is elsewhere."""
+        os.kill(self._audio, signal.SIGSTOP)
+        threads = Path(f"/proc/{self._audio}/task")
+        self._until(
+            lambda: all(") T " in (one / "stat").read_text() for one in threads.iterdir()),
+            2.0,
+            "all threads to be stopped",
+        )
+        if bool(self.instrument._rig["meters"]["running"][0]) == in_block:
+            return True
+        os.kill(self._audio, signal.SIGCONT)
+        time.sleep(0.0037)
+        return False
+
+    def kill(self) -> None:
+        """Kill the process, and wait until another one plays."""
+        os.kill(self._audio, signal.SIGKILL)
+        output = self.server.output
+        self._until(lambda: output.state.losses == 1, 5.0, "the loss")
+        self._until(lambda: output.state.device == DEVICE, 15.0, "the device")
+        self.wait(2000)
+
+    def wait(self, frames: int) -> None:
+        end = self.instrument.frame + frames
+        self._until(lambda: self.instrument.frame >= end, 5.0, "frames to be played")
+
+    @property
+    def keys(self) -> tuple[int, int]:
+        """Number of keys that are held, by the audio side and by the server."""
+        held = int(self.instrument._rig["player"]["held"][0])
+        return held, len(self.player._wishes.held())
+
+
+@pytest.fixture
+def stopped(jackd, until) -> Iterator[Callable[..., Stopped]]:
+    jackd.start()
+    interval = sys.getswitchinterval()
+    with contextlib.ExitStack() as ending:
+        ending.callback(sys.setswitchinterval, interval)
+
+        def make(*, in_block: bool) -> Stopped:
+            options = ServeOptions(
+                output=OutputOptions(device="system, JACK"),
+                midi=None,
+                osc=("127.0.0.1", 0),
+                style=Style(settings=(("/playing/variation", 0.0),)),
+            )
+            server = Server(options, lambda _line: None)
+            ending.callback(server.stop)
+            server.start()
+            return Stopped(server, until, in_block=in_block)
+
+        yield make
+
+
+def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stopped, until):
+    it = stopped(in_block=True)
+    assert it.keys == (1, 1)
+    it.kill()
+    (gap,) = it.instrument.rests
+    assert it.keys == (0, 0)
+    assert it.player.pitch is None
+    assert it.player.value("/bow/speed") == it.player.value("/bow/side") == 0.0
+    assert not it.instrument.taped(gap[0])[1].any()
+    it.player.note_off(67.0, frame=it.player.frame_of())  # let go later
+    it.wait(4800)
+    assert not it.instrument.taped(gap[0])[1].any()
+    it.player.note_on(69.0, 90.0, frame=it.player.frame_of())
+    until(lambda: it.player.pitch == 69.0, 5.0, "a new note")
+    it.wait(9600)
+    assert peak(it.instrument.taped(it.instrument.frame - 4800)[1]) > SOUNDS
+    assert it.keys == (1, 1)
+    it.player.note_off(69.0, frame=it.player.frame_of())
+    until(lambda: it.player.pitch is None, 5.0, "its end")
+    assert it.keys == (0, 0)
+
+
+def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped, until):
+    it = stopped(in_block=False)
+    it.kill()
+    assert it.instrument.rests == []
+    assert it.player.pitch == 67.0
+    assert it.keys == (1, 1)
+    assert peak(it.instrument.taped(it.instrument.frame - 1000)[1]) > SOUNDS
+    it.player.note_off(67.0, frame=it.player.frame_of())
+    until(lambda: it.player.pitch is None, 5.0, "its end")
+    assert it.keys == (0, 0)
+
+
+@pytest.mark.parametrize("end", ["note_off", "panic"])
+def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopped, until, end):
+    it = stopped(in_block=True)
+    it.player.note_on(72.0, 90.0, frame=it.player.frame_of())
+    it.kill()
+    words = (72.0,) if end == "note_off" else ()
+    getattr(it.player, end)(*words, frame=it.player.frame_of())
+    until(lambda: it.keys == (0, 0), 5.0, "the key to be let go")
+    until(lambda: it.player.pitch is None, 5.0, "its end")
+
+
 PLAYS_ON = """
 import mmap, sys
 import numpy as np
@@ -195,7 +317,8 @@ while True:
 """
 
 
-def bow(instrument: Instrument) -> None:
+def bow(instrument: Instrument, _wishes: Wishes) -> None:
+    """Move the parameters of the engine."""
     frame = instrument.frame + 100
     instrument.write("/finger/1/position", 0.1, frame=frame, ramp_ms=0.0)
     instrument.write("/finger/1/press", 1.5, frame=frame)
@@ -203,14 +326,26 @@ def bow(instrument: Instrument) -> None:
     instrument.write("/bow/speed", 0.2, frame=frame)
 
 
-def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path):
+def finger(instrument: Instrument, wishes: Wishes) -> None:
+    """Play two notes, each varied in its own way; the second is held until the sound dies."""
+    frame = instrument.frame + 100
+    wishes.note_on(Key(0, 67), {"/playing/pressure": 0.5}, frame=frame)
+    wishes.write("/playing/bend", 0.3, frame=frame + 500)
+    wishes.note_on(Key(0, 74), frame=frame + 2000)
+    wishes.note_off(Key(0, 67), frame=frame + 3000)
+
+
+@pytest.mark.parametrize("play", [bow, finger])
+def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path, play):
     memory = SharedMemory()
-    live = Instrument(48000.0, memory=memory.buffer)
-    live.report_events()
-    capture = CaptureWriter(tmp_path / "take.jsonl", rate=live.rate, seed=0, tensions=TENSIONS)
+    style = Style(seed=3)
+    live = style.instrument(48000.0, calibration_for(48000.0), memory=memory.buffer)
+    wishes = style.wishes(live)
+    live.report_wishes()
+    capture = CaptureWriter(tmp_path / "take.jsonl", instrument=live)
     recorded = np.zeros(0, np.float32)
     for _ in range(3):
-        bow(live)
+        play(live, wishes)
         audio = subprocess.Popen(
             [sys.executable, "-c", PLAYS_ON, str(memory.descriptor)],
             stdout=subprocess.PIPE,
@@ -221,18 +356,20 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
         audio.kill()
         audio.communicate()
         live.recover()
-        capture.events(live.applied_events())
+        capture.wishes(live.applied_wishes())
         begin, samples = live.taped(len(recorded))
         assert begin == len(recorded)
         recorded = np.concatenate([recorded, samples])
-    bow(live)
+    play(live, wishes)
     live.process(np.zeros(9600, np.float32))
-    capture.events(live.applied_events())
+    capture.wishes(live.applied_wishes())
     for since, frame in live.rests:
         capture.note("rest", frame, since=since)
     capture.close(live.frame)
     recorded = np.concatenate([recorded, live.taped(len(recorded))[1]])
-    again = list(blocks(read_capture(tmp_path / "take.jsonl"), Instrument(live.rate)))
+    assert peak(recorded) > SOUNDS
+    captured = read_capture(tmp_path / "take.jsonl")
+    again = list(blocks(captured, captured.beginning.instrument()))
     np.testing.assert_array_equal(np.concatenate(again), recorded)
 
 

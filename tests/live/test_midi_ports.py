@@ -12,12 +12,12 @@ from types import SimpleNamespace
 
 import pytest
 import rtmidi
+from moves import Moves
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control.midi_names import is_wanted, stable_names
 from yehu_server.control.midi_process import Inputs
 from yehu_server.control.ports import MidiOptions, MidiPorts
-from yehu_server.params.table import ENGINE
 from yehu_server.playing.style import Style
 from yehu_server.server import ServeOptions, Server
 
@@ -97,7 +97,7 @@ class Program:
 
 
 class Witness:
-    """A server on the silent clock that hears MIDI; its messages and applied events."""
+    """A server on the silent clock that hears MIDI; its messages, and what is moved."""
 
     def __init__(self, until: Callable, **midi: object) -> None:
         self._until = until
@@ -109,7 +109,7 @@ class Witness:
             style=Style(settings=(("/playing/variation", 0.0),)),
         )
         self.server = Server(options, lambda line: self.said.append((time.monotonic(), line)))
-        self.server.instrument.report_events()
+        self._moves = Moves(self.server.instrument)
         self.server.start()
         self.player = self.server.player
 
@@ -126,18 +126,16 @@ class Witness:
 
     def forget(self) -> None:
         self.said.clear()
-        self.server.instrument.applied_events()
+        self._moves.seen()
 
     def applied(self) -> dict[str, tuple[int, float, int]]:
-        """Frame, target and ramp of the last event of each parameter."""
+        """Frame, target and ramp of the last move of each parameter."""
         time.sleep(0.05)
-        events = self.server.instrument.applied_events()
-        addresses = [param.address for param in ENGINE]
-        return {
-            addresses[int(e["index"])]: (int(e["frame"]), float(e["target"]), int(e["ramp"]))
-            for e in events
-            if 0 <= e["index"] < len(addresses)
-        }
+        return {move.address: (move.frame, move.target, move.ramp) for move in self._moves.seen()}
+
+    def comes_to(self, pitch: float | None) -> None:
+        """Wait until what is posted is played."""
+        self._until(lambda: self.player.pitch == pitch, 1.0, f"the pitch to be {pitch}")
 
     def plays(self, pitch: float | None, program: Program, order: str) -> None:
         """Send until it plays: on a busy machine JACK loses messages."""
@@ -254,7 +252,7 @@ def test_a_port_that_vanishes_takes_its_notes_with_it(keys):
     heard.forget()
     keyboard.tell("close keyboard")
     gone = heard.hears("MIDI: keyboard:out is gone; its notes are ended")
-    assert heard.player.pitch is None
+    heard.comes_to(None)
     frame, target, ramp = heard.applied()["/bow/speed"]
     assert target == 0.0
     now = heard.server.instrument.frame_at(time.monotonic_ns())
@@ -295,7 +293,7 @@ def test_a_program_that_dies_takes_its_notes_with_it_and_no_other_ones(keys, jac
     finally:
         other.kill()
     heard.hears("MIDI: pads:out is gone")
-    assert heard.player.pitch == 69.0
+    heard.comes_to(69.0)
     assert heard.server.midi.connected == ["keyboard:out"]
 
 
@@ -416,8 +414,8 @@ def test_whatever_is_played_leaves_no_note(listening):
     heard.forget()
     chance = random.Random(8)
     hear_noise(heard.server.midi, lambda: [*noise(chance), 0, 0][:3])
-    assert heard.player.pitch is None
     assert heard.applied()["/bow/side"][1] == 0.0
+    assert heard.player.pitch is None
 
 
 def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listening):
@@ -425,7 +423,7 @@ def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listenin
     chance = random.Random(8)
     hear_noise(heard.server.midi, lambda: [chance.randrange(256)] * chance.randrange(4))
     hear_noise(heard.server.midi, lambda: noise(chance))
-    assert heard.player.pitch is None
+    heard.comes_to(None)
     assert heard.server.midi.malformed > 0
 
 
@@ -616,7 +614,7 @@ def test_without_a_midi_system_it_is_useful_and_one_that_comes_is_found(
     osc = server.osc()
     server.said("MIDI: none")
     osc.send("/note", 67, 90)
-    assert osc.status()["note"] > 66.0
+    until(lambda: osc.status()["note"] > 66.0, 2.0, "OSC to play")
     jackd.restart()
     sender.tell("open keyboard out")
     server.said("MIDI: keyboard:out is connected", 10.0)

@@ -18,6 +18,8 @@ import soundfile
 from commands import COMMAND
 
 from yehu_server.cli import main
+from yehu_server.replay import blocks
+from yehu_server.score.capture import read_capture
 
 ROOT = Path(__file__).resolve().parents[2]
 RATE = 48000
@@ -133,9 +135,18 @@ def test_however_it_ends_notes_are_ended_and_files_are_whole(number, jackd, serv
     assert np.abs(played[-round(0.005 * RATE) :]).max() < 0.5 * loudest  # it was ending
     lines = [json.loads(line) for line in (tmp_path / "take.jsonl").read_text().splitlines()]
     assert lines[-1] == {"end": len(played)}
-    last = {line[1]: line[2] for line in lines if isinstance(line, list)}
-    assert last["/bow/speed"] == 0.0
-    assert last["/bow/side"] == 0.0
+    keys = {
+        kind: [line[2:4] for line in lines if isinstance(line, list) and line[1] == kind]
+        for kind in ("begin", "end")
+    }
+    assert [key for _, key in keys["begin"]] == [69.0, 72.0]
+    assert sorted(keys["end"]) == sorted(keys["begin"])
+    capture = read_capture(tmp_path / "take.jsonl")
+    instrument = capture.beginning.instrument()
+    for _ in blocks(capture, instrument):
+        pass
+    assert instrument.target("/bow/speed") == instrument.target("/bow/side") == 0.0
+    assert instrument._rig["player"]["held"] == 0
     np.testing.assert_array_equal(replayed(tmp_path), played)
 
 

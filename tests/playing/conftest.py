@@ -1,100 +1,14 @@
-"""An instrument that only records its events, a simple neck, and a keyboard to play on."""
+"""A player whose hands are watched, on an ideal instrument, and a keyboard to play on."""
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
-
 import mido
 import pytest
+from hands import Checked, Watched, ideal
 
-from yehu_server.params.spec import Curve, Place
-from yehu_server.params.table import TABLE
+from yehu_server.params.spec import Curve
 from yehu_server.playing.mapping import Bind, Mapping
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Performer
-
-ENGINE = {param.address for param in TABLE if param.place is Place.ENGINE}
-FINGERS = (1, 2, 3, 4)
-
-
-class Move(NamedTuple):
-    """One call of an instrument's `write`."""
-
-    address: str
-    value: float
-    frame: int | None
-    ramp_ms: float | None
-
-
-class Listener:
-    """Stands in for the instrument; records the events it gets."""
-
-    def __init__(self) -> None:
-        self.moves: list[Move] = []
-        self.silenced: list[int | None] = []
-
-    def write(
-        self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
-    ) -> float:
-        assert address in ENGINE
-        assert math.isfinite(value)
-        self.moves.append(Move(address, value, frame, ramp_ms))
-        return value
-
-    def silence(self, *, frame: int | None = None) -> None:
-        self.silenced.append(frame)
-
-    def of(self, address: str) -> list[Move]:
-        return [move for move in self.moves if move.address == address]
-
-    def __getitem__(self, address: str) -> float:
-        """The last target of a parameter."""
-        return self.of(address)[-1].value
-
-    def where(self) -> tuple[str, float | None]:
-        """The bowed string, and the semitones above it of the finger that stops it, if any."""
-        string = {1.0: "F", -1.0: "C", 0.0: "none"}[self["/bow/side"]]
-        if self.press == 0.0:
-            return string, None
-        return string, round(self.place * 100.0, 6)
-
-    @property
-    def finger(self) -> int | None:
-        """The finger that is down."""
-        down = [
-            number
-            for number in FINGERS
-            if (moves := self.of(f"/finger/{number}/press")) and moves[-1].value > 0.0
-        ]
-        assert len(down) <= 1
-        return down[0] if down else None
-
-    @property
-    def press(self) -> float:
-        """Press of the finger that is down (N)."""
-        return 0.0 if self.finger is None else self[f"/finger/{self.finger}/press"]
-
-    @property
-    def place(self) -> float:
-        """Place of the finger that is down (m)."""
-        return self[f"/finger/{self.finger}/position"]
-
-
-class Ruler:
-    """A neck with one centimetre per semitone on both strings."""
-
-    OPEN = (65.0, 72.0)
-
-    def position(self, string: int, pitch: float, speed: float = 0.2) -> float:
-        assert 0.0 < speed < 2.0
-        return 0.01 * (pitch - self.OPEN[string])
-
-    def balance_db(self, string: int, pitch: float, speed: float) -> float:
-        """C5 and above are 6 dB too loud."""
-        assert string in (0, 1)
-        assert 0.0 < speed < 2.0
-        return -6.0 if pitch >= 72.0 else 0.0
 
 
 class Midi:
@@ -127,27 +41,16 @@ class Midi:
 
 
 @pytest.fixture
-def listener_type() -> type[Listener]:
-    """The class, for tests that need several."""
-    return Listener
+def listener() -> Watched:
+    return Watched(calibration=ideal())
 
 
 @pytest.fixture
-def listener() -> Listener:
-    return Listener()
-
-
-@pytest.fixture
-def ruler() -> Ruler:
-    return Ruler()
-
-
-@pytest.fixture
-def player(listener, ruler) -> Performer:
+def player(listener) -> Checked:
     """A player without random variation."""
-    performer = Performer(listener, ruler)
-    performer.write("/playing/variation", 0.0)
-    return performer
+    wishes = Checked(listener)
+    wishes.write("/playing/variation", 0.0)
+    return wishes
 
 
 @pytest.fixture

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from hands import Checked
 
-from yehu_server.playing.performer import Key, Performer
+from yehu_server.playing.wishes import Key
 
 
 def key(note: float) -> Key:
@@ -131,9 +132,9 @@ def test_a_bowed_note_becomes_a_plucked_one(player, listener):
 # ---------------------------------------------------------------- tunings
 
 
-def test_a_tuning_says_where_keys_are(listener, ruler):
+def test_a_tuning_says_where_keys_are(listener):
     quarter_flat = {75.0: 74.5, 76.0: None}
-    player = Performer(listener, ruler, tuning=lambda note: quarter_flat.get(note, note))
+    player = Checked(listener, tuning=lambda note: quarter_flat.get(note, note))
     player.write("/playing/variation", 0.0)
     player.note_on(key(75.0))
     assert listener.where() == ("C", 2.5)
@@ -144,15 +145,15 @@ def test_a_tuning_says_where_keys_are(listener, ruler):
 
 
 @pytest.mark.parametrize(("tuned", "played"), [(64.9999, ("F", None)), (64.6, ("F", None))])
-def test_a_tuning_a_little_below_the_open_string_is_the_open_string(listener, ruler, tuned, played):
-    player = Performer(listener, ruler, tuning=lambda _note: tuned)
+def test_a_tuning_a_little_below_the_open_string_is_the_open_string(listener, tuned, played):
+    player = Checked(listener, tuning=lambda _note: tuned)
     player.note_on(key(65))
     assert listener.where() == played
     assert player.notes_out_of_range == 0
 
 
-def test_a_tuning_far_below_is_moved_by_octaves(listener, ruler):
-    player = Performer(listener, ruler, tuning=lambda note: note - 0.5)
+def test_a_tuning_far_below_is_moved_by_octaves(listener):
+    player = Checked(listener, tuning=lambda note: note - 0.5)
     player.write("/playing/variation", 0.0)
     player.note_on(key(65))
     assert listener.where() == ("C", 4.5)

@@ -8,24 +8,20 @@ from dataclasses import replace
 import mido
 import numpy as np
 import pytest
+from hands import Watched
 from pitch import cents, hertz, pitch_of
 from sound import run, run_for
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
+from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
+from yehu_server.player.intonation import position_of
 from yehu_server.playing import calibrations
-from yehu_server.playing.calibration import (
-    OPEN_NOTES,
-    PITCHES,
-    SPEEDS,
-    Calibration,
-    calibration_key,
-)
+from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.calibrations import SHIPPED, calibration_for
-from yehu_server.playing.intonation import Intonation
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Performer
+from yehu_server.playing.wishes import Wishes
 
 RATES = (44100.0, 48000.0, 96000.0)
 
@@ -46,12 +42,19 @@ def test_a_calibration_is_of_its_rate_its_instrument_and_its_pitch():
     assert len(keys) == 12
 
 
+def calibrated_player(calibration: Calibration, quantities: Quantities | None = None) -> np.void:
+    """The record of a player who knows a calibration."""
+    instrument = Watched(quantities=quantities, calibration=calibration)
+    return instrument._rig["player"][0]
+
+
 def test_positions_go_up_with_the_pitch_and_are_even_between_the_notes():
-    intonation = Intonation(calibration_for(44100.0))
+    calibration = calibration_for(44100.0)
+    player = calibrated_player(calibration, calibration.tuned(Quantities()))
     for string, open_note in enumerate(OPEN_NOTES):
         for speed in (0.05, *SPEEDS, 0.5):
             pitches = np.arange(open_note + 0.5, open_note + 10.0, 0.25)
-            places = [intonation.position(string, pitch, speed) for pitch in pitches]
+            places = [position_of(player, string, pitch, speed) for pitch in pitches]
             assert (np.diff(places) > 0.0).all()
 
 
@@ -60,20 +63,26 @@ def test_the_sharpening_is_read_at_its_notes_and_speeds():
         tuple(tuple(10.0 * pitch + column for column in range(4)) for pitch in pitches)
         for pitches in PITCHES
     )
-    intonation = Intonation(Calibration(440.0, (49.5, 64.1), tables))
-    assert intonation._sharpening(0, 66.0, SPEEDS[0]) == pytest.approx(660.0)
-    assert intonation._sharpening(1, 75.0, SPEEDS[2]) == pytest.approx(752.0)
+    player = calibrated_player(Calibration(440.0, (49.5, 64.1), tables))
+
+    def sharpening(string: int, pitch: float, speed: float) -> float:
+        """How much lower (cents) than the pitch the finger stops an ideal string."""
+        position = position_of(player, string, pitch, speed)
+        return 100.0 * (pitch - Watched().pitch_at(string, position))
+
+    assert sharpening(0, 66.0, SPEEDS[0]) == pytest.approx(660.0)
+    assert sharpening(1, 75.0, SPEEDS[2]) == pytest.approx(752.0)
     for pitch in (67.5, 67.7, 75.3):  # among quarter tones, between them, among semitones
-        assert intonation._sharpening(0, pitch, SPEEDS[3]) == pytest.approx(10.0 * pitch + 3.0)
-    assert intonation._sharpening(0, 60.0, 0.01) == pytest.approx(660.0)
-    assert intonation._sharpening(1, 99.0, 9.0) == pytest.approx(893.0)
+        assert sharpening(0, pitch, SPEEDS[3]) == pytest.approx(10.0 * pitch + 3.0)
+    assert sharpening(0, 60.0, 0.01) == pytest.approx(660.0)
+    assert sharpening(1, 99.0, 9.0) == pytest.approx(893.0)
 
 
 def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 440.0) -> float:
     """The pitch (Hz) of a note, from 0.1 s after it began."""
     tuned = calibration_for(rate, a4=a4)
-    instrument = Instrument(rate, tuned.tuned(Quantities()))
-    midi = MidiPlayer(Performer(instrument, Intonation(tuned)), load("keyboard"))
+    instrument = Instrument(rate, tuned.tuned(Quantities()), calibration=tuned)
+    midi = MidiPlayer(Wishes(instrument), load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
@@ -105,11 +114,11 @@ def test_without_evenness_the_body_has_its_way():
 def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None = None) -> float:
     """A-weighted level (dB) of a note once it has settled."""
     tuned = calibration_for(44100.0)
-    instrument = Instrument(44100.0, tuned.tuned(Quantities()))
-    performer = Performer(instrument, Intonation(tuned))
+    instrument = Instrument(44100.0, tuned.tuned(Quantities()), calibration=tuned)
+    player = Wishes(instrument)
     if evenness is not None:
-        performer.write("/body/evenness", evenness)
-    midi = MidiPlayer(performer, load("keyboard"))
+        player.write("/body/evenness", evenness)
+    midi = MidiPlayer(player, load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)

@@ -13,18 +13,19 @@ from sound import run
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
-from yehu_server.params.table import SLOT, TABLE
+from yehu_server.params.table import TABLE
+from yehu_server.player.rows import ROW
+from yehu_server.player.wishes import WRITE
 from yehu_server.playing.live import Arrivals, LivePlayer
 from yehu_server.playing.style import Style
 
 RATE = 48000.0
-INDEX = {slot: address for address, slot in SLOT.items()}
 
 
 @pytest.fixture
 def instrument() -> Instrument:
     instrument = Instrument(RATE)
-    instrument.report_events()
+    instrument.report_wishes()
     return instrument
 
 
@@ -33,20 +34,20 @@ def live(instrument) -> LivePlayer:
     return LivePlayer(instrument, Style(), delay_ms=3.0)
 
 
-def applied(instrument: Instrument, frames: int) -> list[tuple[int, str, float]]:
-    run(instrument, frames)
-    events = instrument.applied_events()
-    return [
-        (int(e["frame"]), INDEX.get(int(e["index"]), "silence"), float(e["target"])) for e in events
-    ]
-
-
 def test_a_note_is_heard_at_its_frame(live, instrument):
     live.note_on(67.0, 90.0, frame=500)
-    assert {frame for frame, _, _ in applied(instrument, 1000)} == {500}
-    assert live.pitch == pytest.approx(67.0, abs=0.5)  # a finger varies
     live.note_off(67.0, frame=600)
+    run(instrument, 500)
     assert live.pitch is None
+    assert instrument.target("/bow/speed") == 0.0
+    run(instrument, 1)
+    assert live.pitch == pytest.approx(67.0, abs=0.5)  # a finger varies
+    assert instrument.target("/bow/speed") != 0.0
+    run(instrument, 99)
+    assert live.pitch is not None
+    run(instrument, 1)
+    assert live.pitch is None
+    assert instrument.target("/bow/speed") == 0.0
 
 
 def test_what_arrives_is_heard_a_constant_time_later(live, instrument):
@@ -76,23 +77,58 @@ def test_messages_of_one_source_keep_their_order_where_the_delay_becomes_shorter
     assert frames[30] - frames[10] > 1072 - 176
 
 
-def test_a_decision_never_precedes_an_earlier_one(live, instrument):
+def test_what_arrives_is_played_before_what_is_tagged_for_later(live, instrument):
     live.note_on(67.0, 90.0, frame=500)  # with a time tag
     live.receive(mido.Message("note_on", note=72, velocity=90), frame=300, port=0)
     live.receive(mido.Message("note_off", note=72), frame=350, port=0)
+    live.note_off(67.0, frame=600)
+    pitches = []
+    for _ in range(7):  # frames 0, 100, ... 600
+        run(instrument, 1)
+        pitches.append(live.pitch)
+        run(instrument, 99)
+    assert pitches == [
+        None, None, None, pytest.approx(72.0, abs=0.5), None, pytest.approx(67.0, abs=0.5), None
+    ]  # fmt: skip
+    assert instrument.target("/bow/speed") == 0.0
+
+
+@pytest.mark.parametrize("ending", ["note_off", "end_notes", "panic"])
+def test_a_note_that_is_ended_before_it_begins_does_not_hang(live, instrument, ending):
+    live.note_on(67.0, 90.0, frame=500)  # with a time tag
     live.note_off(67.0, frame=360)
-    assert {frame for frame, _, _ in applied(instrument, 1000)} == {500}
+    if ending != "note_off":
+        getattr(live, ending)(frame=700)
+    run(instrument, 1000)
     assert live.pitch is None
-    assert instrument._rig["controls"]["target"][0, SLOT["/bow/speed"]] == 0.0
+    assert instrument.target("/bow/speed") == 0.0
 
 
 def test_direct_writes_to_the_instrument_do_not_wait_for_decisions(live, instrument):
     live.note_on(67.0, 90.0, frame=500)
     live.write("/bow/position", 0.2, frame=100)
-    assert (100, "/bow/position", 0.2) in applied(instrument, 1000)
+    run(instrument, 101)
+    assert instrument.target("/bow/position") == 0.2
+    run(instrument, 899)
+    wishes = instrument.applied_wishes()
+    assert (100, WRITE, ROW["/bow/position"], 0.2) in [
+        (wish["frame"], wish["kind"], wish["index"], wish["value"]) for wish in wishes
+    ]
 
 
-def test_every_parameter_is_where_it_was_put(live):
+def test_what_was_set_is_told_until_it_is_reached_and_then_what_became_of_it(live, instrument):
+    live.write("/bow/speed", 0.11, frame=500)
+    live.note_on(67.0, 90.0, frame=600)
+    assert live.value("/bow/speed") == 0.11
+    run(instrument, 400)
+    assert live.value("/bow/speed") == 0.11
+    run(instrument, 200)
+    assert live.value("/bow/speed") == instrument.target("/bow/speed") == 0.11
+    run(instrument, 1)
+    assert live.value("/bow/speed") == instrument.target("/bow/speed") != 0.11
+
+
+def test_every_parameter_is_where_it_was_put(live, instrument):
     for param in TABLE:
         middle = 0.5 * (param.lo + param.hi)
         assert live.write(param.address, middle, frame=0) == middle
@@ -100,11 +136,15 @@ def test_every_parameter_is_where_it_was_put(live):
         assert live.write(param.address, param.hi + 1.0, frame=0) == param.hi
         assert live.values()[param.address] == param.hi
     live.reset(frame=0)
-    assert live.values() == {param.address: param.default for param in TABLE}
+    defaults = {param.address: param.default for param in TABLE}
+    assert live.values() == defaults
+    run(instrument, 4800)
+    assert live.values() == defaults
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -1.0, 128.0])
 def test_notes_out_of_midis_range_are_refused_and_change_nothing(live, instrument, value):
+    before = instrument.posted
     for call in (
         lambda: live.note_on(value, 90.0, frame=0),
         lambda: live.note_on(67.0, value, frame=0),
@@ -112,7 +152,7 @@ def test_notes_out_of_midis_range_are_refused_and_change_nothing(live, instrumen
     ):
         with pytest.raises(ParameterError):
             call()
-    assert not applied(instrument, 100)
+    assert instrument.posted == before
 
 
 @pytest.mark.parametrize("ending", ["panic", "reset", "end_notes"])
@@ -128,7 +168,7 @@ def test_nothing_sounds_on_after_the_end(live, instrument, ending):
     tail = run(instrument, 2 * 48000)
     assert live.pitch is None
     assert np.abs(tail[-4800:]).max() < 1e-3
-    assert instrument._rig["controls"]["target"][0, SLOT["/bow/speed"]] == 0.0
+    assert instrument.target("/bow/speed") == 0.0
 
 
 def test_panic_is_silent_within_ten_milliseconds(live, instrument):
@@ -157,8 +197,10 @@ def test_many_threads_take_turns_without_a_torn_note(live, instrument):
         thread.start()
     for thread in threads:
         thread.join()
+    run(instrument, 4096)
     assert live.pitch is None
-    events = applied(instrument, 4096)
+    frames = instrument.applied_wishes()["frame"]
     assert instrument.dropped_events == 0
-    assert [f for f, _, _ in events] == sorted(f for f, _, _ in events)
-    assert events[-1][2] == 0.0  # the bow rests
+    assert len(frames) >= 1600
+    assert (np.diff(frames) >= 0).all()
+    assert instrument.target("/bow/speed") == 0.0  # the bow rests

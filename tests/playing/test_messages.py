@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import mido
 import pytest
+from hands import Checked
 
-from yehu_server.playing.fingering import RangePolicy
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Key, Performer
+from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.wishes import Key
 
 
 def silent(listener, player) -> bool:
@@ -99,8 +100,8 @@ def test_a_message_acts_at_its_frame(player, listener, mapping):
     assert listener.silenced == [321]
 
 
-def test_a_skipped_note_leaves_the_sounding_one_alone(listener, ruler, mapping):
-    player = Performer(listener, ruler, RangePolicy.SKIP)
+def test_a_skipped_note_leaves_the_sounding_one_alone(listener, mapping):
+    player = Checked(listener, RangePolicy.SKIP)
     midi = MidiPlayer(player, mapping)
     midi.receive(mido.Message("note_on", note=75, velocity=30))
     heard = list(listener.moves)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.playing.performer import Key
+from yehu_server.playing.wishes import Key
 
 
 def key(note: int) -> Key:
@@ -48,7 +48,7 @@ def test_a_direct_write_leaves_the_other_parameters_to_the_player(player, listen
     player.write("/playing/bend", 1.0)
     player.write("/playing/pressure", 0.5)
     assert listener.press == 2.2
-    assert listener.place == pytest.approx(0.04)
+    assert listener.where() == ("C", 4)
     assert listener["/bow/pressure"] == 0.5
     assert listener["/bow/speed"] == 0.11
 
@@ -161,6 +161,14 @@ def test_an_unknown_parameter_is_refused_by_name(player):
         player.value("/bow/sped")
 
 
-def test_the_player_does_not_claim_to_hold_what_the_engine_holds(player):
-    with pytest.raises(ParameterError, match="/bow/speed"):
-        player.value("/bow/speed")
+def test_what_bow_and_fingers_are_told_is_where_a_write_or_a_note_moved_them_last(player):
+    assert player.value("/bow/speed") == 0.0
+    player.note_on(key(75))
+    assert player.value("/bow/speed") == 0.2
+    player.write("/bow/speed", 0.11)
+    assert player.value("/bow/speed") == 0.11
+    player.note_on(key(77))
+    assert player.value("/bow/speed") == 0.2
+    player.note_off(key(77))
+    player.note_off(key(75))
+    assert player.value("/bow/speed") == 0.0

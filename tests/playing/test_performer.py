@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 
 import pytest
+from hands import Checked, Move, Watched, ideal
 
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.bowing import MANNERS
+from yehu_server.player.bowing import MANNERS, TOP_SPEED
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.fingering import RangePolicy
-from yehu_server.playing.performer import Key, Performer
+from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.wishes import Key
 
 YEHU = Quantities()
 
@@ -44,13 +45,13 @@ def test_f4_and_c5_are_open_strings(player, listener, note, string, before):
 
 
 def test_a_finger_high_on_the_f_string_stays_there_for_a_near_note(player, listener):
-    player.note_on(key(71))  # 6 cm up the neck; 74 is at 9 cm here and 2 cm on the C string
+    player.note_on(key(71))  # 9 cm up the neck; 74 is at 12 cm here and 4 cm on the C string
     player.note_on(key(74))
     assert listener.where() == ("F", 9)
 
 
 def test_a_finger_low_on_the_f_string_crosses_to_the_c_string(player, listener):
-    player.note_on(key(66))  # 1 cm up the neck; 74 is at 9 cm here and 2 cm on the C string
+    player.note_on(key(66))  # 2 cm up the neck; 74 is at 12 cm here and 4 cm on the C string
     player.note_on(key(74))
     assert listener.where() == ("C", 2)
 
@@ -115,10 +116,10 @@ def test_strokes_go_in_turn_or_the_way_that_is_wished_for(player, listener, wish
     assert signs == expected
 
 
-def test_a_new_seed_begins_another_sequence_and_an_old_one_the_same(listener_type, ruler):
+def test_a_new_seed_begins_another_sequence_and_an_old_one_the_same():
     def speeds(seed: float) -> list[float]:
-        listener = listener_type()
-        player = Performer(listener, ruler)
+        listener = Watched()
+        player = Checked(listener)
         player.write("/playing/variation", 1.0)
         player.note_on(key(70))
         player.note_off(key(70))
@@ -134,22 +135,24 @@ def test_a_new_seed_begins_another_sequence_and_an_old_one_the_same(listener_typ
     assert speeds(3.0) != speeds(4.0)
 
 
-def test_without_calibration_fingers_go_to_where_an_ideal_string_is_in_tune(listener):
-    player = Performer(listener)
+def test_without_calibration_fingers_go_to_where_an_ideal_string_is_in_tune():
+    calibration = calibration_for(44100.0)
+    listener = Watched(quantities=calibration.tuned(YEHU), calibration=calibration)
+    player = Checked(listener)
     player.write("/playing/variation", 0.0)
     player.note_on(key(79))
-    measured = listener.place
+    measured = listener.position
     player.write("/engine/calibration", 0.0)
-    ideal = listener.place
+    by_itself = listener.position
     player.write("/engine/calibration", 0.5)
-    assert min(measured, ideal) < listener.place < max(measured, ideal)
+    assert min(measured, by_itself) < listener.position < max(measured, by_itself)
     player.write("/engine/calibration", 1.0)
-    assert listener.place == measured
-    silk, tension = YEHU.strings[1], calibration_for(44100.0).tensions[1]
+    assert listener.position == measured
+    silk, tension = YEHU.strings[1], calibration.tensions[1]
     hz = 440.0 * 2 ** (10 / 12)
     sounding = math.sqrt(tension / silk.rho_A) / (2.0 * hz)
-    assert ideal == pytest.approx(YEHU.bridge_x - sounding, abs=1e-9)
-    assert 1e-4 < abs(measured - ideal) < 0.01
+    assert by_itself == pytest.approx(YEHU.bridge_x - sounding, abs=1e-9)
+    assert 1e-4 < abs(measured - by_itself) < 0.01
 
 
 def test_a_long_bend_up_the_f_string_goes_on_on_the_c_string(player, listener):
@@ -172,7 +175,6 @@ def test_a_finger_lands_before_the_one_before_it_leaves(player, listener):
     player.note_on(key(68))
     (landing,) = listener.of("/finger/2/press")
     lifting = listener.of("/finger/1/press")[-1]
-    assert listener.moves.index(landing) < listener.moves.index(lifting)
     assert (landing.value, lifting.value) == (1.5, 0.0)
     assert landing.ramp_ms < lifting.ramp_ms
 
@@ -243,7 +245,7 @@ def test_keys_of_two_channels_are_two_keys(player):
 def test_all_notes_off_ends_every_note(player, listener):
     player.note_on(key(66))
     player.note_on(key(70))
-    player.all_notes_off()
+    player.notes_off(player.held())
     assert player.sounding is None
     assert (listener["/bow/speed"], listener["/bow/side"]) == (0.0, 0.0)
     assert not listener.silenced
@@ -252,18 +254,23 @@ def test_all_notes_off_ends_every_note(player, listener):
     assert player.sounding is None
 
 
+def end_all_sound(player: Checked, frame: int | None = None) -> None:
+    player.notes_off(player.held(), frame=frame)
+    player.stop_sound(frame=frame)
+
+
 def test_all_sound_off_silences_the_instrument_at_its_frame(player, listener):
     player.note_on(key(66))
-    player.all_sound_off(frame=4711)
+    end_all_sound(player, 4711)
     assert player.sounding is None
     assert listener.silenced == [4711]
 
 
 def test_after_all_sound_off_the_hand_is_off_the_strings(player, listener):
     player.note_on(key(71))
-    player.all_sound_off()
+    end_all_sound(player)
     assert listener.press == 0.0
-    player.note_on(key(74))  # 9 cm up the F string, where the hand no longer is
+    player.note_on(key(74))  # 12 cm up the F string, where the hand no longer is
     assert listener.where() == ("C", 2)
 
 
@@ -372,7 +379,7 @@ def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string(player, lis
     player.note_on(key(73))
     player.write("/playing/bend", -2.0)
     assert listener.where() == ("F", 6)
-    assert listener["/bow/speed"] == MANNERS[71].top_speed
+    assert listener["/bow/speed"] == MANNERS[71][TOP_SPEED]
 
 
 def test_a_bend_below_the_open_f_string_stops_at_it(player, listener):
@@ -406,11 +413,11 @@ def by_octaves(note: int) -> int:
         (RangePolicy.SKIP, lambda note: note if 65 <= note <= 89 else None),
     ],
 )
-def test_notes_out_of_range_go_where_the_policy_says(listener_type, ruler, policy, expected):
-    above = {"F": 65, "C": 72}
+def test_notes_out_of_range_go_where_the_policy_says(policy, expected):
+    above, calibration = {"F": 65, "C": 72}, ideal()
     for note in range(128):
-        listener = listener_type()
-        player = Performer(listener, ruler, policy)
+        listener = Watched(calibration=calibration)
+        player = Checked(listener, policy)
         player.write("/playing/variation", 0.0)
         heard = len(listener.moves)
         player.note_on(key(note))
@@ -438,46 +445,55 @@ def test_notes_are_counted_once_each(player):
 # ---------------------------------------------------------------- variation
 
 
-def phrase(listener, ruler, variation: float, seed: int) -> list:
-    player = Performer(listener, ruler, seed=seed)
+def phrase(variation: float, seed: int) -> list[Move]:
+    listener = Watched(calibration=ideal(), seed=seed)
+    player = Checked(listener)
     player.write("/playing/variation", variation)
     for _ in range(4):
         player.note_on(key(75))
         player.note_off(key(75))
-    heard, listener.moves = listener.moves, []
-    return heard
+    return listener.moves
 
 
-def test_without_variation_every_note_is_the_same_but_for_its_stroke(listener, ruler):
-    heard = phrase(listener, ruler, 0.0, 1)
-    assert heard == phrase(listener, ruler, 0.0, 2)
+def place(string: int, pitch: float) -> float:
+    """Where (m) an ideal string is stopped at a pitch."""
+    silk = YEHU.strings[string]
+    frequency = 440.0 * 2.0 ** ((pitch - 69.0) / 12.0)
+    return YEHU.bridge_x - math.sqrt(silk.T / silk.rho_A) / (2.0 * frequency)
+
+
+def test_without_variation_every_note_is_the_same_but_for_its_stroke():
+    heard = phrase(0.0, 1)
+    assert heard == phrase(0.0, 2)
     assert {abs(move.value) for move in heard if move.address == "/bow/speed"} == {0.2, 0.0}
     assert {move.value for move in heard if move.address == "/bow/pressure"} == {0.4}
-    assert {move.value for move in heard if move.address == "/finger/1/position"} == {0.03}
+    (position,) = {move.value for move in heard if move.address == "/finger/1/position"}
+    assert position == pytest.approx(place(1, 75.0))
 
 
-def test_one_seed_plays_the_same_and_another_differently(listener, ruler):
-    assert phrase(listener, ruler, 0.5, 1) == phrase(listener, ruler, 0.5, 1)
-    assert phrase(listener, ruler, 0.5, 1) != phrase(listener, ruler, 0.5, 2)
+def test_one_seed_plays_the_same_and_another_differently():
+    assert phrase(0.5, 1) == phrase(0.5, 1)
+    assert phrase(0.5, 1) != phrase(0.5, 2)
 
 
 @pytest.mark.parametrize("address", ["/bow/speed", "/bow/pressure", "/finger/1/position"])
-def test_with_variation_no_two_notes_are_alike_and_all_are_close(listener, ruler, address):
-    heard = phrase(listener, ruler, 0.25, 3)
+def test_with_variation_no_two_notes_are_alike_and_all_are_close(address):
+    heard = phrase(0.25, 3)
     values = [abs(move.value) for move in heard if move.address == address and move.value]
-    nominal = {"/bow/speed": 0.2, "/bow/pressure": 0.4, "/finger/1/position": 0.03}[address]
+    usual = {"/bow/speed": 0.2, "/bow/pressure": 0.4, "/finger/1/position": place(1, 75.0)}
     assert len(set(values)) == 4
-    assert all(math.isclose(value, nominal, rel_tol=0.15) for value in values)
+    assert all(math.isclose(value, usual[address], rel_tol=0.15) for value in values)
 
 
-def test_a_bend_keeps_the_variation_of_its_note(listener, ruler):
-    player = Performer(listener, ruler, seed=5)
+def test_a_bend_keeps_the_variation_of_its_note():
+    listener = Watched(calibration=ideal(), seed=5)
+    player = Checked(listener)
     player.write("/playing/variation", 1.0)
     player.note_on(key(75))
-    before = listener.place
+    before = listener.position
     player.write("/playing/bend", 1.0)
     player.write("/playing/bend", 0.0)
-    assert listener.place == before
+    assert listener.position == before
 
 
 # ---------------------------------------------------------------- level

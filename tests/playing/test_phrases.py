@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
@@ -11,27 +10,19 @@ from pitch import cents, frame_pitch, hertz, pitch_of
 from sound import run_for
 
 from yehu_server.engine.instrument import Instrument
-from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.performer import Key, Performer
 from yehu_server.playing.style import Style
+from yehu_server.playing.wishes import Key, Wishes
 
 RATE = 44100
-
-
-@cache
-def calibrated():
-    calibration = calibration_for(float(RATE))
-    return calibration, calibration.tuned(Quantities())
 
 
 class Stand:
     """A player and an instrument; times in seconds."""
 
     def __init__(self, **wishes: float) -> None:
-        calibration, quantities = calibrated()
-        self.instrument = Instrument(RATE, quantities)
-        self.player: Performer = Style().performer(self.instrument, calibration)
+        self.instrument: Instrument = Style().instrument(RATE, calibration_for(float(RATE)))
+        self.player: Wishes = Style().wishes(self.instrument)
         self.wish(0.0, variation=0.0, **wishes)
 
     def wish(self, seconds: float, **wishes: float) -> None:

@@ -16,8 +16,7 @@ from sound import run
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError, PresetError
 from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED
-from yehu_server.params.table import SLOT, TABLE
-from yehu_server.physics.quantities import Quantities
+from yehu_server.params.table import TABLE
 from yehu_server.playing import presets as folders
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.live import LivePlayer
@@ -291,7 +290,7 @@ def test_a_program_is_the_players_own_before_a_shipped_one(presets, put):
 @pytest.fixture
 def instrument() -> Instrument:
     instrument = Instrument(RATE)
-    instrument.report_events()
+    instrument.report_wishes()
     return instrument
 
 
@@ -313,15 +312,17 @@ def test_all_of_a_load_is_heard_at_one_frame(instrument):
     live = live_player(instrument)
     live.note_on(74.0, 90.0, frame=0)
     run(instrument, 22050)
-    instrument.applied_events()
+    instrument.applied_wishes()
+    moved = ("/bow/speed", "/bow/position", "/output/gain")
+    before = [instrument.target(address) for address in moved]
     far = {p.address: p.from_unit(0.3) for p in POSSIBLE.values() if p.address != "/playing/bend"}
     live.load(far, frame=23000)
     run(instrument, 4410)
-    moves = instrument.applied_events()
-    assert {int(move["frame"]) for move in moves} == {23000}
-    assert {SLOT["/bow/speed"], SLOT["/output/gain"], SLOT["/bow/position"]} <= {
-        int(move["index"]) for move in moves
-    }
+    wishes = instrument.applied_wishes()
+    assert {int(wish["frame"]) for wish in wishes} == {23000}
+    assert len(wishes) == len(far)
+    after = [instrument.target(address) for address in moved]
+    assert all(now != then for now, then in zip(after, before, strict=True))
 
 
 @pytest.mark.parametrize("kept", ["/playing/vibrato", "/output/gain"])
@@ -430,12 +431,10 @@ def test_an_unknown_program_is_ignored_and_told_once(instrument, presets, caplog
 
 
 def heard(name: str, note: int, seconds: float = 0.5) -> np.ndarray:
-    calibration = calibration_for(RATE)
-    instrument = Instrument(RATE, calibration.tuned(Quantities()))
     values = Presets(Path(os.devnull)).load(name).values | {"/playing/variation": 0.0}
     style = Style(start=tuple(values.items()))
-    performer = style.performer(instrument, calibration)
-    midi = style.midi(performer)
+    instrument = style.instrument(RATE, calibration_for(RATE))
+    midi = style.midi(style.wishes(instrument))
     midi.receive(mido.Message("note_on", note=note, velocity=64), frame=0)
     return run(instrument, round(RATE * seconds)).astype(np.float64)
 

@@ -9,7 +9,7 @@ from yehu_server.playing.binds import Bind
 from yehu_server.playing.live import ELSEWHERE
 from yehu_server.playing.mapping import Mapping, load
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Key
+from yehu_server.playing.wishes import Key
 
 VOLUME, PRESS, BEND = "/playing/volume", "/playing/press", "/playing/bend"
 KEYS, BREATH = 0, 1  # ports

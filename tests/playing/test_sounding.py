@@ -10,7 +10,9 @@ from pitch import cents, hertz, pitch_of
 from sound import run_for
 
 from yehu_server.engine.instrument import Instrument
-from yehu_server.playing.performer import Key, Performer
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.style import Style
+from yehu_server.playing.wishes import Key, Wishes
 
 RATE = 44100
 
@@ -20,9 +22,10 @@ def level(samples: np.ndarray) -> float:
     return 10.0 * math.log10(max(float(np.mean(np.square(samples, dtype=np.float64))), 1e-24))
 
 
-def player_at(rate: float, seed: int = 0) -> tuple[Performer, Instrument]:
-    instrument = Instrument(rate)
-    return Performer(instrument, seed=seed), instrument
+def player_at(rate: float) -> tuple[Wishes, Instrument]:
+    style = Style()
+    instrument = style.instrument(rate, calibration_for(float(rate)))
+    return style.wishes(instrument), instrument
 
 
 # ---------------------------------------------------------------- notes
@@ -97,7 +100,8 @@ def test_all_sound_off_is_silence_within_five_milliseconds(note):
     player, instrument = player_at(RATE)
     player.note_on(Key(0, note))
     run_for(instrument, 0.5)
-    player.all_sound_off()
+    player.notes_off(player.held())
+    player.stop_sound()
     out = run_for(instrument, 0.5)[round(0.005 * RATE) + 1 :]
     assert np.abs(out).max() < 1e-3  # -60 dBFS
     player.note_on(Key(0, note))  # and the next note speaks

@@ -7,6 +7,7 @@ import pytest
 
 from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Curve
+from yehu_server.params.table import find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.messages import MidiPlayer
@@ -248,7 +249,7 @@ def test_a_smoothed_move_takes_its_time_at_least(playing, listener):
     cc((74, 100))
     assert listener.of("/bow/position")[-1].ramp_ms == 50.0
     cc((71, 90))  # a bind without
-    assert listener.of("/bow/position")[-1].ramp_ms is None
+    assert listener.of("/bow/position")[-1].ramp_ms == find("/bow/position").smooth_ms
 
 
 def test_smoothing_makes_no_move_quicker_than_the_hand(playing, listener):
@@ -272,7 +273,7 @@ def test_whatever_comes_next_need_not_wait_for_the_glide(playing, listener):
     note(midi, 74)
     assert all(move.ramp_ms != 900.0 for move in listener.moves[heard:])
     midi.write("/playing/speed", 0.15)
-    assert listener.of("/bow/speed")[-1][1:] == (0.15, None, None)
+    assert listener.of("/bow/speed")[-1][1:] == (0.15, None, find("/bow/speed").smooth_ms)
 
 
 # ---------------------------------------------------------------- OSC addresses

@@ -7,7 +7,7 @@ import pytest
 
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.performer import Key
+from yehu_server.playing.wishes import Key
 from yehu_server.playing.zones import Zones
 
 # ---------------------------------------------------------------- zones

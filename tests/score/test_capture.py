@@ -1,71 +1,201 @@
-"""Captures: written as events happen, readable whatever ends them."""
+"""Captures: written as wishes are fulfilled, readable whatever ends them."""
 
 from __future__ import annotations
 
 import json
+import mmap
 import os
+import random
 import resource
 from pathlib import Path
 
 import numpy as np
 import pytest
-from sound import bow
+from sound import bow, rms, run
 
-from yehu_server.engine.controls import SILENCE
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.mailbox import EVENT
-from yehu_server.errors import OutputError, ScoreError
-from yehu_server.params.table import SLOT
+from yehu_server.controls.slots import SILENCE
+from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.errors import OutputError, ScoreError, YehuError
+from yehu_server.params.table import ENGINE, SLOT, TABLE, find
+from yehu_server.physics.quantities import Quantities, override
+from yehu_server.player.bowing import bowing_table
+from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.player.fingering import OpenStrings
+from yehu_server.player.wishes import (
+    BEGIN,
+    DRAW,
+    END,
+    EXPRESS,
+    HOLD,
+    KINDS,
+    LIFT,
+    RAMP,
+    RELEASE,
+    SLIDE,
+    STOP,
+    WISH,
+    WRITE,
+)
+from yehu_server.playing.style import Style
+from yehu_server.playing.wishes import Key
 from yehu_server.replay import blocks, replay
-from yehu_server.score.capture import CaptureWriter, build, read_capture
+from yehu_server.score.capture import read_capture
+from yehu_server.score.capture_format import build
+from yehu_server.score.capture_writer import CaptureWriter
+from yehu_server.score.live_capture import LiveCapture
 
 RATE = 48000.0
 TENSIONS = (49.5, 64.1)
+TUNED = override(Quantities(), {"string_1": {"T": TENSIONS[0]}, "string_2": {"T": TENSIONS[1]}})
 SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 
 
-def write(path, events=(), end=None, rests=(), lost=0):
-    writer = CaptureWriter(path, rate=RATE, seed=3, tensions=TENSIONS)
-    writer.events(np.array(list(events), EVENT))
-    for frame in rests:
-        writer.note("rest", frame, since=frame)
-    if lost:
-        writer.note("lost", 5, events=lost)
-    if end is not None:
-        writer.close(end)
-    writer._file.close()  # as a crash does
+@pytest.fixture(scope="module")
+def plain():
+    """An instrument without calibration, at its beginning."""
+    return Instrument(RATE, TUNED, seed=3)
+
+
+@pytest.fixture
+def write(plain):
+    def write(path, wishes=(), end=None, rests=(), lost=0):
+        writer = CaptureWriter(path, instrument=plain)
+        writer.wishes(np.array(list(wishes), WISH))
+        for frame in rests:
+            writer.note("rest", frame, since=frame)
+        if lost:
+            writer.note("lost", 5, events=lost)
+        if end is not None:
+            writer.close(end)
+        writer._file.close()  # as a crash does
+        return path
+
+    return write
+
+
+def first_version(path, ramps=(), values=None, end=None, rests=()):
+    """A file as the first version wrote it: of moves of bow and fingers."""
+    defaults = {param.address: param.default for param in ENGINE}
+    header = {"format": "yehu-server capture", "version": 1, "rate": RATE, "seed": 0}
+    header |= {"tensions": list(TENSIONS), "build": build()}
+    header["values"] = defaults if values is None else values
+    lines = [header, *ramps, *({"rest": frame, "since": frame} for frame in rests)]
+    lines += [] if end is None else [{"end": end}]
+    path.write_text("".join(json.dumps(line) + "\n" for line in lines))
     return path
 
 
-EVENTS = [(0, SIDE, 1.0, 480), (7, SPEED, 0.1 + 0.2, 960), (9000, SILENCE, 0.0, 0)]
+def replayed(path) -> np.ndarray:
+    capture = read_capture(path)
+    return np.concatenate(list(blocks(capture, capture.beginning.instrument())))
 
 
-def test_what_is_written_is_read_to_the_bit(tmp_path):
-    capture = read_capture(write(tmp_path / "c", EVENTS, end=12345))
+RAMPS = [
+    (0, RAMP, SIDE, 1.0, 480.0),
+    (7, RAMP, SPEED, 0.1 + 0.2, 960.0),
+    (9000, RAMP, SILENCE, 0.0, 0.0),
+]
+
+
+def test_what_is_written_is_read_to_the_bit(tmp_path, write):
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=12345))
     assert capture.rate == RATE
-    assert [tuple(e) for e in capture.events.tolist()] == EVENTS
+    assert capture.version == 2
+    assert capture.wishes.tolist() == RAMPS
     assert capture.frames == 12345
     assert capture.warnings == []
 
 
-def test_the_first_line_tells_the_whole_beginning(tmp_path):
+def odd(param) -> float:
+    """A value of a parameter that takes all digits to write."""
+    return param.lo + (param.hi - param.lo) / 7.0
+
+
+EACH_KIND = {
+    "ramp": [
+        *((0, RAMP, SLOT[param.address], odd(param), 2.0**53) for param in ENGINE),
+        *((1, RAMP, SLOT[param.address], param.lo, 0.0) for param in ENGINE),
+        (2, RAMP, SILENCE, 0.0, 0.0),
+    ],
+    "write": [(0, WRITE, row, odd(param), 100.0 / 7.0) for row, param in enumerate(TABLE)],
+    "hold": [(0, HOLD, row, odd(param), 0.0) for row, param in enumerate(TABLE)],
+    "express": [(0, EXPRESS, row, odd(param), 0.0) for row, param in enumerate(TABLE)],
+    "begin": [(0, BEGIN, -1, 200.0 / 3.0, 617.0 / 9.0), (0, BEGIN, 1 << 20, 127.0, 0.0)],
+    "end": [(5, END, -1, 200.0 / 3.0, 1.0), (5, END, 3, 0.0, 0.0)],
+    "slide": [(5, SLIDE, 0, 617.0 / 9.0, 0.0)],
+    "draw": [(5, DRAW, 0, -0.1 / 3.0, 1.0 / 3.0), (6, DRAW, 0, 0.0, 0.0)],
+    "lift": [(5, LIFT, 0, 0.0, 0.0)],
+    "stop": [(5, STOP, 0, 0.0, 0.0)],
+    "release": [(5, RELEASE, 0, 0.0, 0.0)],
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_kind_of_wish_is_read_to_the_bit(tmp_path, write, kind):
+    wishes = EACH_KIND[kind]
+    path = write(tmp_path / "c", wishes, end=9)
+    assert {json.loads(line)[1] for line in path.read_text().splitlines()[1:-1]} == {kind}
+    found = read_capture(path).wishes
+    assert found.dtype == WISH
+    assert found.tolist() == wishes
+
+
+def test_the_first_line_tells_the_whole_beginning(tmp_path, write):
     header = json.loads(write(tmp_path / "c").read_text().splitlines()[0])
-    assert header["seed"] == 3
+    assert (header["rate"], header["seed"], header["tensions"]) == (RATE, 3, list(TENSIONS))
     assert header["build"] == build()
-    assert set(header["values"]) == set(SLOT)
+    defaults = {param.address: param.default for param in TABLE}
+    assert header["values"] == {**defaults, "/engine/seed": 3.0}
 
 
-def test_a_session_that_crashed_can_be_read(tmp_path):
-    path = write(tmp_path / "c", EVENTS)
+def measured(seed: int = 1) -> Calibration:
+    """A calibration that might have been measured; its values take all digits to write."""
+    chance = random.Random(seed)
+    sharpening, levels = (
+        tuple(
+            tuple(tuple(chance.uniform(*within) for _ in SPEEDS) for _ in (*pitches, *more))
+            for pitches in PITCHES
+        )
+        for within, more in [((-30.0, 60.0), ()), ((-40.0, -20.0), (None,))]
+    )
+    return Calibration(440.0, (50.4 + chance.random(), 64.0 + chance.random()), sharpening, levels)
+
+
+def test_an_instrument_is_read_as_it_began(tmp_path):
+    bowing = bowing_table() * 1.01
+    calibration = measured()
+    began = Instrument(
+        44100.0,
+        calibration.tuned(Quantities()),
+        calibration=calibration,
+        open_strings=OpenStrings.NEVER,
+        seed=17,
+        bowing=bowing,
+        start_values={"/output/gain": -7.0 / 3.0, "/playing/speed": 0.3, "/engine/seed": 5.0},
+    )
+    expected = began._rig.copy()
+    run(began, 100)
+    began.post(BEGIN, value=69.0, other=69.0)  # what happens afterwards is no beginning
+    run(began, 100)
+    CaptureWriter(tmp_path / "c", instrument=began).close(0)
+    again = read_capture(tmp_path / "c").beginning.instrument()
+    for part in ("model", "state", "controls", "player"):
+        for name in expected[part].dtype.names:
+            np.testing.assert_array_equal(again._rig[part][name], expected[part][name], name)
+    assert again.calibration == calibration
+
+
+def test_a_session_that_crashed_can_be_read(tmp_path, write):
+    path = write(tmp_path / "c", RAMPS)
     path.write_text(path.read_text()[:-9])  # in the middle of the last line
     capture = read_capture(path)
-    assert len(capture.events) == 2
+    assert len(capture.wishes) == 2
     assert capture.frames == 8 + 48000
     assert "did not end properly" in capture.warnings[0]
 
 
-def test_lost_events_and_another_build_are_told(tmp_path):
-    path = write(tmp_path / "c", EVENTS, end=9001, lost=4)
+def test_lost_wishes_and_another_build_are_told(tmp_path, write):
+    path = write(tmp_path / "c", RAMPS, end=9001, lost=4)
     path.write_text(path.read_text().replace(build()["sources"], "0" * 16))
     warnings = " ".join(read_capture(path).warnings)
     assert "4 events" in warnings
@@ -93,104 +223,269 @@ def test_what_is_no_capture_is_refused(tmp_path, text, reason):
     "line",
     [
         "nonsense",
-        '[1, "/bow/speed", 0.1]',
-        '[1, "/no/such", 0.1, 0]',
-        '[-1, "/bow/speed", 0.1, 0]',
-        '[1, "/bow/speed", NaN, 0]',
-        '[1e300, "/bow/speed", 0.0, 0]',
+        '[1, "ramp", "/bow/speed", 0.1]',
+        '[1, "ramp", "/no/such", 0.1, 0]',
+        '[-1, "ramp", "/bow/speed", 0.1, 0]',
+        '[1, "ramp", "/bow/speed", NaN, 0]',
+        '[1e300, "ramp", "/bow/speed", 0.0, 0]',
+        '[1, "/bow/speed", 0.1, 0]',  # as in version 1
         "7",
     ],
 )
-def test_a_damaged_line_is_named(tmp_path, line):
+def test_a_damaged_line_is_named(tmp_path, write, line):
     path = write(tmp_path / "c")
     path.write_text(path.read_text() + line + '\n{"end": 10}\n')
     with pytest.raises(ScoreError, match=str(path)):
         read_capture(path)
 
 
-def test_events_out_of_order_are_refused(tmp_path):
+def test_wishes_out_of_order_are_refused(tmp_path, write):
     with pytest.raises(ScoreError, match="order"):
-        read_capture(write(tmp_path / "c", [(5, SPEED, 0.1, 0), (4, SPEED, 0.1, 0)], end=10))
+        read_capture(write(tmp_path / "c", [(5, LIFT, 0, 0, 0), (4, LIFT, 0, 0, 0)], end=10))
 
 
-def test_a_missing_file_and_a_missing_folder_are_told(tmp_path):
+def test_a_missing_file_and_a_missing_folder_are_told(tmp_path, plain):
     with pytest.raises(ScoreError, match="No such file"):
         read_capture(tmp_path / "none")
     with pytest.raises(OutputError, match="does not exist"):
-        CaptureWriter(tmp_path / "none" / "c", rate=RATE, seed=0, tensions=TENSIONS)
+        CaptureWriter(tmp_path / "none" / "c", instrument=plain)
+
+
+# ---------------------------------------------------------------- replays
 
 
 def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
     live = Instrument(RATE)
-    live.report_events()
+    live.report_wishes()
+    writer = CaptureWriter(tmp_path / "c", instrument=live)
     bow(live)
     played = np.zeros(30000, np.float32)
     for start in range(0, 30000, 100):
         if start == 10000:
             live.write("/finger/1/press", 1.5)
         live.process(played[start : start + 100])
-    writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0, tensions=TENSIONS)
-    writer.events(live.applied_events())
+    writer.wishes(live.applied_wishes())
     writer.close(live.frame)
-    again = np.concatenate(list(blocks(read_capture(tmp_path / "c"), Instrument(RATE))))
-    assert (again == played).all()
+    assert (replayed(tmp_path / "c") == played).all()
     assert np.abs(played).max() > 0.01
 
 
 def test_a_rest_in_mid_session_is_replayed(tmp_path):
     live = Instrument(RATE)
-    live.report_events()
-    bow(live)
+    live.report_wishes()
+    writer = CaptureWriter(tmp_path / "c", instrument=live)
+    live.post(BEGIN, value=69.0, other=69.0)
     played = np.zeros(20000, np.float32)
     live.process(played[:9000])
     live._rig["meters"]["running"] = 1  # as if the process was killed inside a block
     live.recover()
-    live.process(played[9000:])
+    live.process(played[9000:12000])
+    live.post(BEGIN, value=72.0, other=72.0)
+    live.process(played[12000:])
     assert live.rests == [(9000, 9000)]
-    writer = CaptureWriter(tmp_path / "c", rate=RATE, seed=0, tensions=TENSIONS)
-    writer.events(live.applied_events())
+    writer.wishes(live.applied_wishes())
     writer.note("rest", 9000, since=9000)
     writer.close(live.frame)
-    again = np.concatenate(list(blocks(read_capture(tmp_path / "c"), Instrument(RATE))))
-    assert (again == played).all()
+    assert (replayed(tmp_path / "c") == played).all()
+    assert rms(played[4000:9000]) > 0.001  # the first note, which the death ends
+    assert rms(played[9100:12000]) < 1e-5
+    assert rms(played[16000:]) > 0.001  # the second
 
 
-def test_a_replay_counts_what_it_did(tmp_path):
-    capture = read_capture(write(tmp_path / "c", EVENTS, end=9600))
+ADDRESSES = [
+    *("/playing/dynamics", "/playing/speed", "/playing/bend", "/playing/vibrato"),
+    *("/playing/pressure", "/playing/tremolo", "/playing/string", "/playing/portamento"),
+    *("/playing/pizzicato", "/playing/variation", "/playing/press", "/body/evenness"),
+    *("/bow/speed", "/bow/force", "/finger/2/press", "/string/outer/tuning", "/engine/seed"),
+]
+
+
+def wish_something(instrument, wishes, chance) -> None:
+    """Ask a player for anything, mostly for notes: now, soon, or for a frame that has passed."""
+    frame = instrument.frame + chance.choice([-500, 0, 0, 1, 30, 700])
+    what = chance.randrange(12)
+    key = Key(chance.choice([-1, 0, 5]), chance.choice([65, 66.25, 69, 72, 74, 77.5, 88, 40]))
+    if what < 4:
+        values = {"/playing/dynamics": chance.random(), "/playing/attack": 20.0 * chance.random()}
+        wishes.note_on(key, values, frame=frame)
+    elif what < 6:
+        held = wishes.held()
+        wishes.notes_off(held[: chance.randrange(1, 3)], {"/playing/speed": 0.2}, frame=frame)
+    elif what < 9:
+        param = find(chance.choice(ADDRESSES))
+        value = chance.uniform(param.lo, param.hi)
+        glide_ms, hold = chance.choice([0.0, 33.3]), chance.random() < 0.1
+        wishes.write(param.address, value, frame=frame, hold=hold, glide_ms=glide_ms)
+    elif what == 9:
+        wishes.slide(60.0 + 30.0 * chance.random(), frame=frame)
+        wishes.draw(chance.uniform(-0.3, 0.3), chance.random(), frame=frame)
+    elif what == 10:
+        wishes.lift(frame=frame)
+        wishes.notes_off(wishes.held(), frame=frame)
+        wishes.stop_sound(frame=frame)
+    elif chance.random() < 0.3:
+        wishes.release(frame=frame)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_session_on_a_calibrated_instrument_is_replayed_to_the_bit(tmp_path, seed):
+    chance, said = random.Random(seed), []
+    style = Style(seed=seed, open_strings=list(OpenStrings)[seed % 3])
+    live = style.instrument(RATE, measured(seed), memory=mmap.mmap(-1, RIG_BYTES))
+    wishes = style.wishes(live)
+    live.report_wishes()
+    capture = LiveCapture(live, tmp_path / "c", said.append)
+    played, frames = [], 0
+    while frames < 2 * RATE:
+        if chance.random() < 0.3:
+            wish_something(live, wishes, chance)
+        block = chance.choice([1, 64, 100, 512])
+        played.append(run(live, block))
+        frames += block
+        if seed % 2 and frames > RATE and not live.rests:
+            live._rig["meters"]["running"] = 1  # the process died before it had told of the block
+            live._rig["taped"] -= block
+            live.recover()
+            assert live.rests == [(frames - block, frames)]
+            played[-1][:] = 0.0
+        if chance.random() < 0.2:
+            capture.keep_up()
+    capture.close()
+    assert said == []
+    late = live.meters()["late_events"]
+    assert late > 5
+    assert wishes.notes_played > 20
+    read = read_capture(tmp_path / "c")
+    assert len(read.wishes) == live.meters()["applied"]
+    assert len(set(read.wishes["kind"])) > 6
+    assert bool(read.rests) == bool(seed % 2)
+    assert read.frames == frames
+    expected = np.concatenate(played)
+    assert rms(expected) > 0.001
+    np.testing.assert_array_equal(replayed(tmp_path / "c"), expected)
+
+
+def test_a_replay_counts_what_it_did(tmp_path, write):
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=9600))
     result = replay(capture, tmp_path / "x.wav", format_name="wav", subtype="float")
     assert result.events == 3
     assert result.duration_s == 0.2
     assert (tmp_path / "x.wav").exists()
 
 
-def test_a_full_disk_leaves_whole_lines(tmp_path):
+# ---------------------------------------------------------------- files of version 1
+
+MOVES = [
+    [0, "/bow/side", 1.0, 480],
+    [7, "/bow/speed", 0.1 + 0.2, 960],
+    [7, "/finger/1/position", 0.1, 0],
+    [7, "/finger/1/press", 1.5, 240],
+    [6000, "/bow/speed", -0.15, 100],
+    [9000, "silence", 0.0, 0],
+    [9500, "/output/level", 0.5, 1000],
+]
+
+
+def written(moves, rests=(), **options) -> np.ndarray:
+    """What an instrument plays whose parameters move so."""
+    instrument = Instrument(RATE, TUNED, **options)
+    for frame, address, target, ramp in moves:
+        if address == "silence":
+            instrument.silence(frame=frame)
+        else:
+            instrument.write(address, target, frame=frame, ramp_ms=ramp * 1e3 / RATE)
+    out = np.zeros(15000, np.float32)
+    start = 0
+    for stop in (*rests, len(out)):
+        instrument.process(out[start:stop])
+        if stop < len(out):
+            instrument.come_to_rest()
+        start = stop
+    return out
+
+
+def test_a_file_of_version_1_sounds_as_its_ramps_do(tmp_path):
+    path = first_version(tmp_path / "c", MOVES, end=15000)
+    capture = read_capture(path)
+    assert capture.version == 1
+    assert capture.warnings == []
+    assert len(capture.wishes) == len(MOVES)
+    samples = replayed(path)
+    assert rms(samples) > 0.001
+    np.testing.assert_array_equal(samples, written(MOVES))
+
+
+def test_it_begins_with_its_own_values(tmp_path):
+    """Which were the defaults of its day."""
+    own = {
+        "/bow/position": 0.2,
+        "/output/gain": -3.0,
+        "/string/outer/tuning": 40.0,
+        "/bow/speed": 0.1,
+    }
+    values = {param.address: param.default for param in ENGINE} | own
+    path = first_version(tmp_path / "c", MOVES, values, end=15000)
+    samples = replayed(path)
+    np.testing.assert_array_equal(samples, written(MOVES, start_values=own))
+    assert not np.array_equal(samples, written(MOVES))
+
+
+def test_a_parameter_that_it_does_not_know_has_its_default(tmp_path):
+    unknown = {"/bow/noise", "/bow/assist", "/output/limiter", "/string/inner/loss"}
+    assert unknown < set(SLOT)
+    values = {param.address: param.default for param in ENGINE if param.address not in unknown}
+    path = first_version(tmp_path / "c", MOVES, values, end=15000)
+    np.testing.assert_array_equal(replayed(path), written(MOVES))
+    path = first_version(tmp_path / "d", MOVES, {}, end=15000)
+    np.testing.assert_array_equal(replayed(path), written(MOVES))
+
+
+def test_its_notes_go_on_after_a_rest(tmp_path):
+    path = first_version(tmp_path / "c", MOVES, end=15000, rests=[5000])
+    samples = replayed(path)
+    np.testing.assert_array_equal(samples, written(MOVES, rests=[5000]))
+    assert rms(samples[5500:9000]) > 0.001
+
+
+def test_a_wish_in_a_file_of_version_1_is_refused(tmp_path):
+    path = first_version(tmp_path / "c", [*MOVES, [9600, "begin", 0, 69.0, 69.0]], end=15000)
+    with pytest.raises(ScoreError, match="line 9"):
+        read_capture(path)
+
+
+# ---------------------------------------------------------------- files
+
+
+def test_a_full_disk_leaves_whole_lines(tmp_path, plain):
     path = tmp_path / "c"
-    writer = CaptureWriter(path, rate=RATE, seed=0, tensions=TENSIONS)
+    writer = CaptureWriter(path, instrument=plain)
     begun = path.read_bytes()
-    first = json.dumps([1, "/bow/speed", 0.5, 0]) + "\n"
+    first = json.dumps([1, "ramp", "/bow/speed", 0.5, 0]) + "\n"
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(begun) + len(first) + 9, hard))
     try:
         with pytest.raises(OutputError, match="cannot write"):
-            writer.events(np.array([(1, SPEED, 0.5, 0), (2, SPEED, 0.5, 0)], EVENT))
+            writer.wishes(np.array([(frame, RAMP, SPEED, 0.5, 0.0) for frame in (1, 2)], WISH))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert path.read_bytes() == begun + first.encode()
-    assert len(read_capture(path).events) == 1
+    assert len(read_capture(path).wishes) == 1
 
 
-def test_an_older_capture_is_replaced_only_where_that_is_asked_for(tmp_path):
-    path = write(tmp_path / "c", EVENTS, end=12345)
+def test_an_older_capture_is_replaced_only_where_that_only_where_that_is_asked_for(
+    tmp_path, write, plain
+):
+    path = write(tmp_path / "c", RAMPS, end=12345)
     older = path.read_bytes()
     with pytest.raises(OutputError, match="exists"):
-        CaptureWriter(path, rate=RATE, seed=0, tensions=TENSIONS)
+        CaptureWriter(path, instrument=plain)
     assert path.read_bytes() == older
-    CaptureWriter(path, rate=RATE, seed=0, tensions=TENSIONS, overwrite=True).close(7)
+    CaptureWriter(path, instrument=plain, overwrite=True).close(7)
     assert read_capture(path).frames == 7
 
 
-def test_a_capture_of_nothing_can_be_taken_back(tmp_path):
-    CaptureWriter(tmp_path / "c", rate=RATE, seed=0, tensions=TENSIONS).discard()
+def test_a_capture_of_nothing_can_be_taken_back(tmp_path, plain):
+    CaptureWriter(tmp_path / "c", instrument=plain).discard()
     assert list(tmp_path.iterdir()) == []
 
 
@@ -200,68 +495,129 @@ HUGE = "9" * 400
 DEEP = "[" * 20_000
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        f'[{2**63 - 1}, "/bow/speed", 0.1, 0]',
-        f'[{2**80}, "/bow/speed", 0.1, 0]',
-        '[1e3, "/bow/speed", 0.1, 0]',
-        '[-1, "/bow/speed", 0.1, 0]',
-        '[0, "/bow/speed", 9e18, 441]',
-        '[0, "/bow/speed", NaN, 0]',
-        '[0, "/bow/speed", -Infinity, 0]',
-        f'[0, "/bow/speed", {HUGE}, 0]',
-        '[0, "/bow/speed", {}, 0]',
-        f'[0, "/bow/speed", 0.1, {2**63}]',
-        '[0, "/bow/speed", 0.1, -5]',
-        '[0, "silence", 1.0, 0]',
-        '[0, ["/bow/speed"], 0.1, 0]',
-        f'{{"end": {HUGE}}}',
-        f'{{"end": {"9" * 5000}}}',
-        '{"end": true}',
-        '{"rest": 5, "since": 9}',
-        '{"rest": 5}',
-        '{"lost": 5, "events": -1}',
-        '"end"',
-        "17",
-        DEEP,
-        '{"a":' * 10_000,
-        "\x00",
-    ],
-    ids=lambda line: line[:40],
-)
-def test_a_line_that_no_instrument_wrote_is_named_and_refused(tmp_path, line):
-    path = write(tmp_path / "c", EVENTS[:1])
+NO_FRAMES = [
+    f'{{"end": {HUGE}}}',
+    f'{{"end": {"9" * 5000}}}',
+    '{"end": true}',
+    '{"rest": 5, "since": 9}',
+    '{"rest": 5}',
+    '{"lost": 5, "events": -1}',
+    '"end"',
+    "17",
+    DEEP,
+    '{"a":' * 10_000,
+    "\x00",
+]
+NO_RAMPS = [
+    f'[{2**63 - 1}, "/bow/speed", 0.1, 0]',
+    f'[{2**80}, "/bow/speed", 0.1, 0]',
+    '[1e3, "/bow/speed", 0.1, 0]',
+    '[-1, "/bow/speed", 0.1, 0]',
+    '[0, "/bow/speed", 9e18, 441]',
+    '[0, "/bow/speed", NaN, 0]',
+    '[0, "/bow/speed", -Infinity, 0]',
+    f'[0, "/bow/speed", {HUGE}, 0]',
+    '[0, "/bow/speed", {}, 0]',
+    f'[0, "/bow/speed", 0.1, {2**63}]',
+    '[0, "/bow/speed", 0.1, -5]',
+    '[0, "silence", 1.0, 0]',
+    '[0, ["/bow/speed"], 0.1, 0]',
+]
+NO_WISHES = [
+    f'[{2**63 - 1}, "ramp", "/bow/speed", 0.1, 0]',
+    f'[{2**80}, "ramp", "/bow/speed", 0.1, 0]',
+    '[1e3, "ramp", "/bow/speed", 0.1, 0]',
+    '[-1, "ramp", "/bow/speed", 0.1, 0]',
+    '[0, "ramp", "/bow/speed", 9e18, 441]',
+    '[0, "ramp", "/bow/speed", NaN, 0]',
+    '[0, "ramp", "/bow/speed", -Infinity, 0]',
+    f'[0, "ramp", "/bow/speed", {HUGE}, 0]',
+    '[0, "ramp", "/bow/speed", {}, 0]',
+    f'[0, "ramp", "/bow/speed", 0.1, {2**63}]',
+    '[0, "ramp", "/bow/speed", 0.1, -5]',
+    '[0, "ramp", "silence", 1.0, 0]',
+    '[0, "ramp", ["/bow/speed"], 0.1, 0]',
+    "[]",
+    "[0]",
+    "[0, 4]",
+    '[0, ["lift"]]',
+    '[0, "jump"]',
+    '[0, "ramp", "/playing/speed", 0.1, 0]',  # which the player has
+    '[0, "write", "/playing/speed", 0.1]',
+    '[0, "write", "/playing/speed", 9e9, 0]',
+    '[0, "write", "/playing/speed", 0.1, -1]',
+    '[0, "write", "/playing/speed", 0.1, NaN]',
+    '[0, "write", "/playing/speed", 0.1, 1e9]',
+    '[0, "hold", "/no/such", 0.1, 0]',
+    '[0, "hold", 7, 0.1, 0]',
+    '[0, "express", "/playing/speed", NaN]',
+    '[0, "express", "/playing/speed", 0.1, 0]',
+    '[0, "begin", 0, 69]',
+    '[0, "begin", 0.5, 69, 69]',
+    '[0, "begin", -2, 69, 69]',
+    f'[0, "begin", {2**63}, 69, 69]',
+    '[0, "begin", 0, NaN, 69]',
+    '[0, "begin", 0, 69, 127.5]',
+    '[0, "begin", 0, 69, -1]',
+    '[0, "begin", 0, 69, "A4"]',
+    '[0, "end", 0, 69, 2]',
+    '[0, "end", 0, 69, true]',
+    '[0, "end", 0, 69]',
+    '[0, "slide"]',
+    '[0, "slide", Infinity]',
+    '[0, "slide", null]',
+    '[0, "draw", 0.1]',
+    '[0, "draw", 99, 0.1]',
+    '[0, "draw", 0.1, -1]',
+    '[0, "lift", 0]',
+    '[0, "stop", 0]',
+    '[0, "release", 0]',
+]
+
+
+def refused_line(path, line) -> None:
+    """A line after two others is refused by its number."""
     path.write_text(path.read_text() + line + "\n" + '{"end": 100}\n')
     with pytest.raises(ScoreError, match="line 3: not a line of a capture") as error:
         read_capture(path)
     assert len(str(error.value)) < 300
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("line", [*NO_WISHES, *NO_FRAMES], ids=lambda line: line[:40])
+def test_a_line_that_no_instrument_wrote_is_named_and_refused(tmp_path, write, line):
+    refused_line(write(tmp_path / "c", RAMPS[:1]), line)
+
+
+@pytest.mark.parametrize("line", [*NO_RAMPS, *NO_FRAMES], ids=lambda line: line[:40])
+def test_and_so_is_one_that_the_first_version_did_not_write(tmp_path, line):
+    refused_line(first_version(tmp_path / "c", MOVES[:1]), line)
 
 
 @pytest.mark.parametrize("rate", [HUGE, "9" * 5000, "0", "-48000", "NaN", "1e999", "null", DEEP])
-def test_a_rate_that_is_none_is_refused(tmp_path, rate):
-    path = write(tmp_path / "c", EVENTS, end=9001)
+def test_a_rate_that_is_none_is_refused(tmp_path, write, rate):
+    path = write(tmp_path / "c", RAMPS, end=9001)
     path.write_text(path.read_text().replace(f'"rate": {RATE}', f'"rate": {rate}'))
     with pytest.raises(ScoreError):
         read_capture(path)
 
 
 @pytest.mark.parametrize("end", [10**12, 2**53])
-def test_a_capture_of_years_is_refused_unless_it_is_asked_for(tmp_path, end):
-    capture = read_capture(write(tmp_path / "c", EVENTS, end=end))
+def test_a_capture_of_years_is_refused_unless_it_is_asked_for(tmp_path, write, end):
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=end))
     with pytest.raises(ScoreError, match="--max-duration"):
         replay(capture, tmp_path / "x.wav", format_name="wav", subtype="16", max_duration_h=12.0)
     assert not (tmp_path / "x.wav").exists()
 
 
-def test_a_late_rest_is_as_long_as_an_end(tmp_path):
-    capture = read_capture(write(tmp_path / "c", EVENTS, end=100, rests=[10**12]))
+def test_a_late_rest_is_as_long_as_an_end(tmp_path, write):
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=100, rests=[10**12]))
     assert capture.frames == 10**12
 
 
-def test_many_rests_are_no_capture(tmp_path):
+def test_many_rests_are_no_capture(tmp_path, write):
     with pytest.raises(ScoreError, match="too many"):
-        read_capture(write(tmp_path / "c", EVENTS, rests=range(9000, 11000)))
+        read_capture(write(tmp_path / "c", RAMPS, rests=range(9000, 11000)))
 
 
 def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
@@ -273,10 +629,96 @@ def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
         assert str(error.value).startswith(f"{path}: ")
 
 
-def test_a_long_session_is_read_whole(tmp_path, monkeypatch):
+def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
     monkeypatch.setattr("yehu_server.score.capture.CHUNK", 3)
-    events = [(frame, SPEED, 0.1, 0) for frame in range(10)]
-    assert [tuple(e) for e in read_capture(write(tmp_path / "c", events)).events.tolist()] == events
-    monkeypatch.setattr("yehu_server.score.capture.MOST_EVENTS", 8)
+    wishes = [(frame, RAMP, SPEED, 0.1, 0.0) for frame in range(10)]
+    assert read_capture(write(tmp_path / "c", wishes)).wishes.tolist() == wishes
+    monkeypatch.setattr("yehu_server.score.capture.MOST_WISHES", 8)
     with pytest.raises(ScoreError, match="more than 8 events"):
         read_capture(tmp_path / "c")
+
+
+def with_header(path, **changes):
+    """A capture whose first line has other values; None removes one."""
+    first, *rest = path.read_text().splitlines(keepends=True)
+    header = json.loads(first) | changes
+    header = {name: value for name, value in header.items() if value is not REMOVED}
+    path.write_text(json.dumps(header) + "\n" + "".join(rest))
+    return path
+
+
+REMOVED = object()
+NAN, INFINITY = float("nan"), float("inf")
+CALIBRATION = {
+    "a4": 440.0,
+    "tensions": list(measured().tensions),
+    "sharpening": measured().sharpening,
+    "levels": measured().levels,
+}
+BOWING = bowing_table().tolist()
+
+
+def test_the_header_that_is_changed_below_is_one(tmp_path, write):
+    path = with_header(write(tmp_path / "c", end=5), calibration=CALIBRATION, bowing=BOWING)
+    assert read_capture(path).beginning.calibration == measured()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        *({name: REMOVED} for name in ("version", "rate", "seed", "open_strings", "tensions")),
+        *({name: REMOVED} for name in ("calibration", "bowing", "build", "values")),
+        *({"version": version} for version in (0, 3, 2.0, True, "2", None, [2], "2\n")),
+        *({"seed": seed} for seed in (-1, 1.5, "3", None, True, 2**60, NAN)),
+        *({"open_strings": when} for when in ("sometimes", 1, None, [], "a\nb")),
+        *({"tensions": of} for of in (50.0, [], [50.0], [50.0] * 3, ["a", "b"], [None, 1], {})),
+        *({"build": build} for build in (None, 3, "x", [1])),
+        *({"values": values} for values in (None, [], "x", ["/bow/speed"])),
+        {"values": {"/no/such": 0.1}},
+        {"values": {"/no/\nsuch": 0.1}},
+        {"values": {"": 0.1}},
+        *(
+            {"values": {"/bow/speed": value}}
+            for value in (9.0, -9.0, NAN, INFINITY, "0.1", "0\n1", None, [], {}, True, 10**400)
+        ),
+        *({"bowing": bowing} for bowing in (None, 1.0, [], BOWING[1:], [*BOWING, BOWING[0]], "x")),
+        {"bowing": [row[1:] for row in BOWING]},
+        {"bowing": [*BOWING[1:], BOWING[0][1:]]},
+        {"bowing": [*BOWING[1:], [NAN] * 5]},
+        {"bowing": [*BOWING[1:], [INFINITY] * 5]},
+        {"bowing": [*BOWING[1:], ["a"] * 5]},
+        {"bowing": [*BOWING[1:], [10**400] * 5]},
+        *({"calibration": calibration} for calibration in (0, [], {}, "x", True)),
+        *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (0.0, -440.0, NAN, INFINITY, "x")),
+        *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (None, 1e9, 1e-300, 10**400)),
+        *(
+            {"calibration": {**CALIBRATION, name: value}}
+            for name in ("tensions", "sharpening", "levels")
+            for value in (None, [], 1.0, [1.0], [[], []], "x", CALIBRATION["tensions"][:1])
+        ),
+        {"calibration": {**CALIBRATION, "tensions": [NAN, NAN]}},
+        {"calibration": {**CALIBRATION, "tensions": [-50.0, 64.0]}},
+        {"calibration": {**CALIBRATION, "tensions": [1e6, 64.0]}},
+        {"calibration": {**CALIBRATION, "levels": CALIBRATION["sharpening"]}},
+        {"calibration": {**CALIBRATION, "sharpening": [[[NAN] * 4] * 18, [[0.0] * 4] * 18]}},
+    ],
+    ids=lambda changes: str(changes)[:50].replace("\n", "/"),
+)
+def test_a_beginning_that_is_none_is_refused_in_one_line(tmp_path, write, changes):
+    path = with_header(write(tmp_path / "c", RAMPS, end=9001), **changes)
+    with pytest.raises(ScoreError) as error:
+        read_capture(path)
+    assert str(error.value).startswith(f"{path}: ")
+    assert len(str(error.value).splitlines()) == 1
+    assert len(str(error.value)) < 500
+
+
+@pytest.mark.parametrize("tensions", [[0, 64], [-50, 64], [50, 1e9], [50, 1e308], [NAN, 64]])
+def test_strings_that_no_model_can_hold_are_refused_before_anything_sounds(
+    tmp_path, write, tensions
+):
+    path = with_header(write(tmp_path / "c", RAMPS, end=9001), tensions=tensions)
+    with pytest.raises(YehuError) as error:
+        replay(read_capture(path), tmp_path / "x.wav", format_name="wav", subtype="16")
+    assert len(str(error.value).splitlines()) == 1
+    assert not (tmp_path / "x.wav").exists()

@@ -126,8 +126,9 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
         Where a file or value is wrong.
     """
     from yehu_server.params.table import assignment
-    from yehu_server.playing.fingering import OpenStrings, RangePolicy
+    from yehu_server.player.fingering import OpenStrings
     from yehu_server.playing.presets import Presets
+    from yehu_server.playing.range_policy import RangePolicy
     from yehu_server.playing.style import Style
     from yehu_server.playing.tuning import EQUAL, read_tuning
 

@@ -137,7 +137,7 @@ class OscHandler:
 
     def tick(self) -> None:
         """See `sockets.Handler`."""
-        # Early enough to be decided before messages that arrive now and are heard later.
+        # Early enough to be there when the device asks for their frames.
         self._schedule.ahead_s = AHEAD_S + self._player.delay / self._player.instrument.rate
         for due_s, packet, peer in self._schedule.due(DUE_AT_ONCE):
             self._due.add(packet, peer, self._tags.frame_at(due_s), len(packet), is_due=True)
@@ -280,8 +280,7 @@ class OscHandler:
         self.clients.echo(call.peer, ["/bow/speed", "/bow/force"])
 
     def _release(self, call: Request) -> None:
-        del call
-        self._player.release()
+        self._player.release(frame=call.frame)
 
     def _panic(self, call: Request) -> None:
         self._forget_waiting()

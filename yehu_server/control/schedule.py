@@ -16,7 +16,7 @@ from typing import Generic, TypeVar
 from yehu_server.control.room import OVERHEAD_BYTES, Room
 from yehu_server.playing.live import LivePlayer
 
-AHEAD_S = 0.01  # scheduled messages are decided so long before those of now
+AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
 TOGETHER_NS, TRIES = 100_000, 10
 STRAY_S = 0.001
 MOST_BYTES = 20 << 20  # some 65,000 notes, half as many of one sender

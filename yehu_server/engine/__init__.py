@@ -1,1 +1,1 @@
-"""The running instrument: events, controls, the model, the output, in one compiled callback."""
+"""The running instrument: wishes, player, controls, model, output, in one compiled callback."""

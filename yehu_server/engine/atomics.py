@@ -8,14 +8,33 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic
+
+from yehu_server.jit import intrinsic
+from yehu_server.memory import carray
 
 WORD = 8  # bytes
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+def _plain_at(base: int, offset: int) -> int:
+    return base + offset
+
+
+def _plain_load(base: int, offset: int) -> int:
+    return int(carray(base + offset, (1,), np.int64)[0])
+
+
+def _plain_store(base: int, offset: int, value: int) -> None:
+    carray(base + offset, (1,), np.int64)[0] = value
+
+
+def _no_fence() -> None:
+    pass
+
+
+@intrinsic(plain=_plain_at)
 def at(_context: Any, base: Any, offset: Any) -> Any:
     """The address `offset` bytes after `base`."""
 
@@ -25,7 +44,7 @@ def at(_context: Any, base: Any, offset: Any) -> Any:
     return types.voidptr(types.voidptr, types.int64), generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic(plain=_plain_load)
 def load_acquire(_context: Any, base: Any, offset: Any) -> Any:
     """Load the 64-bit integer `offset` bytes after `base`."""
 
@@ -35,7 +54,7 @@ def load_acquire(_context: Any, base: Any, offset: Any) -> Any:
     return types.int64(types.voidptr, types.int64), generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic(plain=_plain_store)
 def store_release(_context: Any, base: Any, offset: Any, value: Any) -> Any:
     """Store a 64-bit integer `offset` bytes after `base`."""
 
@@ -45,7 +64,7 @@ def store_release(_context: Any, base: Any, offset: Any, value: Any) -> Any:
     return types.void(types.voidptr, types.int64, types.int64), generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic(plain=_no_fence)
 def fence_release(_context: Any) -> Any:
     """Order later stores after earlier loads and stores."""
 
@@ -55,7 +74,7 @@ def fence_release(_context: Any) -> Any:
     return types.void(), generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic(plain=_no_fence)
 def fence_acquire(_context: Any) -> Any:
     """Order later loads and stores after earlier loads."""
 

@@ -1,24 +1,31 @@
-"""The instrument for Python: post events, compute samples, read meters; live and offline alike."""
+"""The instrument for Python: post wishes, compute samples, read meters; live and offline alike."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from ctypes import addressof, c_float
 from typing import Any
 
 import numpy as np
 
+from yehu_server.controls.record import prepare_controls, settle
+from yehu_server.controls.slots import SILENCE
 from yehu_server.engine import native
-from yehu_server.engine.controls import SILENCE, prepare_controls, settle
-from yehu_server.engine.mailbox import EVENT, LIVE_BUDGET, RING
+from yehu_server.engine.mailbox import LIVE_BUDGET, RING, mend
 from yehu_server.engine.output import prepare_output, rest_output
 from yehu_server.engine.telemetry import METERS
 from yehu_server.errors import ParameterError
-from yehu_server.params.table import SLOT, find
+from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.physics import kernel
 from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.layout import MAX_FINGERS, new_record
 from yehu_server.physics.quantities import Quantities
+from yehu_server.player.bowing import bowing_table
+from yehu_server.player.calibration import Calibration
+from yehu_server.player.fingering import OpenStrings
+from yehu_server.player.record import end_all, prepare_player
+from yehu_server.player.wishes import RAMP, WISH
 
 Array = Any
 
@@ -29,19 +36,29 @@ TAPE_FRAMES = native.TAPE
 class Instrument:
     """A yehu that computes sound.
 
-    One thread at a time may post events (`write`, `silence`), and another may compute samples
-    (`process`), also in another process that shares `memory`.
+    One thread at a time may post wishes (`post`, `write`, `silence`), and another may compute
+    samples (`process`), also in another process that shares `memory`.
 
     Parameters
     ----------
     rate : float, Hz
         Sample rate, within the bounds of ``physics.grid``.
     quantities : Quantities
-        The physical instrument; by default the measured one.
+        The physical instrument, as it is tuned; by default the measured one.
+    calibration : Calibration, optional
+        Where its player's fingers stop; by default where an ideal string is in tune.
+    open_strings : OpenStrings
+        When the C string is played open.
+    seed : int
+        Seed of the variation between notes.
+    bowing : ndarray
+        How each note is bowed; by default ``player.bowing.bowing_table``.
+    start_values : mapping
+        Values of parameters at the start, by address; others have their default.
     channels : int
         Number of channels, which all get the same signal.
     memory : buffer of RIG_BYTES, optional
-        Holds all state. With it the instrument is live: events of one block are limited.
+        Holds all state. With it the instrument is live: wishes of one block are limited.
 
     Raises
     ------
@@ -54,11 +71,21 @@ class Instrument:
         rate: float,
         quantities: Quantities | None = None,
         *,
+        calibration: Calibration | None = None,
+        open_strings: OpenStrings = OpenStrings.ALWAYS,
+        seed: int = 0,
+        bowing: Array | None = None,
+        start_values: Mapping[str, float] | None = None,
         channels: int = 1,
         memory: Any = None,
     ) -> None:
         check_rate(rate)
         self.rate = rate
+        self.calibration, self.open_strings, self.seed = calibration, open_strings, seed
+        self.bowing = bowing_table() if bowing is None else bowing
+        seeded = {"/engine/seed": find("/engine/seed").accept(seed)}
+        defaults = {param.address: param.default for param in TABLE}
+        self.start_values = defaults | seeded | dict(start_values or {})
         self.quantities = quantities or Quantities()
         self._rig = (
             new_record(native.RIG) if memory is None else np.frombuffer(memory, native.RIG, count=1)
@@ -70,20 +97,29 @@ class Instrument:
         self.reset()
 
     def reset(self) -> None:
-        """Put model and parameters back to their start; drop all events.
+        """Put model and parameters back to their start; drop all wishes.
 
         Nothing may post or compute meanwhile.
         """
         rig = self._rig
         rig["state"] = kernel.at_rest(rig["model"])
-        rig["controls"] = prepare_controls(self.quantities, self.rate)
+        rig["controls"] = prepare_controls(self.quantities, self.rate, self.start_values)
+        rig["player"] = prepare_player(
+            self.quantities,
+            self.rate,
+            self.start_values,
+            calibration=self.calibration,
+            open_strings=self.open_strings,
+            bowing=self.bowing,
+            seed=self.seed,
+        )
         prepare_output(rig["output"], self.rate, self.channels)
         mail = rig["mail"]
         kept = mail["budget"].copy(), mail["reporting"].copy()
         mail[:] = np.zeros(1, mail.dtype)
         mail["budget"], mail["reporting"] = kept
         rig["meters"] = np.zeros(1, METERS)
-        rig["meters"]["rate"] = self.rate
+        rig["meters"]["rate"], rig["meters"]["pitch"] = self.rate, np.nan
         rig["meters"]["loop"]["ns_per_frame"] = 1e9 / self.rate
         rig["published"] = rig["meters"]
         self._meters = rig["meters"].copy()  # the last consistent copy
@@ -129,7 +165,7 @@ class Instrument:
 
     @property
     def dropped_events(self) -> int:
-        """Number of events dropped because the ring was full, since the start."""
+        """Number of wishes dropped because the ring was full, since the start."""
         return int(self._rig["mail"]["dropped"][0, 0])
 
     def frames(self, ms: float) -> int:
@@ -144,7 +180,7 @@ class Instrument:
         Parameters
         ----------
         frame : int
-            When to begin; by default now. Events of one frame apply in the order written.
+            When to begin; by default now. Wishes of one frame are fulfilled in the order posted.
         ramp_ms : float
             Length of the ramp; by default the parameter's own smoothing.
 
@@ -159,16 +195,34 @@ class Instrument:
         if slot is None:
             raise ParameterError(f"{address} is not held by the engine")
         ramp = self.frames(param.smooth_ms if ramp_ms is None else ramp_ms)
-        self.post(self.frame if frame is None else frame, slot, accepted, ramp)
+        self.post(RAMP, frame=frame, index=slot, value=accepted, other=ramp)
         return accepted
 
     def silence(self, *, frame: int | None = None) -> None:
         """Fade the sound out within 5 ms, then put the model to rest."""
-        self.post(self.frame if frame is None else frame, SILENCE, 0.0, 0)
+        self.post(RAMP, frame=frame, index=SILENCE)
 
-    def post(self, frame: int, index: int, target: float, ramp: int) -> bool:
-        """Post an event (``engine.mailbox``); return whether there was room for it."""
-        return bool(native.post.call(self._address, frame, index, target, ramp))
+    def post(
+        self,
+        kind: int,
+        *,
+        frame: int | None = None,
+        index: int = 0,
+        value: float = 0.0,
+        other: float = 0.0,
+    ) -> bool:
+        """Post a wish (``player.wishes``), by default for now; return whether there was room."""
+        frame = self.frame if frame is None else frame
+        return bool(native.post.call(self._address, frame, kind, index, value, other))
+
+    @property
+    def posted(self) -> int:
+        """Number of wishes posted since the start."""
+        return int(self._rig["mail"]["posted"][0, 0])
+
+    def target(self, address: str) -> float:
+        """The value that a parameter of the engine has, or moves to."""
+        return float(self._rig["controls"]["target"][0, SLOT[address]])
 
     def process(self, out: Array) -> None:
         """Compute the next samples (full scale is 1).
@@ -196,17 +250,23 @@ class Instrument:
         settle(rig["controls"][0])
         rest_output(rig["output"])
 
+    def end_all(self) -> None:
+        """End all notes at once, then as `come_to_rest`."""
+        end_all(self._rig["player"][0], self._rig["controls"][0])
+        self.come_to_rest()
+
     def recover(self) -> None:
         """Repair the state after a process was killed while it computed a block.
 
-        The model is put to rest, and the frames of that block become silence; ``rests`` has their
-        first frame and the one after them. Nothing may compute meanwhile.
+        All notes end, the model is put to rest, and the frames of that block become silence;
+        ``rests`` has their first frame and the one after them. Nothing may compute meanwhile.
         """
         rig = self._rig
         rig["version"][0, 0] += rig["version"][0, 0] % 2
         if rig["meters"]["running"][0]:
             rig["meters"]["running"] = 0
-            self.come_to_rest()
+            mend(rig["heap"][0], rig["mail"][0])
+            self.end_all()
             gap = int(rig["taped"][0, 0]), self.frame
             rig["tape"][0, np.arange(*gap) % TAPE_FRAMES] = 0.0
             rig["taped"][0, 0] = self.frame
@@ -225,15 +285,15 @@ class Instrument:
         """The frame that is played at a time of ``time.monotonic_ns()``."""
         return float(native.frame_at.call(self._address, time_ns))
 
-    def report_events(self) -> None:
-        """Report applied events from now on, for `applied_events`."""
+    def report_wishes(self) -> None:
+        """Report fulfilled wishes from now on, for `applied_wishes`."""
         self._rig["mail"]["reporting"] = 1
 
-    def applied_events(self) -> Array:
-        """The events applied since the last call: ndarray [shape=(events,), dtype=EVENT]."""
-        events = np.zeros(RING, EVENT)
-        count = native.read_reports.call(self._address, events.ctypes.data, RING)
-        return events[:count].copy()
+    def applied_wishes(self) -> Array:
+        """The wishes fulfilled since the last call: ndarray [shape=(wishes,), dtype=WISH]."""
+        wishes = np.zeros(RING, WISH)
+        count = native.read_reports.call(self._address, wishes.ctypes.data, RING)
+        return wishes[:count].copy()
 
     def taped(self, start: int) -> tuple[int, Array]:
         """The samples that were played from a frame on.

@@ -1,8 +1,8 @@
-"""Lock-free queues of events to the instrument, and of reports of applied ones. Compiled.
+"""Lock-free queues of wishes to the instrument, and of reports of fulfilled ones. Compiled.
 
-Players post events to a ring; the audio side moves them to a heap in the order of their frames,
-and reports applied events in a second ring. Each ring has one writer and one reader. Each moves
-only its own cursor, after it has written or read the entry, so neither waits. Events for a full
+Players post wishes to a ring; the audio side moves them to a heap in the order of their frames,
+and reports fulfilled ones in a second ring. Each ring has one writer and one reader. Each moves
+only its own cursor, after it has written or read the entry, so neither waits. Wishes for a full
 ring are dropped and counted.
 """
 
@@ -13,24 +13,22 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import compiled
+from yehu_server.player.wishes import WISH
 
 Array = Any
 
-RING = 1 << 16  # events; powers of two
+RING = 1 << 16  # wishes; powers of two
 HEAP = 1 << 14
-# Limits on the work of a callback: events moved to the heap for each 64 frames, and events applied
-# at one frame. The rest waits for the next.
+# Limits on the work of a callback: wishes moved to the heap for each 64 frames, and wishes
+# fulfilled at one frame. The rest waits for the next.
 LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 10, 64
 
-EVENT = np.dtype(
-    [("frame", np.int64), ("index", np.int64), ("target", np.float64), ("ramp", np.int64)]
-)
-WAITING = np.dtype([*EVENT.descr, ("order", np.int64)])
+WAITING = np.dtype([("wish", WISH), ("order", np.int64)])
 LINE = 8  # words of a cache line: the two sides' cursors lie in different ones
 
 MAIL = np.dtype(
     [
-        ("posted", np.int64, LINE),  # number of events posted; written by players, as the next
+        ("posted", np.int64, LINE),  # number of wishes posted; written by players, as the next
         ("dropped", np.int64, LINE),
         ("read", np.int64, LINE),  # number of reports read; written by their reader
         ("drained", np.int64, LINE),  # written by the audio side, as all below
@@ -40,32 +38,47 @@ MAIL = np.dtype(
         ("applied", np.int64),
         ("waiting", np.int64),  # entries in the heap
         ("reporting", np.int64),
-        ("budget", np.int64),  # events moved to the heap at a time
+        ("budget", np.int64),  # wishes moved to the heap at a time
     ],
     align=True,
 )
 
 
+def mend(heap: Array, mail: Any) -> None:
+    """Put a heap in order again that a process left while it moved an entry, in place."""
+    entries = heap[: int(mail["waiting"])]
+    _, first = np.unique(entries["order"], return_index=True)  # one may be there twice
+    entries = entries[first]
+    entries = entries[np.lexsort((entries["order"], entries["wish"]["frame"]))]
+    heap[: len(entries)] = entries
+    mail["waiting"] = len(entries)
+
+
 @compiled
-def wait(
-    heap: Array, waiting: int, frame: int, index: int, target: float, ramp: int, order: int
-) -> None:
-    """Add an event to a heap of `waiting` entries. Real time: safe; log(waiting) steps."""
+def wait(heap: Array, waiting: int, wish: Any, order: int) -> None:
+    """Add a wish to a heap of `waiting` entries. Real time: safe; log(waiting) steps."""
     hole = waiting
     while hole > 0:
         parent = (hole - 1) // 2
-        if heap[parent].frame <= frame:  # at one frame, the older event comes first
+        if heap[parent].wish.frame <= wish.frame:  # at one frame, the older wish comes first
             break
         heap[hole] = heap[parent]
         hole = parent
     entry = heap[hole]
-    entry.frame, entry.index, entry.target, entry.ramp = frame, index, target, ramp
+    copy_wish(wish, entry.wish)
     entry.order = order
 
 
 @compiled
+def copy_wish(wish: Any, into: Any) -> None:
+    """Copy the fields of a wish from one record to another."""
+    into.frame, into.kind, into.index = wish.frame, wish.kind, wish.index
+    into.value, into.other = wish.value, wish.other
+
+
+@compiled
 def leave(heap: Array, waiting: int) -> None:
-    """Remove the first event from a heap of `waiting` entries. Real time: safe."""
+    """Remove the first wish from a heap of `waiting` entries. Real time: safe."""
     end = waiting - 1
     last = heap[end]
     hole = 0
@@ -82,5 +95,6 @@ def leave(heap: Array, waiting: int) -> None:
 
 @compiled
 def is_before(one: Any, other: Any) -> bool:
-    """Whether one event comes before another: by frame, then in the order posted."""
-    return bool(one.frame < other.frame or (one.frame == other.frame and one.order < other.order))
+    """Whether one wish comes before another: by frame, then in the order posted."""
+    first, second = one.wish.frame, other.wish.frame
+    return bool(first < second or (first == second and one.order < other.order))

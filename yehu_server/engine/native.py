@@ -9,8 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import carray
 
+from yehu_server.controls.gains import TO_BODY, TO_LIMITER, amplitude, level
+from yehu_server.controls.hands import write_controls
+from yehu_server.controls.ramps import move
+from yehu_server.controls.record import CONTROLS
+from yehu_server.controls.slots import BLEND, BODY, LIMITER, LOSS, TUNING
+from yehu_server.controls.strings import has_new_strings
 from yehu_server.engine.atomics import (
     at,
     fence_acquire,
@@ -18,30 +23,14 @@ from yehu_server.engine.atomics import (
     load_acquire,
     store_release,
 )
-from yehu_server.engine.controls import (
-    BLEND,
-    BODY,
-    CONTROLS,
-    LIMITER,
-    LOSS,
-    TO_BODY,
-    TO_LIMITER,
-    TUNING,
-    amplitude,
-    has_new_strings,
-    level,
-    move,
-    take,
-    write_controls,
-)
 from yehu_server.engine.mailbox import (
     APPLIED_AT_ONCE,
-    EVENT,
     HEAP,
     LINE,
     MAIL,
     RING,
     WAITING,
+    copy_wish,
     leave,
     wait,
 )
@@ -54,8 +43,12 @@ from yehu_server.engine.processor import (
 )
 from yehu_server.engine.telemetry import METERS, account, close_window, hear, tell_time
 from yehu_server.jit import compiled, compiled_to_share, native
+from yehu_server.memory import carray
 from yehu_server.physics import kernel
 from yehu_server.physics.layout import MODEL, STATE, STRINGS
+from yehu_server.player.notes import told_pitch
+from yehu_server.player.record import PLAYER
+from yehu_server.player.wishes import WISH, fulfil
 
 Array = Any
 
@@ -68,15 +61,16 @@ RIG = np.dtype(
         ("model", MODEL),
         ("state", STATE),
         ("controls", CONTROLS),
+        ("player", PLAYER),
         ("output", OUTPUT),
         ("mail", MAIL),
         ("meters", METERS),
         ("version", np.int64, LINE),
         ("published", METERS),
         ("taped", np.int64, LINE),
-        ("ring", EVENT, RING),
+        ("ring", WISH, RING),
         ("heap", WAITING, HEAP),
-        ("reports", EVENT, RING),
+        ("reports", WISH, RING),
         ("tape", np.float32, TAPE),
     ],
     align=True,
@@ -90,29 +84,31 @@ def _offset(field: str, inside: str = "") -> int:
 
 
 MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
+PLAYER_AT = _offset("player")
 OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
 RING_AT, HEAP_AT, REPORTS_AT = _offset("ring"), _offset("heap"), _offset("reports")
 TAPE_AT = _offset("tape")
 POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
 REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
+fulfil_wish = fulfil.symbol
 
 
 @compiled_to_share
 def drain(rig: Any, mail: Any, frame: int) -> bool:
-    """Move posted events to the heap, up to the budget of a callback.
+    """Move posted wishes to the heap, up to the budget of a callback.
 
     Returns whether some are left because the heap is full: then it is worth trying again soon.
     """
-    ring = carray(at(rig, RING_AT), (RING,), EVENT)
+    ring = carray(at(rig, RING_AT), (RING,), WISH)
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     posted = load_acquire(rig, POSTED_AT)
     drained = mail.drained[0]
     end = min(posted, drained + mail.budget)
     while drained < end and mail.waiting < HEAP:
-        event = ring[drained & (RING - 1)]
-        mail.late += 1 if event.frame < frame else 0
-        wait(heap, mail.waiting, event.frame, event.index, event.target, event.ramp, drained)
+        wish = ring[drained & (RING - 1)]
+        mail.late += 1 if wish.frame < frame else 0
+        wait(heap, mail.waiting, wish, drained)
         mail.waiting += 1
         drained += 1
     store_release(rig, DRAINED_AT, drained)
@@ -120,30 +116,32 @@ def drain(rig: Any, mail: Any, frame: int) -> bool:
 
 
 @compiled_to_share
-def apply(rig: Any, mail: Any, c: Any, fade: int) -> None:
-    """Apply the events that are due at this frame, and report them."""
+def apply(rig: Any, mail: Any, c: Any) -> None:
+    """Fulfil the wishes that are due at this frame, and report them."""
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     for _ in range(APPLIED_AT_ONCE):
-        if mail.waiting == 0 or heap[0].frame > c.frame:
+        if mail.waiting == 0 or heap[0].wish.frame > c.frame:
             return
-        event = heap[0]
-        take(c, event.index, event.target, event.ramp, fade)
+        wish = heap[0].wish
+        player, controls = at(rig, PLAYER_AT), at(rig, CONTROLS_AT)
+        fulfil_wish(player, controls, c.frame, wish.kind, wish.index, wish.value, wish.other)
         if mail.reporting != 0:
-            report(rig, mail, c.frame, event.index, event.target, event.ramp)
+            report(rig, mail, c.frame, wish)
         mail.applied += 1
         leave(heap, mail.waiting)
         mail.waiting -= 1
 
 
 @compiled_to_share
-def report(rig: Any, mail: Any, frame: int, index: int, target: float, ramp: int) -> None:
-    """Report an applied event for captures."""
+def report(rig: Any, mail: Any, frame: int, wish: Any) -> None:
+    """Report a fulfilled wish for captures, with the frame that it was fulfilled at."""
     reported = mail.reported[0]
     if reported - load_acquire(rig, READ_AT) >= RING:
         mail.unreported += 1
         return
-    entry = carray(at(rig, REPORTS_AT), (RING,), EVENT)[reported & (RING - 1)]
-    entry.frame, entry.index, entry.target, entry.ramp = frame, index, target, ramp
+    entry = carray(at(rig, REPORTS_AT), (RING,), WISH)[reported & (RING - 1)]
+    copy_wish(wish, entry)
+    entry.frame = frame
     store_release(rig, REPORTED_AT, reported + 1)
 
 
@@ -185,7 +183,7 @@ def play(rig: Any, out: Array) -> None:
         frames = 0
         silenced, retuned = False, False
         while frames < CHUNK and done + frames < out.shape[0] and not silenced and not retuned:
-            apply(rig, mail, c, o.fade)
+            apply(rig, mail, c)
             if is_full:
                 is_full = drain(rig, mail, c.frame)
             move(c)
@@ -193,7 +191,7 @@ def play(rig: Any, out: Array) -> None:
             gain = level(c)
             if c.silence_in > 0:
                 c.silence_in -= 1
-                gain *= c.silence_in / o.fade
+                gain *= c.silence_in / c.fade
                 silenced = c.silence_in == 0
             o.gain[frames] = gain
             o.body[frames] = amplitude(c, TO_BODY, c.value[BODY])
@@ -223,7 +221,7 @@ def play(rig: Any, out: Array) -> None:
         done += frames
 
 
-@native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)")
+@native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)", calls=[fulfil])
 def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig: Any) -> int:
     """Compute one block for PortAudio (a PaStreamCallback).
 
@@ -249,7 +247,9 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     publish(rig)  # at once, so that messages that arrive now are stamped by this block
     play(rig, carray(output, (block, o.channels), np.float32))
     t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
-    t.late_events, t.applied = mail.late, mail.applied
+    t.late_events, t.applied, t.drained = mail.late, mail.applied, mail.drained[0]
+    t.next_frame = c.frame
+    t.pitch = told_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
     t.waiting, t.unreported = mail.waiting, mail.unreported
     restore_denormals(mode)
     account(t, thread_cpu_ns() - cpu_ns, flags)
@@ -297,9 +297,9 @@ def frame_at(rig: Any, time_ns: int) -> float:
     return frame + elapsed_ns / ns_per_frame
 
 
-@native("int64(voidptr, int64, int64, float64, int64)")
-def post(rig: Any, frame: int, index: int, target: float, ramp: int) -> int:
-    """Post an event; return 0 where it was dropped because the ring is full.
+@native("int64(voidptr, int64, int64, int64, float64, float64)")
+def post(rig: Any, frame: int, kind: int, index: int, value: float, other: float) -> int:
+    """Post a wish, by its fields; return 0 where it was dropped because the ring is full.
 
     Only one thread at a time may post.
     """
@@ -308,22 +308,23 @@ def post(rig: Any, frame: int, index: int, target: float, ramp: int) -> int:
     if posted - load_acquire(rig, DRAINED_AT) >= RING:
         mail.dropped[0] += 1
         return 0
-    entry = carray(at(rig, RING_AT), (RING,), EVENT)[posted & (RING - 1)]
-    entry.frame, entry.index, entry.target, entry.ramp = frame, index, target, ramp
+    entry = carray(at(rig, RING_AT), (RING,), WISH)[posted & (RING - 1)]
+    entry.frame, entry.kind, entry.index = frame, kind, index
+    entry.value, entry.other = value, other
     store_release(rig, POSTED_AT, posted + 1)
     return 1
 
 
 @native("int64(voidptr, voidptr, int64)")
 def read_reports(rig: Any, into: Any, room: int) -> int:
-    """Move reports of applied events to an array of EVENT [shape=(room,)]; return their number."""
+    """Move reports of wishes to an array of WISH [shape=(room,)]; return their number."""
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
-    reports = carray(at(rig, REPORTS_AT), (RING,), EVENT)
-    events = carray(into, (room,), EVENT)
+    reports = carray(at(rig, REPORTS_AT), (RING,), WISH)
+    wishes = carray(into, (room,), WISH)
     read = mail.read[0]
     count = int(min(load_acquire(rig, REPORTED_AT) - read, room))
     for i in range(count):
-        events[i] = reports[(read + i) & (RING - 1)]
+        wishes[i] = reports[(read + i) & (RING - 1)]
     store_release(rig, READ_AT, read + count)
     return count
 
@@ -334,13 +335,13 @@ def taped(rig: Any) -> int:
     return int(load_acquire(rig, TAPED_AT))
 
 
-PLAYED_BY = (callback, read_meters, frame_at, post, read_reports, taped)
+PLAYED_BY = (fulfil, callback, read_meters, frame_at, post, read_reports, taped)
 
 
 def warm_up() -> None:
     """Compile all functions that playing needs, or load them from the cache."""
     for function in PLAYED_BY:
-        _ = function.address
+        _ = function.call
 
 
 def is_warm() -> bool:

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.engine.one_pole import pole_of_cutoff, pole_of_time
+from yehu_server.controls.one_pole import pole_of_cutoff, pole_of_time
+from yehu_server.controls.record import FADE_S
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import (
     BRIDGE_FORCE,
@@ -21,7 +22,6 @@ from yehu_server.physics.layout import (
 Array = Any
 
 CHUNK = 64  # frames that the kernel computes at a time
-FADE_S = 0.005
 BLOCKED_HZ = 10.0  # cutoff of the DC blocker
 # Pressure (Pa) for a newton at the bridge: a blend is about as loud at both of its ends.
 BRIDGE_PRESSURE = 0.1
@@ -32,7 +32,6 @@ LARGEST = (
 OUTPUT = np.dtype(
     [
         ("channels", np.int64),  # of the device, all with the same signal
-        ("fade", np.int64),  # length of a fade to silence (frames)
         ("last", np.float64),  # the last sample
         ("unsound", np.int64),  # number of samples that were not numbers, replaced by silence
         ("ghost", np.float64),  # decays from the last sample before a lost state
@@ -55,7 +54,6 @@ def prepare_output(output: Any, rate: float, channels: int) -> None:
     """Set the coefficients of a record of dtype OUTPUT [shape=(1,)] for a rate (Hz), in place."""
     output["channels"] = channels
     output["unsound"] = 0
-    output["fade"] = max(1, round(FADE_S * rate))
     output["decay"] = pole_of_time(FADE_S, rate)
     output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
     rest_output(output)

@@ -8,17 +8,24 @@ from __future__ import annotations
 
 import platform
 import sys
+import time
 from typing import Any
 
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
+
+from yehu_server.jit import intrinsic
 
 # Clocks of clock_gettime; time.monotonic_ns() reads the first.
 MONOTONIC, THREAD_CPU = (8, 16) if sys.platform == "darwin" else (1, 3)
 # x86: FTZ and DAZ (flush to zero, denormals are zero) in MXCSR; ARM: FZ in FPCR.
 X86_BITS, ARM_BIT = 0x8040, 1 << 24
+
+
+def _no_mode(_mode: int = 0) -> int:
+    """Plain Python leaves the treatment of denormals as it is."""
+    return 0
 
 
 def _clock(codegen: Any, builder: Any, number: int) -> Any:
@@ -31,7 +38,7 @@ def _clock(codegen: Any, builder: Any, number: int) -> Any:
     return builder.add(builder.mul(seconds, ir.Constant(word, 1_000_000_000)), ns)
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic(plain=time.monotonic_ns)
 def monotonic_ns(_context: Any) -> Any:
     """The time of ``time.monotonic_ns()``, the same in all processes."""
 
@@ -41,7 +48,7 @@ def monotonic_ns(_context: Any) -> Any:
     return types.int64(), generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic(plain=time.thread_time_ns)
 def thread_cpu_ns(_context: Any) -> Any:
     """CPU time of this thread (ns)."""
 
@@ -90,7 +97,7 @@ def _call(builder: Any, name: str, returns: Any, *arguments: Any) -> Any:
 X86, ARM = {"x86_64", "AMD64"}, {"aarch64", "arm64"}
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic(plain=_no_mode)
 def flush_denormals(_context: Any) -> Any:
     """Flush denormal numbers to zero on this thread from now on; return the mode before."""
 
@@ -104,7 +111,7 @@ def flush_denormals(_context: Any) -> Any:
     return types.int64(), generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic(plain=_no_mode)
 def restore_denormals(_context: Any, mode: Any) -> Any:
     """Restore the mode that `flush_denormals` returned."""
 

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.controls.one_pole import one_pole
 from yehu_server.engine.delay_locked_loop import LOOP, follow, predicted_ns, start
-from yehu_server.engine.one_pole import one_pole
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import STRINGS
 
@@ -77,6 +77,9 @@ METERS = np.dtype(
         # The mailbox.
         ("late_events", np.int64),
         ("applied", np.int64),
+        ("drained", np.int64),  # number of wishes taken from the ring, and
+        ("pitch", np.float64),  # that sounds (fractional MIDI note); NaN in silence
+        ("next_frame", np.int64),  # the frame up to which those that are due were fulfilled
         ("waiting", np.int64),
         ("unreported", np.int64),
     ],

@@ -40,7 +40,7 @@ class Curve(Enum):
 
 
 class Place(Enum):
-    """Where the value is held: in the compiled engine, or in the player (Python)."""
+    """Where the value is held: in the compiled engine, or in the player's record."""
 
     ENGINE = "engine"
     PLAYER = "player"

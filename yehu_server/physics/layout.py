@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.jit import IS_PLAIN, compiled
-from yehu_server.physics.plain import with_attributes
 from yehu_server.physics.power import TABLES
+from yehu_server.plain import with_attributes
 
 STRINGS = 2
 MAX_INTERVALS = 512  # of one string's grid; 0.38 m of silk at 192 kHz take about 130

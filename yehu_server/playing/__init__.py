@@ -1,1 +1,1 @@
-"""The player: turns MIDI messages, notes and mappings into moves of bow and fingers."""
+"""What MIDI messages, mappings, presets and tunings mean: wishes of the player."""

@@ -11,7 +11,6 @@ import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,19 +22,29 @@ from yehu_server.code_key import key_of
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities, override
-from yehu_server.playing.bowing import FIRM, LIGHT, manner
+from yehu_server.player.bowing import (
+    AT_FIRM,
+    AT_LIGHT,
+    FARTHER,
+    FIRM,
+    LEAST_PRESS,
+    LIGHT,
+    TOP_SPEED,
+    bowing_table,
+    manner,
+    share,
+)
+from yehu_server.player.calibration import (
+    OPEN_NOTES,
+    PITCHES,
+    SPEEDS,
+    Calibration,
+    frequency_hz,
+    ideal_position,
+)
 
-Tables = tuple[tuple[tuple[float, ...], ...], ...]  # of strings, notes, speeds
 Progress = Callable[[float, float], None]
 
-OPEN_NOTES = (65, 72)  # F4 and C5
-SPEEDS = (0.12, 0.16, 0.2, 0.26)  # m/s
-# The stopped pitches measured on each string: semitones, and quarter tones where the body's mode
-# at 439 Hz bends pitches most, and at 850 Hz, where the body radiates 9 dB more than beside it.
-PITCHES = (
-    (*(66.0 + 0.5 * step for step in range(13)), *(float(note) for note in range(73, 78))),
-    (*(float(note) for note in range(73, 81)), 80.5, *(float(note) for note in range(81, 90))),
-)
 PRESS = 1.5  # N
 SETTLE_S, LISTEN_S, OPEN_SETTLE_S, OPEN_LISTEN_S = 0.3, 0.12, 0.6, 0.3
 ROUNDS = 6
@@ -45,47 +54,16 @@ STEP_CENTS = 1.5  # in a bracket as narrow as this the pitch jumps
 USUAL_CENTS = (50.0, 25.0)  # sharpening to begin with, and where nothing could be measured
 
 
-@dataclass(frozen=True)
-class Calibration:
-    """The measurements that tune an instrument.
-
-    Attributes
-    ----------
-    tensions : tuple of float
-        Tensions of the strings (N).
-    sharpening : tuple
-        How much sharper (cents) a stopped note sounds than c/2f of its length: for each string
-        a row for each of PITCHES, with a value for each of SPEEDS.
-    levels : tuple
-        Level of each note (dB, A-weighted), in the same form, the open string first.
-    """
-
-    a4: float
-    tensions: tuple[float, float]
-    sharpening: Tables
-    levels: Tables = ()
-
-    def tuned(self, quantities: Quantities) -> Quantities:
-        """The quantities with the tensions of this calibration."""
-        first, second = self.tensions
-        return replace(
-            quantities,
-            string_1=replace(quantities.string_1, T=first),
-            string_2=replace(quantities.string_2, T=second),
-        )
-
-
-def frequency_hz(pitch: float, a4: float) -> float:
-    """Frequency of a fractional MIDI note in equal temperament."""
-    return a4 * math.exp2((pitch - 69.0) / 12.0)
-
-
 def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     """Hash of everything that a calibration depends on (16 hex digits)."""
     package = Path(__file__).parent.parent
-    sources = [*sorted((package / "physics").glob("*.py")), package / "playing" / "bowing.py"]
-    engine = ("controls", "native", "one_pole", "output")
-    sources += [package / "engine" / f"{name}.py" for name in engine]
+    sources = [
+        source
+        for folder in ("physics", "controls")
+        for source in sorted((package / folder).glob("*.py"))
+    ]
+    sources += [package / "player" / f"{name}.py" for name in ("bowing", "calibration")]
+    sources += [package / "engine" / f"{name}.py" for name in ("native", "output")]
     sources += [Path(__file__)]
     return key_of(sources, repr((rate, a4, quantities)))
 
@@ -124,10 +102,8 @@ def calibrate(
     return Calibration(a4, tensions, tuple(sharpening), tuple(levels))
 
 
-def ideal_position(quantities: Quantities, string: int, frequency: float) -> float:
-    """Finger position (m) at which an ideal string has a frequency (Hz): c/2f from the bridge."""
-    silk = quantities.strings[string]
-    return quantities.bridge_x - math.sqrt(silk.T / silk.rho_A) / (2.0 * frequency)
+def _manner(pitch: float, column: int) -> float:
+    return manner(bowing_table(), float(pitch), column)
 
 
 def _bow(
@@ -137,14 +113,14 @@ def _bow(
     instrument = Instrument(rate, quantities)
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
-        instrument.write("/finger/1/press", max(PRESS, manner(pitch).press))
-    bowing = manner(pitch)
-    pressure = bowing.pressure(0.5 * (LIGHT + FIRM), pitch)
-    beta = bowing.farther * find("/bow/position").default
+        instrument.write("/finger/1/press", max(PRESS, _manner(pitch, LEAST_PRESS)))
+    light, firm = _manner(pitch, AT_LIGHT), _manner(pitch, AT_FIRM)
+    pressure = share(light, firm, 0.5 * (LIGHT + FIRM), pitch)
+    beta = _manner(pitch, FARTHER) * find("/bow/position").default
     instrument.write("/bow/position", beta, ramp_ms=0.0)
     instrument.write("/bow/pressure", pressure, ramp_ms=0.0)
     instrument.write("/bow/side", 1.0 if string == 0 else -1.0)
-    instrument.write("/bow/speed", min(speed, bowing.top_speed), ramp_ms=40.0)
+    instrument.write("/bow/speed", min(speed, _manner(pitch, TOP_SPEED)), ramp_ms=40.0)
     settle_s = OPEN_SETTLE_S if x_f is None else SETTLE_S
     listen_s = OPEN_LISTEN_S if x_f is None else LISTEN_S
     out = np.zeros(round((settle_s + listen_s) * rate), np.float32)
@@ -183,7 +159,7 @@ def _stopped_note(
     guess = USUAL_CENTS[string]
     bowed_at = 0.0
     for speed in SPEEDS:
-        slowed = min(speed, manner(note).top_speed)
+        slowed = min(speed, _manner(note, TOP_SPEED))
         if slowed != bowed_at:
             sharp, level = _search(rate, quantities, a4, string, note, slowed, guess)
             guess = sharp if math.isfinite(sharp) else guess

@@ -20,15 +20,12 @@ from yehu_server.errors import ParameterError
 from yehu_server.files import read_text
 from yehu_server.jit import data_folder
 from yehu_server.physics.quantities import Quantities
+from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration, Tables
 from yehu_server.playing.calibration import (
-    PITCHES,
     PLAUSIBLE_CENTS,
     ROUNDS,
-    SPEEDS,
     USUAL_CENTS,
-    Calibration,
     Progress,
-    Tables,
     calibrate,
     calibration_key,
     starting_tension,

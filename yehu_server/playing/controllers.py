@@ -14,7 +14,6 @@ from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.moves import Moves, NoteMoves
-from yehu_server.playing.performer import Key, Performer
 from yehu_server.playing.scope import ChannelRules, Scope
 from yehu_server.playing.sources import (
     BEND,
@@ -26,6 +25,7 @@ from yehu_server.playing.sources import (
     VELOCITY,
 )
 from yehu_server.playing.target_values import TargetValues
+from yehu_server.playing.wishes import Key, Wishes
 
 # "Reset all controllers" leaves volume, as the recommended practice RP-015 asks.
 KEPT_ON_RESET = {"/playing/volume"}
@@ -43,7 +43,7 @@ class Fader:
 
 
 class Controllers:
-    """Writes the values of moved controllers to a performer.
+    """Writes the values of moved controllers.
 
     Parameters
     ----------
@@ -53,19 +53,18 @@ class Controllers:
 
     def __init__(
         self,
-        performer: Performer,
+        wishes: Wishes,
         mapping: Mapping,
         rules: ChannelRules,
         scope: Scope,
         start: Iterable[tuple[str, float]] = (),
     ) -> None:
-        self._performer = performer
-        performer.expression = self._expression
+        self._wishes = wishes
         self._rules = rules
         self._scope = scope
         self._start = dict(start)
         self._moves = Moves()
-        self._values = TargetValues(performer, mapping, self._moves, rules, scope)
+        self._values = TargetValues(wishes, mapping, self._moves, rules, scope)
         self._faders: defaultdict[Bind, Fader] = defaultdict(Fader)
 
     @property
@@ -105,7 +104,7 @@ class Controllers:
         move = self._moves[channel].sources.get(source)
         binds = self._receiving(source, channel)
         if binds:
-            target = binds[0].to_unit(self._performer.value(binds[0].target))
+            target = binds[0].to_unit(self._wishes.value(binds[0].target))
             position = (target if move is None else move.position) + steps / STEPS
             self.move(source, channel, min(max(position, 0.0), 1.0), frame)
 
@@ -127,7 +126,7 @@ class Controllers:
         """Move the targets of an OSC address, for all channels."""
         for bind in self.mapping.of(address):
             position, fader = bind.input_to_unit(argument), self._faders[bind]
-            present = self._performer.value(bind.target)
+            present = self._wishes.value(bind.target)
             is_waiting = bind.is_soft and present != fader.written
             before, fader.position = fader.position, position
             if not is_waiting or bind.picks_up(position, before, present):
@@ -137,8 +136,8 @@ class Controllers:
     def write(
         self, address: str, value: float, frame: int | None, *, glide_ms: float = 0.0
     ) -> float:
-        """Set a parameter for all channels, until a controller moves it; see `Performer.write`."""
-        accepted = self._performer.write(address, value, frame=frame, glide_ms=glide_ms)
+        """Set a parameter for all channels, until a controller moves it; see `Wishes.write`."""
+        accepted = self._wishes.write(address, value, frame=frame, glide_ms=glide_ms)
         if not find(address).owned:
             self._values.set(address, accepted)
         return accepted
@@ -151,6 +150,11 @@ class Controllers:
         self._values.keep_of(VELOCITY)
         self._values.keep_of(NOTE)
         return before
+
+    def values_of(self, key: Key) -> dict[str, float]:
+        """The values of parameters for a note that begins, or sounds again."""
+        self._values.last_key = key
+        return self._values.of(key.channel, key.note)
 
     def cancel_note(self, key: Key, before: NoteMoves) -> None:
         """Undo `begin_note` where the instrument does not have the note."""
@@ -197,7 +201,7 @@ class Controllers:
         """Forget the moves on all channels; targets go back to where they were before."""
         self._moves.clear()
         for address, value in self._values.written.items():
-            self._performer.write(address, value, frame=frame)
+            self._wishes.write(address, value, frame=frame)
 
     # -- the mapping -------------------------------------------------------------------------
 
@@ -218,9 +222,7 @@ class Controllers:
     def sound(self) -> dict[str, float]:
         """All parameters that the player does not move, without the velocity of one note."""
         values = {
-            param.address: self._performer.value(param.address)
-            for param in TABLE
-            if not param.owned
+            param.address: self._wishes.value(param.address) for param in TABLE if not param.owned
         }
         written = self._values.written
         for bind in self.mapping.of(VELOCITY):
@@ -241,7 +243,7 @@ class Controllers:
         if key is not None:
             changed = self._values.of(key.channel, key.note)
         for address, value in changed.items():
-            self._performer.write(address, value, frame=frame)
+            self._wishes.write(address, value, frame=frame)
 
     def _start_values(self, mapping: Mapping) -> dict[str, float]:
         return dict(mapping.start) | self._start
@@ -253,7 +255,7 @@ class Controllers:
     ) -> None:
         """Write the targets of a source that was moved on a channel; `glides` in ms, by target."""
         self._values.keep_of(source)
-        key = self._performer.sounding or self._values.last_key
+        key = self._wishes.sounding or self._values.last_key
         binds = self.mapping.of(source)
         if key is not None:
             binds = tuple(bind for bind in binds if self._values.is_for(bind, channel, key))
@@ -262,17 +264,12 @@ class Controllers:
         for bind in binds:
             glide_ms = (glides or {}).get(bind.target, 0.0)
             value = values[bind.target]
-            self._performer.write(bind.target, value, frame=frame, glide_ms=glide_ms)
-
-    def _expression(self, key: Key) -> dict[str, float]:
-        """The values for a note that begins, or sounds again; see `Performer.expression`."""
-        self._values.last_key = key
-        return self._values.of(key.channel, key.note)
+            self._wishes.write(bind.target, value, frame=frame, glide_ms=glide_ms)
 
     def _takes_over(self, bind: Bind, channel: int, position: float) -> bool:
         """Whether a soft bind moves its target: it set its present value, or reaches it now."""
         own = self._moves[channel]
-        key = self._performer.sounding or self._values.last_key
+        key = self._wishes.sounding or self._values.last_key
         if key is None or not self._values.is_for(bind, channel, key):
             key = Key(channel, -1)
         present = self._values.of(key.channel, key.note)[bind.target]

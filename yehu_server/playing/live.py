@@ -1,7 +1,7 @@
 """A thread-safe player: all live control of the instrument, from MIDI and OSC, goes through it.
 
 Handlers run in threads of their own and hold a lock here. The audio side never waits for them:
-the player posts events with the frames at which the audio side applies them.
+they post wishes, with the frames at which its player acts on them.
 """
 
 from __future__ import annotations
@@ -15,36 +15,14 @@ import mido
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
-from yehu_server.params.spec import Place
-from yehu_server.params.table import ENGINE, TABLE, find
+from yehu_server.params.table import TABLE
 from yehu_server.playing.binds import Bind
-from yehu_server.playing.calibration import Calibration
 from yehu_server.playing.learner import Found, Learner
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.performer import Key
 from yehu_server.playing.style import Style
+from yehu_server.playing.wishes import Key
 
 ELSEWHERE = -1  # the channel of notes that do not come from MIDI
-
-
-class Targets:
-    """Passes the player's writes on to the instrument, and keeps the values written."""
-
-    def __init__(self, instrument: Instrument) -> None:
-        self._instrument = instrument
-        self.values = {param.address: param.default for param in ENGINE}
-
-    def write(
-        self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
-    ) -> float:
-        """See `Instrument.write`."""
-        accepted = self._instrument.write(address, value, frame=frame, ramp_ms=ramp_ms)
-        self.values[address] = accepted
-        return accepted
-
-    def silence(self, *, frame: int | None = None) -> None:
-        """See `Instrument.silence`."""
-        self._instrument.silence(frame=frame)
 
 
 class Arrivals:
@@ -70,9 +48,7 @@ class LivePlayer:
     """A player that several threads may call.
 
     Every call takes the frame at which it is to sound: that of the message's arrival, by
-    `frame_of`, or that of its time tag. The player acts on messages in order: where a later one
-    was acted on already (`control.schedule` looks some milliseconds ahead), a message takes
-    the frame of that one. Direct writes to the engine keep their own frame.
+    `frame_of`, or that of its time tag. The player acts in the order of frames.
 
     Parameters
     ----------
@@ -86,33 +62,33 @@ class LivePlayer:
         instrument: Instrument,
         style: Style,
         *,
-        calibration: Calibration | None = None,
         delay_ms: float,
     ) -> None:
         self.instrument = instrument
         self.presets = style.presets
         self.delay = instrument.frames(delay_ms)
         self._lock = threading.RLock()
-        self._targets = Targets(instrument)
-        self._performer = style.performer(self._targets, calibration, instrument.quantities)
-        self._midi = style.midi(self._performer)
+        self._wishes = style.wishes(instrument)
+        self._midi = style.midi(self._wishes)
         self._learner = Learner()
         self._found: Callable[[Found], None] | None = None
-        self._decided = 0  # the latest frame that the player acted on
-        self._written = 0  # the latest frame of any write
+        self._latest = 0  # the latest frame of any call
 
     def frame_of(self, arrived_ns: int | None = None) -> int:
         """The frame for a message that arrived at this ``time.monotonic_ns()``; by default, now."""
         moment = time.monotonic_ns() if arrived_ns is None else arrived_ns
         return int(self.instrument.frame_at(moment)) + self.delay
 
-    def _in_order(self, frame: int) -> int:
-        """The frame itself, or that of the latest action if it is later."""
-        if self._decided > frame + self.instrument.rate:  # the wall clock was set back
-            self._decided = self._written = frame
-        self._decided = max(self._decided, frame)
-        self._written = max(self._written, self._decided)
-        return self._decided
+    def _at(self, frame: int) -> int:
+        """The frame itself; remembers the latest."""
+        if self._latest > frame + self.instrument.rate:  # the wall clock was set back
+            self._latest = frame
+        self._latest = max(self._latest, frame)
+        return frame
+
+    def _after_all(self, frame: int) -> int:
+        """A frame after which nothing is wished yet."""
+        return max(self._at(frame), self._latest)
 
     # -- parameters --------------------------------------------------------------------------
 
@@ -124,9 +100,8 @@ class LivePlayer:
         ParameterError
             Where there is no such parameter.
         """
-        param = find(address)
         with self._lock:
-            return self._targets.values[address] if param.owned else self._performer.value(address)
+            return self._wishes.value(address)
 
     def values(self) -> dict[str, float]:
         """The values of all parameters, by address."""
@@ -139,18 +114,15 @@ class LivePlayer:
         Raises
         ------
         ParameterError
-            As `Performer.write`.
+            As `Wishes.write`.
         """
         with self._lock:
-            if find(address).place is Place.PLAYER:
-                frame = self._in_order(frame)
-            self._written = max(self._written, frame)
-            return self._midi.write(address, value, frame=frame)
+            return self._midi.write(address, value, frame=self._at(frame))
 
     def load(self, values: Values[str, float], *, frame: int) -> None:
         """Set the parameters of a preset, except held ones, all at one frame."""
         with self._lock:
-            self._midi.load(values, frame=self._in_order(frame))
+            self._midi.load(values, frame=self._at(frame))
 
     def sound(self) -> dict[str, float]:
         """The parameters that a preset keeps: see `Controllers.sound`."""
@@ -160,12 +132,12 @@ class LivePlayer:
     def hold(self, address: str, value: float) -> float:
         """Set a parameter from the first frame on, and hold it as long as the program runs."""
         with self._lock:
-            return self._performer.write(address, value, frame=0, hold=True)
+            return self._wishes.write(address, value, frame=0, hold=True)
 
-    def release(self) -> None:
+    def release(self, *, frame: int) -> None:
         """Return to the player what direct writes took over."""
         with self._lock:
-            self._performer.release()
+            self._wishes.release(frame=self._at(frame))
 
     # -- the mapping -------------------------------------------------------------------------
 
@@ -177,7 +149,7 @@ class LivePlayer:
     def move(self, address: str, argument: float, *, frame: int) -> None:
         """Move the targets of one of the `addresses`; others move nothing."""
         with self._lock:
-            self._midi.move(address, argument, frame=self._in_order(frame))
+            self._midi.move(address, argument, frame=self._at(frame))
 
     @property
     def mapping(self) -> Mapping:
@@ -187,7 +159,7 @@ class LivePlayer:
     def remap(self, mapping: Mapping, *, frame: int) -> None:
         """See `MidiPlayer.remap`."""
         with self._lock:
-            self._midi.remap(mapping, frame=self._in_order(frame))
+            self._midi.remap(mapping, frame=self._at(frame))
 
     def bindings(self) -> list[tuple[Bind, float | None, float]]:
         """Each bind, the position (0 to 1) its source was last moved to, and the target's value."""
@@ -224,19 +196,19 @@ class LivePlayer:
     def pitch(self) -> float | None:
         """The sounding pitch (fractional MIDI note); None in silence."""
         with self._lock:
-            return self._performer.pitch
+            return self._wishes.pitch
 
     def receive(self, message: mido.Message, *, frame: int, port: int) -> None:
         """Act on a MIDI message of a port, counted from 0."""
         with self._lock:
             if self._found is not None:
                 self._report(self._learner.hear(message, port))
-            self._midi.receive(message, frame=self._in_order(frame), port=port)
+            self._midi.receive(message, frame=self._at(frame), port=port)
 
     def let_go_of(self, port: int, *, frame: int) -> None:
         """End the notes of a port that is gone."""
         with self._lock:
-            self._midi.let_go_of(port, frame=self._in_order(frame))
+            self._midi.let_go_of(port, frame=self._at(frame))
 
     def note_on(self, note: float, velocity: float, *, frame: int) -> None:
         """Begin a note (fractional MIDI note; velocity 0 to 127).
@@ -248,15 +220,15 @@ class LivePlayer:
         """
         key = _key(_within("note", note))
         with self._lock:
-            self._midi.note_on(key, _within("velocity", velocity) / 127.0, self._in_order(frame))
+            self._midi.note_on(key, _within("velocity", velocity) / 127.0, self._at(frame))
 
     def note_off(self, note: float, *, frame: int) -> None:
         """End a note that `note_on` began."""
         with self._lock:
-            self._midi.note_off(_key(note), self._in_order(frame))
+            self._midi.note_off(_key(note), self._at(frame))
 
     def slide(self, pitch: float, *, frame: int) -> float:
-        """See `Performer.slide`.
+        """See `Wishes.slide`.
 
         Raises
         ------
@@ -264,31 +236,30 @@ class LivePlayer:
             Where the pitch is out of MIDI's range.
         """
         with self._lock:
-            return self._performer.slide(_within("pitch", pitch), frame=self._in_order(frame))
+            return self._wishes.slide(_within("pitch", pitch), frame=self._at(frame))
 
     def draw(self, speed: float, force: float, *, frame: int) -> tuple[float, float]:
-        """See `Performer.draw`."""
+        """See `Wishes.draw`."""
         with self._lock:
-            return self._performer.draw(speed, force, frame=self._in_order(frame))
+            return self._wishes.draw(speed, force, frame=self._at(frame))
 
     def end_notes(self, *, frame: int) -> None:
         """End all notes, as if all keys and pedals were released; lift a bow drawn by hand."""
         with self._lock:
-            frame = self._in_order(max(frame, self._written))
-            self._midi.receive(mido.Message("reset"), frame=frame)
-            self._performer.lift(frame=frame)
+            frame = self._after_all(frame)
+            self._midi.reset(frame=frame)
+            self._wishes.lift(frame=frame)
 
     def panic(self, *, frame: int) -> None:
         """End all notes and all sound at once."""
         with self._lock:
             self.end_notes(frame=frame)
-            self._performer.all_sound_off(frame=self._decided)
+            self._wishes.stop_sound(frame=self._after_all(frame))
 
     def reset(self, *, frame: int) -> None:
         """As `panic`, and set every parameter to its start value."""
         with self._lock:
-            frame = self._in_order(max(frame, self._written))
-            self._midi.begin_again(frame=frame)
+            self._midi.begin_again(frame=self._after_all(frame))
             self.panic(frame=frame)
 
 

@@ -28,9 +28,9 @@ from yehu_server.playing.midi_channel import (
     MidiChannel,
     Selected,
 )
-from yehu_server.playing.performer import Key, Performer
 from yehu_server.playing.scope import Scope
 from yehu_server.playing.sources import CHANNELS
+from yehu_server.playing.wishes import Key, Wishes
 from yehu_server.playing.zones import Zones
 
 log = logging.getLogger(__name__)
@@ -46,7 +46,7 @@ MOVES = ("control_change", "pitchwheel", "aftertouch")
 
 
 class MidiPlayer:
-    """Feeds MIDI channel messages to a performer: notes directly, controllers through a mapping.
+    """Turns MIDI channel messages into wishes: notes directly, controllers through a mapping.
 
     Parameters
     ----------
@@ -62,16 +62,16 @@ class MidiPlayer:
 
     def __init__(
         self,
-        performer: Performer,
+        wishes: Wishes,
         mapping: Mapping,
         channels: set[int] | None = None,
         *,
         start: Iterable[tuple[str, float]] = (),
         programs: Callable[[int], Preset | None] | None = None,
     ) -> None:
-        self._performer = performer
+        self._wishes = wishes
         self._scope = Scope(self)
-        self._controllers = Controllers(performer, mapping, self, self._scope, start)
+        self._controllers = Controllers(wishes, mapping, self, self._scope, start)
         self._chosen = channels
         self._programs = programs
         self._zones: defaultdict[int, Zones] = defaultdict(lambda: Zones(whole=self.mapping.mpe))
@@ -92,7 +92,7 @@ class MidiPlayer:
         Each port, counted from 0, has 16 channels of its own.
         """
         if message.type == "reset":
-            self._reset(frame)
+            self.reset(frame=frame)
             return
         if not hasattr(message, "channel"):
             return
@@ -123,7 +123,7 @@ class MidiPlayer:
         self._controllers.move_address(address, argument, frame)
 
     def write(self, address: str, value: float, *, frame: int | None = None) -> float:
-        """Set a parameter for all channels, until a controller moves it; see `Performer.write`."""
+        """Set a parameter for all channels, until a controller moves it; see `Wishes.write`."""
         return self._controllers.write(address, value, frame)
 
     def remap(self, mapping: Mapping, *, frame: int | None = None) -> None:
@@ -131,7 +131,7 @@ class MidiPlayer:
         was_mpe = self.mapping.mpe
         self._controllers.remap(mapping, frame)
         if mapping.mpe != was_mpe:
-            self._reset(frame)
+            self.reset(frame=frame)
         if mapping.of(SUSTAIN_SOURCE):  # the pedal no longer holds notes
             for state in self._channels.values():
                 state.sustain = False
@@ -141,7 +141,7 @@ class MidiPlayer:
     def load(self, values: Values[str, float], *, frame: int | None = None) -> None:
         """Set the parameters of a preset, except held ones."""
         for address, value in values.items():
-            if not self._performer.keeps(address):
+            if not self._wishes.keeps(address):
                 self.write(address, value, frame=frame)
 
     def positions(self) -> list[tuple[Bind, float | None]]:
@@ -184,30 +184,30 @@ class MidiPlayer:
 
     def bend_range(self, channel: int) -> float:
         """See `scope.ChannelRules`."""
-        if self._performer.keeps("/playing/bend_range"):
-            return self._performer.value("/playing/bend_range")
+        if self._wishes.keeps("/playing/bend_range"):
+            return self._wishes.value("/playing/bend_range")
         port, own = divmod(channel, CHANNELS)
         default = self._zones[port].bend_range(own)
         received = self._channels[channel].bend_range
         if received is not None:
             return received
-        return self._performer.value("/playing/bend_range") if default is None else default
+        return self._wishes.value("/playing/bend_range") if default is None else default
 
     def _zone(self, channel: int) -> list[int]:
         """A channel and, if it is the master of a zone, its members."""
         port, own = divmod(channel, CHANNELS)
         return [channel, *(CHANNELS * port + member for member in self._zones[port].members(own))]
 
-    def _reset(self, frame: int | None) -> None:
+    def reset(self, *, frame: int | None = None) -> None:
         """End all notes, and forget pedals, zones and moves."""
-        self._performer.all_notes_off(frame=frame)
+        self.end_all(frame=frame)
         self._channels.clear()
         self._zones.clear()
         self._controllers.forget_all(frame)
 
     def _end(self, channel: int, frame: int | None) -> None:
         """End the notes of a channel and those its pedal holds, and forget its state."""
-        self._performer.all_notes_off(frame=frame, channel=channel)
+        self._end_notes(self._wishes.held(channel), frame)
         self._lift_pedal(self._channels[channel], frame)
         self._channels.pop(channel)
 
@@ -215,13 +215,14 @@ class MidiPlayer:
         """Begin a note; `velocity` is 0 to 1."""
         state = self._channels[key.channel]
         pedals = [each for each in self._channels.values() if key in each.sustained]
-        if self._performer.holds(key) and not pedals and frame is not None:
+        if self._wishes.holds(key) and not pedals and frame is not None:
             state.retriggered[key.note] = frame
         for pedal in pedals:
             pedal.sustained.discard(key)
         is_first = self._scope.add(key.channel)
         before = self._controllers.begin_note(key, velocity)
-        if self._performer.note_on(key, frame=frame):
+        values = self._controllers.values_of(key) if self._wishes.has(key) else {}
+        if self._wishes.note_on(key, values, frame=frame):
             self.notes_by_channel[key.channel] += 1
             return
         self._controllers.cancel_note(key, before)
@@ -244,7 +245,18 @@ class MidiPlayer:
                 ended.append(key)
             else:
                 pedal.sustained.add(key)
-        self._performer.notes_off(ended, frame=frame)
+        self._end_notes(ended, frame)
+
+    def end_all(self, *, frame: int | None = None) -> None:
+        """End all notes, whatever pedals hold."""
+        self._end_notes(self._wishes.held(), frame)
+
+    def _end_notes(self, keys: Iterable[Key], frame: int | None) -> None:
+        """End notes at once; the one that sounds again does so with its own values."""
+        keys = list(keys)
+        heir = self._wishes.heir(keys)
+        values = {} if heir is None else self._controllers.values_of(heir)
+        self._wishes.notes_off(keys, values, frame=frame)
 
     def _pedal(self, channel: int) -> MidiChannel | None:
         """A channel whose pedal holds the notes of this one; None where none does."""
@@ -267,16 +279,16 @@ class MidiPlayer:
         elif control == ALL_SOUND_OFF:
             zone = self._zone(channel)
             elsewhere = [key for key in state.sustained if key.channel not in zone]
-            self._performer.notes_off(elsewhere, frame=frame)
             state.sustained.clear()
-            for each in zone:
-                self._performer.all_sound_off(frame=frame, channel=each)
+            here = [key for each in zone for key in self._wishes.held(each)]
+            self._end_notes([*elsewhere, *here], frame)
+            self._wishes.stop_sound(frame=frame)
         elif control >= ALL_NOTES_OFF:  # the mode messages 124-127 include it
             for each in self._zone(channel):
                 if state.sustain:
-                    state.sustained.update(self._performer.held(each))
+                    state.sustained.update(self._wishes.held(each))
                 else:
-                    self._performer.all_notes_off(frame=frame, channel=each)
+                    self._end_notes(self._wishes.held(each), frame)
         elif control == RESET_CONTROLLERS:
             self._reset_controllers(channel, frame)
         elif control in (RPN, RPN_FINE, NRPN, NRPN_FINE):

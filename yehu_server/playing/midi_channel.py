@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from yehu_server.playing.performer import Key
+from yehu_server.playing.wishes import Key
 
 DATA_ENTRY, DATA_ENTRY_FINE = 6, 38
 INCREMENT, DECREMENT = 96, 97

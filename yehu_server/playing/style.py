@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
+from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
-from yehu_server.playing.calibration import Calibration
-from yehu_server.playing.fingering import OpenStrings, RangePolicy
-from yehu_server.playing.intonation import Intonation
+from yehu_server.player.calibration import Calibration
+from yehu_server.player.fingering import OpenStrings
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.ownership import Sink
-from yehu_server.playing.performer import Performer
 from yehu_server.playing.presets import Presets
+from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.tuning import EQUAL, Tuning
+from yehu_server.playing.wishes import Wishes
 
 
 @dataclass(frozen=True)
@@ -49,23 +50,37 @@ class Style:
         preset = () if self.preset is None else (self.preset,)
         return (*self.mapping.files, *preset, *self.tuning.files)
 
-    def performer(
+    def instrument(
         self,
-        sink: Sink,
-        calibration: Calibration | None = None,
+        rate: float,
+        calibration: Calibration,
         quantities: Quantities | None = None,
-    ) -> Performer:
-        """A player of this style for one instrument."""
-        return Performer(
-            sink,
-            Intonation(calibration, quantities),
-            policy=self.policy,
-            seed=self.seed,
+        *,
+        memory: Any = None,
+    ) -> Instrument:
+        """An instrument at a rate (Hz), calibrated, with a player of this style.
+
+        Parameters
+        ----------
+        quantities : Quantities
+            The instrument as it is before it is tuned.
+        memory : buffer
+            See `Instrument`.
+        """
+        return Instrument(
+            rate,
+            calibration.tuned(quantities or Quantities()),
+            calibration=calibration,
             open_strings=self.open_strings,
-            tuning=lambda note: self.tuning.pitch(note, self.a4),
+            seed=self.seed,
+            memory=memory,
         )
 
-    def midi(self, performer: Performer, channels: set[int] | None = None) -> MidiPlayer:
+    def wishes(self, instrument: Instrument) -> Wishes:
+        """What posts wishes of this style to an instrument."""
+        return Wishes(instrument, self.policy, lambda note: self.tuning.pitch(note, self.a4))
+
+    def midi(self, wishes: Wishes, channels: set[int] | None = None) -> MidiPlayer:
         """A MIDI player of this style; `channels` as in `MidiPlayer`."""
         programs = self.presets.of_program if self.programs else None
-        return MidiPlayer(performer, self.mapping, channels, start=self.start, programs=programs)
+        return MidiPlayer(wishes, self.mapping, channels, start=self.start, programs=programs)

@@ -12,9 +12,9 @@ from yehu_server.params.table import find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.moves import Moves
-from yehu_server.playing.performer import Key, Performer
 from yehu_server.playing.scope import ChannelRules, Scope
 from yehu_server.playing.sources import BEND, VELOCITY
+from yehu_server.playing.wishes import Key, Wishes
 
 
 class Written(NamedTuple):
@@ -37,13 +37,13 @@ class TargetValues:
 
     def __init__(
         self,
-        performer: Performer,
+        wishes: Wishes,
         mapping: Mapping,
         moves: Moves,
         rules: ChannelRules,
         scope: Scope,
     ) -> None:
-        self._performer = performer
+        self._wishes = wishes
         self.mapping = mapping
         self._moves = moves
         self._rules = rules
@@ -62,7 +62,7 @@ class TargetValues:
             self._keep(bind.target)
 
     def _keep(self, address: str) -> None:
-        self._written.setdefault(address, Written(0, self._performer.value(address)))
+        self._written.setdefault(address, Written(0, self._wishes.value(address)))
 
     @property
     def written(self) -> dict[str, float]:
@@ -84,7 +84,7 @@ class TargetValues:
         for address in before | after:
             default = find(address).default
             old, new = before.get(address, default), after.get(address, default)
-            now = self._written.get(address, Written(0, self._performer.value(address))).value
+            now = self._written.get(address, Written(0, self._wishes.value(address))).value
             if old != new and now == old:
                 # Number 0: moves made before still count.
                 self._written[address] = Written(0, new)

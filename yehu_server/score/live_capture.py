@@ -7,18 +7,16 @@ from pathlib import Path
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
-from yehu_server.score.capture import CaptureWriter
+from yehu_server.score.capture_writer import CaptureWriter
 
 
 class LiveCapture:
-    """Writes the events that an instrument applies to a file; a full disk ends only the capture.
+    """Writes the wishes that a player fulfils to a file; a full disk ends only the capture.
 
     Parameters
     ----------
     instrument : Instrument
-        It must report its events (``Instrument.report_events``) from the first frame on.
-    seed : int
-        Seed of the player's variation.
+        It must report its wishes (``Instrument.report_wishes``) from the first frame on.
     said : callable
         Called with a line when the capture ends by itself.
     overwrite : bool
@@ -34,7 +32,6 @@ class LiveCapture:
         self,
         instrument: Instrument,
         target: Path,
-        seed: int,
         said: Callable[[str], None],
         *,
         overwrite: bool = False,
@@ -42,18 +39,14 @@ class LiveCapture:
         self._instrument = instrument
         self._said = said
         self._writer: CaptureWriter | None = CaptureWriter(
-            target,
-            rate=instrument.rate,
-            seed=seed,
-            tensions=[silk.T for silk in instrument.quantities.strings],
-            overwrite=overwrite,
+            target, instrument=instrument, overwrite=overwrite
         )
         self._rests = 0  # number of those written
         self._unreported = 0
         self.is_whole = True
 
     def keep_up(self) -> None:
-        """Write the events that were applied since the last call."""
+        """Write the wishes that were fulfilled since the last call."""
         if self._writer is not None:
             try:
                 self._write(self._writer)
@@ -61,7 +54,7 @@ class LiveCapture:
                 self._end(error)
 
     def close(self) -> None:
-        """Write the last events, and end the capture after the last frame played."""
+        """Write the last wishes, and end the capture after the last frame played."""
         self.keep_up()
         writer, self._writer = self._writer, None
         if writer is not None:
@@ -80,7 +73,7 @@ class LiveCapture:
         for since, frame in self._instrument.rests[self._rests :]:
             writer.note("rest", frame, since=since)
             self._rests += 1
-        writer.events(self._instrument.applied_events())
+        writer.wishes(self._instrument.applied_wishes())
         meters = self._instrument.meters()
         unreported = int(meters["unreported"])
         if unreported > self._unreported:

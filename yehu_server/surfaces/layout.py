@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from yehu_server.analysis.pitch import note_name
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE, find
-from yehu_server.playing.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 
 FIRST_GROUP = "playing"  # used most
 BLACK = (1, 3, 6, 8, 10)

@@ -11,8 +11,8 @@ from unittest.mock import patch
 from fuzz.instrument import CALIBRATION
 from fuzz.target import scratch, target
 
-from yehu_server.playing.calibration import Calibration
-from yehu_server.playing.intonation import calibration_for
+from yehu_server.player.calibration import Calibration
+from yehu_server.playing.calibrations import calibration_for
 
 RATE = 31_000.0  # no shipped calibration has it
 HOME = sys.modules[calibration_for.__module__]

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+from fuzz.instrument import Instrument
 from fuzz.target import scratch, target, written
 
-from yehu_server.engine.controls import SILENCE
+from yehu_server.controls.slots import HIGHEST, LOWEST, SILENCE
 from yehu_server.errors import YehuError
-from yehu_server.params.table import ENGINE
+from yehu_server.params.table import find
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.quantities import Quantities, override
-from yehu_server.score.capture import MOST_FRAMES, CaptureWriter, read_capture
+from yehu_server.player.wishes import KINDS, RAMP
+from yehu_server.score.capture import Beginning, Capture, read_capture
+from yehu_server.score.capture_format import MOST_FRAMES
+from yehu_server.score.capture_writer import CaptureWriter
 
 WORDS = (
     b'{"end": ',
@@ -19,39 +23,80 @@ WORDS = (
     b'{"lost": 1, "events": 1}',
     b"\n[0, ",
     b", 0]\n",
+    b'"version": 1',
+    b'"version": 2',
+    *(f'"{kind}", '.encode() for kind in KINDS),
     b'"/bow/speed"',
+    b'"/playing/bend"',
     b'"/finger/1/position"',
     b'"silence"',
     b"1e308",
     b"NaN",
     b"Infinity",
 )
+MOST_FULFILLED = 2000
+
+
+class Played:
+    """Stands in for the instrument of a capture, as its writer sees it."""
+
+    def __init__(self, beginning: Beginning) -> None:
+        first, second = beginning.tensions
+        changes = {"string_1": {"T": first}, "string_2": {"T": second}}
+        self.quantities = override(Quantities(), changes)
+        self.rate, self.seed = beginning.rate, beginning.seed
+        self.open_strings, self.calibration = beginning.open_strings, beginning.calibration
+        self.bowing, self.start_values = beginning.bowing, beginning.values
+
+
+def check_beginning(beginning: Beginning) -> None:
+    """A replay begins with these two checks; what else it starts from is in range."""
+    check_rate(beginning.rate)
+    Played(beginning)
+    assert all(find(address).accept(value) == value for address, value in beginning.values.items())
+    assert np.isfinite(beginning.bowing).all()
+    if beginning.calibration is not None:
+        for tables in (beginning.calibration.sharpening, beginning.calibration.levels):
+            assert all(np.isfinite(table).all() for table in tables)
+
+
+def check_wishes(taken: Capture) -> None:
+    """Whatever is wished, it is written as it was read, and no parameter leaves its range."""
+    wishes = taken.wishes
+    assert (wishes["frame"] >= 0).all()
+    assert (wishes["frame"] <= taken.frames).all()
+    assert np.isfinite(wishes["value"]).all()
+    ramps = wishes[(wishes["kind"] == RAMP) & (wishes["index"] != SILENCE)]
+    assert (ramps["value"] >= LOWEST[ramps["index"]]).all()
+    assert (ramps["value"] <= HIGHEST[ramps["index"]]).all()
+    assert ((ramps["other"] >= 0) & (ramps["other"] <= MOST_FRAMES)).all()
+    instrument = Instrument()
+    for frame, *wish in wishes[:MOST_FULFILLED].tolist():
+        instrument.now_s = frame / instrument.rate
+        instrument.fulfil(tuple(wish))
+    instrument.check_player()
 
 
 @target("capture", YehuError, words=WORDS)
 def capture(data: bytes) -> None:
-    """A capture has a length, its events are in range, and it can be written again."""
+    """A capture has a length, its wishes are in range, and it can be written again."""
     path = written(data, "file.jsonl")
     taken = read_capture(path)
-    check_rate(taken.rate)  # replay begins with these two checks
-    first, second = taken.tensions
-    override(Quantities(), {"string_1": {"T": first}, "string_2": {"T": second}})
+    check_beginning(taken.beginning)
     assert 0 <= taken.frames <= MOST_FRAMES  # replay sets a bound of its own: --max-duration
     assert all(0 <= since <= rest <= MOST_FRAMES for rest, since in taken.rests.items())
-    events = taken.events
-    for frame, index, value, ramp in events.tolist():
-        assert 0 <= frame <= taken.frames
-        assert 0 <= ramp <= MOST_FRAMES
-        if index != SILENCE:
-            assert ENGINE[index].lo <= value <= ENGINE[index].hi
+    check_wishes(taken)
     again = scratch() / "again.jsonl"
     again.unlink(missing_ok=True)
-    writer = CaptureWriter(again, rate=taken.rate, seed=0, tensions=taken.tensions)
-    writer.events(events)
+    writer = CaptureWriter(again, instrument=Played(taken.beginning))
+    writer.wishes(taken.wishes)
     for rest, since in taken.rests.items():
         writer.note("rest", rest, since=since)
     writer.close(taken.frames)
     read = read_capture(again)
-    assert np.array_equal(read.events, events)
-    assert (read.rate, read.tensions, read.rests) == (taken.rate, taken.tensions, taken.rests)
+    assert np.array_equal(read.wishes, taken.wishes)
+    assert np.array_equal(read.beginning.bowing, taken.beginning.bowing)
+    for what in ("rate", "tensions", "seed", "open_strings", "calibration", "values"):
+        assert getattr(read.beginning, what) == getattr(taken.beginning, what), what
+    assert read.rests == taken.rests
     assert read.end == taken.frames

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from unittest.mock import patch
 
-from fuzz.instrument import CALIBRATION, Instrument, check_values
+from fuzz.instrument import Instrument, check_silence, check_values
 from fuzz.target import Program, scratch, target
 from wire import SINCE_1900_S, Ear, StillTime
 
@@ -131,7 +131,7 @@ def osc_calls(data: bytes) -> None:
     with still_time() as clock:
         instrument, desk, ear = Instrument(), Desk(), Ear(host="ear")
         style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
-        player = LivePlayer(instrument, style, calibration=CALIBRATION, delay_ms=3.0)
+        player = LivePlayer(instrument, style, delay_ms=3.0)
         handler = OscHandler(player, desk)
 
         def take(what: bytes) -> None:
@@ -151,11 +151,9 @@ def osc_calls(data: bytes) -> None:
         check_values(player)
         take(pack("/yehu/panic"))
         clock.now += 1.0
-        instrument.now_s += 1.0
+        check_silence(player, instrument)
         handler.tick()
-        assert player.pitch is None
         assert handler.waiting == 0
-        assert instrument.values.get("/bow/speed", 0.0) == 0.0
     for answer in (*ear.packets, *(one for other in ear.others.values() for one in other.packets)):
         for message in unpack(answer):
             assert message.address.startswith(PREFIX)

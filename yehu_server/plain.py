@@ -1,4 +1,4 @@
-"""Records for a model that runs as plain Python (``NUMBA_DISABLE_JIT=1``)."""
+"""Records for code that runs as plain Python (``NUMBA_DISABLE_JIT=1``)."""
 
 from __future__ import annotations
 

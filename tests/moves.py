@@ -1,0 +1,69 @@
+"""What fulfilled wishes move: the parameters of the engine, each at its frame."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from yehu_server.controls.slots import PLUCK
+from yehu_server.engine.instrument import Instrument
+from yehu_server.params.table import SLOT
+from yehu_server.player.wishes import fulfil
+
+ADDRESSES = {slot: address for address, slot in SLOT.items()}
+
+
+class Move(NamedTuple):
+    """One move of a parameter, or a fade to silence, and its length (frames)."""
+
+    frame: int
+    address: str
+    target: float
+    ramp: int
+
+
+class Moves:
+    """Tells what the player of an instrument moves, by doing the same with copies of its records.
+
+    Make it before the instrument computes its first frame: it begins with what the player is then.
+    """
+
+    def __init__(self, instrument: Instrument) -> None:
+        rig = instrument._rig
+        self._instrument = instrument
+        self._player, self._controls = rig["player"].copy(), rig["controls"].copy()
+        self.targets = self._controls["target"][0].copy()
+        instrument.report_wishes()
+
+    def seen(self) -> list[Move]:
+        """The moves since the last call; one to the same target too."""
+        return [move for wish in self._instrument.applied_wishes() for move in self._of(wish)]
+
+    def _of(self, wish: Any) -> list[Move]:
+        controls, frame = self._controls[0], int(wish["frame"])
+        controls["target"], controls["silence_in"] = np.nan, 0  # so that every move is seen
+        controls["frame"] = frame
+        records = self._player.ctypes.data, self._controls.ctypes.data
+        fulfil.call(*records, *wish.item())
+        is_moved = ~np.isnan(controls["target"])
+        self.targets = np.where(is_moved, controls["target"], self.targets)
+        moves = [
+            Move(
+                frame,
+                ADDRESSES[slot],
+                float(controls["target"][slot]),
+                int(controls["remaining"][slot]),
+            )
+            for slot in np.flatnonzero(is_moved).tolist()
+        ]
+        if controls["silence_in"] != 0:
+            moves.append(Move(frame, "silence", 0.0, int(controls["silence_in"])))
+        return moves
+
+    def are_those_of_the_audio_side(self) -> bool:
+        """Whether the instrument's parameters move to where these do, after `seen`."""
+        targets = self._instrument._rig["controls"]["target"][0]
+        is_alike = targets == self.targets
+        is_alike[PLUCK] |= targets[PLUCK] == 0.0  # the string slips off the fingertip by itself
+        return bool(is_alike.all())

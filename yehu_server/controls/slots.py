@@ -1,0 +1,26 @@
+"""Numbers of the engine's parameters in the arrays of the controls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from yehu_server.params.table import ENGINE, FINGERS, SLOT, STRING_NAMES
+
+SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
+FORCE, SHARE, ASSIST = SLOT["/bow/force"], SLOT["/bow/pressure"], SLOT["/bow/assist"]
+POSITION, TREMOLO = SLOT["/bow/position"], SLOT["/bow/tremolo"]
+FINGER_POSITION = np.array([SLOT[f"/finger/{number}/position"] for number in FINGERS])
+FINGER_PRESS = np.array([SLOT[f"/finger/{number}/press"] for number in FINGERS])
+DEPTH, ROCK = SLOT["/vibrato/depth"], SLOT["/vibrato/press"]
+RATE, ONSET = SLOT["/vibrato/rate"], SLOT["/vibrato/onset"]
+PLUCK, PLUCK_POSITION = SLOT["/pluck/force"], SLOT["/pluck/position"]
+GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
+BALANCE, BLEND = SLOT["/output/balance"], SLOT["/body/blend"]
+BODY, LIMITER = SLOT["/body/gain"], SLOT["/output/limiter"]
+TUNING = np.array([SLOT[f"/string/{name}/tuning"] for name in STRING_NAMES])
+LOSS = np.array([SLOT[f"/string/{name}/loss"] for name in STRING_NAMES])
+NOISE = SLOT["/bow/noise"]
+SLOTS = len(ENGINE)
+LOWEST = np.array([param.lo for param in ENGINE])
+HIGHEST = np.array([param.hi for param in ENGINE])
+SILENCE = SLOTS  # index of the event that fades the sound out and puts the model to rest

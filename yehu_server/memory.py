@@ -1,0 +1,34 @@
+"""Arrays and records at addresses, for compiled code and for plain Python alike."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba import carray as compiled_carray
+
+from yehu_server.jit import IS_PLAIN
+from yehu_server.plain import with_attributes
+
+if IS_PLAIN:
+    np.seterr(over="ignore")  # integers wrap around, as they do in compiled code
+
+
+@cache
+def _kind(kind: Any) -> Any:
+    kind = np.dtype(kind)
+    return with_attributes(kind) if kind.names else kind
+
+
+def _plain_carray(address: int, shape: tuple[int, ...], kind: Any) -> Any:
+    kind = _kind(kind)
+    room = (ctypes.c_char * (math.prod(shape) * kind.itemsize)).from_address(address)
+    return np.frombuffer(room, kind).reshape(shape)
+
+
+# The array of a shape and dtype at an address; nothing is copied.
+carray: Callable[..., Any] = _plain_carray if IS_PLAIN else compiled_carray

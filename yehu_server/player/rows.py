@@ -1,0 +1,42 @@
+"""Numbers of the parameters in the player's arrays: their rows in ``params.table.TABLE``."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from yehu_server.params.spec import Place
+from yehu_server.params.table import FINGERS, SLOT, TABLE
+
+ROW = {param.address: row for row, param in enumerate(TABLE)}
+ROWS = len(TABLE)
+SLOT_OF = np.array([SLOT.get(param.address, -1) for param in TABLE])  # -1: not the engine's
+IS_OWNED = np.array([param.owned for param in TABLE])
+IS_ENGINES = np.array([param.place is Place.ENGINE for param in TABLE])
+SMOOTH_MS = np.array([param.smooth_ms for param in TABLE])
+
+# What the player moves.
+BOW_SPEED, BOW_SIDE = ROW["/bow/speed"], ROW["/bow/side"]
+BOW_FORCE, BOW_PRESSURE, BOW_ASSIST = ROW["/bow/force"], ROW["/bow/pressure"], ROW["/bow/assist"]
+BOW_POSITION, BOW_TREMOLO = ROW["/bow/position"], ROW["/bow/tremolo"]
+FINGER_COUNT = len(FINGERS)
+FINGER_POSITION = np.array([ROW[f"/finger/{number}/position"] for number in FINGERS])
+FINGER_PRESS = np.array([ROW[f"/finger/{number}/press"] for number in FINGERS])
+VIBRATO_DEPTH, VIBRATO_RATE = ROW["/vibrato/depth"], ROW["/vibrato/rate"]
+VIBRATO_PRESS, VIBRATO_ONSET = ROW["/vibrato/press"], ROW["/vibrato/onset"]
+PLUCK_FORCE = ROW["/pluck/force"]
+OUTPUT_LEVEL, OUTPUT_BALANCE = ROW["/output/level"], ROW["/output/balance"]
+
+# What it is wished.
+EVENNESS = ROW["/body/evenness"]
+DYNAMICS, SPEED = ROW["/playing/dynamics"], ROW["/playing/speed"]
+PRESSURE, POSITION = ROW["/playing/pressure"], ROW["/playing/bow_position"]
+TREMOLO, PIZZICATO = ROW["/playing/tremolo"], ROW["/playing/pizzicato"]
+STRING, DIRECTION = ROW["/playing/string"], ROW["/playing/direction"]
+PRESS, BEND = ROW["/playing/press"], ROW["/playing/bend"]
+VIBRATO, ROCKING = ROW["/playing/vibrato"], ROW["/playing/vibrato_press"]
+ROCKING_RATE, ROCKING_DELAY = ROW["/playing/vibrato_rate"], ROW["/playing/vibrato_delay"]
+VOLUME, EXPRESSION = ROW["/playing/volume"], ROW["/playing/expression"]
+ASSIST, VARIATION = ROW["/playing/assist"], ROW["/playing/variation"]
+ATTACK, RELEASE = ROW["/playing/attack"], ROW["/playing/release"]
+PORTAMENTO, PORTAMENTO_TIME = ROW["/playing/portamento"], ROW["/playing/portamento_time"]
+TRUST, SEED = ROW["/engine/calibration"], ROW["/engine/seed"]

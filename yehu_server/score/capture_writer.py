@@ -1,0 +1,98 @@
+"""Write captures of sessions: every wish that the player fulfilled, with its frame.
+
+docs/capture.md describes the format: one JSON value a line, so that a capture that was cut short
+by a crash can be read.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.errors import OutputError
+from yehu_server.files import create, discard, why, write_all
+from yehu_server.playing.calibrations import as_data
+from yehu_server.score.capture_format import FORMAT, VERSION, as_line, build
+
+ROOM_BYTES = 1 << 16  # free space needed to begin a capture
+
+
+def header_of(instrument: Instrument) -> dict[str, Any]:
+    """The first line: all that an instrument and its player start from."""
+    calibration = instrument.calibration
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "rate": instrument.rate,
+        "seed": instrument.seed,
+        "open_strings": instrument.open_strings.value,
+        "tensions": [silk.T for silk in instrument.quantities.strings],
+        "calibration": None if calibration is None else as_data(calibration),
+        "bowing": instrument.bowing.tolist(),
+        "build": build(),
+        "values": instrument.start_values,
+    }
+
+
+class CaptureWriter:
+    """Writes a capture; each line of the file is complete, however writing ends.
+
+    Parameters
+    ----------
+    instrument : Instrument
+        What is captured, as it is before the first frame.
+    overwrite : bool
+        Whether to replace an older file.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written.
+    """
+
+    def __init__(
+        self,
+        target: Path,
+        *,
+        instrument: Instrument,
+        overwrite: bool = False,
+    ) -> None:
+        self._target = target
+        self._file = create(target, overwrite=overwrite, room_bytes=ROOM_BYTES)
+        self._whole_bytes = 0
+        self._write([header_of(instrument)])
+
+    def wishes(self, wishes: Any) -> None:
+        """Add wishes [shape=(wishes,), dtype=WISH] that were fulfilled."""
+        self._write(map(as_line, wishes))
+
+    def note(self, what: str, frame: int, **details: int) -> None:
+        """Add a ``rest`` (after a gap `since` a frame), or ``lost`` `events`."""
+        self._write([{what: frame, **details}])
+
+    def close(self, frame: int) -> None:
+        """End the capture at the frame after the last one played."""
+        self._write([{"end": frame}])
+        self._file.close()
+
+    def discard(self) -> None:
+        """End the capture and remove its file."""
+        discard(self._file, self._target)
+        self._file.close()
+
+    def _write(self, lines: Iterable[Any]) -> None:
+        data = "".join(json.dumps(line) + "\n" for line in lines).encode()
+        try:
+            write_all(self._file, data)
+            self._whole_bytes += len(data)
+        except OSError as error:
+            with contextlib.suppress(OSError):  # remove an incomplete line
+                written = self._file.seek(0, io.SEEK_END) - self._whole_bytes
+                self._file.truncate(self._whole_bytes + data.rfind(b"\n", 0, written) + 1)
+            self._file.close()
+            raise OutputError(f"{self._target}: cannot write: {why(error)}") from error

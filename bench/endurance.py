@@ -35,8 +35,8 @@ from rich.console import Console
 from rich.table import Table
 
 from yehu_server.audio.output import NULL, Output, OutputOptions
-from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.warming import warm_up
 
 COMMAND = [sys.executable, "-c", "from yehu_server.cli import main; raise SystemExit(main())"]
 STARTED_WITHIN_S, ENDED_WITHIN_S = 120.0, 60.0
@@ -277,7 +277,7 @@ def main() -> None:
     device = arguments.audio_device or CARD
     if device == NULL:
         sys.exit("the silent clock has no deadlines")
-    native.warm_up()  # compile before processes wait for each other
+    warm_up()  # compile before processes wait for each other
     with (
         sound_card(arguments.audio_device, arguments.blocksize),
         tempfile.TemporaryDirectory() as f,

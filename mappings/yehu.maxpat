@@ -1096,14 +1096,14 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/pressure",
+     "varname": "/playing/velocity",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/pressure",
-       "parameter_shortname": "pressure",
-       "parameter_mmin": 0.05,
-       "parameter_mmax": 2.0,
+       "parameter_longname": "/playing/velocity",
+       "parameter_shortname": "velocity",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -1130,7 +1130,7 @@
       90.0,
       18.0
      ],
-     "text": "0.05 to 2",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -1157,7 +1157,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/pressure"
+     "text": "prepend /yehu/playing/velocity"
     }
    },
    {
@@ -1210,7 +1210,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/pressure"
+     "text": "route /yehu/playing/velocity"
     }
    },
    {
@@ -1246,7 +1246,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.4"
+     "text": "loadmess set 0.63"
     }
    },
    {
@@ -1265,14 +1265,14 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/bow_position",
+     "varname": "/playing/pressure",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bow_position",
-       "parameter_shortname": "bow position",
+       "parameter_longname": "/playing/pressure",
+       "parameter_shortname": "pressure",
        "parameter_mmin": 0.05,
-       "parameter_mmax": 0.3,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -1299,7 +1299,7 @@
       90.0,
       18.0
      ],
-     "text": "0.05 to 0.3",
+     "text": "0.05 to 2",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -1326,7 +1326,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bow_position"
+     "text": "prepend /yehu/playing/pressure"
     }
    },
    {
@@ -1379,7 +1379,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/bow_position"
+     "text": "route /yehu/playing/pressure"
     }
    },
    {
@@ -1415,7 +1415,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.13"
+     "text": "loadmess set 0.4"
     }
    },
    {
@@ -1434,17 +1434,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/tremolo",
+     "varname": "/playing/bow_position",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/tremolo",
-       "parameter_shortname": "tremolo",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 20.0,
+       "parameter_longname": "/playing/bow_position",
+       "parameter_shortname": "bow position",
+       "parameter_mmin": 0.05,
+       "parameter_mmax": 0.3,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f 1/s"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -1468,7 +1468,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 20 1/s",
+     "text": "0.05 to 0.3",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -1495,7 +1495,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/tremolo"
+     "text": "prepend /yehu/playing/bow_position"
     }
    },
    {
@@ -1548,7 +1548,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/tremolo"
+     "text": "route /yehu/playing/bow_position"
     }
    },
    {
@@ -1584,7 +1584,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.13"
     }
    },
    {
@@ -1603,17 +1603,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/pizzicato",
+     "varname": "/playing/tremolo",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/pizzicato",
-       "parameter_shortname": "pizzicato",
+       "parameter_longname": "/playing/tremolo",
+       "parameter_shortname": "tremolo",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 20.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f 1/s"
       }
      },
      "presentation": 1,
@@ -1637,7 +1637,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "0 to 20 1/s",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -1664,7 +1664,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/pizzicato"
+     "text": "prepend /yehu/playing/tremolo"
     }
    },
    {
@@ -1717,7 +1717,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/pizzicato"
+     "text": "route /yehu/playing/tremolo"
     }
    },
    {
@@ -1772,14 +1772,14 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/string",
+     "varname": "/playing/pizzicato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/string",
-       "parameter_shortname": "string",
+       "parameter_longname": "/playing/pizzicato",
+       "parameter_shortname": "pizzicato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -1806,7 +1806,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 2",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -1833,7 +1833,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/string"
+     "text": "prepend /yehu/playing/pizzicato"
     }
    },
    {
@@ -1886,7 +1886,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/string"
+     "text": "route /yehu/playing/pizzicato"
     }
    },
    {
@@ -1941,14 +1941,14 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/direction",
+     "varname": "/playing/string",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/direction",
-       "parameter_shortname": "direction",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/string",
+       "parameter_shortname": "string",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -1975,7 +1975,7 @@
       90.0,
       18.0
      ],
-     "text": "-1 to 1",
+     "text": "0 to 2",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2002,7 +2002,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/direction"
+     "text": "prepend /yehu/playing/string"
     }
    },
    {
@@ -2055,7 +2055,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/direction"
+     "text": "route /yehu/playing/string"
     }
    },
    {
@@ -2110,17 +2110,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/press",
+     "varname": "/playing/direction",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.3,
-       "parameter_mmax": 6.0,
+       "parameter_longname": "/playing/direction",
+       "parameter_shortname": "direction",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f N"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -2144,7 +2144,7 @@
       90.0,
       18.0
      ],
-     "text": "0.3 to 6 N",
+     "text": "-1 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2171,7 +2171,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/press"
+     "text": "prepend /yehu/playing/direction"
     }
    },
    {
@@ -2224,7 +2224,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/press"
+     "text": "route /yehu/playing/direction"
     }
    },
    {
@@ -2260,7 +2260,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2279,17 +2279,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato",
+     "varname": "/playing/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato",
-       "parameter_shortname": "vibrato",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 100.0,
+       "parameter_longname": "/playing/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.3,
+       "parameter_mmax": 6.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f cents"
+       "parameter_units": "%.3f N"
       }
      },
      "presentation": 1,
@@ -2313,7 +2313,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 100 cents",
+     "text": "0.3 to 6 N",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2340,7 +2340,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato"
+     "text": "prepend /yehu/playing/press"
     }
    },
    {
@@ -2393,7 +2393,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato"
+     "text": "route /yehu/playing/press"
     }
    },
    {
@@ -2429,7 +2429,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1.5"
     }
    },
    {
@@ -2448,17 +2448,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_press",
+     "varname": "/playing/vibrato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_press",
-       "parameter_shortname": "vibrato press",
+       "parameter_longname": "/playing/vibrato",
+       "parameter_shortname": "vibrato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 100.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f cents"
       }
      },
      "presentation": 1,
@@ -2482,7 +2482,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "0 to 100 cents",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2509,7 +2509,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_press"
+     "text": "prepend /yehu/playing/vibrato"
     }
    },
    {
@@ -2562,7 +2562,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_press"
+     "text": "route /yehu/playing/vibrato"
     }
    },
    {
@@ -2617,17 +2617,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_rate",
+     "varname": "/playing/vibrato_press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_rate",
-       "parameter_shortname": "vibrato rate",
-       "parameter_mmin": 2.0,
-       "parameter_mmax": 10.0,
+       "parameter_longname": "/playing/vibrato_press",
+       "parameter_shortname": "vibrato press",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f Hz"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -2651,7 +2651,7 @@
       90.0,
       18.0
      ],
-     "text": "2 to 10 Hz",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2678,7 +2678,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_rate"
+     "text": "prepend /yehu/playing/vibrato_press"
     }
    },
    {
@@ -2731,7 +2731,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_rate"
+     "text": "route /yehu/playing/vibrato_press"
     }
    },
    {
@@ -2767,7 +2767,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2786,17 +2786,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_delay",
+     "varname": "/playing/vibrato_rate",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_delay",
-       "parameter_shortname": "vibrato delay",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 3000.0,
+       "parameter_longname": "/playing/vibrato_rate",
+       "parameter_shortname": "vibrato rate",
+       "parameter_mmin": 2.0,
+       "parameter_mmax": 10.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f Hz"
       }
      },
      "presentation": 1,
@@ -2820,7 +2820,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 3000 ms",
+     "text": "2 to 10 Hz",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2847,7 +2847,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_delay"
+     "text": "prepend /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -2900,7 +2900,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_delay"
+     "text": "route /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -2936,7 +2936,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 500"
+     "text": "loadmess set 5.5"
     }
    },
    {
@@ -2955,17 +2955,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/bend",
+     "varname": "/playing/vibrato_delay",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend",
-       "parameter_shortname": "bend",
-       "parameter_mmin": -48.0,
-       "parameter_mmax": 48.0,
+       "parameter_longname": "/playing/vibrato_delay",
+       "parameter_shortname": "vibrato delay",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 3000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f ms"
       }
      },
      "presentation": 1,
@@ -2989,7 +2989,7 @@
       90.0,
       18.0
      ],
-     "text": "-48 to 48 semitones",
+     "text": "0 to 3000 ms",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3016,7 +3016,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend"
+     "text": "prepend /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3069,7 +3069,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend"
+     "text": "route /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3105,7 +3105,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 500"
     }
    },
    {
@@ -3124,13 +3124,13 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/bend_range",
+     "varname": "/playing/bend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend_range",
-       "parameter_shortname": "bend range",
-       "parameter_mmin": 0.0,
+       "parameter_longname": "/playing/bend",
+       "parameter_shortname": "bend",
+       "parameter_mmin": -48.0,
        "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -3158,7 +3158,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 48 semitones",
+     "text": "-48 to 48 semitones",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3185,7 +3185,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend_range"
+     "text": "prepend /yehu/playing/bend"
     }
    },
    {
@@ -3238,7 +3238,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend_range"
+     "text": "route /yehu/playing/bend"
     }
    },
    {
@@ -3274,7 +3274,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 2"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3293,17 +3293,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/volume",
+     "varname": "/playing/bend_range",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/volume",
-       "parameter_shortname": "volume",
+       "parameter_longname": "/playing/bend_range",
+       "parameter_shortname": "bend range",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      },
      "presentation": 1,
@@ -3327,7 +3327,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "0 to 48 semitones",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3354,7 +3354,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/volume"
+     "text": "prepend /yehu/playing/bend_range"
     }
    },
    {
@@ -3407,7 +3407,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/volume"
+     "text": "route /yehu/playing/bend_range"
     }
    },
    {
@@ -3443,7 +3443,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 2"
     }
    },
    {
@@ -3462,12 +3462,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/expression",
+     "varname": "/playing/volume",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/expression",
-       "parameter_shortname": "expression",
+       "parameter_longname": "/playing/volume",
+       "parameter_shortname": "volume",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -3523,7 +3523,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/expression"
+     "text": "prepend /yehu/playing/volume"
     }
    },
    {
@@ -3576,7 +3576,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/expression"
+     "text": "route /yehu/playing/volume"
     }
    },
    {
@@ -3631,12 +3631,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/assist",
+     "varname": "/playing/expression",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/assist",
-       "parameter_shortname": "assist",
+       "parameter_longname": "/playing/expression",
+       "parameter_shortname": "expression",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -3692,7 +3692,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/assist"
+     "text": "prepend /yehu/playing/expression"
     }
    },
    {
@@ -3745,7 +3745,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/assist"
+     "text": "route /yehu/playing/expression"
     }
    },
    {
@@ -3800,12 +3800,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/variation",
+     "varname": "/playing/assist",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/variation",
-       "parameter_shortname": "variation",
+       "parameter_longname": "/playing/assist",
+       "parameter_shortname": "assist",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -3861,7 +3861,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/variation"
+     "text": "prepend /yehu/playing/assist"
     }
    },
    {
@@ -3914,7 +3914,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/variation"
+     "text": "route /yehu/playing/assist"
     }
    },
    {
@@ -3950,7 +3950,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.25"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -3969,17 +3969,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/variation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/variation",
+       "parameter_shortname": "variation",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -4003,7 +4003,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 500 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -4030,7 +4030,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/variation"
     }
    },
    {
@@ -4083,7 +4083,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/variation"
     }
    },
    {
@@ -4119,7 +4119,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 0.25"
     }
    },
    {
@@ -4138,17 +4138,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/listening",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/listening",
+       "parameter_shortname": "listening",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -4172,7 +4172,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -4199,7 +4199,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/listening"
     }
    },
    {
@@ -4252,7 +4252,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/listening"
     }
    },
    {
@@ -4288,7 +4288,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4307,17 +4307,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f ms"
       }
      },
      "presentation": 1,
@@ -4341,7 +4341,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "5 to 500 ms",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -4368,7 +4368,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -4421,7 +4421,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -4457,7 +4457,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 40"
     }
    },
    {
@@ -4476,12 +4476,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/release",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
        "parameter_mmin": 5.0,
        "parameter_mmax": 2000.0,
        "parameter_type": 0,
@@ -4537,7 +4537,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/release"
     }
    },
    {
@@ -4590,7 +4590,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/release"
     }
    },
    {
@@ -4626,12 +4626,350 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 60"
     }
    },
    {
     "box": {
      "id": "obj-220",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      676,
+      1158,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/playing/portamento",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      554,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-221",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      676,
+      1208,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      604,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-222",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      1276,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-223",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      586,
+      1302,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-224",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      1158,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-225",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      586,
+      1228,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-226",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      1252,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-227",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      1184,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-228",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      866,
+      1158,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      554,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-229",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      866,
+      1208,
+      90.0,
+      18.0
+     ],
+     "text": "5 to 2000 ms",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      604,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-230",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      1276,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-231",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      776,
+      1302,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-232",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      1158,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-233",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      776,
+      1228,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-234",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      1252,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-235",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      1184,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-236",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4654,7 +4992,7 @@
    },
    {
     "box": {
-     "id": "obj-221",
+     "id": "obj-237",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -4692,7 +5030,7 @@
    },
    {
     "box": {
-     "id": "obj-222",
+     "id": "obj-238",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4716,7 +5054,7 @@
    },
    {
     "box": {
-     "id": "obj-223",
+     "id": "obj-239",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4734,7 +5072,7 @@
    },
    {
     "box": {
-     "id": "obj-224",
+     "id": "obj-240",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4750,7 +5088,7 @@
    },
    {
     "box": {
-     "id": "obj-225",
+     "id": "obj-241",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4768,7 +5106,7 @@
    },
    {
     "box": {
-     "id": "obj-226",
+     "id": "obj-242",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -4787,7 +5125,7 @@
    },
    {
     "box": {
-     "id": "obj-227",
+     "id": "obj-243",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4805,7 +5143,7 @@
    },
    {
     "box": {
-     "id": "obj-228",
+     "id": "obj-244",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4823,7 +5161,7 @@
    },
    {
     "box": {
-     "id": "obj-229",
+     "id": "obj-245",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -4861,7 +5199,7 @@
    },
    {
     "box": {
-     "id": "obj-230",
+     "id": "obj-246",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4885,7 +5223,7 @@
    },
    {
     "box": {
-     "id": "obj-231",
+     "id": "obj-247",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4903,7 +5241,7 @@
    },
    {
     "box": {
-     "id": "obj-232",
+     "id": "obj-248",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4919,7 +5257,7 @@
    },
    {
     "box": {
-     "id": "obj-233",
+     "id": "obj-249",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4937,7 +5275,7 @@
    },
    {
     "box": {
-     "id": "obj-234",
+     "id": "obj-250",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -4956,7 +5294,7 @@
    },
    {
     "box": {
-     "id": "obj-235",
+     "id": "obj-251",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4974,7 +5312,7 @@
    },
    {
     "box": {
-     "id": "obj-236",
+     "id": "obj-252",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -4992,7 +5330,7 @@
    },
    {
     "box": {
-     "id": "obj-237",
+     "id": "obj-253",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5030,7 +5368,7 @@
    },
    {
     "box": {
-     "id": "obj-238",
+     "id": "obj-254",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5054,7 +5392,7 @@
    },
    {
     "box": {
-     "id": "obj-239",
+     "id": "obj-255",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5072,7 +5410,7 @@
    },
    {
     "box": {
-     "id": "obj-240",
+     "id": "obj-256",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5088,7 +5426,7 @@
    },
    {
     "box": {
-     "id": "obj-241",
+     "id": "obj-257",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5106,7 +5444,7 @@
    },
    {
     "box": {
-     "id": "obj-242",
+     "id": "obj-258",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5125,7 +5463,7 @@
    },
    {
     "box": {
-     "id": "obj-243",
+     "id": "obj-259",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5143,7 +5481,7 @@
    },
    {
     "box": {
-     "id": "obj-244",
+     "id": "obj-260",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5161,7 +5499,7 @@
    },
    {
     "box": {
-     "id": "obj-245",
+     "id": "obj-261",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5199,7 +5537,7 @@
    },
    {
     "box": {
-     "id": "obj-246",
+     "id": "obj-262",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5223,7 +5561,7 @@
    },
    {
     "box": {
-     "id": "obj-247",
+     "id": "obj-263",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5241,7 +5579,7 @@
    },
    {
     "box": {
-     "id": "obj-248",
+     "id": "obj-264",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5257,7 +5595,7 @@
    },
    {
     "box": {
-     "id": "obj-249",
+     "id": "obj-265",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5275,7 +5613,7 @@
    },
    {
     "box": {
-     "id": "obj-250",
+     "id": "obj-266",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5294,7 +5632,7 @@
    },
    {
     "box": {
-     "id": "obj-251",
+     "id": "obj-267",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5312,7 +5650,7 @@
    },
    {
     "box": {
-     "id": "obj-252",
+     "id": "obj-268",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5330,7 +5668,7 @@
    },
    {
     "box": {
-     "id": "obj-253",
+     "id": "obj-269",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5368,7 +5706,7 @@
    },
    {
     "box": {
-     "id": "obj-254",
+     "id": "obj-270",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5392,7 +5730,7 @@
    },
    {
     "box": {
-     "id": "obj-255",
+     "id": "obj-271",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5410,7 +5748,7 @@
    },
    {
     "box": {
-     "id": "obj-256",
+     "id": "obj-272",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5426,7 +5764,7 @@
    },
    {
     "box": {
-     "id": "obj-257",
+     "id": "obj-273",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5444,7 +5782,7 @@
    },
    {
     "box": {
-     "id": "obj-258",
+     "id": "obj-274",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5463,7 +5801,7 @@
    },
    {
     "box": {
-     "id": "obj-259",
+     "id": "obj-275",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5481,7 +5819,7 @@
    },
    {
     "box": {
-     "id": "obj-260",
+     "id": "obj-276",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5499,7 +5837,7 @@
    },
    {
     "box": {
-     "id": "obj-261",
+     "id": "obj-277",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5537,7 +5875,7 @@
    },
    {
     "box": {
-     "id": "obj-262",
+     "id": "obj-278",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5561,7 +5899,7 @@
    },
    {
     "box": {
-     "id": "obj-263",
+     "id": "obj-279",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5579,7 +5917,7 @@
    },
    {
     "box": {
-     "id": "obj-264",
+     "id": "obj-280",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5595,7 +5933,7 @@
    },
    {
     "box": {
-     "id": "obj-265",
+     "id": "obj-281",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5613,7 +5951,7 @@
    },
    {
     "box": {
-     "id": "obj-266",
+     "id": "obj-282",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5632,7 +5970,7 @@
    },
    {
     "box": {
-     "id": "obj-267",
+     "id": "obj-283",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5650,7 +5988,7 @@
    },
    {
     "box": {
-     "id": "obj-268",
+     "id": "obj-284",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5668,7 +6006,7 @@
    },
    {
     "box": {
-     "id": "obj-269",
+     "id": "obj-285",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5706,7 +6044,7 @@
    },
    {
     "box": {
-     "id": "obj-270",
+     "id": "obj-286",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5730,7 +6068,7 @@
    },
    {
     "box": {
-     "id": "obj-271",
+     "id": "obj-287",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5748,7 +6086,7 @@
    },
    {
     "box": {
-     "id": "obj-272",
+     "id": "obj-288",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5764,7 +6102,7 @@
    },
    {
     "box": {
-     "id": "obj-273",
+     "id": "obj-289",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5782,7 +6120,7 @@
    },
    {
     "box": {
-     "id": "obj-274",
+     "id": "obj-290",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5801,7 +6139,7 @@
    },
    {
     "box": {
-     "id": "obj-275",
+     "id": "obj-291",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5819,7 +6157,7 @@
    },
    {
     "box": {
-     "id": "obj-276",
+     "id": "obj-292",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5837,7 +6175,7 @@
    },
    {
     "box": {
-     "id": "obj-277",
+     "id": "obj-293",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5875,7 +6213,7 @@
    },
    {
     "box": {
-     "id": "obj-278",
+     "id": "obj-294",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5899,7 +6237,7 @@
    },
    {
     "box": {
-     "id": "obj-279",
+     "id": "obj-295",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5917,7 +6255,7 @@
    },
    {
     "box": {
-     "id": "obj-280",
+     "id": "obj-296",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5933,7 +6271,7 @@
    },
    {
     "box": {
-     "id": "obj-281",
+     "id": "obj-297",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5951,7 +6289,7 @@
    },
    {
     "box": {
-     "id": "obj-282",
+     "id": "obj-298",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5970,7 +6308,7 @@
    },
    {
     "box": {
-     "id": "obj-283",
+     "id": "obj-299",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5988,7 +6326,7 @@
    },
    {
     "box": {
-     "id": "obj-284",
+     "id": "obj-300",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6006,7 +6344,7 @@
    },
    {
     "box": {
-     "id": "obj-285",
+     "id": "obj-301",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6029,7 +6367,7 @@
    },
    {
     "box": {
-     "id": "obj-286",
+     "id": "obj-302",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6067,7 +6405,7 @@
    },
    {
     "box": {
-     "id": "obj-287",
+     "id": "obj-303",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6091,7 +6429,7 @@
    },
    {
     "box": {
-     "id": "obj-288",
+     "id": "obj-304",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6109,7 +6447,7 @@
    },
    {
     "box": {
-     "id": "obj-289",
+     "id": "obj-305",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6125,7 +6463,7 @@
    },
    {
     "box": {
-     "id": "obj-290",
+     "id": "obj-306",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6143,7 +6481,7 @@
    },
    {
     "box": {
-     "id": "obj-291",
+     "id": "obj-307",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6162,7 +6500,7 @@
    },
    {
     "box": {
-     "id": "obj-292",
+     "id": "obj-308",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6180,7 +6518,7 @@
    },
    {
     "box": {
-     "id": "obj-293",
+     "id": "obj-309",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6198,7 +6536,7 @@
    },
    {
     "box": {
-     "id": "obj-294",
+     "id": "obj-310",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6236,7 +6574,7 @@
    },
    {
     "box": {
-     "id": "obj-295",
+     "id": "obj-311",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6260,7 +6598,7 @@
    },
    {
     "box": {
-     "id": "obj-296",
+     "id": "obj-312",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6278,7 +6616,7 @@
    },
    {
     "box": {
-     "id": "obj-297",
+     "id": "obj-313",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6294,7 +6632,7 @@
    },
    {
     "box": {
-     "id": "obj-298",
+     "id": "obj-314",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6312,7 +6650,7 @@
    },
    {
     "box": {
-     "id": "obj-299",
+     "id": "obj-315",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6331,7 +6669,7 @@
    },
    {
     "box": {
-     "id": "obj-300",
+     "id": "obj-316",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6349,7 +6687,7 @@
    },
    {
     "box": {
-     "id": "obj-301",
+     "id": "obj-317",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6367,7 +6705,7 @@
    },
    {
     "box": {
-     "id": "obj-302",
+     "id": "obj-318",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6405,7 +6743,7 @@
    },
    {
     "box": {
-     "id": "obj-303",
+     "id": "obj-319",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6429,7 +6767,7 @@
    },
    {
     "box": {
-     "id": "obj-304",
+     "id": "obj-320",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6447,7 +6785,7 @@
    },
    {
     "box": {
-     "id": "obj-305",
+     "id": "obj-321",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6463,7 +6801,7 @@
    },
    {
     "box": {
-     "id": "obj-306",
+     "id": "obj-322",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6481,7 +6819,7 @@
    },
    {
     "box": {
-     "id": "obj-307",
+     "id": "obj-323",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6500,7 +6838,7 @@
    },
    {
     "box": {
-     "id": "obj-308",
+     "id": "obj-324",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6518,7 +6856,7 @@
    },
    {
     "box": {
-     "id": "obj-309",
+     "id": "obj-325",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6536,7 +6874,7 @@
    },
    {
     "box": {
-     "id": "obj-310",
+     "id": "obj-326",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6574,7 +6912,7 @@
    },
    {
     "box": {
-     "id": "obj-311",
+     "id": "obj-327",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6598,7 +6936,7 @@
    },
    {
     "box": {
-     "id": "obj-312",
+     "id": "obj-328",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6616,7 +6954,7 @@
    },
    {
     "box": {
-     "id": "obj-313",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6632,7 +6970,7 @@
    },
    {
     "box": {
-     "id": "obj-314",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6650,7 +6988,7 @@
    },
    {
     "box": {
-     "id": "obj-315",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6669,7 +7007,7 @@
    },
    {
     "box": {
-     "id": "obj-316",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6687,7 +7025,7 @@
    },
    {
     "box": {
-     "id": "obj-317",
+     "id": "obj-333",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6705,7 +7043,7 @@
    },
    {
     "box": {
-     "id": "obj-318",
+     "id": "obj-334",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6743,7 +7081,7 @@
    },
    {
     "box": {
-     "id": "obj-319",
+     "id": "obj-335",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6767,7 +7105,7 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-336",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6785,7 +7123,7 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6801,7 +7139,7 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6819,7 +7157,7 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6838,7 +7176,7 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6856,7 +7194,7 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6874,7 +7212,7 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-342",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6912,7 +7250,7 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-343",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6936,7 +7274,7 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-344",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6954,7 +7292,7 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-345",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6970,7 +7308,7 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-346",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6988,7 +7326,7 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-347",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7007,7 +7345,7 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-348",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7025,7 +7363,7 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-349",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7043,7 +7381,7 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-350",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7081,7 +7419,7 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-351",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7105,7 +7443,7 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-352",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7123,7 +7461,7 @@
    },
    {
     "box": {
-     "id": "obj-337",
+     "id": "obj-353",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7139,7 +7477,7 @@
    },
    {
     "box": {
-     "id": "obj-338",
+     "id": "obj-354",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7157,7 +7495,7 @@
    },
    {
     "box": {
-     "id": "obj-339",
+     "id": "obj-355",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7176,7 +7514,7 @@
    },
    {
     "box": {
-     "id": "obj-340",
+     "id": "obj-356",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7194,7 +7532,7 @@
    },
    {
     "box": {
-     "id": "obj-341",
+     "id": "obj-357",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7212,7 +7550,7 @@
    },
    {
     "box": {
-     "id": "obj-342",
+     "id": "obj-358",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7250,7 +7588,7 @@
    },
    {
     "box": {
-     "id": "obj-343",
+     "id": "obj-359",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7274,7 +7612,7 @@
    },
    {
     "box": {
-     "id": "obj-344",
+     "id": "obj-360",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7292,7 +7630,7 @@
    },
    {
     "box": {
-     "id": "obj-345",
+     "id": "obj-361",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7308,7 +7646,7 @@
    },
    {
     "box": {
-     "id": "obj-346",
+     "id": "obj-362",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7326,7 +7664,7 @@
    },
    {
     "box": {
-     "id": "obj-347",
+     "id": "obj-363",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7345,7 +7683,7 @@
    },
    {
     "box": {
-     "id": "obj-348",
+     "id": "obj-364",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7363,7 +7701,7 @@
    },
    {
     "box": {
-     "id": "obj-349",
+     "id": "obj-365",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7381,7 +7719,7 @@
    },
    {
     "box": {
-     "id": "obj-350",
+     "id": "obj-366",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7404,7 +7742,7 @@
    },
    {
     "box": {
-     "id": "obj-351",
+     "id": "obj-367",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7442,7 +7780,7 @@
    },
    {
     "box": {
-     "id": "obj-352",
+     "id": "obj-368",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7466,7 +7804,7 @@
    },
    {
     "box": {
-     "id": "obj-353",
+     "id": "obj-369",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7484,7 +7822,7 @@
    },
    {
     "box": {
-     "id": "obj-354",
+     "id": "obj-370",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7500,7 +7838,7 @@
    },
    {
     "box": {
-     "id": "obj-355",
+     "id": "obj-371",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7518,7 +7856,7 @@
    },
    {
     "box": {
-     "id": "obj-356",
+     "id": "obj-372",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7537,7 +7875,7 @@
    },
    {
     "box": {
-     "id": "obj-357",
+     "id": "obj-373",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7555,7 +7893,7 @@
    },
    {
     "box": {
-     "id": "obj-358",
+     "id": "obj-374",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7573,7 +7911,7 @@
    },
    {
     "box": {
-     "id": "obj-359",
+     "id": "obj-375",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7611,7 +7949,7 @@
    },
    {
     "box": {
-     "id": "obj-360",
+     "id": "obj-376",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7635,7 +7973,7 @@
    },
    {
     "box": {
-     "id": "obj-361",
+     "id": "obj-377",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7653,7 +7991,7 @@
    },
    {
     "box": {
-     "id": "obj-362",
+     "id": "obj-378",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7669,7 +8007,7 @@
    },
    {
     "box": {
-     "id": "obj-363",
+     "id": "obj-379",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7687,7 +8025,7 @@
    },
    {
     "box": {
-     "id": "obj-364",
+     "id": "obj-380",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7706,7 +8044,7 @@
    },
    {
     "box": {
-     "id": "obj-365",
+     "id": "obj-381",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7724,7 +8062,7 @@
    },
    {
     "box": {
-     "id": "obj-366",
+     "id": "obj-382",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7742,7 +8080,7 @@
    },
    {
     "box": {
-     "id": "obj-367",
+     "id": "obj-383",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7780,7 +8118,7 @@
    },
    {
     "box": {
-     "id": "obj-368",
+     "id": "obj-384",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7804,7 +8142,7 @@
    },
    {
     "box": {
-     "id": "obj-369",
+     "id": "obj-385",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7822,7 +8160,7 @@
    },
    {
     "box": {
-     "id": "obj-370",
+     "id": "obj-386",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7838,7 +8176,7 @@
    },
    {
     "box": {
-     "id": "obj-371",
+     "id": "obj-387",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7856,7 +8194,7 @@
    },
    {
     "box": {
-     "id": "obj-372",
+     "id": "obj-388",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7875,7 +8213,7 @@
    },
    {
     "box": {
-     "id": "obj-373",
+     "id": "obj-389",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7893,7 +8231,7 @@
    },
    {
     "box": {
-     "id": "obj-374",
+     "id": "obj-390",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7911,7 +8249,7 @@
    },
    {
     "box": {
-     "id": "obj-375",
+     "id": "obj-391",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7949,7 +8287,7 @@
    },
    {
     "box": {
-     "id": "obj-376",
+     "id": "obj-392",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7973,7 +8311,7 @@
    },
    {
     "box": {
-     "id": "obj-377",
+     "id": "obj-393",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7991,7 +8329,7 @@
    },
    {
     "box": {
-     "id": "obj-378",
+     "id": "obj-394",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8007,7 +8345,7 @@
    },
    {
     "box": {
-     "id": "obj-379",
+     "id": "obj-395",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8025,7 +8363,7 @@
    },
    {
     "box": {
-     "id": "obj-380",
+     "id": "obj-396",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8044,7 +8382,7 @@
    },
    {
     "box": {
-     "id": "obj-381",
+     "id": "obj-397",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8062,7 +8400,7 @@
    },
    {
     "box": {
-     "id": "obj-382",
+     "id": "obj-398",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8080,7 +8418,7 @@
    },
    {
     "box": {
-     "id": "obj-383",
+     "id": "obj-399",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8103,7 +8441,7 @@
    },
    {
     "box": {
-     "id": "obj-384",
+     "id": "obj-400",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8141,7 +8479,7 @@
    },
    {
     "box": {
-     "id": "obj-385",
+     "id": "obj-401",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8165,7 +8503,7 @@
    },
    {
     "box": {
-     "id": "obj-386",
+     "id": "obj-402",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8183,7 +8521,7 @@
    },
    {
     "box": {
-     "id": "obj-387",
+     "id": "obj-403",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8199,7 +8537,7 @@
    },
    {
     "box": {
-     "id": "obj-388",
+     "id": "obj-404",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8217,7 +8555,7 @@
    },
    {
     "box": {
-     "id": "obj-389",
+     "id": "obj-405",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8236,7 +8574,7 @@
    },
    {
     "box": {
-     "id": "obj-390",
+     "id": "obj-406",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8254,7 +8592,7 @@
    },
    {
     "box": {
-     "id": "obj-391",
+     "id": "obj-407",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8272,7 +8610,7 @@
    },
    {
     "box": {
-     "id": "obj-392",
+     "id": "obj-408",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8310,7 +8648,7 @@
    },
    {
     "box": {
-     "id": "obj-393",
+     "id": "obj-409",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8334,7 +8672,7 @@
    },
    {
     "box": {
-     "id": "obj-394",
+     "id": "obj-410",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8352,7 +8690,7 @@
    },
    {
     "box": {
-     "id": "obj-395",
+     "id": "obj-411",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8368,7 +8706,7 @@
    },
    {
     "box": {
-     "id": "obj-396",
+     "id": "obj-412",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8386,7 +8724,7 @@
    },
    {
     "box": {
-     "id": "obj-397",
+     "id": "obj-413",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8405,7 +8743,7 @@
    },
    {
     "box": {
-     "id": "obj-398",
+     "id": "obj-414",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8423,7 +8761,7 @@
    },
    {
     "box": {
-     "id": "obj-399",
+     "id": "obj-415",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8441,7 +8779,7 @@
    },
    {
     "box": {
-     "id": "obj-400",
+     "id": "obj-416",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8464,7 +8802,7 @@
    },
    {
     "box": {
-     "id": "obj-401",
+     "id": "obj-417",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8502,7 +8840,7 @@
    },
    {
     "box": {
-     "id": "obj-402",
+     "id": "obj-418",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8526,7 +8864,7 @@
    },
    {
     "box": {
-     "id": "obj-403",
+     "id": "obj-419",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8544,7 +8882,7 @@
    },
    {
     "box": {
-     "id": "obj-404",
+     "id": "obj-420",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8560,7 +8898,7 @@
    },
    {
     "box": {
-     "id": "obj-405",
+     "id": "obj-421",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8578,7 +8916,7 @@
    },
    {
     "box": {
-     "id": "obj-406",
+     "id": "obj-422",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8597,7 +8935,7 @@
    },
    {
     "box": {
-     "id": "obj-407",
+     "id": "obj-423",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8615,7 +8953,7 @@
    },
    {
     "box": {
-     "id": "obj-408",
+     "id": "obj-424",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8633,7 +8971,7 @@
    },
    {
     "box": {
-     "id": "obj-409",
+     "id": "obj-425",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8671,7 +9009,7 @@
    },
    {
     "box": {
-     "id": "obj-410",
+     "id": "obj-426",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8695,7 +9033,7 @@
    },
    {
     "box": {
-     "id": "obj-411",
+     "id": "obj-427",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8713,7 +9051,7 @@
    },
    {
     "box": {
-     "id": "obj-412",
+     "id": "obj-428",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8729,7 +9067,7 @@
    },
    {
     "box": {
-     "id": "obj-413",
+     "id": "obj-429",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8747,7 +9085,7 @@
    },
    {
     "box": {
-     "id": "obj-414",
+     "id": "obj-430",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8766,7 +9104,7 @@
    },
    {
     "box": {
-     "id": "obj-415",
+     "id": "obj-431",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8784,7 +9122,7 @@
    },
    {
     "box": {
-     "id": "obj-416",
+     "id": "obj-432",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8802,7 +9140,7 @@
    },
    {
     "box": {
-     "id": "obj-417",
+     "id": "obj-433",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8840,7 +9178,7 @@
    },
    {
     "box": {
-     "id": "obj-418",
+     "id": "obj-434",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8864,7 +9202,7 @@
    },
    {
     "box": {
-     "id": "obj-419",
+     "id": "obj-435",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8882,7 +9220,7 @@
    },
    {
     "box": {
-     "id": "obj-420",
+     "id": "obj-436",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8898,7 +9236,7 @@
    },
    {
     "box": {
-     "id": "obj-421",
+     "id": "obj-437",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8916,7 +9254,7 @@
    },
    {
     "box": {
-     "id": "obj-422",
+     "id": "obj-438",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8935,7 +9273,7 @@
    },
    {
     "box": {
-     "id": "obj-423",
+     "id": "obj-439",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8953,7 +9291,7 @@
    },
    {
     "box": {
-     "id": "obj-424",
+     "id": "obj-440",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8971,7 +9309,7 @@
    },
    {
     "box": {
-     "id": "obj-425",
+     "id": "obj-441",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9009,7 +9347,7 @@
    },
    {
     "box": {
-     "id": "obj-426",
+     "id": "obj-442",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9033,7 +9371,7 @@
    },
    {
     "box": {
-     "id": "obj-427",
+     "id": "obj-443",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9051,7 +9389,7 @@
    },
    {
     "box": {
-     "id": "obj-428",
+     "id": "obj-444",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9067,7 +9405,7 @@
    },
    {
     "box": {
-     "id": "obj-429",
+     "id": "obj-445",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9085,7 +9423,7 @@
    },
    {
     "box": {
-     "id": "obj-430",
+     "id": "obj-446",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9104,7 +9442,7 @@
    },
    {
     "box": {
-     "id": "obj-431",
+     "id": "obj-447",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9122,7 +9460,7 @@
    },
    {
     "box": {
-     "id": "obj-432",
+     "id": "obj-448",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9140,7 +9478,7 @@
    },
    {
     "box": {
-     "id": "obj-433",
+     "id": "obj-449",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9163,7 +9501,7 @@
    },
    {
     "box": {
-     "id": "obj-434",
+     "id": "obj-450",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9201,7 +9539,7 @@
    },
    {
     "box": {
-     "id": "obj-435",
+     "id": "obj-451",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9225,7 +9563,7 @@
    },
    {
     "box": {
-     "id": "obj-436",
+     "id": "obj-452",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9243,7 +9581,7 @@
    },
    {
     "box": {
-     "id": "obj-437",
+     "id": "obj-453",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9259,7 +9597,7 @@
    },
    {
     "box": {
-     "id": "obj-438",
+     "id": "obj-454",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9277,7 +9615,7 @@
    },
    {
     "box": {
-     "id": "obj-439",
+     "id": "obj-455",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9296,7 +9634,7 @@
    },
    {
     "box": {
-     "id": "obj-440",
+     "id": "obj-456",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9314,7 +9652,7 @@
    },
    {
     "box": {
-     "id": "obj-441",
+     "id": "obj-457",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9332,7 +9670,7 @@
    },
    {
     "box": {
-     "id": "obj-442",
+     "id": "obj-458",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9370,7 +9708,7 @@
    },
    {
     "box": {
-     "id": "obj-443",
+     "id": "obj-459",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9394,7 +9732,7 @@
    },
    {
     "box": {
-     "id": "obj-444",
+     "id": "obj-460",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9412,7 +9750,7 @@
    },
    {
     "box": {
-     "id": "obj-445",
+     "id": "obj-461",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9428,7 +9766,7 @@
    },
    {
     "box": {
-     "id": "obj-446",
+     "id": "obj-462",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9446,7 +9784,7 @@
    },
    {
     "box": {
-     "id": "obj-447",
+     "id": "obj-463",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9465,7 +9803,7 @@
    },
    {
     "box": {
-     "id": "obj-448",
+     "id": "obj-464",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9483,7 +9821,7 @@
    },
    {
     "box": {
-     "id": "obj-449",
+     "id": "obj-465",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9501,7 +9839,7 @@
    },
    {
     "box": {
-     "id": "obj-450",
+     "id": "obj-466",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9539,7 +9877,7 @@
    },
    {
     "box": {
-     "id": "obj-451",
+     "id": "obj-467",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9563,7 +9901,7 @@
    },
    {
     "box": {
-     "id": "obj-452",
+     "id": "obj-468",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9581,7 +9919,7 @@
    },
    {
     "box": {
-     "id": "obj-453",
+     "id": "obj-469",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9597,7 +9935,7 @@
    },
    {
     "box": {
-     "id": "obj-454",
+     "id": "obj-470",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9615,7 +9953,7 @@
    },
    {
     "box": {
-     "id": "obj-455",
+     "id": "obj-471",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9634,7 +9972,7 @@
    },
    {
     "box": {
-     "id": "obj-456",
+     "id": "obj-472",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9652,7 +9990,7 @@
    },
    {
     "box": {
-     "id": "obj-457",
+     "id": "obj-473",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9670,7 +10008,7 @@
    },
    {
     "box": {
-     "id": "obj-458",
+     "id": "obj-474",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9708,7 +10046,7 @@
    },
    {
     "box": {
-     "id": "obj-459",
+     "id": "obj-475",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9732,7 +10070,7 @@
    },
    {
     "box": {
-     "id": "obj-460",
+     "id": "obj-476",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9750,7 +10088,7 @@
    },
    {
     "box": {
-     "id": "obj-461",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9766,7 +10104,7 @@
    },
    {
     "box": {
-     "id": "obj-462",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9784,7 +10122,7 @@
    },
    {
     "box": {
-     "id": "obj-463",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9803,7 +10141,7 @@
    },
    {
     "box": {
-     "id": "obj-464",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9821,7 +10159,7 @@
    },
    {
     "box": {
-     "id": "obj-465",
+     "id": "obj-481",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9839,7 +10177,7 @@
    },
    {
     "box": {
-     "id": "obj-466",
+     "id": "obj-482",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9862,7 +10200,7 @@
    },
    {
     "box": {
-     "id": "obj-467",
+     "id": "obj-483",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9900,7 +10238,7 @@
    },
    {
     "box": {
-     "id": "obj-468",
+     "id": "obj-484",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9924,7 +10262,7 @@
    },
    {
     "box": {
-     "id": "obj-469",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9942,7 +10280,7 @@
    },
    {
     "box": {
-     "id": "obj-470",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9958,7 +10296,7 @@
    },
    {
     "box": {
-     "id": "obj-471",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9976,7 +10314,7 @@
    },
    {
     "box": {
-     "id": "obj-472",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9995,7 +10333,7 @@
    },
    {
     "box": {
-     "id": "obj-473",
+     "id": "obj-489",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10013,7 +10351,7 @@
    },
    {
     "box": {
-     "id": "obj-474",
+     "id": "obj-490",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10031,7 +10369,7 @@
    },
    {
     "box": {
-     "id": "obj-475",
+     "id": "obj-491",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10069,7 +10407,7 @@
    },
    {
     "box": {
-     "id": "obj-476",
+     "id": "obj-492",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10093,7 +10431,7 @@
    },
    {
     "box": {
-     "id": "obj-477",
+     "id": "obj-493",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10111,7 +10449,7 @@
    },
    {
     "box": {
-     "id": "obj-478",
+     "id": "obj-494",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10127,7 +10465,7 @@
    },
    {
     "box": {
-     "id": "obj-479",
+     "id": "obj-495",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10145,7 +10483,7 @@
    },
    {
     "box": {
-     "id": "obj-480",
+     "id": "obj-496",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10164,7 +10502,7 @@
    },
    {
     "box": {
-     "id": "obj-481",
+     "id": "obj-497",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10182,7 +10520,7 @@
    },
    {
     "box": {
-     "id": "obj-482",
+     "id": "obj-498",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10200,7 +10538,7 @@
    },
    {
     "box": {
-     "id": "obj-483",
+     "id": "obj-499",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10238,7 +10576,7 @@
    },
    {
     "box": {
-     "id": "obj-484",
+     "id": "obj-500",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10262,7 +10600,7 @@
    },
    {
     "box": {
-     "id": "obj-485",
+     "id": "obj-501",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10280,7 +10618,7 @@
    },
    {
     "box": {
-     "id": "obj-486",
+     "id": "obj-502",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10296,7 +10634,7 @@
    },
    {
     "box": {
-     "id": "obj-487",
+     "id": "obj-503",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10314,7 +10652,7 @@
    },
    {
     "box": {
-     "id": "obj-488",
+     "id": "obj-504",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10333,7 +10671,7 @@
    },
    {
     "box": {
-     "id": "obj-489",
+     "id": "obj-505",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10351,7 +10689,7 @@
    },
    {
     "box": {
-     "id": "obj-490",
+     "id": "obj-506",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10369,7 +10707,7 @@
    },
    {
     "box": {
-     "id": "obj-491",
+     "id": "obj-507",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10392,7 +10730,7 @@
    },
    {
     "box": {
-     "id": "obj-492",
+     "id": "obj-508",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10430,7 +10768,7 @@
    },
    {
     "box": {
-     "id": "obj-493",
+     "id": "obj-509",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10454,7 +10792,7 @@
    },
    {
     "box": {
-     "id": "obj-494",
+     "id": "obj-510",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10472,7 +10810,7 @@
    },
    {
     "box": {
-     "id": "obj-495",
+     "id": "obj-511",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10488,7 +10826,7 @@
    },
    {
     "box": {
-     "id": "obj-496",
+     "id": "obj-512",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10506,7 +10844,7 @@
    },
    {
     "box": {
-     "id": "obj-497",
+     "id": "obj-513",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10525,7 +10863,7 @@
    },
    {
     "box": {
-     "id": "obj-498",
+     "id": "obj-514",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10543,7 +10881,7 @@
    },
    {
     "box": {
-     "id": "obj-499",
+     "id": "obj-515",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10561,7 +10899,7 @@
    },
    {
     "box": {
-     "id": "obj-500",
+     "id": "obj-516",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10599,7 +10937,7 @@
    },
    {
     "box": {
-     "id": "obj-501",
+     "id": "obj-517",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10623,7 +10961,7 @@
    },
    {
     "box": {
-     "id": "obj-502",
+     "id": "obj-518",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10641,7 +10979,7 @@
    },
    {
     "box": {
-     "id": "obj-503",
+     "id": "obj-519",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10657,7 +10995,7 @@
    },
    {
     "box": {
-     "id": "obj-504",
+     "id": "obj-520",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10675,7 +11013,7 @@
    },
    {
     "box": {
-     "id": "obj-505",
+     "id": "obj-521",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10694,7 +11032,7 @@
    },
    {
     "box": {
-     "id": "obj-506",
+     "id": "obj-522",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10712,7 +11050,7 @@
    },
    {
     "box": {
-     "id": "obj-507",
+     "id": "obj-523",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -12982,7 +13320,20 @@
    {
     "patchline": {
      "source": [
-      "obj-221",
+      "obj-220",
+      0
+     ],
+     "destination": [
+      "obj-222",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-222",
       0
      ],
      "destination": [
@@ -12995,11 +13346,11 @@
    {
     "patchline": {
      "source": [
-      "obj-223",
+      "obj-224",
       0
      ],
      "destination": [
-      "obj-224",
+      "obj-225",
       0
      ],
      "order": 0
@@ -13025,7 +13376,7 @@
       0
      ],
      "destination": [
-      "obj-227",
+      "obj-220",
       0
      ],
      "order": 0
@@ -13038,7 +13389,7 @@
       0
      ],
      "destination": [
-      "obj-221",
+      "obj-220",
       0
      ],
      "order": 0
@@ -13051,7 +13402,7 @@
       0
      ],
      "destination": [
-      "obj-221",
+      "obj-230",
       0
      ],
      "order": 0
@@ -13060,7 +13411,7 @@
    {
     "patchline": {
      "source": [
-      "obj-229",
+      "obj-230",
       0
      ],
      "destination": [
@@ -13073,11 +13424,11 @@
    {
     "patchline": {
      "source": [
-      "obj-231",
-      0
-     ],
-     "destination": [
       "obj-232",
+      0
+     ],
+     "destination": [
+      "obj-233",
       0
      ],
      "order": 0
@@ -13103,7 +13454,7 @@
       0
      ],
      "destination": [
-      "obj-235",
+      "obj-228",
       0
      ],
      "order": 0
@@ -13116,20 +13467,7 @@
       0
      ],
      "destination": [
-      "obj-229",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-236",
-      0
-     ],
-     "destination": [
-      "obj-229",
+      "obj-228",
       0
      ],
      "order": 0
@@ -13606,7 +13944,20 @@
    {
     "patchline": {
      "source": [
-      "obj-286",
+      "obj-285",
+      0
+     ],
+     "destination": [
+      "obj-287",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-287",
       0
      ],
      "destination": [
@@ -13619,11 +13970,11 @@
    {
     "patchline": {
      "source": [
-      "obj-288",
+      "obj-289",
       0
      ],
      "destination": [
-      "obj-289",
+      "obj-290",
       0
      ],
      "order": 0
@@ -13649,7 +14000,7 @@
       0
      ],
      "destination": [
-      "obj-292",
+      "obj-285",
       0
      ],
      "order": 0
@@ -13662,7 +14013,7 @@
       0
      ],
      "destination": [
-      "obj-286",
+      "obj-285",
       0
      ],
      "order": 0
@@ -13675,7 +14026,7 @@
       0
      ],
      "destination": [
-      "obj-286",
+      "obj-295",
       0
      ],
      "order": 0
@@ -13684,7 +14035,7 @@
    {
     "patchline": {
      "source": [
-      "obj-294",
+      "obj-295",
       0
      ],
      "destination": [
@@ -13697,11 +14048,11 @@
    {
     "patchline": {
      "source": [
-      "obj-296",
-      0
-     ],
-     "destination": [
       "obj-297",
+      0
+     ],
+     "destination": [
+      "obj-298",
       0
      ],
      "order": 0
@@ -13727,7 +14078,7 @@
       0
      ],
      "destination": [
-      "obj-300",
+      "obj-293",
       0
      ],
      "order": 0
@@ -13740,20 +14091,7 @@
       0
      ],
      "destination": [
-      "obj-294",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-301",
-      0
-     ],
-     "destination": [
-      "obj-294",
+      "obj-293",
       0
      ],
      "order": 0
@@ -14230,7 +14568,20 @@
    {
     "patchline": {
      "source": [
-      "obj-351",
+      "obj-350",
+      0
+     ],
+     "destination": [
+      "obj-352",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-352",
       0
      ],
      "destination": [
@@ -14243,11 +14594,11 @@
    {
     "patchline": {
      "source": [
-      "obj-353",
+      "obj-354",
       0
      ],
      "destination": [
-      "obj-354",
+      "obj-355",
       0
      ],
      "order": 0
@@ -14273,7 +14624,7 @@
       0
      ],
      "destination": [
-      "obj-357",
+      "obj-350",
       0
      ],
      "order": 0
@@ -14286,7 +14637,7 @@
       0
      ],
      "destination": [
-      "obj-351",
+      "obj-350",
       0
      ],
      "order": 0
@@ -14299,7 +14650,7 @@
       0
      ],
      "destination": [
-      "obj-351",
+      "obj-360",
       0
      ],
      "order": 0
@@ -14308,7 +14659,7 @@
    {
     "patchline": {
      "source": [
-      "obj-359",
+      "obj-360",
       0
      ],
      "destination": [
@@ -14321,11 +14672,11 @@
    {
     "patchline": {
      "source": [
-      "obj-361",
-      0
-     ],
-     "destination": [
       "obj-362",
+      0
+     ],
+     "destination": [
+      "obj-363",
       0
      ],
      "order": 0
@@ -14351,7 +14702,7 @@
       0
      ],
      "destination": [
-      "obj-365",
+      "obj-358",
       0
      ],
      "order": 0
@@ -14364,20 +14715,7 @@
       0
      ],
      "destination": [
-      "obj-359",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-366",
-      0
-     ],
-     "destination": [
-      "obj-359",
+      "obj-358",
       0
      ],
      "order": 0
@@ -14542,7 +14880,20 @@
    {
     "patchline": {
      "source": [
-      "obj-384",
+      "obj-383",
+      0
+     ],
+     "destination": [
+      "obj-385",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-385",
       0
      ],
      "destination": [
@@ -14555,11 +14906,11 @@
    {
     "patchline": {
      "source": [
-      "obj-386",
+      "obj-387",
       0
      ],
      "destination": [
-      "obj-387",
+      "obj-388",
       0
      ],
      "order": 0
@@ -14585,7 +14936,7 @@
       0
      ],
      "destination": [
-      "obj-390",
+      "obj-383",
       0
      ],
      "order": 0
@@ -14598,7 +14949,7 @@
       0
      ],
      "destination": [
-      "obj-384",
+      "obj-383",
       0
      ],
      "order": 0
@@ -14611,7 +14962,7 @@
       0
      ],
      "destination": [
-      "obj-384",
+      "obj-393",
       0
      ],
      "order": 0
@@ -14620,7 +14971,7 @@
    {
     "patchline": {
      "source": [
-      "obj-392",
+      "obj-393",
       0
      ],
      "destination": [
@@ -14633,11 +14984,11 @@
    {
     "patchline": {
      "source": [
-      "obj-394",
-      0
-     ],
-     "destination": [
       "obj-395",
+      0
+     ],
+     "destination": [
+      "obj-396",
       0
      ],
      "order": 0
@@ -14663,7 +15014,7 @@
       0
      ],
      "destination": [
-      "obj-398",
+      "obj-391",
       0
      ],
      "order": 0
@@ -14676,7 +15027,7 @@
       0
      ],
      "destination": [
-      "obj-392",
+      "obj-391",
       0
      ],
      "order": 0
@@ -14685,11 +15036,11 @@
    {
     "patchline": {
      "source": [
-      "obj-399",
+      "obj-400",
       0
      ],
      "destination": [
-      "obj-392",
+      "obj-402",
       0
      ],
      "order": 0
@@ -14698,7 +15049,7 @@
    {
     "patchline": {
      "source": [
-      "obj-401",
+      "obj-402",
       0
      ],
      "destination": [
@@ -14711,11 +15062,11 @@
    {
     "patchline": {
      "source": [
-      "obj-403",
-      0
-     ],
-     "destination": [
       "obj-404",
+      0
+     ],
+     "destination": [
+      "obj-405",
       0
      ],
      "order": 0
@@ -14741,7 +15092,7 @@
       0
      ],
      "destination": [
-      "obj-407",
+      "obj-400",
       0
      ],
      "order": 0
@@ -14754,7 +15105,7 @@
       0
      ],
      "destination": [
-      "obj-401",
+      "obj-400",
       0
      ],
      "order": 0
@@ -14767,7 +15118,7 @@
       0
      ],
      "destination": [
-      "obj-401",
+      "obj-410",
       0
      ],
      "order": 0
@@ -14776,7 +15127,7 @@
    {
     "patchline": {
      "source": [
-      "obj-409",
+      "obj-410",
       0
      ],
      "destination": [
@@ -14789,11 +15140,11 @@
    {
     "patchline": {
      "source": [
-      "obj-411",
-      0
-     ],
-     "destination": [
       "obj-412",
+      0
+     ],
+     "destination": [
+      "obj-413",
       0
      ],
      "order": 0
@@ -14819,7 +15170,7 @@
       0
      ],
      "destination": [
-      "obj-415",
+      "obj-408",
       0
      ],
      "order": 0
@@ -14832,20 +15183,7 @@
       0
      ],
      "destination": [
-      "obj-409",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-416",
-      0
-     ],
-     "destination": [
-      "obj-409",
+      "obj-408",
       0
      ],
      "order": 0
@@ -15010,7 +15348,20 @@
    {
     "patchline": {
      "source": [
-      "obj-434",
+      "obj-433",
+      0
+     ],
+     "destination": [
+      "obj-435",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-435",
       0
      ],
      "destination": [
@@ -15023,11 +15374,11 @@
    {
     "patchline": {
      "source": [
-      "obj-436",
+      "obj-437",
       0
      ],
      "destination": [
-      "obj-437",
+      "obj-438",
       0
      ],
      "order": 0
@@ -15053,7 +15404,7 @@
       0
      ],
      "destination": [
-      "obj-440",
+      "obj-433",
       0
      ],
      "order": 0
@@ -15066,7 +15417,7 @@
       0
      ],
      "destination": [
-      "obj-434",
+      "obj-433",
       0
      ],
      "order": 0
@@ -15079,7 +15430,7 @@
       0
      ],
      "destination": [
-      "obj-434",
+      "obj-443",
       0
      ],
      "order": 0
@@ -15088,7 +15439,7 @@
    {
     "patchline": {
      "source": [
-      "obj-442",
+      "obj-443",
       0
      ],
      "destination": [
@@ -15101,11 +15452,11 @@
    {
     "patchline": {
      "source": [
-      "obj-444",
-      0
-     ],
-     "destination": [
       "obj-445",
+      0
+     ],
+     "destination": [
+      "obj-446",
       0
      ],
      "order": 0
@@ -15131,7 +15482,7 @@
       0
      ],
      "destination": [
-      "obj-448",
+      "obj-441",
       0
      ],
      "order": 0
@@ -15144,20 +15495,7 @@
       0
      ],
      "destination": [
-      "obj-442",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-449",
-      0
-     ],
-     "destination": [
-      "obj-442",
+      "obj-441",
       0
      ],
      "order": 0
@@ -15322,7 +15660,20 @@
    {
     "patchline": {
      "source": [
-      "obj-467",
+      "obj-466",
+      0
+     ],
+     "destination": [
+      "obj-468",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-468",
       0
      ],
      "destination": [
@@ -15335,11 +15686,11 @@
    {
     "patchline": {
      "source": [
-      "obj-469",
+      "obj-470",
       0
      ],
      "destination": [
-      "obj-470",
+      "obj-471",
       0
      ],
      "order": 0
@@ -15365,7 +15716,7 @@
       0
      ],
      "destination": [
-      "obj-473",
+      "obj-466",
       0
      ],
      "order": 0
@@ -15378,7 +15729,7 @@
       0
      ],
      "destination": [
-      "obj-467",
+      "obj-466",
       0
      ],
      "order": 0
@@ -15391,7 +15742,7 @@
       0
      ],
      "destination": [
-      "obj-467",
+      "obj-476",
       0
      ],
      "order": 0
@@ -15400,7 +15751,7 @@
    {
     "patchline": {
      "source": [
-      "obj-475",
+      "obj-476",
       0
      ],
      "destination": [
@@ -15413,11 +15764,11 @@
    {
     "patchline": {
      "source": [
-      "obj-477",
-      0
-     ],
-     "destination": [
       "obj-478",
+      0
+     ],
+     "destination": [
+      "obj-479",
       0
      ],
      "order": 0
@@ -15443,7 +15794,7 @@
       0
      ],
      "destination": [
-      "obj-481",
+      "obj-474",
       0
      ],
      "order": 0
@@ -15456,20 +15807,7 @@
       0
      ],
      "destination": [
-      "obj-475",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-482",
-      0
-     ],
-     "destination": [
-      "obj-475",
+      "obj-474",
       0
      ],
      "order": 0
@@ -15556,7 +15894,20 @@
    {
     "patchline": {
      "source": [
-      "obj-492",
+      "obj-491",
+      0
+     ],
+     "destination": [
+      "obj-493",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-493",
       0
      ],
      "destination": [
@@ -15569,11 +15920,11 @@
    {
     "patchline": {
      "source": [
-      "obj-494",
+      "obj-495",
       0
      ],
      "destination": [
-      "obj-495",
+      "obj-496",
       0
      ],
      "order": 0
@@ -15599,7 +15950,7 @@
       0
      ],
      "destination": [
-      "obj-498",
+      "obj-491",
       0
      ],
      "order": 0
@@ -15612,7 +15963,7 @@
       0
      ],
      "destination": [
-      "obj-492",
+      "obj-491",
       0
      ],
      "order": 0
@@ -15625,7 +15976,7 @@
       0
      ],
      "destination": [
-      "obj-492",
+      "obj-501",
       0
      ],
      "order": 0
@@ -15634,7 +15985,7 @@
    {
     "patchline": {
      "source": [
-      "obj-500",
+      "obj-501",
       0
      ],
      "destination": [
@@ -15647,11 +15998,11 @@
    {
     "patchline": {
      "source": [
-      "obj-502",
-      0
-     ],
-     "destination": [
       "obj-503",
+      0
+     ],
+     "destination": [
+      "obj-504",
       0
      ],
      "order": 0
@@ -15677,7 +16028,7 @@
       0
      ],
      "destination": [
-      "obj-506",
+      "obj-499",
       0
      ],
      "order": 0
@@ -15690,7 +16041,7 @@
       0
      ],
      "destination": [
-      "obj-500",
+      "obj-499",
       0
      ],
      "order": 0
@@ -15699,11 +16050,154 @@
    {
     "patchline": {
      "source": [
-      "obj-507",
+      "obj-508",
       0
      ],
      "destination": [
-      "obj-500",
+      "obj-510",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-510",
+      0
+     ],
+     "destination": [
+      "obj-511",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-512",
+      0
+     ],
+     "destination": [
+      "obj-513",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-513",
+      0
+     ],
+     "destination": [
+      "obj-514",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-514",
+      0
+     ],
+     "destination": [
+      "obj-508",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-515",
+      0
+     ],
+     "destination": [
+      "obj-508",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-516",
+      0
+     ],
+     "destination": [
+      "obj-518",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-518",
+      0
+     ],
+     "destination": [
+      "obj-519",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-520",
+      0
+     ],
+     "destination": [
+      "obj-521",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-521",
+      0
+     ],
+     "destination": [
+      "obj-522",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-522",
+      0
+     ],
+     "destination": [
+      "obj-516",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-523",
+      0
+     ],
+     "destination": [
+      "obj-516",
       0
      ],
      "order": 0

@@ -13,6 +13,11 @@ bends     Pitch error while the bend wheel moves: by two semitones and back with
           by a fourth.
 clicks    Largest step between two samples where notes meet, relative to the largest inside them.
 evenness  Loudness (dB, A-weighted) of every note at several dynamics.
+velocity  Loudness (dB, A-weighted) of every note at velocities from 1 to 127.
+shuffled  Share of 300 notes in random order, three times, that speak as the others of their pitch
+          do: level within 4 dB of the pitch's median, pitch within 15 cents in the second half,
+          harmonics over all else within 15 dB of the pitch's median; in many ways of bowing.
+strings   Share of notes within 5 cents from 0.4 s on, on strings that nobody calibrated for.
 presets   Share of notes in tune, loudness and spectral centroid (Hz) of every shipped preset, on
           F4 to F6 at velocities 30, 64 and 110, measured from 0.3 s on (plucked: from 0.05 s).
 """
@@ -22,7 +27,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
@@ -33,8 +38,11 @@ import numpy as np
 
 from yehu_server.analysis.level import a_weighted_db
 from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.params.table import STRING_NAMES
+from yehu_server.physics.quantities import Quantities
 from yehu_server.player.calibration import OPEN_NOTES, Calibration, frequency_hz
 from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.mapping import load
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.style import Style
 
@@ -55,13 +63,24 @@ def calibrated(rate: float) -> Calibration:
 class Take:
     """One performance on one instrument, with the keyboard mapping and no random variation."""
 
-    def __init__(self, rate: float, preset: str = "ordinary") -> None:
+    def __init__(
+        self,
+        rate: float,
+        preset: str = "ordinary",
+        *,
+        mapping: str = "keyboard",
+        settings: Mapping[str, float] | None = None,
+        strings: Quantities | None = None,
+    ) -> None:
         self.rate = rate
-        style = Style(start=tuple(Presets().load(preset).values.items()))
-        self.instrument = style.instrument(rate, calibrated(rate))
+        start = tuple(Presets().load(preset).values.items()) if mapping == "keyboard" else ()
+        style = Style(start=start, mapping=load(mapping))
+        self.instrument = style.instrument(rate, calibrated(rate), strings)
         self.wishes = style.wishes(self.instrument)
         self.wishes.write("/playing/variation", 0.0, frame=0, hold=True)
         self.midi = style.midi(self.wishes)
+        for address, value in (settings or {}).items():
+            self.wishes.write(address, value, frame=0, hold=True)
 
     def at(self, seconds: float, kind: str, **fields: int) -> None:
         """Schedule a MIDI message for a time."""
@@ -314,6 +333,126 @@ def evenness(rate: float) -> None:
         )
 
 
+# ---------------------------------------------------------------- velocity
+
+STRUCK = (1, 20, 50, 80, 110, 127)
+
+
+def velocity(rate: float) -> None:
+    """Print how the level of each note rises with velocity."""
+    cases = [(rate, note, None, struck) for note in NOTES for struck in STRUCK]
+    levels = np.array(in_parallel(loudness, cases)).reshape(len(NOTES), len(STRUCK))
+    right = 0
+    for note, row in zip(NOTES, levels, strict=True):
+        rise, above = row[-1] - row[0], row[-1] - row[STRUCK.index(80)]
+        is_right = 16.0 <= rise <= 24.0 and above >= 3.0
+        right += is_right
+        steps = " ".join(f"{level:6.1f}" for level in row)
+        print(
+            f"{note}: {steps} dB; {rise:.1f} in all, {above:.1f} above 80{'' if is_right else ' !'}"
+        )
+    print(f"{right} of {len(NOTES)} rise by 16 to 24 dB, and by 3 or more above 80")
+
+
+# ---------------------------------------------------------------- shuffled
+
+EACH_S, REST_S = 0.4, 0.02
+SHUFFLED, SEEDS = 300, (1, 2, 3)
+WAYS: dict[str, dict[str, Any]] = {
+    "default": {},
+    "bow at 0.08": {"settings": {"/playing/bow_position": 0.08}},
+    "bow at 0.1": {"settings": {"/playing/bow_position": 0.1}},
+    "bow at 0.2": {"settings": {"/playing/bow_position": 0.2}},
+    "flautando": {"preset": "flautando"},
+    "sul tasto": {"preset": "sul-tasto"},
+    "sul ponticello": {"preset": "sul-ponticello"},
+    "wind": {"mapping": "wind"},
+}
+
+
+def harmonics_db(sound: Sound, rate: float, pitch: float) -> float:
+    """Return the power of the harmonics (dB) relative to all between them."""
+    size = 4 * len(sound)
+    power = np.abs(np.fft.rfft(sound * np.hanning(len(sound)), size)) ** 2
+    bins = np.arange(len(power)) * rate / size / frequency_hz(pitch, 440.0)
+    near = np.abs(bins - np.rint(bins)) * frequency_hz(pitch, 440.0) < 4.0 * rate / len(sound)
+    heard = (bins > 0.5) & (bins * frequency_hz(pitch, 440.0) < 10000.0)
+    return 10.0 * math.log10(power[heard & near].sum() / (power[heard & ~near].sum() + 1e-30))
+
+
+def in_order(rate: float, seed: int, how: dict[str, Any]) -> list[tuple[int, float, float, float]]:
+    """Play notes in an order; return pitch, level (dB), error (cents), harmonics (dB) of each."""
+    notes = np.random.default_rng(seed).choice(NOTES, SHUFFLED).tolist()
+    take = Take(rate, **how)
+    for i, note in enumerate(notes):
+        take.on(i * EACH_S, note)
+        take.off((i + 1) * EACH_S - REST_S, note)
+    sound = take.play(len(notes) * EACH_S)
+    found = []
+    for i, note in enumerate(notes):
+        end = round(((i + 1) * EACH_S - REST_S) * rate)
+        half = sound[end - round(0.5 * EACH_S * rate) : end]
+        error = off_by(half, rate, 0.0, 0.5 * EACH_S, note)
+        found.append((note, a_weighted_db(half, rate), error, harmonics_db(half, rate, note)))
+    return found
+
+
+def shuffled(rate: float) -> None:
+    """Print the share of notes that speak, and those that do not."""
+    for name, how in WAYS.items():
+        found = [
+            row
+            for part in in_parallel(in_order, [(rate, seed, how) for seed in SEEDS])
+            for row in part
+        ]
+        table = np.array(found)
+        wrong: list[str] = []
+        for note in NOTES:
+            own = table[table[:, 0] == note]
+            soft = np.abs(own[:, 1] - np.median(own[:, 1])) > 4.0
+            off = np.abs(own[:, 2]) > 15.0
+            rough = own[:, 3] < np.median(own[:, 3]) - 15.0
+            bad = int((soft | off | rough).sum())
+            if bad:
+                wrong.append(
+                    f"{note}: {bad} of {len(own)} ({soft.sum()} {off.sum()} {rough.sum()})"
+                )
+            table[table[:, 0] == note, 0] = np.where(soft | off | rough, -1.0, note)
+        share = 100.0 * (table[:, 0] > 0.0).mean()
+        print(f"{name}: {share:.1f} % of {len(table)} speak;", ", ".join(wrong), flush=True)
+
+
+# ---------------------------------------------------------------- strings
+
+PLAIN = Quantities()
+OTHERS: dict[str, dict[str, Any]] = {
+    "as calibrated": {},
+    "30 cents low": {"settings": {f"/string/{name}/tuning": -30.0 for name in STRING_NAMES}},
+    "30 cents high": {"settings": {f"/string/{name}/tuning": 30.0 for name in STRING_NAMES}},
+}
+
+
+def on_string(rate: float, note: int, velocity: int, how: dict[str, Any]) -> float:
+    """Return the error (cents) of a stopped note from 0.4 s on."""
+    take = Take(rate, **how)
+    take.on(0.0, note, velocity)
+    return off_by(take.play(0.75), rate, 0.4, 0.35, note)
+
+
+def strings(rate: float) -> None:
+    """Print the share of stopped notes in tune on each kind of strings, and the others."""
+    cases = [(note, velocity) for note in NOTES if note not in OPEN_NOTES for velocity in (50, 100)]
+    for name, how in OTHERS.items():
+        errors = np.array(in_parallel(on_string, [(rate, *case, how) for case in cases]))
+        wrong = [
+            f"{case[0]}/{case[1]}: {e:+.0f}"
+            for case, e in zip(cases, errors, strict=True)
+            if abs(e) > 5.0
+        ]
+        share = 100.0 * (np.abs(errors) <= 5.0).mean()
+        print(f"{name}: {share:.1f} % of {len(cases)} in tune;", ", ".join(wrong), flush=True)
+
+
 # ---------------------------------------------------------------- presets
 
 
@@ -346,7 +485,19 @@ def presets(rate: float) -> None:
 
 
 MEASURES = {
-    each.__name__: each for each in (grid, steady, legato, bends, clicks, evenness, presets)
+    each.__name__: each
+    for each in (
+        grid,
+        steady,
+        legato,
+        bends,
+        clicks,
+        evenness,
+        velocity,
+        shuffled,
+        strings,
+        presets,
+    )
 }
 
 

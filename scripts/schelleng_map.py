@@ -34,6 +34,7 @@ from yehu_server.params.table import find
 from yehu_server.physics.quantities import Body, Quantities, StringQuantities
 from yehu_server.player.bowing import (
     AT_FIRM,
+    AT_FLAUTANDO,
     AT_LIGHT,
     FARTHER,
     FIRM,
@@ -90,7 +91,7 @@ class Stop:
 
     def manner(self, column: int) -> float:
         """Return how the player bows the note; see player.bowing."""
-        return manner(self.player["bowing"], float(self.note), column)
+        return manner(self.player["bowing"], USUAL_BETA, float(self.note), column)
 
     @property
     def silk(self) -> StringQuantities:
@@ -146,7 +147,7 @@ def bow(stop: Stop, speed: float, beta: float, force: float) -> int:
     force is a sawtooth with jumps of 2 Z v_b / beta, independent of the bow force.
     """
     instrument = Instrument(stop.rate, stop.quantities)
-    place = position_of(stop.player, stop.string, float(stop.note), speed)
+    place = position_of(stop.player, stop.string, float(stop.note), speed, 0.0)
     press = max(find("/playing/press").default, stop.manner(LEAST_PRESS))
     for address, value in (
         ("/body/blend", 1.0),
@@ -196,7 +197,8 @@ def along(values: Array) -> Array:
 def player_force(stop: Stop, speed: Array, beta: float, wish: float) -> Array:
     """Return the force (N) that the player's assist sets for a value of ``/playing/pressure``."""
     fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
-    usual = share(stop.manner(AT_LIGHT), stop.manner(AT_FIRM), wish, stop.note)
+    flautando, light, firm = map(stop.manner, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
+    usual = share(flautando, light, firm, wish, stop.note)
     return (usual + fast) * stop.highest_force(speed, beta)
 
 

@@ -29,7 +29,7 @@ EXAMPLE = {
 }
 # A disk with 64 kB left. The kernel is compiled first: its cache needs more.
 FULL_DISK = (
-    "import resource; from yehu_server.engine.native import warm_up; warm_up();"
+    "import resource; from yehu_server.engine.warming import warm_up; warm_up();"
     "resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));" + COMMAND
 )
 
@@ -101,8 +101,8 @@ def test_each_command_has_help_with_examples(command, name, expected):
 
 
 COMMANDS = (
-    *("serve", "devices", "learn", "mappings", "presets", "render", "replay", "simulate"),
-    *("surfaces", "sweep", "mappings show", "mappings convert", "presets check"),
+    *("serve", "devices", "learn", "mappings", "practise", "presets", "render", "replay"),
+    *("simulate", "surfaces", "sweep", "mappings show", "mappings convert", "presets check"),
 )
 
 

@@ -324,7 +324,8 @@ def test_a_setting_is_heard(phrase):
 
 
 def test_a_setting_is_held_whatever_notes_and_controllers_say(play, midi):
-    settings = ("--set", "/playing/pressure=0.45", "--set", "/playing/speed=0.2")
+    held = ("pressure=0.45", "speed=0.2", "velocity=0.63")
+    settings = [word for setting in held for word in ("--set", f"/playing/{setting}")]
     firm = midi(cc(0, 1, 127), *notes((0, 0.4, 70, 127)), name="firm.mid")
     faint = midi(cc(0, 1, 0), *notes((0, 0.4, 70, 1)), name="faint.mid")
     assert not np.array_equal(samples(firm), samples(faint))

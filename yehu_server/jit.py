@@ -198,6 +198,12 @@ class Native:
         self._made.compile()
         return self._made
 
+    def keep(self) -> None:
+        """Compile it into the cache, in a process that won't call it."""
+        for other in self._calls:
+            binding.add_symbol(other.name, 1)  # an address is wanted to finish, not to call
+        self._made.compile()
+
     @property
     def is_kept(self) -> bool:
         """Whether its code is in the cache, so that its first use takes no time."""

@@ -33,7 +33,7 @@ from yehu_server.control.sockets import OscPorts
 from yehu_server.control.status import StatusSources, read_status
 from yehu_server.control.troubles import Troubles
 from yehu_server.control.web import Sources, WebOptions, WebServer
-from yehu_server.engine import native
+from yehu_server.engine.warming import warm_up
 from yehu_server.errors import YehuError
 from yehu_server.files import anything, check_free, check_target, nothing, shipped_folder
 from yehu_server.jit import IS_PLAIN
@@ -111,7 +111,7 @@ class Server:
         with contextlib.ExitStack() as undo:
             self.output = Output(options.output, said)
             undo.callback(self.output.end)
-            native.warm_up()  # meanwhile the device is looked for
+            warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
             calibration = calibration_for(rate, a4=options.style.a4, progress=progress)
             memory = self.output.memory.buffer

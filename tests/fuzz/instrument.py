@@ -30,8 +30,8 @@ RATE = 48000.0
 PLAYER = prepare_player(QUANTITIES, RATE, DEFAULTS, calibration=CALIBRATION)
 CONTROLS = prepare_controls(QUANTITIES, RATE, DEFAULTS)
 _ = fulfil.call, told_pitch(PLAYER[0])  # compile now, not within an input's bounds
-# Of the player's record, what may not be a number: where nothing was sent yet.
-MAY_BE_NAN = {"sent"}
+# Of the player's record, what may not be a number: where nothing was sent or heard yet.
+MAY_BE_NAN = {"sent", "first_error"}
 
 
 class Instrument:
@@ -89,8 +89,9 @@ class Instrument:
 
     def check_player(self) -> None:
         """All that the player decides by is a number."""
-        for name in set(self._player.dtype.names) - MAY_BE_NAN:
-            assert np.isfinite(self._player[name]).all(), name
+        for record in (self._player, self._player["ear"]):
+            for name in set(record.dtype.names) - MAY_BE_NAN - {"ear"}:
+                assert np.isfinite(record[name]).all(), name
 
     def meters(self) -> dict[str, float]:
         self.play()

@@ -27,7 +27,7 @@ import pytest
 
 from yehu_server.control.packets import pack, unpack
 from yehu_server.control.status import STATUS
-from yehu_server.engine import native
+from yehu_server.engine.warming import warm_up
 
 ROOT = Path(__file__).resolve().parents[2]
 RATE = 48000
@@ -160,7 +160,7 @@ def free_name() -> Iterator[str]:
 def jackd() -> Iterator[Jackd]:
     if missing():
         pytest.skip(missing())
-    native.warm_up()  # what an audio process had to compile would come too late
+    warm_up()  # what an audio process had to compile would come too late
     with free_name() as name, pytest.MonkeyPatch.context() as patch:
         server = Jackd(name)
         for variable in ("JACK_DEFAULT_SERVER", "JACK_NO_START_SERVER"):
@@ -461,7 +461,7 @@ def serve(jackd) -> Iterator[Callable[..., Serve]]:
 @pytest.fixture
 def silent() -> Iterator[Callable[..., Serve]]:
     """Start ``yehu-server serve`` with options, on a silent clock and without MIDI."""
-    native.warm_up()
+    warm_up()
     words = ("--audio-device", "null", "--midi-api", "none", "--osc", "127.0.0.1:0", "--no-http")
     with contextlib.ExitStack() as ending:
 

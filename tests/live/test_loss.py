@@ -307,10 +307,11 @@ PLAYS_ON = """
 import mmap, sys
 import numpy as np
 from yehu_server.engine import native
+from yehu_server.engine.warming import warm_up
 memory = mmap.mmap(int(sys.argv[1]), native.RIG.itemsize)
 rig = np.frombuffer(memory, np.uint8).ctypes.data
 out = np.zeros(8192, np.float32)
-native.warm_up()
+warm_up()
 print("plays", flush=True)
 while True:
     native.callback.call(None, out.ctypes.data, len(out), None, 0, rig)

@@ -54,7 +54,7 @@ def test_positions_go_up_with_the_pitch_and_are_even_between_the_notes():
     for string, open_note in enumerate(OPEN_NOTES):
         for speed in (0.05, *SPEEDS, 0.5):
             pitches = np.arange(open_note + 0.5, open_note + 10.0, 0.25)
-            places = [position_of(player, string, pitch, speed) for pitch in pitches]
+            places = [position_of(player, string, pitch, speed, 0.0) for pitch in pitches]
             assert (np.diff(places) > 0.0).all()
 
 
@@ -67,7 +67,7 @@ def test_the_sharpening_is_read_at_its_notes_and_speeds():
 
     def sharpening(string: int, pitch: float, speed: float) -> float:
         """How much lower (cents) than the pitch the finger stops an ideal string."""
-        position = position_of(player, string, pitch, speed)
+        position = position_of(player, string, pitch, speed, 0.0)
         return 100.0 * (pitch - Watched().pitch_at(string, position))
 
     assert sharpening(0, 66.0, SPEEDS[0]) == pytest.approx(660.0)

@@ -8,7 +8,8 @@ import pytest
 from hands import Checked, Move, Watched, ideal
 
 from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import MANNERS, TOP_SPEED
+from yehu_server.player.bowing import FIRST, TOP_SPEED
+from yehu_server.player.practice import bowing_table
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.wishes import Key
@@ -379,7 +380,7 @@ def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string(player, lis
     player.note_on(key(73))
     player.write("/playing/bend", -2.0)
     assert listener.where() == ("F", 6)
-    assert listener["/bow/speed"] == MANNERS[71][TOP_SPEED]
+    assert listener["/bow/speed"] == bowing_table()[0, 71 - FIRST, TOP_SPEED]
 
 
 def test_a_bend_below_the_open_f_string_stops_at_it(player, listener):

@@ -18,9 +18,9 @@ from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.physics.quantities import Quantities, override
-from yehu_server.player.bowing import bowing_table
 from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.player.fingering import OpenStrings
+from yehu_server.player.practice import bowing_table
 from yehu_server.player.wishes import (
     BEGIN,
     DRAW,
@@ -125,7 +125,7 @@ EACH_KIND = {
     "slide": [(5, SLIDE, 0, 617.0 / 9.0, 0.0)],
     "draw": [(5, DRAW, 0, -0.1 / 3.0, 1.0 / 3.0), (6, DRAW, 0, 0.0, 0.0)],
     "lift": [(5, LIFT, 0, 0.0, 0.0)],
-    "stop": [(5, STOP, 0, 0.0, 0.0)],
+    "stop": [(5, STOP, 0, 0.0, 0.0), (5, STOP, 0, 1.0, 0.0)],
     "release": [(5, RELEASE, 0, 0.0, 0.0)],
 }
 
@@ -570,7 +570,11 @@ NO_WISHES = [
     '[0, "draw", 99, 0.1]',
     '[0, "draw", 0.1, -1]',
     '[0, "lift", 0]',
-    '[0, "stop", 0]',
+    '[0, "stop"]',
+    '[0, "stop", 2]',
+    '[0, "stop", -1]',
+    '[0, "stop", NaN]',
+    '[0, "stop", 0, 0]',
     '[0, "release", 0]',
 ]
 
@@ -647,7 +651,7 @@ def with_header(path, **changes):
     return path
 
 
-REMOVED = object()
+REMOVED = "removed"  # told by its identity
 NAN, INFINITY = float("nan"), float("inf")
 CALIBRATION = {
     "a4": 440.0,
@@ -682,12 +686,14 @@ def test_the_header_that_is_changed_below_is_one(tmp_path, write):
             for value in (9.0, -9.0, NAN, INFINITY, "0.1", "0\n1", None, [], {}, True, 10**400)
         ),
         *({"bowing": bowing} for bowing in (None, 1.0, [], BOWING[1:], [*BOWING, BOWING[0]], "x")),
-        {"bowing": [row[1:] for row in BOWING]},
+        {"bowing": [[row[1:] for row in rows] for rows in BOWING]},
         {"bowing": [*BOWING[1:], BOWING[0][1:]]},
-        {"bowing": [*BOWING[1:], [NAN] * 5]},
-        {"bowing": [*BOWING[1:], [INFINITY] * 5]},
-        {"bowing": [*BOWING[1:], ["a"] * 5]},
-        {"bowing": [*BOWING[1:], [10**400] * 5]},
+        {"bowing": [*BOWING[1:], [*BOWING[0][1:], BOWING[0][0][1:]]]},
+        *(
+            {"bowing": [*BOWING[1:], [*BOWING[0][1:], [value] * 6]]}
+            for value in (NAN, INFINITY, "a", None, 10**400)
+        ),
+        {"bowing": BOWING[0]},  # of one place
         *({"calibration": calibration} for calibration in (0, [], {}, "x", True)),
         *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (0.0, -440.0, NAN, INFINITY, "x")),
         *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (None, 1e9, 1e-300, 10**400)),

@@ -105,7 +105,7 @@ def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None
     order = orders.get()
     if order is None:
         return None
-    from yehu_server.engine.native import is_warm
+    from yehu_server.engine.warming import is_warm
 
     if not is_warm():
         parent.tell("compiling")

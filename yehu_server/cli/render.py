@@ -96,10 +96,11 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.audio.file import format_of
-    from yehu_server.engine.native import warm_up
+    from yehu_server.engine.warming import warm_up
     from yehu_server.files import check_apart
     from yehu_server.physics.grid import check_rate
     from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.playing.calibration import calibration_key
     from yehu_server.playing.calibrations import calibration_for
     from yehu_server.render import Options, render
     from yehu_server.score.smf import concatenate, read_score
@@ -141,6 +142,8 @@ def run(arguments: argparse.Namespace) -> int:
         fields["policy"] = summary.policy.value
         fields["mapping"] = {"name": style.mapping.name, "files": [*map(str, style.mapping.files)]}
         fields["preset"] = None if style.preset is None else str(style.preset)
+        fields["calibration"] = calibration_key(rate, options.quantities, style.a4)
+        fields["practice"] = "shipped" if style.practice is None else str(style.practice)
         fields["channels"] = {str(channel + 1): notes for channel, notes in by_channel.items()}
         print(json.dumps(fields))
     elif not arguments.quiet:

@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.audio.file import format_of
     from yehu_server.audio.recorder import SUBTYPES
-    from yehu_server.engine.native import warm_up
+    from yehu_server.engine.warming import warm_up
     from yehu_server.files import check_apart
     from yehu_server.replay import replay
     from yehu_server.score.capture import read_capture

@@ -42,6 +42,12 @@ def add_playing(group: Any) -> None:
     )
     add_presets_folder(group)
     group.add_argument(
+        "--practice",
+        type=Path,
+        metavar="FILE",
+        help="how notes are bowed: what yehu-server practise wrote (default: as shipped)",
+    )
+    group.add_argument(
         "--set",
         action="append",
         default=[],
@@ -127,6 +133,7 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
     """
     from yehu_server.params.table import assignment
     from yehu_server.player.fingering import OpenStrings
+    from yehu_server.playing.practices import read_practice
     from yehu_server.playing.presets import Presets
     from yehu_server.playing.range_policy import RangePolicy
     from yehu_server.playing.style import Style
@@ -156,4 +163,6 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
         policy=RangePolicy(arguments.range),
         open_strings=OpenStrings(arguments.open_strings),
         seed=arguments.seed,
+        bowing=None if arguments.practice is None else read_practice(arguments.practice),
+        practice=arguments.practice,
     )

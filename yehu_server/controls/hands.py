@@ -54,15 +54,21 @@ LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction
 
 
 @compiled
+def vibrato_at(c: Any, phase: float) -> float:
+    """The value of the vibrato at a phase (turns), -1 to 1, faded in by /vibrato/onset."""
+    come = max(0.0, (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM))
+    return float(come * come * (3.0 - 2.0 * come) * math.sin(2.0 * math.pi * phase))
+
+
+@compiled
 def vibrate(c: Any) -> float:
-    """Advance the vibrato by one sample; its value, -1 to 1, faded in by /vibrato/onset."""
+    """Advance the vibrato by one sample; its value."""
     if c.value[DEPTH] == 0.0 and c.value[ROCK] == 0.0:
         c.vibrato = 0.0
         return 0.0
     c.vibrato += c.value[RATE] / c.second
     c.vibrato -= math.floor(c.vibrato)
-    come = max(0.0, (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM))
-    return float(come * come * (3.0 - 2.0 * come) * math.sin(2.0 * math.pi * c.vibrato))
+    return vibrato_at(c, c.vibrato)
 
 
 @compiled

@@ -20,6 +20,7 @@ LET_GO_S = 0.3e-3  # time in which a plucked string slips off the fingertip
 FOLLOW_S = 0.01  # time constant with which the bow follows the sounding length
 GRAIN_HZ = 2000.0  # cutoff of the noise in the hair's grip. By ear.
 FADE_S = 0.005
+CHUNK = 64  # most frames whose controls are computed before the kernel computes them
 FORWARD = 0.25  # phase of the tremolo (turns) at which the bow has its own direction
 
 CONTROLS = np.dtype(

@@ -21,9 +21,9 @@ from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.layout import MAX_FINGERS, new_record
 from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import bowing_table
 from yehu_server.player.calibration import Calibration
 from yehu_server.player.fingering import OpenStrings
+from yehu_server.player.practice import bowing_table
 from yehu_server.player.record import end_all, prepare_player
 from yehu_server.player.wishes import RAMP, WISH
 
@@ -113,6 +113,7 @@ class Instrument:
             bowing=self.bowing,
             seed=self.seed,
         )
+        rig["heard"] = 0.0
         prepare_output(rig["output"], self.rate, self.channels)
         mail = rig["mail"]
         kept = mail["budget"].copy(), mail["reporting"].copy()
@@ -249,6 +250,15 @@ class Instrument:
         kernel.come_to_rest(rig["model"][0], rig["state"][0])
         settle(rig["controls"][0])
         rest_output(rig["output"])
+
+    def bow_by_tables(self) -> None:
+        """Let the player's right hand do nothing about what it hears, until a reset."""
+        self._rig["player"]["helps_bow"] = 0
+
+    def heard(self) -> tuple[float, float, float]:
+        """What the player last heard: certainty, slips in a period, error (cents)."""
+        ear = self._rig["player"]["ear"][0]
+        return float(ear["certainty"]), float(ear["slips"]), float(ear["error"])
 
     def end_all(self) -> None:
         """End all notes at once, then as `come_to_rest`."""

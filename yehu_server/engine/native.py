@@ -13,7 +13,7 @@ import numpy as np
 from yehu_server.controls.gains import TO_BODY, TO_LIMITER, amplitude, level
 from yehu_server.controls.hands import write_controls
 from yehu_server.controls.ramps import move
-from yehu_server.controls.record import CONTROLS
+from yehu_server.controls.record import CHUNK, CONTROLS
 from yehu_server.controls.slots import BLEND, BODY, LIMITER, LOSS, TUNING
 from yehu_server.controls.strings import has_new_strings
 from yehu_server.engine.atomics import (
@@ -34,7 +34,7 @@ from yehu_server.engine.mailbox import (
     leave,
     wait,
 )
-from yehu_server.engine.output import CHUNK, OUTPUT, fall_silent, play_out
+from yehu_server.engine.output import OUTPUT, fall_silent, play_out
 from yehu_server.engine.processor import (
     flush_denormals,
     monotonic_ns,
@@ -45,7 +45,9 @@ from yehu_server.engine.telemetry import METERS, account, close_window, hear, te
 from yehu_server.jit import compiled, compiled_to_share, native
 from yehu_server.memory import carray
 from yehu_server.physics import kernel
-from yehu_server.physics.layout import MODEL, STATE, STRINGS
+from yehu_server.physics.layout import MODEL, RELATIVE_VELOCITY, STATE, STRINGS
+from yehu_server.player.ear import HEARD, remember
+from yehu_server.player.listening import attend
 from yehu_server.player.notes import told_pitch
 from yehu_server.player.record import PLAYER
 from yehu_server.player.wishes import WISH, fulfil
@@ -62,6 +64,7 @@ RIG = np.dtype(
         ("state", STATE),
         ("controls", CONTROLS),
         ("player", PLAYER),
+        ("heard", np.float64, 2 * HEARD),
         ("output", OUTPUT),
         ("mail", MAIL),
         ("meters", METERS),
@@ -84,14 +87,14 @@ def _offset(field: str, inside: str = "") -> int:
 
 
 MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
-PLAYER_AT = _offset("player")
+PLAYER_AT, HEARD_AT = _offset("player"), _offset("heard")
 OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
 RING_AT, HEAP_AT, REPORTS_AT = _offset("ring"), _offset("heap"), _offset("reports")
 TAPE_AT = _offset("tape")
 POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
 REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
-fulfil_wish = fulfil.symbol
+fulfil_wish, attend_string = fulfil.symbol, attend.symbol
 
 
 @compiled_to_share
@@ -175,7 +178,7 @@ def play(rig: Any, out: Array) -> None:
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    tape = carray(at(rig, TAPE_AT), (TAPE,), np.float32)
+    p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
     done = 0
     while done < out.shape[0]:
         is_full = drain(rig, mail, c.frame)
@@ -186,6 +189,8 @@ def play(rig: Any, out: Array) -> None:
             apply(rig, mail, c)
             if is_full:
                 is_full = drain(rig, mail, c.frame)
+            if c.frame == p.ear.next:
+                attend_string(at(rig, PLAYER_AT), at(rig, CONTROLS_AT), at(rig, HEARD_AT))
             move(c)
             write_controls(c, o.controls[frames])
             gain = level(c)
@@ -208,12 +213,7 @@ def play(rig: Any, out: Array) -> None:
                 end = frames
             kernel.advance(model, state, o.controls[start:end], o.probes[start:end], None)
             start = end
-        for n in range(frames):
-            sample: Any = np.float32(play_out(o, n))
-            tape[(first + n) & (TAPE - 1)] = sample
-            hear(t, sample)
-            for channel in range(out.shape[1]):
-                out[done + n, channel] = sample
+        put_out(rig, out, done, first, frames)
         if silenced:
             kernel.come_to_rest(model[0], state[0])
             fall_silent(o)
@@ -221,7 +221,29 @@ def play(rig: Any, out: Array) -> None:
         done += frames
 
 
-@native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)", calls=[fulfil])
+@compiled_to_share
+def put_out(rig: Any, out: Array, done: int, first: int, frames: int) -> None:
+    """Put the frames just computed into a block, from its frame `done` on, and onto the tape.
+
+    Parameters
+    ----------
+    first : int
+        Number of the first of the frames since the start.
+    """
+    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    tape = carray(at(rig, TAPE_AT), (TAPE,), np.float32)
+    heard = carray(at(rig, HEARD_AT), (2 * HEARD,), np.float64)
+    for n in range(frames):
+        remember(heard, first + n, o.probes[n, RELATIVE_VELOCITY])
+        sample: Any = np.float32(play_out(o, n))
+        tape[(first + n) & (TAPE - 1)] = sample
+        hear(t, sample)
+        for channel in range(out.shape[1]):
+            out[done + n, channel] = sample
+
+
+@native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)", calls=[fulfil, attend])
 def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig: Any) -> int:
     """Compute one block for PortAudio (a PaStreamCallback).
 
@@ -333,17 +355,3 @@ def read_reports(rig: Any, into: Any, room: int) -> int:
 def taped(rig: Any) -> int:
     """Number of frames played and on the tape."""
     return int(load_acquire(rig, TAPED_AT))
-
-
-PLAYED_BY = (fulfil, callback, read_meters, frame_at, post, read_reports, taped)
-
-
-def warm_up() -> None:
-    """Compile all functions that playing needs, or load them from the cache."""
-    for function in PLAYED_BY:
-        _ = function.call
-
-
-def is_warm() -> bool:
-    """Whether all functions that playing needs are in the cache."""
-    return all(function.is_kept for function in PLAYED_BY)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.controls.one_pole import pole_of_cutoff, pole_of_time
-from yehu_server.controls.record import FADE_S
+from yehu_server.controls.record import CHUNK, FADE_S
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import (
     BRIDGE_FORCE,
@@ -21,7 +21,6 @@ from yehu_server.physics.layout import (
 
 Array = Any
 
-CHUNK = 64  # frames that the kernel computes at a time
 BLOCKED_HZ = 10.0  # cutoff of the DC blocker
 # Pressure (Pa) for a newton at the bridge: a blend is about as loud at both of its ends.
 BRIDGE_PRESSURE = 0.1

@@ -130,7 +130,7 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/output/balance", "", "dB", -36.0, 36.0, 0.0,
-        "Gain that makes this note as loud as the others.",
+        "Gain that makes this note as loud as the others of its velocity.",
         place=Place.ENGINE, smooth_ms=20.0, owned=True,
     ),
     Param(
@@ -159,6 +159,11 @@ TABLE: tuple[Param, ...] = (
     Param(
         "/playing/speed", "", "m/s", 0.03, 0.6, 0.2,
         "Bow speed at full dynamics; less for notes that do not speak at it.", curve=Curve.EXP,
+    ),
+    Param(
+        "/playing/velocity", "", "1", 0.0, 1.0, 0.63,
+        "How hard a note is struck: its loudness, by bow and gain, and its attack; 0.63, of a "
+        "keyboard's 80, leaves them as the other parameters say.",
     ),
     Param(
         "/playing/pressure", "", "1", 0.05, 2.0, 0.4,
@@ -229,6 +234,11 @@ TABLE: tuple[Param, ...] = (
     Param(
         "/playing/variation", "", "1", 0.0, 1.0, 0.25,
         "Random differences between notes, in bow speed, bow force and intonation.",
+    ),
+    Param(
+        "/playing/listening", "", "1", 0.0, 1.0, 1.0,
+        "How far the player corrects finger and bow by what the string does: 0 plays by measured "
+        "tables alone.",
     ),
     Param(
         "/playing/attack", "", "ms", 5.0, 500.0, 40.0,

@@ -10,6 +10,7 @@ import numpy as np
 from yehu_server.jit import compiled_exactly
 from yehu_server.player.calibration import OPEN_NOTES
 from yehu_server.player.intonation import position_of
+from yehu_server.player.memory import learnt_cents
 from yehu_server.player.rows import STRING
 
 LOWEST_NOTE, HIGHEST_NOTE = 65, 89  # F4 to F6
@@ -60,15 +61,15 @@ def choose(p: Any, pitch: float, speed: float) -> tuple[int, float]:
     if pitch < FIRST_OPEN + OPEN_WITHIN:
         return 0, OPEN  # the lowest note of the instrument
     if wish == 0:
-        return 0, position_of(p, 0, pitch, speed)
+        return 0, learnt_position(p, 0, pitch, speed)
     if abs(pitch - SECOND_OPEN) < OPEN_FOR[p.open_strings]:
         return 1, OPEN
     if pitch < SECOND_OPEN + OPEN_WITHIN:
-        return 0, position_of(p, 0, pitch, speed)
-    near = position_of(p, 1, pitch, speed)
+        return 0, learnt_position(p, 0, pitch, speed)
+    near = learnt_position(p, 1, pitch, speed)
     if wish == 1 or p.string != 0 or p.position == OPEN or pitch > HIGHEST_ON_F:
         return 1, near
-    far = position_of(p, 0, pitch, speed)
+    far = learnt_position(p, 0, pitch, speed)
     if abs(far - p.position) < abs(near - p.position):
         return 0, far
     return 1, near
@@ -92,4 +93,12 @@ def stay(p: Any, pitch: float, speed: float) -> tuple[int, float]:
         string = 1
     if string == 1 and pitch <= SECOND_OPEN:
         string = 0
-    return string, position_of(p, string, pitch, speed)
+    if string != p.string:
+        return string, learnt_position(p, string, pitch, speed)
+    return string, position_of(p, string, pitch, speed, p.sharper)
+
+
+@compiled_exactly
+def learnt_position(p: Any, string: int, pitch: float, speed: float) -> float:
+    """Finger position (m) for a pitch, with what the ear has learnt of it."""
+    return position_of(p, string, pitch, speed, learnt_cents(p, string, pitch))

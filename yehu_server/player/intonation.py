@@ -20,13 +20,14 @@ LOG_SPEEDS = np.array([math.log(speed) for speed in SPEEDS])
 
 
 @compiled_exactly
-def position_of(p: Any, string: int, pitch: float, speed: float) -> float:
+def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float) -> float:
     """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1.
 
     A faster bow changes the pitch: `speed` (m/s) is the one the player wishes for. Notes
-    that are bowed more slowly were measured so.
+    that are bowed more slowly were measured so. `sharper` (cents) is what the ear adds to the
+    measured sharpening.
     """
-    sharp = p.value[TRUST] * read(p.sharpening[string], STOPPED[string], pitch, speed)
+    sharp = sharper + p.value[TRUST] * read(p.sharpening[string], STOPPED[string], pitch, speed)
     frequency = p.a4 * math.exp2((pitch - sharp / 100.0 - 69.0) / 12.0)
     return float(p.bridge_x - p.wave_speed[string] / (2.0 * frequency))
 

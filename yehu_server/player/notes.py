@@ -15,6 +15,7 @@ from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
 from yehu_server.player import evenness, left_hand, right_hand
 from yehu_server.player.bowing import LEAST_PRESS, manner
+from yehu_server.player.bowing_by_ear import begin_leaning
 from yehu_server.player.fingering import FIRST_OPEN, choose, stay
 from yehu_server.player.held import NOT_HELD, add_key, find_key, remove_key
 from yehu_server.player.left_hand import LIFTING_MS, STEP_MS, side_of
@@ -42,15 +43,19 @@ from yehu_server.player.rows import (
     PIZZICATO,
     PORTAMENTO,
     PORTAMENTO_TIME,
+    POSITION,
     RELEASE,
     VOLUME,
 )
+from yehu_server.player.tuning_by_ear import begin_tuning
 from yehu_server.player.variation import varied_semitones, vary_next_note
+from yehu_server.player.velocity import struck_attack
 
 BEND_RAMP_MS = find("/playing/bend").smooth_ms
 # The level is this power of dynamics: together with the slower bow, dynamics 0.5 is some 12 dB
 # below 1, and 0.1 some 35 dB. By ear.
 DYNAMICS_EXPONENT = 1.5
+SETTLING_MS = 35.0  # in which a string comes to its pitch, and what is heard is all of it
 
 
 # -- notes --------------------------------------------------------------------------------------
@@ -94,8 +99,13 @@ def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
 
 
 @compiled_exactly
-def stop_sound(p: Any, c: Any) -> None:
-    """Lift bow and fingers, and fade the sound out at once, unless a note sounds."""
+def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
+    """Lift bow and fingers, and fade the sound out at once.
+
+    Unless a note sounds; but in a panic all notes end.
+    """
+    if is_panic:
+        p.held, p.sounding = 0, SILENT
     if p.sounding != SILENT:
         return
     p.by_hand = 0
@@ -120,6 +130,10 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     pitch = p.finger_pitch = sounding_pitch(p)
     string, position = choose(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p), slide_ms)
+    begin_tuning(p, pitch)
+    begin_leaning(p, pitch)
+    is_slur = is_legato and not at_once
+    unsettle(p, c, max(slide_ms, SLURRED_MS if is_slur else p.value[ATTACK] * struck_attack(p)))
     left_hand.rock(p, c)
     left_hand.begin_rocking(p, c)
     set_assist(p, c)
@@ -128,10 +142,18 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     lean(p, c)
     if not is_legato:
         right_hand.turn(p)
+        right_hand.bite(p, c)
     if is_on(p, PIZZICATO):
         right_hand.pluck(p, c, side_of(p))
     else:
-        draw(p, c, SLURRED_MS if is_legato and not at_once else p.value[ATTACK])
+        draw(p, c, SLURRED_MS if is_slur else p.value[ATTACK])
+
+
+@compiled_exactly
+def unsettle(p: Any, c: Any, moving_ms: float) -> None:
+    """Hear the string again once what moves for a time has settled."""
+    frames = int(1e-3 * (moving_ms + SETTLING_MS) * p.rate)
+    p.settled_at = max(p.settled_at, c.frame + frames)
 
 
 @compiled_exactly
@@ -237,7 +259,9 @@ def lean(p: Any, c: Any) -> None:
 @compiled_exactly
 def least_press(p: Any) -> float:
     """The finger force (N) that the sounding note needs."""
-    return manner(p.bowing, sounding_pitch(p), LEAST_PRESS) if p.sounding >= 0 else 0.0
+    if p.sounding < 0:
+        return 0.0
+    return manner(p.bowing, p.value[POSITION], sounding_pitch(p), LEAST_PRESS)
 
 
 @compiled_exactly
@@ -250,17 +274,31 @@ def even_out(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
+def stop_helping(p: Any, c: Any) -> None:
+    """Take back what the ear has corrected of the sounding note."""
+    p.sharper, p.leaning = 0.0, 1.0
+    if p.sounding >= 0:
+        follow_bend(p, c)
+        lean(p, c)
+
+
+@compiled_exactly
 def follow_bend(p: Any, c: Any) -> None:
     """Move the finger to the pitch of the sounding note, and bow it as that pitch wants."""
     if p.sounding < 0 or p.string < 0:
         return
-    pitch, before = sounding_pitch(p), p.string
+    pitch, before, was = sounding_pitch(p), p.string, p.finger_pitch
     p.finger_pitch = pitch
     string, position = stay(p, pitch, wished_speed(p))
     if not right_hand.bows_alike(p, pitch):
         lean(p, c)
         draw(p, c, USUAL_MS)
     left_hand.stop(p, c, string, position, least_press(p), BEND_RAMP_MS)
+    if string != before:
+        begin_tuning(p, pitch)
+    if pitch != was:
+        p.first_error = math.nan
+        unsettle(p, c, BEND_RAMP_MS)
     even_out(p, c)
     if string != before:
         draw(p, c, USUAL_MS)

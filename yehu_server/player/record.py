@@ -10,9 +10,12 @@ import numpy as np
 from yehu_server.params.table import TABLE
 from yehu_server.physics.layout import STRINGS
 from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import MANNER, ORDINARY, bowing_table
+from yehu_server.player.bowing import MANNER, ORDINARY, PLACES
+from yehu_server.player.bowing import NOTES as NOTES_BOWED
 from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, wave_speed
+from yehu_server.player.ear import EAR, prepare_ear
 from yehu_server.player.fingering import OPEN, OpenStrings
+from yehu_server.player.practice import bowing_table
 from yehu_server.player.rows import (
     BOW_SIDE,
     BOW_SPEED,
@@ -23,6 +26,8 @@ from yehu_server.player.rows import (
     SLOT_OF,
 )
 
+# Of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
+LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES = 52, 11, 11
 MOST_HELD = 256  # notes; beyond, the one held longest is let go
 NOTES = len(PITCHES[0])  # measured on each string
 
@@ -50,6 +55,21 @@ PLAYER = np.dtype(
         ("pressing", np.float64),  # N
         ("string", np.int64),  # of the fingering; -1: none yet
         ("position", np.float64),  # of the fingering (m), or OPEN
+        # What it hears and corrects.
+        ("ear", EAR),
+        ("settled_at", np.int64),  # frame from which the string is heard
+        ("sharper", np.float64),  # cents: correction of the sharpening of this note
+        ("first_press", np.float64),  # N: wished as the note began
+        ("first_error", np.float64),  # cents: heard first; NaN: nothing yet
+        ("first_sharper", np.float64),  # the correction then
+        ("learnt", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),  # cents
+        ("helps_bow", np.int64),  # 0 while it practises: only the left hand acts on what is heard
+        ("leaning", np.float64),  # factor on the bow's pressure
+        ("fault", np.int64),  # heard last, and how often in a row; below 0: what was done is new
+        ("faults", np.int64),
+        ("spoken", np.int64),  # hearings in which the string spoke, with its help
+        ("eased_from", np.float64),  # the help before the hand took some back; 0: it did not yet
+        ("learnt_leaning", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),
         # The right hand.
         ("direction", np.float64),  # of the stroke
         ("side", np.float64),  # /bow/side; 0 where the bow is lifted
@@ -67,7 +87,7 @@ PLAYER = np.dtype(
         ("wave_speed", np.float64, STRINGS),  # m/s
         ("sharpening", np.float64, (STRINGS, NOTES, len(SPEEDS))),  # cents
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
-        ("bowing", np.float64, bowing_table().shape),
+        ("bowing", np.float64, (len(PLACES), NOTES_BOWED, MANNER)),
         ("open_strings", np.int64),  # number of the OpenStrings
     ],
     align=True,
@@ -117,6 +137,8 @@ def prepare_player(
     p["string"], p["position"] = -1, OPEN
     p["direction"] = -1.0  # so that the first stroke is a down-bow, v_b > 0
     p["manner"] = ORDINARY
+    p["first_error"], p["leaning"], p["helps_bow"] = np.nan, 1.0, 1
+    prepare_ear(p["ear"], rate)
     p["hurry"] = p["weight"] = 1.0
     p["seed"] = seed
     p["bridge_x"] = quantities.bridge_x

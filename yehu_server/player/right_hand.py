@@ -8,7 +8,16 @@ import numpy as np
 
 from yehu_server.jit import compiled_exactly
 from yehu_server.params.table import find
-from yehu_server.player.bowing import AT_FIRM, AT_LIGHT, FARTHER, MANNER, TOP_SPEED, manner, share
+from yehu_server.player.bowing import (
+    AT_FIRM,
+    AT_FLAUTANDO,
+    AT_LIGHT,
+    FARTHER,
+    MANNER,
+    TOP_SPEED,
+    manner,
+    share,
+)
 from yehu_server.player.ownership import USUAL_MS, forget, move
 from yehu_server.player.rows import (
     ATTACK,
@@ -26,6 +35,7 @@ from yehu_server.player.rows import (
     SPEED,
     TREMOLO,
 )
+from yehu_server.player.velocity import BITE_MS, struck_attack, struck_bite, struck_speed
 
 Array = Any
 
@@ -43,20 +53,20 @@ HARDEST_PULL_N = find("/pluck/force").hi
 def wished_speed(p: Any) -> float:
     """Bow speed (m/s) that the player wishes for."""
     share = SOFTEST + (1.0 - SOFTEST) * p.value[DYNAMICS]
-    return float(p.value[SPEED] * share * p.hurry)
+    return float(p.value[SPEED] * share * struck_speed(p) * p.hurry)
 
 
 @compiled_exactly
 def speed_at(p: Any, pitch: float) -> float:
     """Bow speed (m/s) for a pitch: as wished, up to the highest at which it speaks."""
-    return min(wished_speed(p), manner(p.bowing, pitch, TOP_SPEED))
+    return min(wished_speed(p), manner(p.bowing, p.value[POSITION], pitch, TOP_SPEED))
 
 
 @compiled_exactly
 def bows_alike(p: Any, pitch: float) -> bool:
     """Whether a pitch is bowed as the present one is."""
     for column in range(MANNER):
-        if manner(p.bowing, pitch, column) != p.manner[column]:
+        if manner(p.bowing, p.value[POSITION], pitch, column) != p.manner[column]:
             return False
     return True
 
@@ -74,10 +84,22 @@ def lean(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     pressure = p.value[PRESSURE] * p.weight
     if is_sounding:
         for column in range(MANNER):
-            p.manner[column] = manner(p.bowing, pitch, column)
-        pressure = share(p.manner[AT_LIGHT], p.manner[AT_FIRM], pressure, pitch)
+            p.manner[column] = manner(p.bowing, p.value[POSITION], pitch, column)
+        m = p.manner
+        pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, pitch)
+        pressure *= p.leaning
     move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
     move(p, c, BOW_POSITION, p.value[POSITION] * p.manner[FARTHER], USUAL_MS)
+
+
+@compiled_exactly
+def bite(p: Any, c: Any) -> None:
+    """Begin a hard stroke with more pressure."""
+    factor = struck_bite(p)
+    if factor > 1.0:
+        usual = p.sent[BOW_PRESSURE]
+        move(p, c, BOW_PRESSURE, factor * usual, 0.0)
+        move(p, c, BOW_PRESSURE, usual, BITE_MS)
 
 
 @compiled_exactly
@@ -91,7 +113,7 @@ def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
         if p.side != 0.0:
             lift(p, c, p.value[RELEASE])
         return
-    attack_ms = p.value[ATTACK]
+    attack_ms = p.value[ATTACK] * struck_attack(p)
     crossing_ms = CROSSING_MS
     if p.side == 0.0:
         ramp_ms, crossing_ms = attack_ms, attack_ms / 4.0

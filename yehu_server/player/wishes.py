@@ -11,7 +11,7 @@
 | SLIDE | | pitch within range | |
 | DRAW | | bow speed (m/s) | bow force (N) |
 | LIFT | | | |
-| STOP | | | |
+| STOP | | 1: even where a note sounds | |
 | RELEASE | | | |
 """
 
@@ -42,6 +42,7 @@ from yehu_server.player.rows import (
     EXPRESSION,
     IS_ENGINES,
     IS_OWNED,
+    LISTENING,
     POSITION,
     PRESS,
     PRESSURE,
@@ -53,6 +54,7 @@ from yehu_server.player.rows import (
     SPEED,
     TREMOLO,
     TRUST,
+    VELOCITY,
     VIBRATO,
     VOLUME,
 )
@@ -102,7 +104,7 @@ def fulfil(
     elif kind == LIFT:
         notes.lift_by_hand(p, c)
     elif kind == STOP:
-        notes.stop_sound(p, c)
+        notes.stop_sound(p, c, value != 0.0)
     elif kind == RELEASE:
         release(p)
         p.by_hand = 0
@@ -169,5 +171,11 @@ def follow(p: Any, c: Any, row: int) -> None:
         notes.set_level(p, c)
     elif row == EVENNESS:
         notes.even_out(p, c)
+    elif row == VELOCITY:
+        notes.draw(p, c, USUAL_MS)
+        notes.follow_bend(p, c)
+        notes.even_out(p, c)
+    elif row == LISTENING and p.value[LISTENING] == 0.0:
+        notes.stop_helping(p, c)
     elif row == SEED:
         begin_sequence(p, int(p.value[SEED]))

@@ -24,13 +24,13 @@ from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities, override
 from yehu_server.player.bowing import (
     AT_FIRM,
+    AT_FLAUTANDO,
     AT_LIGHT,
     FARTHER,
     FIRM,
     LEAST_PRESS,
     LIGHT,
     TOP_SPEED,
-    bowing_table,
     manner,
     share,
 )
@@ -42,12 +42,14 @@ from yehu_server.player.calibration import (
     frequency_hz,
     ideal_position,
 )
+from yehu_server.player.practice import bowing_table
 
 Progress = Callable[[float, float], None]
 
 PRESS = 1.5  # N
 SETTLE_S, LISTEN_S, OPEN_SETTLE_S, OPEN_LISTEN_S = 0.3, 0.12, 0.6, 0.3
 ROUNDS = 6
+DEFAULT_PLACE = find("/playing/bow_position").default
 PLAUSIBLE_CENTS = 90.0  # beyond, the note is in another register
 IN_TUNE_CENTS, ENOUGH_CENTS = 15.0, 0.7  # accepted at the end, and enough to stop
 STEP_CENTS = 1.5  # in a bracket as narrow as this the pitch jumps
@@ -62,7 +64,7 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
         for folder in ("physics", "controls")
         for source in sorted((package / folder).glob("*.py"))
     ]
-    sources += [package / "player" / f"{name}.py" for name in ("bowing", "calibration")]
+    sources += [package / "player" / f"{name}.py" for name in ("bowing", "calibration", "practice")]
     sources += [package / "engine" / f"{name}.py" for name in ("native", "output")]
     sources += [Path(__file__)]
     return key_of(sources, repr((rate, a4, quantities)))
@@ -103,7 +105,7 @@ def calibrate(
 
 
 def _manner(pitch: float, column: int) -> float:
-    return manner(bowing_table(), float(pitch), column)
+    return manner(bowing_table(), DEFAULT_PLACE, float(pitch), column)
 
 
 def _bow(
@@ -114,9 +116,9 @@ def _bow(
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
         instrument.write("/finger/1/press", max(PRESS, _manner(pitch, LEAST_PRESS)))
-    light, firm = _manner(pitch, AT_LIGHT), _manner(pitch, AT_FIRM)
-    pressure = share(light, firm, 0.5 * (LIGHT + FIRM), pitch)
-    beta = _manner(pitch, FARTHER) * find("/bow/position").default
+    flautando, light, firm = (_manner(pitch, c) for c in (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
+    pressure = share(flautando, light, firm, 0.5 * (LIGHT + FIRM), pitch)
+    beta = _manner(pitch, FARTHER) * DEFAULT_PLACE
     instrument.write("/bow/position", beta, ramp_ms=0.0)
     instrument.write("/bow/pressure", pressure, ramp_ms=0.0)
     instrument.write("/bow/side", 1.0 if string == 0 else -1.0)

@@ -254,7 +254,7 @@ class LivePlayer:
         """End all notes and all sound at once."""
         with self._lock:
             self.end_notes(frame=frame)
-            self._wishes.stop_sound(frame=self._after_all(frame))
+            self._wishes.stop_sound(frame=self._after_all(frame), is_panic=True)
 
     def reset(self, *, frame: int) -> None:
         """As `panic`, and set every parameter to its start value."""

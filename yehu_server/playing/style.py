@@ -12,6 +12,7 @@ from yehu_server.player.calibration import Calibration
 from yehu_server.player.fingering import OpenStrings
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.practices import shipped_practice
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.tuning import EQUAL, Tuning
@@ -43,12 +44,14 @@ class Style:
     open_strings: OpenStrings = OpenStrings.ALWAYS
     seed: int = 0
     preset: Path | None = None
+    bowing: Any = field(default=None, compare=False)  # how notes are bowed; None: as shipped
+    practice: Path | None = None  # the file of `bowing`
 
     @property
     def files(self) -> tuple[Path, ...]:
         """All files that it was read from."""
-        preset = () if self.preset is None else (self.preset,)
-        return (*self.mapping.files, *preset, *self.tuning.files)
+        named = [path for path in (self.preset, self.practice) if path is not None]
+        return (*self.mapping.files, *named, *self.tuning.files)
 
     def instrument(
         self,
@@ -72,6 +75,7 @@ class Style:
             calibration.tuned(quantities or Quantities()),
             calibration=calibration,
             open_strings=self.open_strings,
+            bowing=shipped_practice(rate) if self.bowing is None else self.bowing,
             seed=self.seed,
             memory=memory,
         )

@@ -262,10 +262,13 @@ class Wishes:
                 self._value[address] = find(address).accept(value)
                 self._post(wishes.EXPRESS, frame, ROW[address], self._value[address])
 
-    def stop_sound(self, *, frame: int | None = None) -> None:
-        """Lift bow and fingers and stop the sound at once, unless a note sounds."""
-        if self.sounding is None:
-            self._post(wishes.STOP, frame)
+    def stop_sound(self, *, frame: int | None = None, is_panic: bool = False) -> None:
+        """Lift bow and fingers and stop the sound at once, unless a note sounds.
+
+        In a panic also what sounds ends, whatever is known of it here.
+        """
+        if is_panic or self.sounding is None:
+            self._post(wishes.STOP, frame, value=float(is_panic))
 
     # -- by hand -----------------------------------------------------------------------------
 

@@ -19,9 +19,9 @@ from yehu_server.files import read_lines
 from yehu_server.params.table import find
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.quantities import Quantities, override
-from yehu_server.player.bowing import bowing_table
 from yehu_server.player.calibration import Calibration
 from yehu_server.player.fingering import OpenStrings
+from yehu_server.player.practice import bowing_table
 from yehu_server.player.wishes import WISH
 from yehu_server.playing.calibrations import read_calibration
 from yehu_server.score.capture_format import (

@@ -22,6 +22,7 @@ from yehu_server.player.wishes import (
     KINDS,
     RAMP,
     SLIDE,
+    STOP,
     WRITE,
 )
 
@@ -65,7 +66,7 @@ def as_line(wish: Any) -> list[Any]:  # noqa: PLR0911 - one for each kind
         return [*line, index, value, other]
     if kind == END:
         return [*line, index, value, int(other)]
-    if kind == SLIDE:
+    if kind in (SLIDE, STOP):
         return [*line, value]
     return [*line, value, other] if kind == DRAW else line
 
@@ -92,6 +93,9 @@ def from_line(line: list[Any]) -> Fields:
         channel, key, last = values
         index, value = _whole(channel, -1, MOST_CHANNELS), _within(key, 0.0, HIGHEST_KEY)
         other = _within(last, 0.0, HIGHEST_KEY) if kind == BEGIN else float(_whole(last, 0, 1))
+    elif kind == STOP:
+        (panic,) = values
+        value = _within(panic, 0.0, 1.0)
     elif kind == SLIDE:
         (pitch,) = values
         value = _within(pitch, 0.0, HIGHEST_KEY)

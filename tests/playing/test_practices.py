@@ -1,0 +1,268 @@
+"""What was practised is kept in files; practising tells a good manner from a bad one."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import soundfile
+from scores import midi_file, notes
+
+from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.params.table import find
+from yehu_server.physics.quantities import Quantities
+from yehu_server.player.bowing import (
+    AT_FIRM,
+    AT_FLAUTANDO,
+    AT_LIGHT,
+    FIRST,
+    LAST,
+    PLACES,
+    TOP_SPEED,
+)
+from yehu_server.player.practice import bowing_table
+from yehu_server.playing import practice as practising
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.practice import Passage, Practice
+from yehu_server.playing.practices import (
+    FORMAT,
+    HIGHEST,
+    LOWEST,
+    VERSION,
+    as_data,
+    read_practice,
+    shipped_practice,
+    table_of,
+    write_practice,
+)
+
+RATE = 44100.0
+PLACE = PLACES.index(0.1)
+DEFAULT = PLACES.index(find("/playing/bow_position").default)
+NAN = float("nan")
+
+
+def practised() -> np.ndarray:
+    """A table that somebody might have practised."""
+    table = bowing_table()
+    chance = np.random.default_rng(1)
+    table[1:, 3:20] *= chance.uniform(0.8, 1.25, table[1:, 3:20].shape)
+    table[:, -1, TOP_SPEED] = 0.11
+    return table
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Write a file; text, bytes, or JSON values."""
+
+    def write(content: object):
+        path = tmp_path / "mine.json"
+        if isinstance(content, bytes):
+            path.write_bytes(content)
+        else:
+            path.write_text(content if isinstance(content, str) else json.dumps(content))
+        return path
+
+    return write
+
+
+@pytest.fixture
+def tune(tmp_path):
+    return midi_file(tmp_path / "tune.mid", notes((0.0, 0.3, 70, 80), (0.3, 0.3, 76, 80)))
+
+
+@pytest.fixture
+def render(command, tmp_path, tune):
+    """Render the tune with options; its sound and the summary."""
+
+    def run(*words: object) -> tuple[np.ndarray, dict]:
+        out = tmp_path / "out.wav"
+        code, summary, error = command("render", tune, "-o", out, "--tail", 0.1, "--json", *words)
+        assert code == 0, error
+        return soundfile.read(out)[0], json.loads(summary)
+
+    return run
+
+
+# ---------------------------------------------------------------- files
+
+
+def test_a_table_that_was_written_is_read_back(tmp_path):
+    path = tmp_path / "mine.json"
+    for table in (practised(), bowing_table(), shipped_practice(RATE)):
+        write_practice(path, table, RATE)
+        np.testing.assert_allclose(read_practice(path), table, atol=1.1e-4)
+    again = read_practice(path)
+    write_practice(path, again, RATE)
+    assert np.array_equal(read_practice(path), again)
+
+
+def test_only_notes_that_are_bowed_otherwise_are_written():
+    table = bowing_table()
+    assert not any(as_data(table, RATE)["bowing"].values())
+    table[PLACE, 70 - FIRST, AT_LIGHT] = 0.7
+    bowing = as_data(table, RATE)["bowing"]
+    assert [place for place, rows in bowing.items() if rows] == ["0.1"]
+    assert list(bowing["0.1"]) == ["70"]
+
+
+def spoiled(**changes: object) -> dict:
+    return {"format": FORMAT, "version": VERSION, "rate": RATE, "bowing": {}, **changes}
+
+
+def with_row(row: object, note: str = "70", place: str = "0.1") -> dict:
+    return spoiled(bowing={place: {note: row}})
+
+
+GOOD = [0.2, 0.1, 0.3, 0.5, 1.0, 0.0]
+BAD = [
+    *("", "{", "practice", b"\xff\xfe\x00", "[1, 2", '"x"', "null", "3", "[]", "{}"),
+    *(spoiled(format="yehu-server capture"), spoiled(version=2), spoiled(version=None)),
+    *(spoiled(bowing=None), spoiled(bowing=[]), spoiled(bowing="x"), spoiled(bowing={"0.1": []})),
+    *(with_row(GOOD[:-1]), with_row([*GOOD, 0.0]), with_row([]), with_row(0.2), with_row(None)),
+    *(with_row(["a"] * 6), with_row([GOOD]), with_row([None] * 6), with_row({"a": 1})),
+    *(with_row([value, *GOOD[1:]]) for value in (NAN, float("inf"), 0.0, -0.2, 3.0, 10**400)),
+    *(with_row([*GOOD[:-1], value]) for value in (NAN, -0.1, 11.0)),
+    *(with_row([*GOOD[:4], value, 0.0]) for value in (NAN, 0.0, 6.0)),
+    *(with_row([*GOOD[:1], value, *GOOD[2:]]) for value in (NAN, -0.1, 13.0)),
+    *(with_row(GOOD, note) for note in (str(FIRST - 1), str(LAST + 1), "-1", "x", "70.5", "")),
+    *(with_row(GOOD, place=place) for place in ("0.11", "0", "-0.1", "x", "nan", "")),
+]
+
+
+def test_the_file_that_is_spoiled_below_is_one(file):
+    assert list(read_practice(file(with_row(GOOD)))[PLACE, 70 - FIRST]) == GOOD
+
+
+@pytest.mark.parametrize("content", BAD, ids=str)
+def test_a_bad_practice_is_refused_in_one_line(file, refused, tune, tmp_path, content):
+    path = file(content)
+    with pytest.raises(ParameterError) as error:
+        read_practice(path)
+    assert str(error.value).startswith(f"{path}: ")
+    line = refused("render", tune, "-o", tmp_path / "out.wav", "--practice", path)
+    assert str(path) in line
+    assert not (tmp_path / "out.wav").exists()
+
+
+def test_a_practice_that_is_missing_or_a_folder_is_refused_in_one_line(refused, tune, tmp_path):
+    for path in (tmp_path / "none.json", tmp_path):
+        with pytest.raises(ScoreError):
+            read_practice(path)
+        line = refused("render", tune, "-o", tmp_path / "out.wav", "--practice", path)
+        assert str(path) in line
+
+
+def test_a_practice_is_not_overwritten_by_the_sound(file, refused, tune):
+    path = file(with_row(GOOD))
+    assert "practice" in refused("render", tune, "-o", path, "--format", "wav", "--practice", path)
+    assert list(read_practice(path)[PLACE, 70 - FIRST]) == GOOD
+
+
+def test_what_was_practised_is_heard_and_named(render, tmp_path):
+    usual, summary = render()
+    assert summary["practice"] == "shipped"
+    path = tmp_path / "mine.json"
+    table = shipped_practice(RATE)
+    write_practice(path, table, RATE)
+    same, _ = render("--practice", path)
+    np.testing.assert_allclose(same, usual, atol=0.05)
+    table[:, :, AT_FLAUTANDO : AT_FIRM + 1] *= 1.3
+    write_practice(path, table, RATE)
+    other, summary = render("--practice", path)
+    assert summary["practice"] == str(path)
+    assert not np.array_equal(other, same)
+
+
+# ---------------------------------------------------------------- what is shipped
+
+
+@pytest.mark.parametrize("rate", [44100.0, 48000.0, 96000.0])
+def test_what_is_shipped_is_within_bounds_and_usual_where_it_was_calibrated(rate):
+    table, usual = shipped_practice(rate), bowing_table()
+    assert table.shape == usual.shape
+    assert np.all((table >= LOWEST) & (table <= HIGHEST))
+    kept = [column for column in range(table.shape[2]) if column != AT_FLAUTANDO]
+    assert np.array_equal(table[DEFAULT][:, kept], usual[DEFAULT][:, kept])
+    assert np.all(table[DEFAULT, :, AT_FLAUTANDO] >= usual[DEFAULT, :, AT_FLAUTANDO])
+
+
+def test_what_is_shipped_belongs_to_the_nearest_rate_and_cannot_be_spoiled():
+    table = shipped_practice(44100.0)
+    assert np.array_equal(shipped_practice(43000.0), table)
+    table[:] = 0.0
+    assert shipped_practice(44100.0).any()
+
+
+# ---------------------------------------------------------------- practising
+
+PASSAGES = [
+    Passage(before, speed, 0.42, is_slurred, 0.12)
+    for before, speed, is_slurred in ((71, 0.16, True), (78, 0.2, False), (76, 0.2, True))
+]
+
+
+@pytest.fixture(scope="module")
+def practice() -> Practice:
+    return Practice(RATE, Quantities(), calibration_for(RATE))
+
+
+@pytest.mark.parametrize(("note", "factor"), [(70, 0.02), (70, 30.0), (74, 0.02), (80, 30.0)])
+def test_a_manner_that_speaks_is_told_from_one_that_cannot(practice, note, factor):
+    good = bowing_table()[DEFAULT, note - FIRST]
+    bad = good.copy()  # too light, or too heavy
+    bad[AT_FLAUTANDO : AT_FIRM + 1] *= factor
+    assert 0.8 < practice.score(note, DEFAULT, good, PASSAGES) <= 1.0
+    assert practice.score(note, DEFAULT, bad, PASSAGES) < 0.6
+
+
+def test_the_score_of_a_manner_is_always_the_same(practice):
+    manner = bowing_table()[PLACE, 70 - FIRST]
+    scores = {practice.score(70, PLACE, manner, PASSAGES) for _ in range(3)}
+    assert len(scores) == 1
+
+
+@pytest.fixture
+def one_note(monkeypatch) -> None:
+    """Practise a single note, with a single passage at each trial."""
+    monkeypatch.setattr(practising, "NOTES", range(70, 71))
+    monkeypatch.setattr(practising, "TRIES", 1)
+    monkeypatch.setattr(practising, "QUICK_TRIES", 1)
+
+
+@pytest.mark.usefixtures("one_note")
+def test_what_practise_writes_render_takes(command, render, tmp_path):
+    path = tmp_path / "mine.json"
+    code, out, error = command("practise", "-o", path, "--json")
+    assert code == 0, error
+    summary = json.loads(out)
+    assert summary["rate"] == RATE
+    changed = json.loads(path.read_text())
+    assert sum(map(len, changed["bowing"].values())) == summary["improved"]
+    assert {note for rows in changed["bowing"].values() for note in rows} <= {"70"}
+    assert np.array_equal(table_of(changed), read_practice(path))
+    assert render("--practice", path)[1]["practice"] == str(path)
+
+
+@pytest.mark.usefixtures("one_note")
+def test_practising_for_a_preset_leaves_other_places_alone(command, tmp_path):
+    path = tmp_path / "near.json"
+    code, _, error = command("practise", "-o", path, "--preset", "sul-ponticello", "--quiet")
+    assert code == 0, error
+    bowing = json.loads(path.read_text())["bowing"]
+    assert all(not rows for place, rows in bowing.items() if float(place) > 0.1)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("--rate", "100"), ("--rate", "nan"), ("--preset", "no-such"), ("--instrument", "no.toml")],
+    ids=str,
+)
+def test_practising_what_is_not_there_is_refused_in_one_line(refused, tmp_path, words):
+    refused("practise", "-o", tmp_path / "mine.json", *words)
+    assert not (tmp_path / "mine.json").exists()
+
+
+def test_practise_needs_a_place_to_write(refused, tmp_path):
+    assert "does not exist" in refused("practise", "-o", tmp_path / "none" / "mine.json")

@@ -1,0 +1,93 @@
+"""``yehu-server practise``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from yehu_server.cli.arguments import (
+    add_command,
+    add_reporting,
+    progress_bar,
+    warn_of_compiling,
+)
+from yehu_server.cli.converters import target
+from yehu_server.cli.terminal import tell
+
+EXAMPLES = """\
+examples:
+  yehu-server practise -o mine.json
+  yehu-server practise --instrument heavy_bridge.toml --rate 48000 -o heavy.json
+  yehu-server practise --preset sul-ponticello -o near.json
+  yehu-server render tune.mid -o tune.wav --practice mine.json
+
+Takes some ten minutes on two cores. The usual instrument comes practised.
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = add_command(
+        commands,
+        "practise",
+        run=run,
+        help="find how each note of an instrument is best bowed",
+        description="Play each note after others, at several places, speeds and pressures of the "
+        "bow, until it speaks as well as can be found; write what was learnt, for --practice.",
+        epilog=EXAMPLES,
+    )
+    parser.add_argument(
+        "-o", "--output", required=True, type=target, metavar="OUT.json", help="the file to write"
+    )
+    parser.add_argument(
+        "--rate", type=float, default=44100.0, metavar="HZ", help="sample rate (default: 44100)"
+    )
+    parser.add_argument(
+        "--instrument",
+        type=Path,
+        metavar="FILE",
+        help="a TOML or JSON file of physical quantities to change",
+    )
+    parser.add_argument(
+        "--preset", metavar="NAME", help="practise for the bow of a preset alone, in less time"
+    )
+    add_reporting(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
+    import time
+
+    from yehu_server.engine.warming import warm_up
+    from yehu_server.files import check_apart, check_target
+    from yehu_server.physics.grid import check_rate
+    from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.playing.calibrations import calibration_for
+    from yehu_server.playing.practice import Practice
+    from yehu_server.playing.practices import write_practice
+    from yehu_server.playing.presets import Presets
+
+    check_rate(arguments.rate)
+    own = [] if arguments.instrument is None else [arguments.instrument]
+    check_target(arguments.output)
+    check_apart({"-o": arguments.output}, own)
+    values = {} if arguments.preset is None else Presets().load(arguments.preset).values
+    quantities = read_quantities(arguments.instrument) if own else Quantities()
+    start = time.perf_counter()
+    warn_of_compiling(arguments)
+    warm_up()
+    with progress_bar(arguments, "calibrating", "notes") as progress:
+        calibration = calibration_for(arguments.rate, quantities, progress=progress)
+    practice = Practice(arguments.rate, quantities, calibration, values)
+    with progress_bar(arguments, "practising", "notes") as progress:
+        table = practice.learn(progress)
+    write_practice(arguments.output, table, arguments.rate)
+    elapsed = time.perf_counter() - start
+    improved = practice.notes_changed
+    if arguments.json:
+        print(json.dumps({"rate": arguments.rate, "improved": improved, "elapsed_s": elapsed}))
+    elif not arguments.quiet:
+        tell(f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now")
+    return 0

@@ -1,0 +1,52 @@
+"""Compile what playing needs, before the first sound; or load it from the cache.
+
+The callback calls the player by name, so both can be compiled at a time: the callback in a process
+of its own, which leaves it in the cache.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+
+from yehu_server.engine.native import (
+    callback,
+    frame_at,
+    post,
+    read_meters,
+    read_reports,
+    taped,
+)
+from yehu_server.jit import IS_CACHED, IS_PLAIN
+from yehu_server.player.listening import attend
+from yehu_server.player.wishes import fulfil
+
+PLAYED_BY = (fulfil, attend, read_meters, frame_at, post, read_reports, taped, callback)
+
+
+def warm_up() -> None:
+    """Compile all functions that playing needs, or load them from the cache."""
+    if IS_PLAIN:
+        return
+    with contextlib.ExitStack() as stack:
+        beside = None
+        if IS_CACHED and (os.cpu_count() or 1) > 1 and not callback.is_kept:
+            command = [sys.executable, "-m", __name__]
+            beside = subprocess.Popen(command, stderr=subprocess.DEVNULL)  # noqa: S603 - our own
+            stack.callback(beside.kill)  # where we are interrupted
+        for function in PLAYED_BY[:-1]:
+            _ = function.address
+        if beside is not None:
+            beside.wait()
+    _ = callback.address
+
+
+def is_warm() -> bool:
+    """Whether all functions that playing needs are in the cache."""
+    return all(function.is_kept for function in PLAYED_BY)
+
+
+if __name__ == "__main__":
+    callback.keep()

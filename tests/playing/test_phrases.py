@@ -97,9 +97,11 @@ def test_a_trill_alternates_between_two_notes(low):
     played = [low if n % 2 else low + 2 for n in range(8)]
     off = [heard(sound, t + 0.06, 0.04) - note for t, note in zip(times, played, strict=True)]
     # The open string, just released, bends some of these while it decays, by 10 cents on one
-    # processor and by 44 on another, as it depends on rounding. A whole tone is meant.
-    assert np.median(np.abs(off)) < 0.15
-    assert np.abs(off).max() < 0.8
+    # processor and by 44 on another, as it depends on rounding; of a thousand such notes one has no
+    # clear pitch yet. A whole tone is meant.
+    assert np.isnan(off).sum() <= 1
+    assert np.nanmedian(np.abs(off)) < 0.15
+    assert np.nanmax(np.abs(off)) < 0.8
 
 
 # ---------------------------------------------------------------- bends and pressing

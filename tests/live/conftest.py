@@ -102,9 +102,14 @@ class Jackd:
                     stdout=subprocess.DEVNULL,
                     stderr=subprocess.DEVNULL,
                 )
-            return "system:playback_1" in self.ports()
+            try:
+                return "system:playback_1" in self.ports(3.0)
+            except subprocess.TimeoutExpired:  # JACK sometimes hangs as it begins, too
+                self._process.kill()
+                self._process.wait()
+                return False
 
-        until(is_up, 10.0, "a JACK server")
+        until(is_up, 20.0, "a JACK server")
 
     def restart(self) -> None:
         """Start the same again after a kill."""
@@ -125,13 +130,13 @@ class Jackd:
         if self._process is not None and self._process.poll() is None:
             self.kill(signal.SIGTERM)
 
-    def ports(self) -> list[str]:
+    def ports(self, timeout_s: float = 10.0) -> list[str]:
         found = subprocess.run(
             ["jack_lsp", "-s", self.name],  # noqa: S607
             env=self.environment,
             capture_output=True,
             text=True,
-            timeout=10.0,
+            timeout=timeout_s,
             check=False,
         )
         return found.stdout.split("\n")

@@ -60,6 +60,16 @@ def add_action(actions: Any, name: str, run: Callable[[argparse.Namespace], int]
     return add_command(actions, name, run, help=text, description=f"{text.capitalize()}.")
 
 
+def add_instrument(parser: argparse.ArgumentParser) -> None:
+    """Add the option that names an instrument file."""
+    parser.add_argument(
+        "--instrument",
+        type=Path,
+        metavar="FILE",
+        help="a TOML or JSON file of physical quantities to change",
+    )
+
+
 def add_reporting(parser: argparse.ArgumentParser) -> None:
     """Add --json and --quiet."""
     parser.add_argument("--json", action="store_true", help="print one JSON object when done")

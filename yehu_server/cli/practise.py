@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import (
     add_command,
+    add_instrument,
     add_reporting,
     progress_bar,
     warn_of_compiling,
@@ -44,12 +44,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--rate", type=float, default=44100.0, metavar="HZ", help="sample rate (default: 44100)"
     )
-    parser.add_argument(
-        "--instrument",
-        type=Path,
-        metavar="FILE",
-        help="a TOML or JSON file of physical quantities to change",
-    )
+    add_instrument(parser)
     parser.add_argument(
         "--preset", metavar="NAME", help="practise for the bow of a preset alone, in less time"
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import (
     add_command,
+    add_instrument,
     add_output,
     add_reporting,
     check_output,
@@ -83,12 +84,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--normalize", action="store_true", help="scale the result to a peak of -1 dBFS"
     )
-    parser.add_argument(
-        "--instrument",
-        type=Path,
-        metavar="FILE",
-        help="a TOML or JSON file of physical quantities to change",
-    )
+    add_instrument(parser)
     add_playing(parser)
     add_reporting(parser)
 

@@ -11,7 +11,7 @@ from yehu_server.jit import compiled
 
 @compiled
 def take(c: Any, index: int, target: float, ramp: int) -> None:
-    """Apply an event: begin a parameter's ramp to a target, clamped to its range.
+    """Begin a parameter's ramp to a target, clamped to its range.
 
     A target that is not a number is ignored. Real time: safe.
 

@@ -23,4 +23,4 @@ NOISE = SLOT["/bow/noise"]
 SLOTS = len(ENGINE)
 LOWEST = np.array([param.lo for param in ENGINE])
 HIGHEST = np.array([param.hi for param in ENGINE])
-SILENCE = SLOTS  # index of the event that fades the sound out and puts the model to rest
+SILENCE = SLOTS  # in place of a slot: fades the sound out and puts the model to rest

@@ -2,7 +2,7 @@
 
 At NEUTRAL all is as the other parameters say. A harder note is bowed faster and gets its force
 sooner than its speed; a softer one begins gently. With the force that mappings let velocity set,
-the level rises by some 20 dB from 1 to 127 (scripts/playability.py velocity).
+the level rises by some 18 dB from 1 to 127 (scripts/playability.py velocity).
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""What `scripts/playability.py` measures, one subject a file."""

@@ -1,0 +1,49 @@
+"""`bends`: the error while the pitch wheel moves."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from measures.intonation import FAIR_CENTS, NONE, off_by
+from measures.shares import Share, told
+from measures.take import NOTES, Setup, Take, in_parallel
+from yehu_server.player.calibration import OPEN_NOTES
+
+BEGIN_S, LENGTH_S, LAG_S, WINDOW_S = 0.3, 1.0, 0.012, 0.03
+
+
+def _bent(setup: Setup, note: int, semitones: float) -> list[float]:
+    """Return the errors (cents) while a bend goes up and back, allowing a delay of 12 ms."""
+    take = Take(setup)
+    take.wishes.write("/playing/bend_range", abs(semitones), frame=0, hold=True)
+    take.on(0.0, note)
+
+    def curve(t: float) -> float:
+        turn = min(max((t - BEGIN_S) / LENGTH_S, 0.0), 1.0)
+        return math.copysign(0.5 - 0.5 * math.cos(2.0 * math.pi * turn), semitones)
+
+    for step in range(200):
+        time = BEGIN_S + LENGTH_S * step / 199
+        take.at(time, "pitchwheel", pitch=round(8191 * curve(time)))
+    sound = take.play(BEGIN_S + LENGTH_S + 0.2)
+    times = np.arange(BEGIN_S, BEGIN_S + LENGTH_S, 0.02)
+    aims = [note + abs(semitones) * curve(t + 0.5 * WINDOW_S - LAG_S) for t in times]
+    return [off_by(sound, setup.rate, t, WINDOW_S, aim) for t, aim in zip(times, aims, strict=True)]
+
+
+def bends(setup: Setup) -> list[Share]:
+    """Print how closely the pitch follows bends."""
+    parts = []
+    for semitones in (2.0, -2.0, 5.0):
+        notes = [n for n in NOTES if n + semitones in NOTES and n not in OPEN_NOTES]
+        found = np.abs(np.array(in_parallel(setup, _bent, [(n, semitones) for n in notes])))
+        parts.append(told(f"{semitones:+g} semitones, moments", (found <= FAIR_CENTS).ravel()))
+        for note, row in zip(notes, found, strict=True):
+            if (row > FAIR_CENTS).any():
+                most = "no pitch" if row.max() == NONE else f"{row.max():.0f} cents at most"
+                print(
+                    f"   {note}: {100.0 * (row > FAIR_CENTS).mean():.0f} % of the time off, {most}"
+                )
+    return parts

@@ -1,0 +1,78 @@
+"""`evenness`, `velocity`: how loud notes are, from one to the next and from soft to loud."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from measures.shares import Share, told
+from measures.take import NOTES, Setup, in_parallel
+from measures.timbre import Timbre, timbre
+from yehu_server.params.table import find
+from yehu_server.playing.mapping import load, shipped_mappings
+
+DYNAMICS = ((None, 80), (0, 80), (64, 110), (127, 127))  # wheel and velocity
+EVEN_DB = 2.0
+STRUCK = (1, 20, 50, 80, 110, 127)
+SOFT, MEDIUM, HARD = STRUCK.index(20), STRUCK.index(80), STRUCK.index(127)
+LEAST_RISE_DB, MOST_RISE_DB, LEAST_ABOVE_DB = 16.0, 24.0, 3.0
+LIMITER = 10.0 ** (find("/output/limiter").default / 20.0)  # amplitude above which it acts
+
+
+def evenness(setup: Setup) -> list[Share]:
+    """Print the loudness range of all notes, and the largest difference of neighbours."""
+    parts = []
+    for wheel, velocity in DYNAMICS:
+        jobs = [(note, wheel, velocity) for note in NOTES]
+        levels = np.array([each.level_db for each in in_parallel(setup, timbre, jobs)])
+        name = f"wheel {'untouched' if wheel is None else wheel}, velocity {velocity}"
+        print(
+            f"{name}: within {np.ptp(levels):.1f} dB, "
+            f"neighbours {np.abs(np.diff(levels)).max():.1f} dB"
+        )
+        offsets = levels - np.median(levels)
+        words = [f"{note} {off:+.1f} dB" for note, off in zip(NOTES, offsets, strict=True)]
+        parts.append(told(name, np.abs(offsets) <= EVEN_DB, words))
+    return parts
+
+
+def _rises(note: int, row: list[Timbre]) -> bool:
+    """Print a note from soft to loud; return whether its level rises as it should."""
+    levels = [each.level_db for each in row]
+    rise, above = levels[-1] - levels[0], levels[HARD] - levels[MEDIUM]
+    is_right = LEAST_RISE_DB <= rise <= MOST_RISE_DB and above >= LEAST_ABOVE_DB
+    limited = [str(v) for v, each in zip(STRUCK, row, strict=True) if each.peak > LIMITER]
+    print(
+        f"{note}: {' '.join(f'{level:6.1f}' for level in levels)} dB; "
+        f"{rise:.1f} in all, {above:.1f} above 80; "
+        f"centroid {row[SOFT].centroid_hz:.0f} to {row[HARD].centroid_hz:.0f} Hz, "
+        f"attack {row[SOFT].attack_ms:.0f} to {row[HARD].attack_ms:.0f} ms"
+        f"{'' if is_right else ' !'}{', limited at ' if limited else ''}{' '.join(limited)}"
+    )
+    return is_right
+
+
+def velocity(setup: Setup) -> list[Share]:
+    """Print how each note's level rises with velocity, in each mapping that binds it.
+
+    Level (dB, A-weighted) at six velocities; spectral centroid (Hz) and attack (ms) at 20 and
+    127; and the velocities at which a peak was above the threshold of the output's limiter.
+    """
+    parts = []
+    for name in shipped_mappings():
+        if not load(name).of("velocity"):
+            continue
+        print(f"{name}:")
+        jobs = [(note, None, struck, name) for note in NOTES for struck in STRUCK]
+        found: list[Timbre] = in_parallel(setup, timbre, jobs)
+        rows = [found[i : i + len(STRUCK)] for i in range(0, len(found), len(STRUCK))]
+        right = [_rises(note, row) for note, row in zip(NOTES, rows, strict=True)]
+        ratios = [row[HARD].centroid_hz / row[SOFT].centroid_hz for row in rows]
+        sooner = [row[SOFT].attack_ms - row[HARD].attack_ms for row in rows]
+        print(
+            f"medians: rise {np.median([r[-1].level_db - r[0].level_db for r in rows]):.1f} dB, "
+            f"above 80 {np.median([r[HARD].level_db - r[MEDIUM].level_db for r in rows]):.1f} dB, "
+            f"centroid times {np.median(ratios):.2f}, attack {np.median(sooner):.0f} ms sooner; "
+            f"limited in {sum(each.peak > LIMITER for each in found)} of {len(found)} notes"
+        )
+        parts.append(told(name, right, [str(note) for note in NOTES]))
+    return parts

@@ -1,0 +1,162 @@
+"""Performances to measure: one instrument, one mapping, messages at times."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from ctypes import c_char
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import mido
+import numpy as np
+
+from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.engine.native import RIG
+from yehu_server.params.table import FINGERS, find
+from yehu_server.physics.quantities import Quantities
+from yehu_server.player.calibration import Calibration, wave_speed
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.presets import Presets
+from yehu_server.playing.style import Style
+from yehu_server.playing.wishes import Key
+
+NOTES = range(65, 90)  # F4 to F6
+SEEDS = 65536
+MEAN_FROM_S = 0.4
+Sound = Any
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What all takes of a measure have in common.
+
+    Attributes
+    ----------
+    rate : float
+        Sample rate (Hz).
+    variation : float
+        `/playing/variation`.
+    seed : int
+        Of all that is left to chance.
+    way : str, optional
+        The only way of bowing that is measured (`shuffled`).
+    """
+
+    rate: float
+    variation: float = 0.0
+    seed: int = 0
+    way: str | None = None
+
+    def steady_s(self, usual_s: float) -> float:
+        """Return when the steady state begins (s): under variation the mean from 0.4 s counts."""
+        return usual_s if self.variation == 0.0 else MEAN_FROM_S
+
+    def of_job(self, number: int) -> Setup:
+        """Return the setup of one of many takes, whose notes vary otherwise than the others'."""
+        return replace(self, seed=(1000 * self.seed + number) % SEEDS)
+
+
+@cache
+def calibrated(rate: float) -> Calibration:
+    """Return the calibration for a sample rate (Hz), of the instrument that ships."""
+    return calibration_for(rate)
+
+
+def _believe(instrument: Instrument, quantities: Quantities) -> None:
+    """Let the player of an instrument take its strings for those of other quantities."""
+    memory = memoryview((c_char * RIG_BYTES).from_address(instrument.address)).cast("B")
+    player = np.frombuffer(memory, RIG)["player"]
+    player["wave_speed"] = [wave_speed(quantities, i) for i in range(len(quantities.strings))]
+
+
+class Take:
+    """One performance on one instrument.
+
+    Parameters
+    ----------
+    settings : mapping
+        Held values of parameters, by address.
+    quantities : Quantities
+        The instrument before it is tuned; its calibration is always that of the one that ships.
+    tension : float
+        Factor on the tension of both strings, of which the player does not know.
+    """
+
+    def __init__(
+        self,
+        setup: Setup,
+        preset: str = "ordinary",
+        *,
+        mapping: str = DEFAULT,
+        settings: Mapping[str, float] | None = None,
+        quantities: Quantities | None = None,
+        tension: float = 1.0,
+    ) -> None:
+        self.rate = setup.rate
+        start = tuple(Presets().load(preset).values.items()) if mapping == DEFAULT else ()
+        style = Style(start=start, mapping=load(mapping), seed=setup.seed)
+        usual = calibrated(setup.rate)
+        first, second = usual.tensions
+        strung = replace(usual, tensions=(tension * first, tension * second))
+        self.instrument = style.instrument(setup.rate, strung, quantities)
+        _believe(self.instrument, usual.tuned(quantities or Quantities()))
+        self.wishes = style.wishes(self.instrument)
+        self.wishes.write("/playing/variation", setup.variation, frame=0, hold=True)
+        self.midi = style.midi(self.wishes)
+        self._channel = 1 if style.mapping.mpe else 0  # a member of the zone
+        for address, value in (settings or {}).items():
+            self.wishes.write(address, value, frame=0, hold=True)
+
+    def _frame(self, seconds: float) -> int:
+        return self.instrument.frames(1e3 * seconds)
+
+    def at(self, seconds: float, kind: str, **fields: int) -> None:
+        """Schedule a MIDI message for a time."""
+        message = mido.Message(kind, channel=self._channel, **fields)
+        self.midi.receive(message, frame=self._frame(seconds))
+
+    def on(self, seconds: float, note: float, velocity: int = 80) -> None:
+        """Schedule the beginning of a note, which may be fractional."""
+        self.midi.note_on(Key(self._channel, note), velocity / 127.0, self._frame(seconds))
+
+    def off(self, seconds: float, note: float) -> None:
+        """Schedule the end of a note."""
+        self.midi.note_off(Key(self._channel, note), self._frame(seconds))
+
+    def wheel(self, place: int | None) -> None:
+        """Set the mod wheel before the first note; None leaves it untouched."""
+        if place is not None:
+            self.at(0.0, "control_change", control=1, value=place)
+
+    def play(self, seconds: float) -> Sound:
+        """Return the sound of the performance."""
+        out = np.zeros(self._frame(seconds), np.float32)
+        self.instrument.process(out)
+        return out
+
+    def finger_m(self) -> float:
+        """Return the position (m) of the finger that is down; NaN where none is."""
+        for finger in FINGERS:
+            if self.instrument.target(f"/finger/{finger}/press") > 0.0:
+                return self.instrument.target(f"/finger/{finger}/position")
+        return math.nan
+
+    @property
+    def is_at_nut(self) -> bool:
+        """Whether the finger is as near to the nut (the loop) as it can be."""
+        return self.finger_m() <= find("/finger/1/position").lo
+
+
+def in_parallel(setup: Setup, work: Callable[..., Any], jobs: Iterable[Sequence[Any]]) -> list[Any]:
+    """Run jobs in threads, each with a setup of its own, and return their results.
+
+    The model runs without the GIL.
+    """
+    setups = ((setup.of_job(i), *job) for i, job in enumerate(jobs))
+    with ThreadPoolExecutor(os.cpu_count()) as workers:
+        return list(workers.map(lambda job: work(*job), setups))

@@ -1,0 +1,115 @@
+"""The measures of scripts/playability.py tell right from wrong on sounds that are known."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+SCRIPTS = Path(__file__).parents[1] / "scripts"
+RATES = (44100.0, 48000.0, 96000.0)
+SIXTEENTHS_S = (0.0435, 0.0625)  # their second halves
+FIFTH = 7.02  # semitones
+
+
+@pytest.fixture(autouse=True)
+def scripts(monkeypatch):
+    monkeypatch.syspath_prepend(SCRIPTS)
+
+
+def hertz(pitch):
+    return 440.0 * 2.0 ** ((pitch - 69.0) / 12.0)
+
+
+def saw(phase, highest, random, step=1):
+    """A sound of harmonics 1, 1 + `step` and so on, of amplitudes 1/k and random phases."""
+    orders = range(step, highest + 1, step)
+    return sum(np.sin(k * phase + random.uniform(0.0, 2.0 * np.pi)) / k for k in orders)
+
+
+def tone(pitch, seconds, rate, random, step=1):
+    turns = 2.0 * np.pi * hertz(pitch) * np.arange(round(seconds * rate)) / rate
+    return saw(turns, int(10000.0 / hertz(pitch)), random, step)
+
+
+@pytest.mark.parametrize("seconds", SIXTEENTHS_S)
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize(("ringing", "most"), [(0.0, 0.4), (0.5, 1.5)])
+def test_the_pitch_of_a_short_note_is_heard_beside_a_fifth(rate, seconds, ringing, most):
+    from measures.overtones import overtones_off_by
+
+    random = np.random.default_rng(1)
+    for note in range(65, 90):
+        error = random.uniform(-30.0, 30.0)
+        sound = tone(note + error / 100.0, seconds, rate, random)
+        sound += ringing * tone(note + FIFTH, seconds, rate, random)
+        sound += 0.01 * random.standard_normal(len(sound))
+        assert overtones_off_by(sound, rate, 0.0, seconds, note) == pytest.approx(error, abs=most)
+
+
+@pytest.mark.parametrize("step", [2, 3])
+def test_a_short_note_in_a_higher_register_is_out_of_tune(step):
+    from measures.intonation import NONE
+    from measures.overtones import overtones_off_by
+
+    random = np.random.default_rng(1)
+    sound = tone(70.0, 0.0625, 44100.0, random, step)
+    assert overtones_off_by(sound, 44100.0, 0.0, 0.0625, 70.0) == NONE
+
+
+@pytest.mark.parametrize("swing_hz", [1.0, 3.0, 11.0, 19.0])
+def test_a_swing_of_the_pitch_is_measured_whatever_its_frequency(swing_hz):
+    from measures.hunting import component, pitch_track
+
+    rate, note, swing_cents = 44100.0, 76, 2.0
+    times = np.arange(round(3.0 * rate)) / rate
+    bend = swing_cents * np.sin(2.0 * np.pi * swing_hz * times) + 3.0 * times  # and a drift
+    turns = 2.0 * np.pi * np.cumsum(hertz(note + bend / 100.0)) / rate
+    sound = saw(turns, 10, np.random.default_rng(1))
+    amplitude, frequency = component(pitch_track(sound, rate, note))
+    assert amplitude == pytest.approx(swing_cents, rel=0.1)
+    assert frequency == pytest.approx(swing_hz, abs=0.2)
+
+
+def test_a_note_that_loses_its_pitch_does_not_hold_still():
+    from measures.hunting import STILL_CENTS, component
+    from measures.intonation import NONE
+
+    assert component([0.0, NONE, 0.0])[0] > STILL_CENTS
+    assert component([0.0] * 200)[0] == 0.0
+
+
+def test_the_tunes_are_within_the_range_of_the_instrument():
+    from measures.take import NOTES
+    from measures.tunes import all_tunes
+
+    for name, notes in all_tunes().items():
+        assert {note.pitch for note in notes} <= set(NOTES), name
+        ends = [note.start + note.length for note in notes]
+        assert [note.start for note in notes] == [0, *ends[:-1]], name
+
+
+def test_a_player_does_not_know_of_other_tension():
+    from measures.intonation import off_by
+    from measures.take import Setup, Take
+
+    take = Take(Setup(44100.0), tension=1.04, settings={"/playing/listening": 0.0})
+    take.on(0.0, 79)
+    error = off_by(take.play(0.6), 44100.0, 0.4, 0.2, 79)
+    assert error == pytest.approx(34.0, abs=5.0)
+
+
+def test_the_share_of_a_measure_leaves_out_what_is_there_to_compare(tmp_path):
+    from measures.shares import Share, whole
+    from measures.take import Setup
+    from playability import append
+
+    parts = [Share("one", 1, 2), Share("other", 2, 2), Share("compared", 0, 4, counts=False)]
+    found = whole("hunting", parts)
+    assert str(found) == "hunting: 3 of 4 (75.0 %)"
+    append(tmp_path / "shares.jsonl", Setup(44100.0), found, parts)
+    written = json.loads((tmp_path / "shares.jsonl").read_text(encoding="utf-8"))
+    assert written["percent"] == 75.0
+    assert [part["what"] for part in written["parts"]] == ["one", "other", "compared"]

@@ -304,3 +304,20 @@ def test_what_one_peer_says_keeps_its_order_whoever_else_speaks(said):
         letters = "".join(step[1] for step in done.steps if step[0] == peer)
         assert letters == "".join(text for one, text, _ in said if one == peer)
     assert (len(done.backlog), done.backlog.bytes) == (0, 0)
+
+
+def test_the_time_of_a_lone_senders_short_packets_is_measured_once(done, clock):
+    # To measure it takes as long as to read a short packet.
+    measured = []
+    clock.thread_time_ns = lambda: measured.append(None) or clock.now_ns
+    for _ in range(20):
+        done.add("a", "x")
+    assert done.work() == " ".join(20 * ["ax"])
+    assert len(measured) == 2
+
+
+def test_short_packets_of_two_senders_are_handled_in_turn(done):
+    for peer in ("a", "b"):
+        for _ in range(10):
+            done.add(peer, "x")
+    assert done.work() == " ".join(10 * ["ax", "bx"])

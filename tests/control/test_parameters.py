@@ -156,6 +156,24 @@ def test_a_value_that_was_set_is_answered_before_and_after_the_audio_side_has_it
             assert stage.target(param.address) == value
 
 
+@pytest.mark.parametrize("address", ["/bow/force", "/playing/pressure"])
+def test_a_get_that_follows_a_set_answers_the_value_set_while_python_is_busy(house, busy, address):
+    client = house.client()
+    with busy():
+        for step in range(100):
+            value = f32(0.3 + 0.001 * step)
+            client.tell(address, value)
+            client.tell("/get", address)
+            client.tell("/ping", step)
+            told = list(iter(client.next, ("/yehu/pong", [step])))
+            # The value set before may be echoed first.
+            assert [heard for heard in told if heard.address == "/yehu" + address][-1] == (
+                "/yehu" + address,
+                [value],
+            )
+    assert house.is_well()
+
+
 def test_a_bow_drawn_by_hand_is_answered_at_once(stage):
     stage.tell("/note", 72.0, 90.0)
     stage.pass_time(0.1)

@@ -14,7 +14,6 @@ import logging
 import math
 import selectors
 import socket
-import struct
 import threading
 import time
 from collections import deque
@@ -23,11 +22,10 @@ from typing import Protocol
 
 from yehu_server.control.addresses import Address, Allowed, is_here
 from yehu_server.control.backlog import Backlog
+from yehu_server.control.datagrams import datagrams
 from yehu_server.control.framing import FramingError
 from yehu_server.control.listening import (
     DATAGRAM_BYTES,
-    SO_RXQ_OVFL,
-    SO_TIMESTAMPNS,
     open_both,
     widen,
 )
@@ -38,7 +36,6 @@ log = logging.getLogger(__name__)
 STREAM_BYTES = 1 << 16  # of a connection, read at a time
 BEHIND_BYTES = 1 << 16  # waiting of one WebSocket, before it has to wait
 MOST_ASKED = 64
-READ_AT_ONCE = 128  # datagrams of one turn
 READ_FOR_NS = 4_000_000  # before packets are handled in between
 MOST_PEERS = 1024  # UDP peers that are kept
 ACCEPT_AGAIN_S = 1.0
@@ -94,6 +91,7 @@ class OscPorts:
         self.port = int(self._udp.getsockname()[1])
         self.host = str(self._udp.getsockname()[0])
         self.traffic.buffer_bytes = widen(self._udp)
+        self._datagrams = datagrams(self._udp)
         self._wake_here, self._wake_there = socket.socketpair()
         self._wake_there.setblocking(False)
         self._asked: deque[Callable[[], object]] = deque()
@@ -235,30 +233,16 @@ class OscPorts:
             self._wake()
 
     def _read_datagrams(self) -> None:
-        """Read up to READ_AT_ONCE datagrams."""
-        offset_ns = time.time_ns() - time.monotonic_ns()
-        for _ in range(READ_AT_ONCE):
-            try:
-                packet, extras, _, address = self._udp.recvmsg(DATAGRAM_BYTES + 1, 128)
-            except BlockingIOError:
-                return
-            except OSError as error:  # an earlier answer was refused at its port
-                log.debug("OSC: %s", error)
-                continue
-            arrived_ns = time.monotonic_ns() if not extras else 0
-            for _, kind, data in extras:
-                if kind == SO_TIMESTAMPNS:
-                    seconds, ns = struct.unpack("qq", data[:16])
-                    arrived_ns = min(seconds * 10**9 + ns - offset_ns, time.monotonic_ns())
-                elif kind == SO_RXQ_OVFL:
-                    self.traffic.kernel_drops = struct.unpack("I", data[:4])[0]
+        """Read some of the waiting datagrams."""
+        found, self._has_more = self._datagrams.read()
+        self.traffic.kernel_drops = self._datagrams.dropped
+        for packet, address, arrived_ns in found:
             if address[1] == self.port and is_here(address[0]):
                 self.traffic.refused += 1  # from this server: someone subscribed it to itself
             elif address[0] in self._allowed:
                 self._enqueue(packet, self._peer(address), arrived_ns)
             else:
                 self.traffic.refused += 1
-        self._has_more = True
 
     def _peer(self, address: Address) -> UdpPeer:
         peer = self._peers.get(address)

@@ -1,0 +1,149 @@
+"""Reading datagrams: both readers tell the same, and the one for bursts keeps the GIL."""
+
+from __future__ import annotations
+
+import itertools
+import socket
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from yehu_server.control.datagrams import AT_ONCE, OneByOne, Together, datagrams
+from yehu_server.control.listening import DATAGRAM_BYTES, widen
+
+HERE = {socket.AF_INET: "127.0.0.1", socket.AF_INET6: "::1"}
+on_linux = pytest.mark.skipif(sys.platform != "linux", reason="recvmmsg is Linux's")
+READERS = [OneByOne, pytest.param(datagrams, marks=on_linux)]
+Pair = tuple[socket.socket, socket.socket]
+
+
+@pytest.fixture(params=HERE, ids=lambda family: family.name)
+def pair(request) -> Iterator[Pair]:
+    """A socket that hears, and one that sends to it."""
+    with (
+        socket.socket(request.param, socket.SOCK_DGRAM) as here,
+        socket.socket(request.param, socket.SOCK_DGRAM) as there,
+    ):
+        try:
+            here.bind((HERE[request.param], 0))
+        except OSError:
+            pytest.skip("this machine has no such addresses")
+        here.setblocking(False)
+        widen(here)
+        there.connect(here.getsockname())
+        yield here, there
+
+
+def test_linux_reads_bursts_by_one_call(pair):
+    assert isinstance(datagrams(pair[0]), Together if sys.platform == "linux" else OneByOne)
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_datagrams_come_whole_in_order_with_their_sender(pair, reader):
+    here, there = pair
+    sent = [b"", b"/a", bytes(DATAGRAM_BYTES), *(b"%d" % number for number in range(50))]
+    for packet in sent:
+        there.send(packet)
+    found, has_more = reader(here).read()
+    assert [packet for packet, _, _ in found] == sent
+    assert {address for _, address, _ in found} == {there.getsockname()}
+    assert not has_more
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_a_burst_of_more_than_one_read_loses_nothing(pair, reader):
+    here, there = pair
+    sent = [b"%d" % number for number in range(2 * AT_ONCE + 5)]
+    for packet in sent:
+        there.send(packet)
+    hears, found = reader(here), []
+    for _ in range(2):
+        some, has_more = hears.read()
+        assert len(some) == AT_ONCE
+        assert has_more
+        found += some
+    found += hears.read()[0]
+    assert [packet for packet, _, _ in found] == sent
+    assert hears.read() == ([], False)
+    assert hears.dropped == 0
+
+
+@on_linux
+def test_the_stamp_is_the_time_of_arrival_and_not_of_reading(pair):
+    here, there = pair
+    times = []
+    for _ in range(3):
+        before = time.monotonic_ns()
+        there.send(b"now")
+        times.append((before, time.monotonic_ns()))
+        time.sleep(0.02)
+    found, _ = datagrams(here).read()
+    for (before, after), (_, _, arrived_ns) in zip(times, found, strict=True):
+        assert before - 1_000_000 < arrived_ns < after + 1_000_000  # the clocks' common error
+
+
+@on_linux
+def test_what_the_kernel_drops_is_counted(pair):
+    here, there = pair
+    here.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 8192)
+    hears = datagrams(here)
+    for _ in range(500):
+        there.send(b"/a")
+    count = 0
+    while found := hears.read()[0]:
+        count += len(found)
+    there.send(b"/a")  # the count comes with the next one
+    assert hears.read()[0]
+    assert hears.dropped == 500 - count > 0
+
+
+def turns_of_others(read: Callable[[], object]) -> int:
+    """How often another thread, which is always ready, gets to run during a call."""
+    interval, count, ending = sys.getswitchinterval(), itertools.count(), threading.Event()
+
+    def work() -> None:
+        while not ending.is_set():
+            next(count)
+            time.sleep(0.0)  # lets go of the GIL
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    sys.setswitchinterval(10.0)  # nobody is made to let go of it
+    try:
+        before = next(count)
+        read()
+        return next(count) - before - 1
+    finally:
+        sys.setswitchinterval(interval)
+        ending.set()
+        thread.join()
+
+
+@on_linux
+def test_no_busy_thread_comes_between_the_datagrams_of_a_burst(pair):
+    # Each time it did, the rest of the burst waited for its turn.
+    here, there = pair
+    hears = datagrams(here)
+    for _ in range(20):
+        for number in range(AT_ONCE):
+            there.send(b"%d" % number)
+        assert turns_of_others(hears.read) == 0
+
+
+@on_linux
+def test_a_call_for_each_datagram_lets_others_come_between():
+    # The test above relies on this.
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as here:
+        here.bind((HERE[socket.AF_INET], 0))
+        here.setblocking(False)
+        hears = OneByOne(here)
+
+        def read_for_long() -> None:
+            ending = time.monotonic() + 0.5
+            while time.monotonic() < ending:
+                hears.read()
+
+        assert turns_of_others(read_for_long) > 0

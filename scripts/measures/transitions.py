@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from measures.intonation import bound, off_by
+from measures.intonation import bound
+from measures.overtones import overtones_off_by
 from measures.shares import Share, share, told
 from measures.take import NOTES, Setup, Take, in_parallel
 
 SPEED_WHEELS = (26, 84, 122)  # 0.14, 0.2 and 0.25 m/s
-STEP_S, WINDOW_S, SOON_MS = 0.4, 0.02, 60.0
+STEP_S, WINDOW_S, SOON_MS = 0.4, 0.03, 60.0
 CLICK = 2.0  # a step between samples this many times as large as inside the notes
 
 
@@ -23,7 +24,7 @@ def _slurred(setup: Setup, note: int, target: int, wheel: int) -> float:
     sound = take.play(STEP_S + 0.3)
     late = 0.0
     for ms in range(0, 200, 2):
-        error = off_by(sound, setup.rate, STEP_S + 1e-3 * ms, WINDOW_S, target)
+        error = overtones_off_by(sound, setup.rate, STEP_S + 1e-3 * ms, WINDOW_S, target)
         if abs(error) > bound(target):
             late = ms + 2.0
     return late

@@ -1,8 +1,11 @@
 """Write yehu_server/playing/practices.json, the practice for usual sample rates.
 
-    .venv/bin/python scripts/practise.py [RATE...]
+    .venv/bin/python scripts/practise.py [--anew] [RATE...]
 
-Takes some ten minutes a rate on two cores; the others stay as they are.
+Goes on from what is stored, or, with --anew, from all notes bowed alike. Practises at the usual
+place of the bow, calibrates with that, and practises at the others. Takes some 15 minutes a rate on
+two cores, more anew; the other rates stay as they are. Then run scripts/calibrate.py, so that the
+calibrations belong to it.
 """
 
 from __future__ import annotations
@@ -12,9 +15,11 @@ import json
 import time
 
 from yehu_server.physics.quantities import Quantities
+from yehu_server.player.bowing import PLACES, ordinary_table
+from yehu_server.playing.calibration import calibrate
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.practice import Practice
-from yehu_server.playing.practices import SHIPPED, as_data
+from yehu_server.playing.practice import DEFAULT, Practice
+from yehu_server.playing.practices import SHIPPED, as_data, as_text, shipped_practice
 
 RATES = (44100.0, 48000.0, 96000.0)
 
@@ -23,13 +28,22 @@ def main() -> None:
     """Practise at some rates, and write the file."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("rates", nargs="*", type=float, default=RATES, metavar="RATE")
+    parser.add_argument("--anew", action="store_true", help="forget what is stored")
+    arguments = parser.parse_args()
     found = {entry["rate"]: entry for entry in json.loads(SHIPPED.read_text(encoding="utf-8"))}
-    for rate in parser.parse_args().rates:
+    for rate in arguments.rates:
         start = time.perf_counter()
-        table = Practice(rate, Quantities(), calibration_for(rate)).learn()
+        quantities = Quantities()
+        known = ordinary_table() if arguments.anew else shipped_practice(rate)
+        table = Practice(rate, quantities, calibration_for(rate)).learn(
+            table=known, places=(DEFAULT,)
+        )
+        print(f"{rate:g} Hz: {time.perf_counter() - start:.0f} s, usual place", flush=True)
+        calibration = calibrate(rate, quantities, bowing=table)
+        others = set(range(len(PLACES))) - {DEFAULT}
+        table = Practice(rate, quantities, calibration).learn(table=table, places=others)
         found[rate] = as_data(table, rate)
-        text = json.dumps([found[known] for known in sorted(found)], indent=1)
-        SHIPPED.write_text(text + "\n", encoding="utf-8")
+        SHIPPED.write_text(as_text([found[known] for known in sorted(found)]), encoding="utf-8")
         print(f"{rate:g} Hz: {time.perf_counter() - start:.0f} s", flush=True)
 
 

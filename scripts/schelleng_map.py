@@ -48,6 +48,7 @@ from yehu_server.player.calibration import OPEN_NOTES, PITCHES, frequency_hz
 from yehu_server.player.intonation import position_of
 from yehu_server.player.record import prepare_player
 from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.practices import shipped_practice
 from yehu_server.playing.style import Style
 
 Array = Any
@@ -91,7 +92,7 @@ class Stop:
 
     def manner(self, column: int) -> float:
         """Return how the player bows the note; see player.bowing."""
-        return manner(self.player["bowing"], USUAL_BETA, float(self.note), column)
+        return manner(self.player["bowing"], self.string, USUAL_BETA, float(self.note), column)
 
     @property
     def silk(self) -> StringQuantities:
@@ -198,7 +199,7 @@ def player_force(stop: Stop, speed: Array, beta: float, wish: float) -> Array:
     """Return the force (N) that the player's assist sets for a value of ``/playing/pressure``."""
     fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
     flautando, light, firm = map(stop.manner, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
-    usual = share(flautando, light, firm, wish, stop.note)
+    usual = share(flautando, light, firm, wish, stop.string)
     return (usual + fast) * stop.highest_force(speed, beta)
 
 
@@ -263,7 +264,13 @@ def schelleng_picture(arguments: argparse.Namespace) -> None:
     calibration = calibration_for(rate)
     instrument = Style().instrument(rate, calibration)
     values = instrument.start_values
-    player = prepare_player(instrument.quantities, rate, values, calibration=calibration)[0]
+    player = prepare_player(
+        instrument.quantities,
+        rate,
+        values,
+        calibration=calibration,
+        bowing=shipped_practice(rate),
+    )[0]
     stops = [
         Stop(i, note, instrument.quantities, player, rate) for i, note in enumerate(arguments.note)
     ]

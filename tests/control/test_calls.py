@@ -126,6 +126,7 @@ def test_pitch_slides_the_sounding_note_steplessly(stage):
     assert {address for _, address, _ in stage.events} == {
         "/finger/1/position",
         "/output/balance",
+        "/finger/1/press",  # some notes want it firmer
         "/bow/speed",  # A4 wants it slow
         "/bow/pressure",
         "/bow/position",

@@ -7,16 +7,15 @@ import math
 
 import numpy as np
 import pytest
-from hands import HIGH_DB, LOW_DB
+from hands import HIGH_DB, LOW_DB, Watched, ideal
 
 from yehu_server.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
-    EDGE_ON_C,
-    EDGE_ON_F,
     FARTHER,
     FIRM,
+    FIRST,
     FLAUTANDO,
     LEAST_PRESS,
     LIGHT,
@@ -25,89 +24,94 @@ from yehu_server.player.bowing import (
     PLACES,
     TOP_SPEED,
     manner,
+    ordinary_table,
     share,
 )
-from yehu_server.player.practice import MANNERS, bowing_table
+from yehu_server.playing.practices import shipped_practice
 from yehu_server.playing.wishes import Key
 
-NOTES = bowing_table()
-DIFFICULT = sorted(MANNERS)
+SHIPPED = shipped_practice(44100.0)
+STOPS = [*((0, note) for note in range(65, 78)), *((1, note) for note in range(72, 90))]
 PLACE = 0.13
 
 
-def usual(note: int) -> list[float]:
-    """How a note is bowed by the table that ships; below F4 as that, which it sounds as."""
-    if max(note, 65) not in MANNERS:
-        return list(ORDINARY)
-    top_speed, light, firm, farther, press = MANNERS[max(note, 65)]
-    # Up to LIGHT the pressure is proportional to the wish.
-    return [top_speed, light * FLAUTANDO / LIGHT, light, firm, farther, press]
+def usual(string: int, note: int) -> list[float]:
+    """How a note is bowed by the table that ships."""
+    return list(SHIPPED[string, PLACES.index(PLACE), note - FIRST])
 
 
-def bowed(pitch: float, place: float = PLACE) -> list[float]:
+def bowed(string: int, pitch: float, place: float = PLACE) -> list[float]:
     """How a pitch is bowed."""
-    return [manner(NOTES, place, pitch, column) for column in range(MANNER)]
+    return [manner(SHIPPED, string, place, pitch, column) for column in range(MANNER)]
 
 
-def pressure(wish: float, pitch: float) -> float:
+def pressure(string: int, wish: float, pitch: float) -> float:
     """The bow's pressure at a pitch, for a wish."""
-    m = bowed(pitch)
-    return share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], wish, pitch)
+    m = bowed(string, pitch)
+    return share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], wish, string)
 
 
-def test_most_notes_are_bowed_as_asked():
-    assert bowed(74.0) == list(ORDINARY)
+def test_ordinarily_notes_are_bowed_as_asked_and_on_the_f_string_not_near_the_bridge():
+    table = ordinary_table()
+    assert np.all(table[1] == ORDINARY)
+    assert np.all(np.delete(table[0], FARTHER, axis=-1) == np.delete(ORDINARY, FARTHER))
+    positions = table[0, ..., FARTHER] * np.array(PLACES)[:, None]
+    assert positions.min() == pytest.approx(0.17)
+    assert np.all(table[0, PLACES.index(0.25), :, FARTHER] == 1.0)
     for wish in (0.1, 0.2, 0.25, 0.3, 0.42, 0.55):
-        assert share(*ORDINARY[AT_FLAUTANDO : AT_FIRM + 1], wish, 66.0) == pytest.approx(wish)
-        assert pressure(wish, 74.0) == pytest.approx(wish)
+        assert share(*ORDINARY[AT_FLAUTANDO : AT_FIRM + 1], wish, 0) == pytest.approx(wish)
 
 
-@pytest.mark.parametrize("note", range(60, 95))
-@pytest.mark.parametrize("place", [0.05, 0.1, PLACE, 0.15, 0.3])
-def test_a_note_is_bowed_as_its_table_says(note, place):
-    assert bowed(float(note), place) == usual(note)
+@pytest.mark.parametrize(("string", "note"), STOPS)
+def test_a_note_is_bowed_as_its_table_says(string, note):
+    assert bowed(string, float(note)) == usual(string, note)
 
 
-@pytest.mark.parametrize("note", DIFFICULT)
-def test_a_difficult_note_leans_between_its_ends(note):
-    flautando, light, firm = usual(note)[AT_FLAUTANDO : AT_FIRM + 1]
-    assert pressure(FLAUTANDO, float(note)) == pytest.approx(flautando)
-    assert pressure(LIGHT, float(note)) == pytest.approx(light)
-    assert pressure(FIRM, float(note)) == pytest.approx(firm)
-    assert flautando < pressure(0.5 * (FLAUTANDO + LIGHT), float(note)) < light
-    assert light < pressure(0.5 * (LIGHT + FIRM), float(note)) < firm
+def test_notes_beyond_the_table_are_bowed_as_the_last():
+    assert bowed(0, 30.0) == bowed(0, 64.0) == usual(0, 65)
+    assert bowed(1, 120.0) == bowed(1, 91.0)
+
+
+@pytest.mark.parametrize(("string", "note"), STOPS)
+def test_a_note_leans_between_the_ends_of_its_table(string, note):
+    flautando, light, firm = usual(string, note)[AT_FLAUTANDO : AT_FIRM + 1]
+    assert pressure(string, FLAUTANDO, float(note)) == pytest.approx(flautando)
+    assert pressure(string, LIGHT, float(note)) == pytest.approx(light)
+    assert pressure(string, FIRM, float(note)) == pytest.approx(firm)
+    middle = pressure(string, 0.5 * (LIGHT + FIRM), float(note))
+    assert middle == pytest.approx(0.5 * (light + firm))
 
 
 def test_each_of_the_three_shares_counts():
-    assert share(0.1, 0.5, 0.6, 0.5 * FLAUTANDO, 70.0) == pytest.approx(0.05)
-    assert share(0.1, 0.5, 0.6, 0.5 * (FLAUTANDO + LIGHT), 70.0) == pytest.approx(0.3)
-    assert share(0.1, 0.5, 0.6, 0.5 * (LIGHT + FIRM), 70.0) == pytest.approx(0.55)
+    assert share(0.1, 0.5, 0.6, 0.5 * FLAUTANDO, 0) == pytest.approx(0.05)
+    assert share(0.1, 0.5, 0.6, 0.5 * (FLAUTANDO + LIGHT), 0) == pytest.approx(0.3)
+    assert share(0.1, 0.5, 0.6, 0.5 * (LIGHT + FIRM), 0) == pytest.approx(0.55)
 
 
-@pytest.mark.parametrize("note", [66, 70, 74, 88])
-def test_pressure_goes_from_flautando_to_scratch_without_a_step(note):
-    pressures = [pressure(0.01 * wish, float(note)) for wish in range(201)]
+@pytest.mark.parametrize(("string", "edge"), [(0, 1.3), (1, 4.0)])
+def test_pressure_goes_from_flautando_to_scratch_without_a_step(string, edge):
+    shares = ORDINARY[AT_FLAUTANDO : AT_FIRM + 1]
+    pressures = [share(*shares, 0.01 * wish, string) for wish in range(201)]
     assert pressures[0] == 0.0
-    assert pressures[100] == pytest.approx(EDGE_ON_C if note >= 72 else EDGE_ON_F)
+    assert pressures[100] == pytest.approx(edge)
     steps = [after - before for before, after in itertools.pairwise(pressures)]
     assert min(steps) > 0.0
     assert max(steps) < 0.1
 
 
-def test_between_two_notes_a_pitch_is_bowed_in_between():
-    for note in DIFFICULT:
-        low, high = usual(note), usual(note + 1)
-        middle = [0.5 * (one + other) for one, other in zip(low, high, strict=True)]
-        assert bowed(note + 0.5) == pytest.approx(middle)
-        assert bowed(note + 0.001)[TOP_SPEED] == pytest.approx(low[TOP_SPEED], abs=1e-3)
+@pytest.mark.parametrize(("string", "note"), [(0, 66), (0, 71), (1, 73), (1, 83)])
+def test_between_two_notes_a_pitch_is_bowed_in_between(string, note):
+    low, high = usual(string, note), usual(string, note + 1)
+    middle = [0.5 * (one + other) for one, other in zip(low, high, strict=True)]
+    assert bowed(string, note + 0.5) == pytest.approx(middle)
 
 
 def test_between_two_places_a_note_is_bowed_in_between_and_beyond_them_as_at_the_last():
-    table = NOTES.copy()
-    table[:, :, FARTHER] = np.arange(len(PLACES))[:, None]
+    table = ordinary_table()
+    table[0, :, :, FARTHER] = np.arange(len(PLACES))[:, None]
 
     def farther(place: float) -> float:
-        return float(manner(table, place, 70.5, FARTHER))
+        return float(manner(table, 0, place, 70.5, FARTHER))
 
     for row, (near, far) in enumerate(itertools.pairwise(PLACES)):
         assert farther(near) == pytest.approx(row, abs=1e-9)
@@ -117,10 +121,23 @@ def test_between_two_places_a_note_is_bowed_in_between_and_beyond_them_as_at_the
     assert farther(1.0) == len(PLACES) - 1
 
 
+SLOWEST, FARTHEST, HARDEST = 0.1, 1.7, 3.0
+
+
+@pytest.fixture
+def listener() -> Watched:
+    """A player for whom A4 bears no fast bow; F sharp 4 wants one far away, and a firm finger."""
+    bowing = ordinary_table()
+    bowing[0, :, 69 - FIRST, TOP_SPEED] = SLOWEST
+    bowing[0, :, 66 - FIRST, FARTHER] = FARTHEST
+    bowing[0, :, 66 - FIRST, LEAST_PRESS] = HARDEST
+    return Watched(calibration=ideal(), bowing=bowing)
+
+
 def test_a_difficult_note_is_bowed_no_faster_than_it_bears(player, listener):
     player.write("/playing/speed", 0.3)
     player.note_on(Key(0, 69))
-    assert abs(listener["/bow/speed"]) == usual(69)[TOP_SPEED]
+    assert abs(listener["/bow/speed"]) == SLOWEST
     player.note_on(Key(0, 74))
     assert abs(listener["/bow/speed"]) == 0.3
 
@@ -128,7 +145,7 @@ def test_a_difficult_note_is_bowed_no_faster_than_it_bears(player, listener):
 def test_the_bow_moves_farther_for_a_note_that_wants_it_and_back(player, listener):
     player.write("/playing/bow_position", 0.1)
     player.note_on(Key(0, 66))
-    assert listener["/bow/position"] == pytest.approx(0.1 * usual(66)[FARTHER])
+    assert listener["/bow/position"] == pytest.approx(0.1 * FARTHEST)
     player.note_on(Key(0, 74))
     assert listener["/bow/position"] == 0.1
 
@@ -141,7 +158,7 @@ def test_a_bow_position_that_is_held_stays(player, listener):
 
 def test_the_finger_presses_hard_enough_for_its_note(player, listener):
     player.note_on(Key(0, 66))
-    assert listener.press == usual(66)[LEAST_PRESS]
+    assert listener.press == HARDEST
     player.write("/playing/press", 5.0)
     assert listener.press == 5.0
 
@@ -160,11 +177,11 @@ def test_a_loud_note_is_turned_down_as_far_as_evenness_is_asked(player, listener
 def test_a_note_that_slides_is_bowed_as_its_new_pitch_wants(player, listener):
     player.note_on(Key(0, 67))
     player.write("/playing/bend", 2.0)
-    assert abs(listener["/bow/speed"]) == usual(69)[TOP_SPEED]
+    assert abs(listener["/bow/speed"]) == SLOWEST
     player.write("/playing/bend", 0.0)
     assert abs(listener["/bow/speed"]) == 0.2
     player.slide(69.0)
-    assert abs(listener["/bow/speed"]) == usual(69)[TOP_SPEED]
+    assert abs(listener["/bow/speed"]) == SLOWEST
 
 
 def test_a_bow_position_written_during_a_note_stays_until_the_next(player, listener):
@@ -173,4 +190,4 @@ def test_a_bow_position_written_during_a_note_stays_until_the_next(player, liste
     player.write("/playing/pressure", 0.5)
     assert listener["/bow/position"] == 0.1
     player.note_on(Key(0, 66))
-    assert listener["/bow/position"] == pytest.approx(0.13 * usual(66)[FARTHER])
+    assert listener["/bow/position"] == pytest.approx(0.13 * FARTHEST)

@@ -12,7 +12,6 @@ from hands import Watched
 from pitch import cents, hertz, pitch_of
 from sound import run, run_for
 
-from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
 from yehu_server.player.intonation import position_of
@@ -21,6 +20,7 @@ from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.calibrations import SHIPPED, calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Wishes
 
 RATES = (44100.0, 48000.0, 96000.0)
@@ -81,7 +81,7 @@ def test_the_sharpening_is_read_at_its_notes_and_speeds():
 def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 440.0) -> float:
     """The pitch (Hz) of a note, from 0.1 s after it began."""
     tuned = calibration_for(rate, a4=a4)
-    instrument = Instrument(rate, tuned.tuned(Quantities()), calibration=tuned)
+    instrument = Style().instrument(rate, tuned)
     midi = MidiPlayer(Wishes(instrument), load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
@@ -114,7 +114,7 @@ def test_without_evenness_the_body_has_its_way():
 def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None = None) -> float:
     """A-weighted level (dB) of a note once it has settled."""
     tuned = calibration_for(44100.0)
-    instrument = Instrument(44100.0, tuned.tuned(Quantities()), calibration=tuned)
+    instrument = Style().instrument(44100.0, tuned)
     player = Wishes(instrument)
     if evenness is not None:
         player.write("/body/evenness", evenness)

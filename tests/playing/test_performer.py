@@ -8,8 +8,7 @@ import pytest
 from hands import Checked, Move, Watched, ideal
 
 from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import FIRST, TOP_SPEED
-from yehu_server.player.practice import bowing_table
+from yehu_server.player.bowing import FIRST, TOP_SPEED, ordinary_table
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.wishes import Key
@@ -376,11 +375,16 @@ def test_an_open_string_bent_up_is_stopped_and_open_again_when_it_comes_back(pla
     assert listener.where() == ("F", None)
 
 
-def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string(player, listener):
+def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string_as_that_is_bowed():
+    bowing = ordinary_table()
+    bowing[0, :, 71 - FIRST, TOP_SPEED] = 0.11
+    listener = Watched(calibration=ideal(), bowing=bowing)
+    player = Checked(listener)
+    player.write("/playing/variation", 0.0)
     player.note_on(key(73))
     player.write("/playing/bend", -2.0)
     assert listener.where() == ("F", 6)
-    assert listener["/bow/speed"] == bowing_table()[0, 71 - FIRST, TOP_SPEED]
+    assert listener["/bow/speed"] == 0.11
 
 
 def test_a_bend_below_the_open_f_string_stops_at_it(player, listener):

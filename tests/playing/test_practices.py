@@ -16,15 +16,16 @@ from yehu_server.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
+    FARTHER,
     FIRST,
     LAST,
     PLACES,
     TOP_SPEED,
+    ordinary_table,
 )
-from yehu_server.player.practice import bowing_table
 from yehu_server.playing import practice as practising
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.practice import Passage, Practice
+from yehu_server.playing.practice import Passage, Practice, Search
 from yehu_server.playing.practices import (
     FORMAT,
     HIGHEST,
@@ -33,7 +34,6 @@ from yehu_server.playing.practices import (
     as_data,
     read_practice,
     shipped_practice,
-    table_of,
     write_practice,
 )
 
@@ -45,10 +45,10 @@ NAN = float("nan")
 
 def practised() -> np.ndarray:
     """A table that somebody might have practised."""
-    table = bowing_table()
+    table = ordinary_table()
     chance = np.random.default_rng(1)
-    table[1:, 3:20] *= chance.uniform(0.8, 1.25, table[1:, 3:20].shape)
-    table[:, -1, TOP_SPEED] = 0.11
+    table[:, 1:, 3:20] *= chance.uniform(0.8, 1.25, table[:, 1:, 3:20].shape)
+    table[1, :, -1, TOP_SPEED] = 0.11
     return table
 
 
@@ -90,7 +90,7 @@ def render(command, tmp_path, tune):
 
 def test_a_table_that_was_written_is_read_back(tmp_path):
     path = tmp_path / "mine.json"
-    for table in (practised(), bowing_table(), shipped_practice(RATE)):
+    for table in (practised(), ordinary_table(), shipped_practice(RATE)):
         write_practice(path, table, RATE)
         np.testing.assert_allclose(read_practice(path), table, atol=1.1e-4)
     again = read_practice(path)
@@ -99,27 +99,35 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
 
 
 def test_only_notes_that_are_bowed_otherwise_are_written():
-    table = bowing_table()
-    assert not any(as_data(table, RATE)["bowing"].values())
-    table[PLACE, 70 - FIRST, AT_LIGHT] = 0.7
-    bowing = as_data(table, RATE)["bowing"]
-    assert [place for place, rows in bowing.items() if rows] == ["0.1"]
-    assert list(bowing["0.1"]) == ["70"]
+    table = ordinary_table()
+    assert rows_of(as_data(table, RATE)) == []
+    table[0, PLACE, 70 - FIRST, AT_LIGHT] = 0.7
+    assert rows_of(as_data(table, RATE)) == [("inner", "0.1", "70")]
+
+
+def rows_of(data: dict) -> list[tuple[str, str, str]]:
+    """String, place and note of what is in a practice."""
+    return [
+        (string, place, note)
+        for string, places in data["bowing"].items()
+        for place, notes in places.items()
+        for note in notes
+    ]
 
 
 def spoiled(**changes: object) -> dict:
     return {"format": FORMAT, "version": VERSION, "rate": RATE, "bowing": {}, **changes}
 
 
-def with_row(row: object, note: str = "70", place: str = "0.1") -> dict:
-    return spoiled(bowing={place: {note: row}})
+def with_row(row: object, note: str = "70", place: str = "0.1", string: str = "inner") -> dict:
+    return spoiled(bowing={string: {place: {note: row}}})
 
 
 GOOD = [0.2, 0.1, 0.3, 0.5, 1.0, 0.0]
 BAD = [
     *("", "{", "practice", b"\xff\xfe\x00", "[1, 2", '"x"', "null", "3", "[]", "{}"),
-    *(spoiled(format="yehu-server capture"), spoiled(version=2), spoiled(version=None)),
-    *(spoiled(bowing=None), spoiled(bowing=[]), spoiled(bowing="x"), spoiled(bowing={"0.1": []})),
+    *(spoiled(format="yehu-server capture"), spoiled(version=1), spoiled(version=None)),
+    *(spoiled(bowing=None), spoiled(bowing=[]), spoiled(bowing="x"), spoiled(bowing={"inner": []})),
     *(with_row(GOOD[:-1]), with_row([*GOOD, 0.0]), with_row([]), with_row(0.2), with_row(None)),
     *(with_row(["a"] * 6), with_row([GOOD]), with_row([None] * 6), with_row({"a": 1})),
     *(with_row([value, *GOOD[1:]]) for value in (NAN, float("inf"), 0.0, -0.2, 3.0, 10**400)),
@@ -128,11 +136,12 @@ BAD = [
     *(with_row([*GOOD[:1], value, *GOOD[2:]]) for value in (NAN, -0.1, 13.0)),
     *(with_row(GOOD, note) for note in (str(FIRST - 1), str(LAST + 1), "-1", "x", "70.5", "")),
     *(with_row(GOOD, place=place) for place in ("0.11", "0", "-0.1", "x", "nan", "")),
+    *(with_row(GOOD, string=string) for string in ("0", "1", "F", "")),
 ]
 
 
 def test_the_file_that_is_spoiled_below_is_one(file):
-    assert list(read_practice(file(with_row(GOOD)))[PLACE, 70 - FIRST]) == GOOD
+    assert list(read_practice(file(with_row(GOOD)))[0, PLACE, 70 - FIRST]) == GOOD
 
 
 @pytest.mark.parametrize("content", BAD, ids=str)
@@ -157,7 +166,7 @@ def test_a_practice_that_is_missing_or_a_folder_is_refused_in_one_line(refused, 
 def test_a_practice_is_not_overwritten_by_the_sound(file, refused, tune):
     path = file(with_row(GOOD))
     assert "practice" in refused("render", tune, "-o", path, "--format", "wav", "--practice", path)
-    assert list(read_practice(path)[PLACE, 70 - FIRST]) == GOOD
+    assert list(read_practice(path)[0, PLACE, 70 - FIRST]) == GOOD
 
 
 def test_what_was_practised_is_heard_and_named(render, tmp_path):
@@ -168,7 +177,7 @@ def test_what_was_practised_is_heard_and_named(render, tmp_path):
     write_practice(path, table, RATE)
     same, _ = render("--practice", path)
     np.testing.assert_allclose(same, usual, atol=0.05)
-    table[:, :, AT_FLAUTANDO : AT_FIRM + 1] *= 1.3
+    table[..., AT_FLAUTANDO : AT_FIRM + 1] *= 1.3
     write_practice(path, table, RATE)
     other, summary = render("--practice", path)
     assert summary["practice"] == str(path)
@@ -179,13 +188,13 @@ def test_what_was_practised_is_heard_and_named(render, tmp_path):
 
 
 @pytest.mark.parametrize("rate", [44100.0, 48000.0, 96000.0])
-def test_what_is_shipped_is_within_bounds_and_usual_where_it_was_calibrated(rate):
-    table, usual = shipped_practice(rate), bowing_table()
-    assert table.shape == usual.shape
+def test_what_is_shipped_is_within_bounds(rate):
+    table = shipped_practice(rate)
+    assert table.shape == ordinary_table().shape
     assert np.all((table >= LOWEST) & (table <= HIGHEST))
-    kept = [column for column in range(table.shape[2]) if column != AT_FLAUTANDO]
-    assert np.array_equal(table[DEFAULT][:, kept], usual[DEFAULT][:, kept])
-    assert np.all(table[DEFAULT, :, AT_FLAUTANDO] >= usual[DEFAULT, :, AT_FLAUTANDO])
+    positions = table[..., FARTHER] * np.array(PLACES)[:, None]
+    assert positions.min() > 0.05
+    assert positions.max() < 0.5
 
 
 def test_what_is_shipped_belongs_to_the_nearest_rate_and_cannot_be_spoiled():
@@ -210,23 +219,26 @@ def practice() -> Practice:
 
 @pytest.mark.parametrize(("note", "factor"), [(70, 0.02), (70, 30.0), (74, 0.02), (80, 30.0)])
 def test_a_manner_that_speaks_is_told_from_one_that_cannot(practice, note, factor):
-    good = bowing_table()[DEFAULT, note - FIRST]
+    string = int(note > 71)
+    good = shipped_practice(RATE)[string, DEFAULT, note - FIRST]
     bad = good.copy()  # too light, or too heavy
     bad[AT_FLAUTANDO : AT_FIRM + 1] *= factor
-    assert 0.8 < practice.score(note, DEFAULT, good, PASSAGES) <= 1.0
-    assert practice.score(note, DEFAULT, bad, PASSAGES) < 0.6
+    search = Search(string, note, DEFAULT, good)
+    assert 0.7 < practice.score(search, good, PASSAGES) <= 1.0
+    assert practice.score(search, bad, PASSAGES) < 0.6
 
 
 def test_the_score_of_a_manner_is_always_the_same(practice):
-    manner = bowing_table()[PLACE, 70 - FIRST]
-    scores = {practice.score(70, PLACE, manner, PASSAGES) for _ in range(3)}
+    manner = ordinary_table()[0, PLACE, 70 - FIRST]
+    search = Search(0, 70, PLACE, manner)
+    scores = {practice.score(search, manner, PASSAGES) for _ in range(3)}
     assert len(scores) == 1
 
 
 @pytest.fixture
 def one_note(monkeypatch) -> None:
     """Practise a single note, with a single passage at each trial."""
-    monkeypatch.setattr(practising, "NOTES", range(70, 71))
+    monkeypatch.setattr(practising, "STOPS", ((0, 70),))
     monkeypatch.setattr(practising, "TRIES", 1)
     monkeypatch.setattr(practising, "QUICK_TRIES", 1)
 
@@ -238,10 +250,9 @@ def test_what_practise_writes_render_takes(command, render, tmp_path):
     assert code == 0, error
     summary = json.loads(out)
     assert summary["rate"] == RATE
-    changed = json.loads(path.read_text())
-    assert sum(map(len, changed["bowing"].values())) == summary["improved"]
-    assert {note for rows in changed["bowing"].values() for note in rows} <= {"70"}
-    assert np.array_equal(table_of(changed), read_practice(path))
+    changed = ~np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
+    assert changed.sum() == summary["improved"]
+    assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
     assert render("--practice", path)[1]["practice"] == str(path)
 
 
@@ -250,8 +261,8 @@ def test_practising_for_a_preset_leaves_other_places_alone(command, tmp_path):
     path = tmp_path / "near.json"
     code, _, error = command("practise", "-o", path, "--preset", "sul-ponticello", "--quiet")
     assert code == 0, error
-    bowing = json.loads(path.read_text())["bowing"]
-    assert all(not rows for place, rows in bowing.items() if float(place) > 0.1)
+    same = np.isclose(read_practice(path), shipped_practice(RATE), atol=1e-4).all(axis=-1)
+    assert same[:, np.array(PLACES) > 0.1].all()
 
 
 @pytest.mark.parametrize(

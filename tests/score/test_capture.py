@@ -18,9 +18,9 @@ from yehu_server.engine.instrument import RIG_BYTES, Instrument
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.physics.quantities import Quantities, override
+from yehu_server.player.bowing import ordinary_table
 from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.player.fingering import OpenStrings
-from yehu_server.player.practice import bowing_table
 from yehu_server.player.wishes import (
     BEGIN,
     DRAW,
@@ -162,7 +162,7 @@ def measured(seed: int = 1) -> Calibration:
 
 
 def test_an_instrument_is_read_as_it_began(tmp_path):
-    bowing = bowing_table() * 1.01
+    bowing = ordinary_table() * 1.01
     calibration = measured()
     began = Instrument(
         44100.0,
@@ -659,12 +659,17 @@ CALIBRATION = {
     "sharpening": measured().sharpening,
     "levels": measured().levels,
 }
-BOWING = bowing_table().tolist()
+BOWING = ordinary_table().tolist()
 
 
 def test_the_header_that_is_changed_below_is_one(tmp_path, write):
     path = with_header(write(tmp_path / "c", end=5), calibration=CALIBRATION, bowing=BOWING)
     assert read_capture(path).beginning.calibration == measured()
+
+
+def test_a_table_of_a_time_when_both_strings_had_one_counts_for_both(tmp_path, write):
+    path = with_header(write(tmp_path / "c", end=5), calibration=CALIBRATION, bowing=BOWING[0])
+    assert read_capture(path).beginning.bowing.tolist() == [BOWING[0]] * 2
 
 
 @pytest.mark.parametrize(
@@ -693,7 +698,7 @@ def test_the_header_that_is_changed_below_is_one(tmp_path, write):
             {"bowing": [*BOWING[1:], [*BOWING[0][1:], [value] * 6]]}
             for value in (NAN, INFINITY, "a", None, 10**400)
         ),
-        {"bowing": BOWING[0]},  # of one place
+        {"bowing": BOWING[0][0]},  # of one place
         *({"calibration": calibration} for calibration in (0, [], {}, "x", True)),
         *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (0.0, -440.0, NAN, INFINITY, "x")),
         *({"calibration": {**CALIBRATION, "a4": a4}} for a4 in (None, 1e9, 1e-300, 10**400)),

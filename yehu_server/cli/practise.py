@@ -23,7 +23,8 @@ examples:
   yehu-server practise --preset sul-ponticello -o near.json
   yehu-server render tune.mid -o tune.wav --practice mine.json
 
-Takes some ten minutes on two cores. The usual instrument comes practised.
+Begins with what comes with this version, and takes a quarter of an hour or more on two cores. The
+usual instrument comes practised.
 """
 
 
@@ -61,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibrations import calibration_for
     from yehu_server.playing.practice import Practice
-    from yehu_server.playing.practices import write_practice
+    from yehu_server.playing.practices import shipped_practice, write_practice
     from yehu_server.playing.presets import Presets
 
     check_rate(arguments.rate)
@@ -77,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
         calibration = calibration_for(arguments.rate, quantities, progress=progress)
     practice = Practice(arguments.rate, quantities, calibration, values)
     with progress_bar(arguments, "practising", "notes") as progress:
-        table = practice.learn(progress)
+        table = practice.learn(progress, table=shipped_practice(arguments.rate))
     write_practice(arguments.output, table, arguments.rate)
     elapsed = time.perf_counter() - start
     improved = practice.notes_changed

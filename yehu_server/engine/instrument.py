@@ -21,9 +21,9 @@ from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.layout import MAX_FINGERS, new_record
 from yehu_server.physics.quantities import Quantities
+from yehu_server.player.bowing import ordinary_table
 from yehu_server.player.calibration import Calibration
 from yehu_server.player.fingering import OpenStrings
-from yehu_server.player.practice import bowing_table
 from yehu_server.player.record import end_all, prepare_player
 from yehu_server.player.wishes import RAMP, WISH
 
@@ -52,7 +52,7 @@ class Instrument:
     seed : int
         Seed of the variation between notes.
     bowing : ndarray
-        How each note is bowed; by default ``player.bowing.bowing_table``.
+        How each note is bowed; by default ``player.bowing.ordinary_table``.
     start_values : mapping
         Values of parameters at the start, by address; others have their default.
     channels : int
@@ -82,7 +82,7 @@ class Instrument:
         check_rate(rate)
         self.rate = rate
         self.calibration, self.open_strings, self.seed = calibration, open_strings, seed
-        self.bowing = bowing_table() if bowing is None else bowing
+        self.bowing = ordinary_table() if bowing is None else bowing
         seeded = {"/engine/seed": find("/engine/seed").accept(seed)}
         defaults = {param.address: param.default for param in TABLE}
         self.start_values = defaults | seeded | dict(start_values or {})

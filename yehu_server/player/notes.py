@@ -129,7 +129,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
         slide_ms = p.value[PORTAMENTO_TIME]
     pitch = p.finger_pitch = sounding_pitch(p)
     string, position = choose(p, pitch, wished_speed(p))
-    left_hand.stop(p, c, string, position, least_press(p), slide_ms)
+    left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_leaning(p, pitch)
     is_slur = is_legato and not at_once
@@ -257,11 +257,11 @@ def lean(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def least_press(p: Any) -> float:
-    """The finger force (N) that the sounding note needs."""
+def least_press(p: Any, string: int) -> float:
+    """The finger force (N) that the sounding note needs on a string."""
     if p.sounding < 0:
         return 0.0
-    return manner(p.bowing, p.value[POSITION], sounding_pitch(p), LEAST_PRESS)
+    return manner(p.bowing, string, p.value[POSITION], sounding_pitch(p), LEAST_PRESS)
 
 
 @compiled_exactly
@@ -290,15 +290,13 @@ def follow_bend(p: Any, c: Any) -> None:
     pitch, before, was = sounding_pitch(p), p.string, p.finger_pitch
     p.finger_pitch = pitch
     string, position = stay(p, pitch, wished_speed(p))
-    if not right_hand.bows_alike(p, pitch):
-        lean(p, c)
-        draw(p, c, USUAL_MS)
-    left_hand.stop(p, c, string, position, least_press(p), BEND_RAMP_MS)
+    left_hand.stop(p, c, string, position, least_press(p, string), BEND_RAMP_MS)
     if string != before:
         begin_tuning(p, pitch)
+    if string != before or not right_hand.bows_alike(p, pitch):
+        lean(p, c)
+        draw(p, c, USUAL_MS)
     if pitch != was:
-        p.first_error = math.nan
+        p.first_error, p.jumps = math.nan, 0
         unsettle(p, c, BEND_RAMP_MS)
     even_out(p, c)
-    if string != before:
-        draw(p, c, USUAL_MS)

@@ -10,12 +10,11 @@ import numpy as np
 from yehu_server.params.table import TABLE
 from yehu_server.physics.layout import STRINGS
 from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import MANNER, ORDINARY, PLACES
+from yehu_server.player.bowing import MANNER, ORDINARY, PLACES, ordinary_table
 from yehu_server.player.bowing import NOTES as NOTES_BOWED
 from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, wave_speed
 from yehu_server.player.ear import EAR, prepare_ear
 from yehu_server.player.fingering import OPEN, OpenStrings
-from yehu_server.player.practice import bowing_table
 from yehu_server.player.rows import (
     BOW_SIDE,
     BOW_SPEED,
@@ -58,6 +57,9 @@ PLAYER = np.dtype(
         # What it hears and corrects.
         ("ear", EAR),
         ("settled_at", np.int64),  # frame from which the string is heard
+        ("jumps", np.int64),  # of the pitch over its place, in this note
+        ("side_heard", np.int64),  # of its place: 1 where the finger was too low
+        ("times_heard", np.int64),  # there
         ("sharper", np.float64),  # cents: correction of the sharpening of this note
         ("first_press", np.float64),  # N: wished as the note began
         ("first_error", np.float64),  # cents: heard first; NaN: nothing yet
@@ -87,7 +89,7 @@ PLAYER = np.dtype(
         ("wave_speed", np.float64, STRINGS),  # m/s
         ("sharpening", np.float64, (STRINGS, NOTES, len(SPEEDS))),  # cents
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
-        ("bowing", np.float64, (len(PLACES), NOTES_BOWED, MANNER)),
+        ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, MANNER)),
         ("open_strings", np.int64),  # number of the OpenStrings
     ],
     align=True,
@@ -118,7 +120,7 @@ def prepare_player(
     calibration : Calibration, optional
         By default fingers stop where an ideal string is in tune, and no note is evened out.
     bowing : ndarray
-        By default `bowing_table`.
+        By default `ordinary_table`.
     seed : int
         Of the variation between notes.
 
@@ -149,7 +151,7 @@ def prepare_player(
         p["sharpening"] = calibration.sharpening
         if calibration.levels:
             p["levels"] = calibration.levels
-    p["bowing"] = bowing_table() if bowing is None else bowing
+    p["bowing"] = ordinary_table() if bowing is None else bowing
     p["open_strings"] = list(OpenStrings).index(open_strings)
     return player
 

@@ -57,16 +57,22 @@ def wished_speed(p: Any) -> float:
 
 
 @compiled_exactly
+def manner_of(p: Any, pitch: float, column: int) -> float:
+    """One value of how a pitch is bowed on the string of the fingering; see `manner`."""
+    return manner(p.bowing, max(p.string, 0), p.value[POSITION], pitch, column)
+
+
+@compiled_exactly
 def speed_at(p: Any, pitch: float) -> float:
     """Bow speed (m/s) for a pitch: as wished, up to the highest at which it speaks."""
-    return min(wished_speed(p), manner(p.bowing, p.value[POSITION], pitch, TOP_SPEED))
+    return min(wished_speed(p), manner_of(p, pitch, TOP_SPEED))
 
 
 @compiled_exactly
 def bows_alike(p: Any, pitch: float) -> bool:
     """Whether a pitch is bowed as the present one is."""
     for column in range(MANNER):
-        if manner(p.bowing, p.value[POSITION], pitch, column) != p.manner[column]:
+        if manner_of(p, pitch, column) != p.manner[column]:
             return False
     return True
 
@@ -84,9 +90,9 @@ def lean(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     pressure = p.value[PRESSURE] * p.weight
     if is_sounding:
         for column in range(MANNER):
-            p.manner[column] = manner(p.bowing, p.value[POSITION], pitch, column)
+            p.manner[column] = manner_of(p, pitch, column)
         m = p.manner
-        pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, pitch)
+        pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0))
         pressure *= p.leaning
     move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
     move(p, c, BOW_POSITION, p.value[POSITION] * p.manner[FARTHER], USUAL_MS)

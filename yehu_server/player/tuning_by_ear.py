@@ -21,6 +21,9 @@ from yehu_server.player.rows import FINGER_POSITION, LISTENING, PRESS
 # pitches swing about their place some eleven times a second, E5 above all: a quick hand would make
 # that last.
 SLOWLY, QUICKLY, SMALL_CENTS, LARGE_CENTS = 2.5, 12.0, 4.0, 10.0
+# A pitch that is so far off for so many hearings, and then on the other side, has jumped; as often
+# as this, and the finger rests.
+FAR_CENTS, LASTING, MOST_JUMPS = 2.5, 16, 2
 MOST_CENTS = 100.0  # of all corrections
 ENOUGH_CENTS = 0.3  # nearer than this the finger rests
 # A pitch that follows the finger needs a correction as large as its first error. Beyond this part
@@ -34,6 +37,7 @@ def begin_tuning(p: Any, pitch: float) -> None:
     """Begin a note with what was learnt of it."""
     p.sharper = learnt_cents(p, p.string, pitch)
     p.first_error, p.first_press = math.nan, p.value[PRESS]
+    p.jumps, p.side_heard, p.times_heard = 0, 0, 0
 
 
 @compiled_exactly
@@ -59,6 +63,9 @@ def tune(p: Any, c: Any, pitch: float) -> None:
         return
     uncorrected = ear.error + p.sharper
     wanted = p.value[LISTENING] * uncorrected - p.sharper
+    if jumps(p, wanted) >= MOST_JUMPS:
+        p.first_error = math.inf
+        return
     if abs(wanted) > ENOUGH_CENTS:
         large = (abs(wanted) - SMALL_CENTS) / (LARGE_CENTS - SMALL_CENTS)
         rate = SLOWLY + (QUICKLY - SLOWLY) * min(max(large, 0.0), 1.0)
@@ -66,6 +73,22 @@ def tune(p: Any, c: Any, pitch: float) -> None:
         p.sharper = min(max(p.sharper, -MOST_CENTS), MOST_CENTS)
         place_finger(p, c, pitch)
     p.learnt[p.string, row, place, pace] = p.sharper
+
+
+@compiled_exactly
+def jumps(p: Any, wanted: float) -> int:
+    """How often the pitch has jumped over its place in this note, from far on one side.
+
+    Between two such places the finger would go to and fro for ever.
+    """
+    if abs(wanted) > FAR_CENTS:
+        side = 1 if wanted > 0.0 else -1
+        if side == p.side_heard:
+            p.times_heard += 1
+        else:
+            p.jumps += 1 if p.times_heard >= LASTING else 0
+            p.side_heard, p.times_heard = side, 1
+    return int(p.jumps)
 
 
 @compiled_exactly

@@ -151,7 +151,7 @@ def follow(p: Any, c: Any, row: int) -> None:
     if row in (BEND, TRUST):
         notes.follow_bend(p, c)
     elif row == PRESS:
-        left_hand.press(p, c, notes.least_press(p))
+        left_hand.press(p, c, notes.least_press(p, max(p.string, 0)))
     elif row == DYNAMICS:
         notes.draw(p, c, USUAL_MS)
         notes.follow_bend(p, c)

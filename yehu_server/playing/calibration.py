@@ -11,6 +11,7 @@ import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,8 +31,9 @@ from yehu_server.player.bowing import (
     FIRM,
     LEAST_PRESS,
     LIGHT,
+    PLACES,
     TOP_SPEED,
-    manner,
+    at_pitch,
     share,
 )
 from yehu_server.player.calibration import (
@@ -42,8 +44,9 @@ from yehu_server.player.calibration import (
     frequency_hz,
     ideal_position,
 )
-from yehu_server.player.practice import bowing_table
+from yehu_server.playing.practices import shipped_practice
 
+Array = Any
 Progress = Callable[[float, float], None]
 
 PRESS = 1.5  # N
@@ -56,6 +59,18 @@ STEP_CENTS = 1.5  # in a bracket as narrow as this the pitch jumps
 USUAL_CENTS = (50.0, 25.0)  # sharpening to begin with, and where nothing could be measured
 
 
+@dataclass(frozen=True)
+class _Setup:
+    rate: float
+    quantities: Quantities
+    a4: float
+    bowing: Array  # ndarray [shape=(STRINGS, NOTES, MANNER)], at DEFAULT_PLACE
+
+    def manner(self, string: int, pitch: float, column: int) -> float:
+        """One value of how a pitch is bowed on a string."""
+        return at_pitch(self.bowing[string], float(pitch), column)
+
+
 def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     """Hash of everything that a calibration depends on (16 hex digits)."""
     package = Path(__file__).parent.parent
@@ -64,14 +79,20 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
         for folder in ("physics", "controls")
         for source in sorted((package / folder).glob("*.py"))
     ]
-    sources += [package / "player" / f"{name}.py" for name in ("bowing", "calibration", "practice")]
+    sources += [package / "player" / f"{name}.py" for name in ("bowing", "calibration")]
     sources += [package / "engine" / f"{name}.py" for name in ("native", "output")]
     sources += [Path(__file__)]
-    return key_of(sources, repr((rate, a4, quantities)))
+    bowed = shipped_practice(rate)[:, PLACES.index(DEFAULT_PLACE)].tolist()
+    return key_of(sources, repr((rate, a4, quantities, bowed)))
 
 
 def calibrate(
-    rate: float, quantities: Quantities, *, a4: float = 440.0, progress: Progress | None = None
+    rate: float,
+    quantities: Quantities,
+    *,
+    a4: float = 440.0,
+    bowing: Array | None = None,
+    progress: Progress | None = None,
 ) -> Calibration:
     """Measure a calibration by bowing the model.
 
@@ -81,15 +102,19 @@ def calibrate(
         Sample rate (Hz).
     a4 : float
         Reference pitch (Hz).
+    bowing : ndarray, optional
+        How notes are bowed; by default as practised for the nearest of the usual rates.
     progress : callable, optional
         Called with the number of notes done and of all notes.
     """
     jobs = [(string, pitch) for string, pitches in enumerate(PITCHES) for pitch in pitches]
+    bowing = shipped_practice(rate) if bowing is None else bowing
+    untuned = _Setup(rate, quantities, a4, bowing[:, PLACES.index(DEFAULT_PLACE)])
     rows: list[Any] = []
     with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
-        first, second = workers.map(lambda i: _tension(rate, quantities, a4, i), (0, 1))
-        tuned = Calibration(a4, (first, second), ()).tuned(quantities)
-        measured = workers.map(lambda job: _stopped_note(rate, tuned, a4, *job), jobs)
+        first, second = workers.map(lambda i: _tension(untuned, i), (0, 1))
+        tuned = replace(untuned, quantities=Calibration(a4, (first, second), ()).tuned(quantities))
+        measured = workers.map(lambda job: _stopped_note(tuned, *job), jobs)
         for done, row in enumerate(measured, start=1):
             rows.append(row)
             if progress is not None:
@@ -97,32 +122,29 @@ def calibrate(
     sharpening, levels = [], []
     for string, note in enumerate(OPEN_NOTES):
         own = np.array([row for (on, _), row in zip(jobs, rows, strict=True) if on == string])
-        open_levels = [_bow(rate, tuned, string, note, speed, None)[1] for speed in SPEEDS]
+        open_levels = [_bow(tuned, string, note, speed, None)[1] for speed in SPEEDS]
         sharpening.append(_completed(own[:, :, 0], USUAL_CENTS[string]))
         levels.append(_completed(np.vstack([open_levels, own[:, :, 1]]), SILENCE_DB))
-    tensions = tuned.string_1.T, tuned.string_2.T
-    return Calibration(a4, tensions, tuple(sharpening), tuple(levels))
-
-
-def _manner(pitch: float, column: int) -> float:
-    return manner(bowing_table(), DEFAULT_PLACE, float(pitch), column)
+    return Calibration(a4, (first, second), tuple(sharpening), tuple(levels))
 
 
 def _bow(
-    rate: float, quantities: Quantities, string: int, pitch: float, speed: float, x_f: float | None
+    setup: _Setup, string: int, pitch: float, speed: float, x_f: float | None
 ) -> tuple[float, float]:
     """Pitch (Hz) and level (dB) of a string, bowed as the player does at medium pressure."""
-    instrument = Instrument(rate, quantities)
+    rate = setup.rate
+    instrument = Instrument(rate, setup.quantities)
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
-        instrument.write("/finger/1/press", max(PRESS, _manner(pitch, LEAST_PRESS)))
-    flautando, light, firm = (_manner(pitch, c) for c in (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
-    pressure = share(flautando, light, firm, 0.5 * (LIGHT + FIRM), pitch)
-    beta = _manner(pitch, FARTHER) * DEFAULT_PLACE
+        instrument.write("/finger/1/press", max(PRESS, setup.manner(string, pitch, LEAST_PRESS)))
+    columns = (AT_FLAUTANDO, AT_LIGHT, AT_FIRM, FARTHER, TOP_SPEED)
+    flautando, light, firm, farther, fastest = (setup.manner(string, pitch, c) for c in columns)
+    pressure = share(flautando, light, firm, 0.5 * (LIGHT + FIRM), string)
+    beta = farther * DEFAULT_PLACE
     instrument.write("/bow/position", beta, ramp_ms=0.0)
     instrument.write("/bow/pressure", pressure, ramp_ms=0.0)
     instrument.write("/bow/side", 1.0 if string == 0 else -1.0)
-    instrument.write("/bow/speed", min(speed, _manner(pitch, TOP_SPEED)), ramp_ms=40.0)
+    instrument.write("/bow/speed", min(speed, fastest), ramp_ms=40.0)
     settle_s = OPEN_SETTLE_S if x_f is None else SETTLE_S
     listen_s = OPEN_LISTEN_S if x_f is None else LISTEN_S
     out = np.zeros(round((settle_s + listen_s) * rate), np.float32)
@@ -136,14 +158,15 @@ def starting_tension(quantities: Quantities, a4: float, string: int) -> float:
     return quantities.strings[string].T * (a4 / 440.0) ** 2
 
 
-def _tension(rate: float, quantities: Quantities, a4: float, string: int) -> float:
+def _tension(setup: _Setup, string: int) -> float:
     """Tension (N) at which an open string is in tune."""
     note = OPEN_NOTES[string]
-    target = frequency_hz(note, a4)
-    tension = starting_tension(quantities, a4, string)
+    target = frequency_hz(note, setup.a4)
+    tension = starting_tension(setup.quantities, setup.a4, string)
     for _ in range(ROUNDS):
-        tried = override(quantities, {f"string_{string + 1}": {"T": tension}})
-        heard = [_bow(rate, tried, string, note, speed, None)[0] for speed in SPEEDS[:3]]
+        quantities = override(setup.quantities, {f"string_{string + 1}": {"T": tension}})
+        tried = replace(setup, quantities=quantities)
+        heard = [_bow(tried, string, note, speed, None)[0] for speed in SPEEDS[:3]]
         errors = [cents(f, target) for f in heard if math.isfinite(f)]
         error = float(np.median(errors)) if errors else 0.0
         if abs(error) < PLAUSIBLE_CENTS:
@@ -153,17 +176,15 @@ def _tension(rate: float, quantities: Quantities, a4: float, string: int) -> flo
     return tension
 
 
-def _stopped_note(
-    rate: float, quantities: Quantities, a4: float, string: int, note: float
-) -> list[tuple[float, float]]:
+def _stopped_note(setup: _Setup, string: int, note: float) -> list[tuple[float, float]]:
     """Sharpening (cents) and level (dB) at each speed; NaN where the note leaves its register."""
     found = []
     guess = USUAL_CENTS[string]
     bowed_at = 0.0
     for speed in SPEEDS:
-        slowed = min(speed, _manner(note, TOP_SPEED))
+        slowed = min(speed, setup.manner(string, note, TOP_SPEED))
         if slowed != bowed_at:
-            sharp, level = _search(rate, quantities, a4, string, note, slowed, guess)
+            sharp, level = _search(setup, string, note, slowed, guess)
             guess = sharp if math.isfinite(sharp) else guess
         bowed_at = slowed
         found.append((sharp, level))
@@ -171,25 +192,19 @@ def _stopped_note(
 
 
 def _search(
-    rate: float,
-    quantities: Quantities,
-    a4: float,
-    string: int,
-    note: float,
-    speed: float,
-    sharp: float,
+    setup: _Setup, string: int, note: float, speed: float, sharp: float
 ) -> tuple[float, float]:
     """Sharpening (cents) at which a note is nearest to its pitch, and its level (dB) there.
 
     The pitch does not follow the finger everywhere: it locks to the other string and to the
     body, and may jump over the note. So the search keeps a bracket, and the best result.
     """
-    target = frequency_hz(note, a4)
+    target = frequency_hz(note, setup.a4)
     best, nearest = (math.nan, math.nan), IN_TUNE_CENTS
     flat, high = math.inf, -math.inf  # the least sharpening that was flat, the most that was sharp
     for _ in range(ROUNDS):
-        x_f = ideal_position(quantities, string, target * math.exp2(-sharp / 1200.0))
-        heard, level = _bow(rate, quantities, string, note, speed, x_f)
+        x_f = ideal_position(setup.quantities, string, target * math.exp2(-sharp / 1200.0))
+        heard, level = _bow(setup, string, note, speed, x_f)
         error = cents(heard, target) if math.isfinite(heard) else math.inf
         if abs(error) > PLAUSIBLE_CENTS:
             break

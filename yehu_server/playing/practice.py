@@ -31,38 +31,46 @@ from yehu_server.player.bowing import (
     LEAST_PRESS,
     PLACES,
     TOP_SPEED,
+    ordinary_table,
 )
 from yehu_server.player.calibration import OPEN_NOTES, Calibration
-from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
-from yehu_server.player.practice import bowing_table
+from yehu_server.player.fingering import HIGHEST_NOTE, HIGHEST_ON_F, LOWEST_NOTE
 from yehu_server.playing.wishes import Key, Wishes
 
 Array = Any
 Progress = Callable[[float, float], None]
 
-NOTES = range(LOWEST_NOTE, HIGHEST_NOTE + 1)
-DEFAULT = PLACES.index(find("/playing/bow_position").default)  # calibrated so: it stays
+# The notes practised on each string; what is bent above the first's goes to the other.
+STOPS = (
+    *((0, note) for note in range(LOWEST_NOTE, math.ceil(HIGHEST_ON_F) + 1)),
+    *((1, note) for note in range(OPEN_NOTES[1], HIGHEST_NOTE + 1)),
+)
+DEFAULT = PLACES.index(find("/playing/bow_position").default)  # practised first
 SPEEDS, PRESSURES = (0.12, 0.16, 0.2, 0.25), (0.2, 0.3, 0.42, 0.55)
-QUICK = (0.2, 0.24)  # speeds (m/s) for which a light bow is practised at the default place
+QUICK = (0.2, 0.24)  # speeds (m/s) for which a light bow is practised
 RESTS_S = (0.02, 0.12)
 BEFORE_S, EARLY_S, LATE_S, UP_S, EACH_S = 0.2, 0.13, 0.38, 0.385, 0.4
-TRIES, QUICK_TRIES = 10, 8
+# Passages that a manner is judged by, of which the first few tell those that are worth the others;
+# and of a light, quick bow.
+TRIES, HEAT, QUICK_TRIES = 16, 5, 8
 AGAIN, FINALISTS = 500_000, 4  # what begins the other passages; manners that play them
 # It speaks: certainty and slips in a period; cents early, when the ear has not yet tuned it, and
 # late. Weight of early.
 CERTAIN, FEWEST, MOST, NEAR_EARLY, NEAR_LATE, EARLY = 0.97, 0.7, 1.4, 60.0, 15.0, 0.3
 NEAR_OPEN = 8.0  # of open strings, which nothing tunes
 OFF_WEIGHT = 600.0  # cents of the first error that count as much as never to speak
-GOOD, BETTER = 0.95, 0.02  # a score that is not improved, and by how much another must be better
-STAYS_WELL = 0.9  # a score at the usual place that is good enough
+GOOD, BETTER = 0.96, 0.015  # a score that is not improved, and by how much another must be better
 AWAY, CHANGED = 0.05, 0.02  # lost for moving the bow by a factor of e, and its share
-FARTHERS_ON_F, FARTHERS_ON_C = (0.7, 0.85, 1.0, 1.2, 1.45, 1.75), (0.87, 1.0, 1.15)
-SHARES, FIRMEST_ON_F, FIRMEST_ON_C = (0.75, 1.0, 1.35, 1.8, 2.3), 1.2, 3.5
-TOP_SPEEDS, PRESSES = (0.08, 0.1, 0.13, 0.16, 0.2, 0.6), (0.0, 3.0, 4.0)
+# Distances of the bow from the bridge, relative to those wished for; on the F string at the default
+# place, too.
+FARTHERS = ((0.7, 0.85, 1.0, 1.2, 1.45, 1.75), (0.75, 0.87, 1.0, 1.15))
+DEFAULT_FARTHERS = ((1.0, 1.15, 1.3, 1.5, 1.7), (0.87, 1.0, 1.15))
+SHARES, FIRMEST = (0.75, 1.0, 1.35, 1.8, 2.3), (1.2, 3.5)
+TOP_SPEEDS, PRESSES = (0.08, 0.1, 0.13, 0.16, 0.2, 0.25, 0.6), (0.0, 3.0, 4.0)
+FIRM_SHARES = (0.7, 0.85, 1.2)
 FINE_FARTHERS, FINE_SHARES = (0.95, 1.0, 1.05), (0.88, 1.0, 1.13)
 FLAUTANDO_SHARES = (1.0, 1.3, 1.6, 2.0, 2.4)
 NEAREST, FARTHEST = 0.055, 0.36  # bow positions
-FIRST_ON_C = 72
 
 
 @dataclass(frozen=True)
@@ -74,6 +82,44 @@ class Passage:
     pressure: float
     is_slurred: bool
     rest_s: float
+
+
+@dataclass(frozen=True)
+class Search:
+    """A note on a string, at one of PLACES, and the manners that a search starts from.
+
+    `moved` is that of the default place, with the bow moved to here.
+    """
+
+    string: int
+    note: int
+    place: int
+    start: Array
+    moved: Array | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether no finger tunes it."""
+        return self.note == OPEN_NOTES[self.string]
+
+    @property
+    def is_high_on_f(self) -> bool:
+        """Whether it is played on the F string only where that is wished for, or near."""
+        return self.string == 0 and self.note >= OPEN_NOTES[1]
+
+    def varied(
+        self, manner: Array, positions: Iterable[float], shares: Iterable[float]
+    ) -> list[Array]:
+        """A manner with the bow elsewhere and other shares of Schelleng's limit."""
+        varied = []
+        for position in positions:
+            for share in shares:
+                changed = _with(manner, FARTHER, position / PLACES[self.place])
+                changed[[AT_FLAUTANDO, AT_LIGHT, AT_FIRM]] *= share
+                changed[AT_FIRM] = min(changed[AT_FIRM], FIRMEST[self.string])
+                if NEAREST <= position <= FARTHEST:
+                    varied.append(changed)
+        return varied
 
 
 class Practice:
@@ -113,106 +159,129 @@ class Practice:
         self.notes_changed = 0
         self._tuned = calibration.tuned(quantities)
         self._calibration = calibration
-        self._usual = bowing_table()
 
-    def learn(self, progress: Progress | None = None) -> Array:
-        """Practise all notes at all places; return a table as `bowing_table` does.
+    def learn(
+        self,
+        progress: Progress | None = None,
+        *,
+        table: Array | None = None,
+        places: Iterable[int] = range(len(PLACES)),
+    ) -> Array:
+        """Practise all notes; return a table as `ordinary_table` does.
 
         Parameters
         ----------
         progress : callable, optional
             Called with the number of notes done and of all notes.
+        table : ndarray, optional
+            How notes are bowed to begin with; by default all alike.
+        places : iterable of int
+            Indices of PLACES to practise.
         """
-        table = self._usual.copy()
+        table = ordinary_table() if table is None else table.copy()
+        asked = [place for place in places if place in self._places]
         with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
-            for done, note in enumerate(NOTES, start=1):
-                for place in self._places:
-                    improve = self._lightly if place == DEFAULT else self._anew
-                    found = improve(note, place, workers)
-                    self.notes_changed += int(np.any(found != table[place, note - FIRST]))
-                    table[place, note - FIRST] = found
+            for done, (string, note) in enumerate(STOPS, start=1):
+                for place in sorted(asked, key=lambda place: place != DEFAULT):
+                    start = table[string, place, note - FIRST].copy()
+                    moved = None if place == DEFAULT else _moved(table, string, note, place)
+                    found = self._best(Search(string, note, place, start, moved), workers)
+                    self.notes_changed += int(np.any(found != start))
+                    table[string, place, note - FIRST] = found
                 if progress is not None:
-                    progress(done, len(NOTES))
-        table[:, : LOWEST_NOTE - FIRST] = table[:, LOWEST_NOTE - FIRST, None]
+                    progress(done, len(STOPS))
+        table[0, :, : LOWEST_NOTE - FIRST] = table[0, :, LOWEST_NOTE - FIRST, None]
         return table
 
-    def _anew(self, note: int, place: int, workers: ThreadPoolExecutor) -> Array:
-        """The best manner of a note at a place; its own where that is good."""
-        usual = self._usual[place, note - FIRST]
-        passages = _passages(1000 * note + place, TRIES, self._speeds, self._pressures)
-        best, score = usual, self.score(note, place, usual, passages)
-        again = _passages(1000 * note + place + AGAIN, TRIES, self._speeds, self._pressures)
-        if score >= GOOD and self.score(note, place, usual, again) >= GOOD:
-            return best
+    def _best(self, search: Search, workers: ThreadPoolExecutor) -> Array:
+        """The best manner of a note at a place; that which it starts from where that is good."""
+        string, place, start = search.string, search.place, search.start
+        seed = 1000 * search.note + 100 * string + place
+        speeds, pressures = self._speeds, self._pressures
+        passages = _passages(search, seed, TRIES, speeds, pressures)
+        again = _passages(search, seed + AGAIN, TRIES, speeds, pressures)
 
         def scores(tried: list[Array], passages: list[Passage]) -> Array:
-            found = list(workers.map(lambda m: self.score(note, place, m, passages), tried))
-            return np.array(found) - [_lost(manner, usual) for manner in tried]
+            found = list(workers.map(lambda m: self.score(search, m, passages), tried))
+            return np.array(found) - [_lost(manner, start) for manner in tried]
 
         def choose(best: Array, score: float, tried: Iterable[Array]) -> tuple[Array, float]:
             tried = list(tried)
+            if not tried:
+                return best, score
+            first = scores(tried, passages[:HEAT])
+            tried = [tried[i] for i in np.argsort(-first)[: max(FINALISTS, len(tried) // 3)]]
             found = scores(tried, passages)
-            first = np.argsort(-found)[:FINALISTS]
-            if found[first[0]] <= score + BETTER:
+            order = np.argsort(-found)[:FINALISTS]
+            if found[order[0]] <= score + BETTER:
                 return best, score
             # The best of many was lucky too: other passages decide among the first few.
-            finalists = [best, *(tried[i] for i in first)]
-            both = 0.5 * (np.array([score, *found[first]]) + scores(finalists, again))
+            finalists = [best, *(tried[i] for i in order)]
+            both = 0.5 * (np.array([score, *found[order]]) + scores(finalists, again))
             winner = int(both.argmax())
             if winner == 0 or both[winner] <= both[0] + BETTER:
                 return best, score
             return finalists[winner], float(both[winner])
 
-        farthers = FARTHERS_ON_C
-        if note < FIRST_ON_C:  # there the bow may also stay where it usually is
-            stays = usual[FARTHER] * PLACES[DEFAULT] / PLACES[place]
+        best, score = start, float(scores([start], passages)[0])
+        if search.moved is not None:
+            best, score = choose(best, score, [search.moved])
+        if score < GOOD or float(scores([best], again)[0]) < GOOD:
+            farthers = (DEFAULT_FARTHERS if place == DEFAULT else FARTHERS)[string]
+            asked = tuple(PLACES[place] * farther for farther in farthers)
+            own = PLACES[place] * best[FARTHER]
+            beta = sorted({*asked, *(own * near for near in FINE_FARTHERS)})
+            best, score = choose(best, score, search.varied(best, beta, SHARES))
+            best, score = choose(best, score, (_with(best, TOP_SPEED, v) for v in TOP_SPEEDS))
+            best, score = choose(best, score, (_with(best, LEAST_PRESS, v) for v in PRESSES))
+            firm = best[AT_FIRM]
             best, score = choose(
-                best, score, _varied(note, place, usual, (stays,), (1.0,), fixed=True)
+                best, score, (_with(best, AT_FIRM, firm * share) for share in FIRM_SHARES)
             )
-            if score >= STAYS_WELL:
-                return best
-            farthers = (*FARTHERS_ON_F, *(stays * near for near in FINE_FARTHERS))
-        best, score = choose(best, score, _varied(note, place, usual, farthers, SHARES, fixed=True))
-        best, score = choose(best, score, (_with(best, TOP_SPEED, v) for v in TOP_SPEEDS))
-        best, score = choose(best, score, (_with(best, LEAST_PRESS, v) for v in PRESSES))
-        best, _ = choose(best, score, _varied(note, place, best, FINE_FARTHERS, FINE_SHARES))
-        return best
+            beta = [PLACES[place] * best[FARTHER] * near for near in FINE_FARTHERS]
+            best, score = choose(best, score, search.varied(best, beta, FINE_SHARES))
+        if best is not start:  # it was chosen for its luck, too: other passages decide
+            fresh = _passages(search, seed + 2 * AGAIN, 2 * TRIES, speeds, pressures)
+            before, after = scores([start, best], fresh)
+            best = best if after > before else start
+        return self._lightly(search, best) if FLAUTANDO in pressures else best
 
-    def _lightly(self, note: int, place: int, _workers: ThreadPoolExecutor) -> Array:
-        """The usual manner, with a share for flautando at which a quick bow speaks."""
-        usual = self._usual[place, note - FIRST]
-        passages = _passages(note, QUICK_TRIES, QUICK, (FLAUTANDO,))
+    def _lightly(self, search: Search, usual: Array) -> Array:
+        """A manner with a share for flautando at which a quick bow speaks."""
+        passages = _passages(search, search.note, QUICK_TRIES, QUICK, (FLAUTANDO,))
         best, most = usual, -math.inf
         for share in FLAUTANDO_SHARES:
             manner = _with(usual, AT_FLAUTANDO, usual[AT_FLAUTANDO] * share)
-            score = self.score(note, place, manner, passages) - CHANGED * math.log(share)
+            score = self.score(search, manner, passages) - CHANGED * math.log(share)
             if score > most + BETTER:
                 best, most = manner, score
             if score >= GOOD:
                 break
         return best
 
-    def score(self, note: int, place: int, manner: Array, passages: Iterable[Passage]) -> float:
+    def score(self, search: Search, manner: Array, passages: Iterable[Passage]) -> float:
         """How well a note speaks in some passages: at best 1."""
-        table = self._usual.copy()
-        table[:, note - FIRST] = manner
+        table = ordinary_table()
+        table[search.string, :, search.note - FIRST] = manner
         instrument = Instrument(
             self._rate, self._tuned, calibration=self._calibration, bowing=table
         )
         instrument.bow_by_tables()
         wishes = Wishes(instrument)
         wishes.write("/playing/variation", 0.0)
-        wishes.write("/playing/bow_position", PLACES[place])
+        wishes.write("/playing/bow_position", PLACES[search.place])
+        if search.is_high_on_f:
+            wishes.write("/playing/string", 1.0)
         speaks, off, count = 0.0, 0.0, 0
         for passage in passages:
-            early, late, error = self._play(instrument, wishes, note, passage)
+            early, late, error = self._play(instrument, wishes, search, passage)
             speaks += (late + EARLY * early) / (1.0 + EARLY)
             off += min(abs(error), NEAR_EARLY) if early else NEAR_EARLY
             count += 1
         return (speaks - off / OFF_WEIGHT) / count
 
     def _play(
-        self, instrument: Instrument, wishes: Wishes, note: int, passage: Passage
+        self, instrument: Instrument, wishes: Wishes, search: Search, passage: Passage
     ) -> tuple[bool, bool, float]:
         """Whether a note speaks early and late in a passage, and its error (cents) early."""
         start = instrument.frame
@@ -221,9 +290,7 @@ class Practice:
             frames = start + instrument.frames(1e3 * seconds) - instrument.frame
             instrument.process(np.zeros(frames, np.float32))
 
-        before = passage.before
-        if before == note:
-            before += 5 if note < FIRST_ON_C else -5
+        before, note = passage.before, search.note
         at = start + instrument.frames(1e3 * BEFORE_S)
         rest = instrument.frames(1e3 * passage.rest_s)
         wishes.write("/playing/speed", passage.speed, frame=start)
@@ -238,7 +305,7 @@ class Practice:
         play_until(BEFORE_S + EARLY_S)
         early, error = _speaks(instrument, NEAR_EARLY)
         play_until(BEFORE_S + LATE_S)
-        late, _ = _speaks(instrument, NEAR_OPEN if note in OPEN_NOTES else NEAR_LATE)
+        late, _ = _speaks(instrument, NEAR_OPEN if search.is_open else NEAR_LATE)
         end = start + instrument.frames(1e3 * (BEFORE_S + UP_S))
         wishes.note_off(Key(0, note), frame=end)
         play_until(BEFORE_S + EACH_S)
@@ -253,19 +320,40 @@ def _speaks(instrument: Instrument, near: float) -> tuple[bool, float]:
 
 
 def _passages(
-    seed: int, count: int, speeds: tuple[float, ...], pressures: tuple[float, ...]
+    search: Search,
+    seed: int,
+    count: int,
+    speeds: tuple[float, ...],
+    pressures: tuple[float, ...],
 ) -> list[Passage]:
     chance = np.random.default_rng(seed)
+    highest = math.floor(HIGHEST_ON_F) if search.is_high_on_f else HIGHEST_NOTE
+    # In turn, so that a few passages have them all.
+    bows = chance.permutation([(speed, pressure) for speed in speeds for pressure in pressures])
+    befores = [note for note in range(LOWEST_NOTE, highest + 1) if note != search.note]
     return [
         Passage(
-            before=int(chance.choice(NOTES)),
-            speed=float(chance.choice(speeds)),
-            pressure=float(chance.choice(pressures)),
+            before=int(chance.choice(befores)),
+            speed=float(bows[i % len(bows), 0]),
+            pressure=float(bows[i % len(bows), 1]),
             is_slurred=bool(chance.integers(2)),
             rest_s=float(chance.choice(RESTS_S)),
         )
-        for _ in range(count)
+        for i in range(count)
     ]
+
+
+def _moved(table: Array, string: int, note: int, place: int) -> Array:
+    """The manner of a note at the default place, with the bow moved to another.
+
+    On the F string it moves as far as ordinarily.
+    """
+    manner = table[string, DEFAULT, note - FIRST].copy()
+    ordinary = ordinary_table()[string, :, note - FIRST, FARTHER]
+    manner[FARTHER] *= ordinary[place] / ordinary[DEFAULT]
+    farthest = FARTHEST / PLACES[place]
+    manner[FARTHER] = min(max(manner[FARTHER], NEAREST / PLACES[place]), farthest)
+    return manner
 
 
 def _lost(manner: Array, usual: Array) -> float:
@@ -278,26 +366,3 @@ def _with(manner: Array, column: int, value: float) -> Array:
     changed = manner.copy()
     changed[column] = value
     return changed
-
-
-def _varied(
-    note: int,
-    place: int,
-    manner: Array,
-    farthers: tuple[float, ...],
-    shares: tuple[float, ...],
-    *,
-    fixed: bool = False,
-) -> list[Array]:
-    """Manners with the bow elsewhere (where `fixed`, by these factors alone) and other shares."""
-    firmest = FIRMEST_ON_C if note >= FIRST_ON_C else FIRMEST_ON_F
-    varied = []
-    for farther in farthers:
-        for share in shares:
-            changed = manner.copy()
-            changed[FARTHER] = farther if fixed else manner[FARTHER] * farther
-            changed[[AT_FLAUTANDO, AT_LIGHT, AT_FIRM]] *= share
-            changed[AT_FIRM] = min(changed[AT_FIRM], firmest)
-            if NEAREST <= PLACES[place] * changed[FARTHER] <= FARTHEST:
-                varied.append(changed)
-    return varied

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -13,13 +14,13 @@ import numpy as np
 from yehu_server.documents import parse_json
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.files import read_text, replacing
-from yehu_server.player.bowing import FIRST, LAST, MANNER, PLACES
-from yehu_server.player.practice import bowing_table
+from yehu_server.params.table import STRING_NAMES
+from yehu_server.player.bowing import FIRST, LAST, MANNER, PLACES, ordinary_table
 
 Array = Any
 
 SHIPPED = Path(__file__).parent / "practices.json"
-FORMAT, VERSION = "yehu-server practice", 1
+FORMAT, VERSION = "yehu-server practice", 2
 MOST_BYTES = 1 << 20
 # Bounds of top speed (m/s), three shares of Schelleng's limit, distance, finger force (N).
 LOWEST = (0.02, 0.0, 0.0, 0.0, 0.2, 0.0)
@@ -38,16 +39,29 @@ def _shipped() -> dict[float, Array]:
     return {float(entry["rate"]): table_of(entry) for entry in data}
 
 
+def as_text(data: Any) -> str:
+    """What `as_data` made as JSON, with a line for each note."""
+    text = json.dumps(data, indent=1)
+    return re.sub(r"\[\s+([-\d.,\s]+?)\s+\]", _in_a_line, text) + "\n"
+
+
+def _in_a_line(values: re.Match[str]) -> str:
+    return f"[{' '.join(values[1].split())}]"
+
+
 def as_data(table: Array, rate: float) -> dict[str, Any]:
-    """A table of bowing as JSON values: the notes that are bowed otherwise than usually."""
-    usual = bowing_table()
+    """A table of bowing as JSON values: what is bowed otherwise than in `ordinary_table`."""
+    ordinary = ordinary_table()
     bowing = {
-        str(place): {
-            str(FIRST + row): [round(float(value), 4) for value in table[i, row]]
-            for row in range(LAST - FIRST + 1)
-            if not np.allclose(table[i, row], usual[i, row], atol=1e-4)
+        name: {
+            str(place): {
+                str(FIRST + row): [round(float(value), 4) for value in table[string, i, row]]
+                for row in range(LAST - FIRST + 1)
+                if not np.allclose(table[string, i, row], ordinary[string, i, row], atol=1e-4)
+            }
+            for i, place in enumerate(PLACES)
         }
-        for i, place in enumerate(PLACES)
+        for string, name in enumerate(STRING_NAMES)
     }
     return {"format": FORMAT, "version": VERSION, "rate": rate, "bowing": bowing}
 
@@ -60,21 +74,27 @@ def table_of(data: Any) -> Array:
     ParameterError
         Where they are none, or a value is out of range.
     """
-    table = bowing_table()
+    table = ordinary_table()
     try:
         if data["format"] != FORMAT or data["version"] != VERSION:
-            raise ParameterError("is not a practice that this version knows")
-        for place, notes in data["bowing"].items():
-            for note, values in notes.items():
-                row = np.array(values, np.float64)
-                if row.shape != (MANNER,) or not FIRST <= int(note) <= LAST:
-                    raise ParameterError(f"note {note}: expected {MANNER} numbers")
-                if not np.all((row >= LOWEST) & (row <= HIGHEST)):  # also refuses NaN
-                    raise ParameterError(f"note {note}: a value is out of range")
-                table[PLACES.index(float(place)), int(note) - FIRST] = row
+            raise ParameterError("is not a practice that this version knows; practise anew")
+        for name, places in data["bowing"].items():
+            for place, notes in places.items():
+                own = table[STRING_NAMES.index(name), PLACES.index(float(place))]
+                for note, values in notes.items():
+                    own[int(note) - FIRST] = _manner(note, values)
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
         raise ParameterError("is not a practice") from error
     return table
+
+
+def _manner(note: str, values: Any) -> Array:
+    row = np.array(values, np.float64)
+    if row.shape != (MANNER,) or not FIRST <= int(note) <= LAST:
+        raise ParameterError(f"note {note}: expected {MANNER} numbers")
+    if not np.all((row >= LOWEST) & (row <= HIGHEST)):  # also refuses NaN
+        raise ParameterError(f"note {note}: a value is out of range")
+    return row
 
 
 def read_practice(path: Path) -> Array:
@@ -106,4 +126,4 @@ def write_practice(path: Path, table: Array, rate: float) -> None:
         Where it cannot be written.
     """
     with replacing(path) as partial:
-        partial.write_text(json.dumps(as_data(table, rate), indent=1) + "\n", encoding="utf-8")
+        partial.write_text(as_text(as_data(table, rate)), encoding="utf-8")

@@ -18,10 +18,11 @@ from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.files import read_lines
 from yehu_server.params.table import find
 from yehu_server.physics.grid import check_rate
+from yehu_server.physics.layout import STRINGS
 from yehu_server.physics.quantities import Quantities, override
+from yehu_server.player.bowing import ordinary_table
 from yehu_server.player.calibration import Calibration
 from yehu_server.player.fingering import OpenStrings
-from yehu_server.player.practice import bowing_table
 from yehu_server.player.wishes import WISH
 from yehu_server.playing.calibrations import read_calibration
 from yehu_server.score.capture_format import (
@@ -50,7 +51,7 @@ class Beginning:
     seed: int = 0
     open_strings: OpenStrings = OpenStrings.ALWAYS
     calibration: Calibration | None = None
-    bowing: Any = field(default_factory=bowing_table)
+    bowing: Any = field(default_factory=ordinary_table)
     values: Mapping[str, float] = field(default_factory=dict)  # of parameters; others: default
 
     def instrument(self) -> Instrument:
@@ -173,7 +174,9 @@ def _values(values: Mapping[str, float]) -> dict[str, float]:
 def _players(beginning: Beginning, header: Any) -> Beginning:
     """The same with what the player starts from; raises as a JSON value of another form does."""
     bowing = np.array(header["bowing"], np.float64)
-    if bowing.shape != bowing_table().shape or not np.all(np.isfinite(bowing)):
+    if bowing.ndim == 3:  # of captures made when both strings were bowed by one table
+        bowing = np.stack([bowing] * STRINGS)
+    if bowing.shape != ordinary_table().shape or not np.all(np.isfinite(bowing)):
         raise ValueError("bowing")
     data = header["calibration"]
     calibration = None

@@ -19,6 +19,7 @@ from measures.intonation import (
     off_by,
     worst,
 )
+from measures.overtones import overtones_off_by
 from measures.shares import Share, share, told
 from measures.take import NOTES, Setup, Take, in_parallel
 
@@ -96,7 +97,7 @@ def _scale(setup: Setup, notes: list[int], is_slurred: bool) -> list[float]:
             take.off(i * SCALE_S + OVERLAP_S, notes[i - 1])
     sound = take.play(len(notes) * SCALE_S)
     return [
-        worst(errors_of(sound, setup.rate, note, i * SCALE_S, SCALE_S))
+        worst(errors_of(sound, setup.rate, note, i * SCALE_S, SCALE_S, overtones_off_by))
         for i, note in enumerate(notes)
     ]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from measures.take import Sound
 from yehu_server.analysis.pitch import cents, pitch_hz
@@ -28,11 +28,19 @@ def off_by(sound: Sound, rate: float, start_s: float, seconds: float, pitch: flo
 
 
 def errors_of(
-    sound: Sound, rate: float, note: float, start_s: float, seconds: float
+    sound: Sound,
+    rate: float,
+    note: float,
+    start_s: float,
+    seconds: float,
+    error: Callable[..., float] = off_by,
 ) -> list[float]:
-    """Return the errors (cents) of a note at those of MOMENTS_S that it is long enough for."""
+    """Return the errors (cents) of a note at those of MOMENTS_S that it is long enough for.
+
+    `error` tells one, with the arguments of `off_by`.
+    """
     moments = [moment for moment in MOMENTS_S if moment + LISTEN_S <= seconds + 1e-9]
-    return [off_by(sound, rate, start_s + moment, LISTEN_S, note) for moment in moments]
+    return [error(sound, rate, start_s + moment, LISTEN_S, note) for moment in moments]
 
 
 def worst(errors: Sequence[float]) -> float:

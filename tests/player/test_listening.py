@@ -10,7 +10,10 @@ from pitch import hertz
 from sound import rms, run_for
 
 from yehu_server.analysis.pitch import cents, pitch_hz
-from yehu_server.params.table import FINGERS
+from yehu_server.params.table import FINGERS, TABLE
+from yehu_server.physics.quantities import Quantities
+from yehu_server.player.record import prepare_player
+from yehu_server.player.tuning_by_ear import LASTING, begin_tuning, jumps
 from yehu_server.player.wishes import STOP
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
@@ -194,3 +197,24 @@ def test_a_panic_ends_what_sounds_even_if_python_has_forgotten_it(is_panic):
     run_for(play.instrument, 0.1)
     assert play.player["held"] == 0
     assert rms(play.note(70, 0.4)[RATE // 5 :]) > 1e-3  # and the next note speaks
+
+
+def test_a_pitch_that_jumps_over_its_place_is_told_from_one_that_swings_about_it(player_record):
+    def counted(heard: list[float]) -> list[int]:
+        return [jumps(player_record, error) for error in heard]
+
+    assert counted([5.0] * LASTING)[-1] == 0
+    assert counted([-6.0] * LASTING)[-1] == 1
+    assert counted([1.0] * 50)[-1] == 1  # near its place is neither side
+    assert counted([4.0] * LASTING)[-1] == 2
+    begin_tuning(player_record, 88.0)
+    assert set(counted(([5.0] * (LASTING - 1) + [-5.0] * (LASTING - 1)) * 4)) == {0}
+
+
+@pytest.fixture
+def player_record() -> Any:
+    """The record of a player on an ideal instrument."""
+    values = {spec.address: spec.default for spec in TABLE}
+    player = prepare_player(Quantities(), 44100.0, values)[0]
+    begin_tuning(player, 88.0)
+    return player

@@ -15,6 +15,7 @@ import sys
 from dataclasses import dataclass
 
 CANNOT = 77  # exit code
+NUMPY_WITHOUT = "NPY_DISABLE_CPU_FEATURES"
 
 
 @dataclass(frozen=True)
@@ -53,10 +54,11 @@ def environment(name: str) -> dict[str, str]:
 
     processor = PROCESSORS[name]
     levels = set(np.show_config(mode="dicts")["SIMD Extensions"].get("found", []))
+    levels |= set(os.environ.get(NUMPY_WITHOUT, "").split())  # where we run inside of ourselves
     return {
         "NUMBA_CPU_NAME": name,
         "NUMBA_CPU_FEATURES": "",  # else those of this processor stay
-        "NPY_DISABLE_CPU_FEATURES": " ".join(sorted(levels - processor.numpy)),
+        NUMPY_WITHOUT: " ".join(sorted(levels - processor.numpy)),
         "OPENBLAS_CORETYPE": processor.openblas,
         "GLIBC_TUNABLES": f"glibc.cpu.hwcaps={processor.without}",
     }

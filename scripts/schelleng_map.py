@@ -31,7 +31,10 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.output import BRIDGE_PRESSURE
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.params.table import find
-from yehu_server.physics.quantities import Body, Quantities, StringQuantities
+from yehu_server.physics import kernel
+from yehu_server.physics.layout import MAX_FINGERS
+from yehu_server.physics.quantities import Quantities, StringQuantities
+from yehu_server.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 from yehu_server.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -116,29 +119,13 @@ class Stop:
 
     def highest_force(self, speed: Array, beta: Array) -> Array:
         """Return Schelleng's upper limit of the bow force (N)."""
-        return 2.0 * self.impedance * speed / (beta * self.grip)
+        return np.asarray(upper_limit(self.impedance, self.grip, speed, beta))
 
     def lowest_force(self, speed: Array, beta: Array) -> Array:
         """Return Schelleng's lower limit of the bow force (N)."""
-        resistance = bridge_resistance(self.quantities.body, self.frequency)
-        return self.impedance**2 * speed / (2.0 * resistance * beta**2 * self.grip)
-
-
-def bridge_resistance(body: Body, frequency: float) -> float:
-    """Return the resistance R (kg/s) of Schelleng's lower limit: Re(1/Y) at the fundamental.
-
-    Y is the admittance of the bridge, the sum over the body's modes of
-    j w / (M (w_m^2 - w^2) + j w R_m). Schelleng's bridge is a pure resistance, for which Re(1/Y)
-    equals 1/Re(Y). Between its modes this bridge is mostly mass or spring, and Re(1/Y) is much
-    smaller than 1/Re(Y). This makes the limit high, and close to that of the model, where finger
-    and strings lose energy too.
-    """
-    w = 2.0 * math.pi * frequency
-    admittance = sum(
-        1j * w / (mass * (w_m**2 - w**2) + 1j * w * damping)
-        for mass, damping, w_m in zip(body.mass, body.damping, body.omega, strict=True)
-    )
-    return float((1.0 / admittance).real)
+        model = kernel.prepare(self.quantities, self.rate, MAX_FINGERS)[0]
+        resistance = bridge_resistance(model, self.frequency)
+        return np.asarray(lower_limit(self.impedance, self.grip, resistance, speed, beta))
 
 
 def bow(stop: Stop, speed: float, beta: float, force: float) -> int:

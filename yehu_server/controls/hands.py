@@ -84,6 +84,12 @@ def turn_bow(c: Any) -> float:
     if c.value[TREMOLO] == 0.0 and before < FORWARD <= c.tremolo:
         c.tremolo = FORWARD
     c.tremolo -= math.floor(c.tremolo)
+    return turned(c)
+
+
+@compiled
+def turned(c: Any) -> float:
+    """Factor of the bow's speed at this phase of the tremolo, -1 to 1."""
     return float(max(-1.0, min(1.0, TURN * math.sin(2.0 * math.pi * c.tremolo))))
 
 
@@ -123,12 +129,21 @@ def pluck(c: Any) -> float:
 
 
 @compiled
+def bow_force(c: Any, string: int, speed: float) -> float:
+    """Bow force (N) on a string at a speed (m/s): assist * share * F_max + (1 - assist) * force.
+
+    Here F_max = 2 Z v_b / (beta (mu_S - mu_C)) is Schelleng's upper limit [Schelleng], and the
+    share is /bow/pressure and a little more for a fast bow.
+    """
+    limit = c.schelleng[string] * abs(speed) / c.value[POSITION]
+    assist = c.value[ASSIST]
+    share = c.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
+    return float(assist * share * limit + (1.0 - assist) * c.value[FORCE])
+
+
+@compiled
 def write_controls(c: Any, control: Array) -> None:
     """Write the kernel's controls for this sample. Real time: safe.
-
-    The bow force is assist * share * F_max + (1 - assist) * force, times the side. Here
-    F_max = 2 Z v_b / (beta (mu_S - mu_C)) is Schelleng's upper limit [Schelleng], and the share
-    is /bow/pressure and a little more for a fast bow.
 
     Parameters
     ----------
@@ -138,12 +153,8 @@ def write_controls(c: Any, control: Array) -> None:
     stop_strings(c, control)
     speed, beta, side = c.value[SPEED] * turn_bow(c), c.value[POSITION], c.value[SIDE]
     string = 0 if side >= 0.0 else 1
-    limit = c.schelleng[string] * abs(speed) / beta
-    assist = c.value[ASSIST]
-    share = c.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
-    force = assist * share * limit + (1.0 - assist) * c.value[FORCE]
     sounding = c.bridge_x - c.sounding_from
-    control[F_N] = side * force * grip(c)
+    control[F_N] = side * bow_force(c, string, speed) * grip(c)
     control[V_B] = speed
     control[X_B] = c.bridge_x - beta * sounding
     control[F_HAMMER] = 0.0

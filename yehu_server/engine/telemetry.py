@@ -105,8 +105,14 @@ def close_window(t: Any, m: Any, s: Any) -> None:
     t.window += 1
     for i in range(STRINGS):
         for point in range(SHAPE_POINTS):
-            node = 1 + (point * m.N[i] + (SHAPE_POINTS - 1) // 2) // (SHAPE_POINTS - 1)
-            t.shapes[i, point] = s.u[s.level, i, node]
+            t.shapes[i, point] = shape(m, s, i, point)
+
+
+@compiled
+def shape(m: Any, s: Any, i: int, point: int) -> float:
+    """Displacement (m) of string `i` at one of SHAPE_POINTS, from end to end."""
+    node = 1 + (point * m.N[i] + (SHAPE_POINTS - 1) // 2) // (SHAPE_POINTS - 1)
+    return float(s.u[s.level, i, node])
 
 
 @compiled

@@ -1,0 +1,91 @@
+"""What pictures are drawn from is what the instrument does."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.look import LOOK, NO_STRING, look
+from yehu_server.physics.layout import V_B, X_B
+from yehu_server.player.rows import ROW
+from yehu_server.player.wishes import BEGIN, END, HOLD
+
+RATE = 44100.0
+
+
+def seen(instrument: Instrument):
+    into = np.zeros(1, LOOK)
+    look.call(instrument.address, into.ctypes.data)
+    return into[0]
+
+
+def play(instrument: Instrument, frames: int) -> np.ndarray:
+    out = np.zeros(frames, np.float32)
+    instrument.process(out)
+    return out
+
+
+def test_at_rest_nothing_sounds_and_nothing_touches_a_string():
+    found = seen(Instrument(RATE))
+    assert (found["frame"], found["rate"]) == (0, RATE)
+    assert found["string"] == NO_STRING
+    assert math.isnan(found["pitch"])
+    assert found["force"] == 0.0
+    assert not found["finger_press"].any()
+    assert not found["shapes"].any()
+
+
+def test_of_a_bowed_note_it_tells_pitch_bow_fingers_and_strings():
+    instrument = Instrument(RATE)
+    instrument.post(BEGIN, value=79.0, other=79.0)  # on the C string
+    out = play(instrument, 22050)
+    found = seen(instrument)
+    assert found["frame"] == 22050
+    assert found["pitch"] == pytest.approx(79.0, abs=0.05)  # it varies from note to note
+    assert found["frequency"] == pytest.approx(440.0 * 2.0 ** ((found["pitch"] - 69.0) / 12.0))
+    assert found["string"] == 1
+    controls = instrument._rig["output"]["controls"][0]
+    last = (22050 - 1) % 64  # of a chunk of the callback
+    assert abs(found["speed"]) == pytest.approx(abs(controls[last, V_B]))
+    assert found["bow_x"] == pytest.approx(controls[last, X_B])
+    assert 0.05 < found["force"] < 5.0
+    assert np.count_nonzero(found["finger_press"]) == 1
+    stopped = found["finger_x"][found["finger_press"] > 0.0][0]
+    assert 0.0 < stopped < found["bow_x"] < found["length"]
+    assert found["certainty"] > 0.9
+    assert found["slips"] == pytest.approx(1.0, abs=0.2)
+    assert found["peak"] == pytest.approx(np.abs(out[-735:]).max(), rel=0.2)
+    moving = np.abs(found["shapes"]).max(axis=1)
+    assert (moving > 1e-5).all()  # the body moves the other one
+    assert (moving < 1e-2).all()
+
+
+def test_the_bows_force_lies_between_schellengs_limits():
+    instrument = Instrument(RATE)
+    instrument.post(BEGIN, value=76.0, other=76.0)
+    play(instrument, 22050)
+    found = seen(instrument)
+    speed, beta = abs(found["speed"]), found["beta"]
+    assert found["lower"] * speed / beta**2 < found["force"] < found["upper"] * speed / beta
+
+
+def test_the_speed_turns_with_the_tremolo():
+    instrument = Instrument(RATE)
+    instrument.post(HOLD, index=ROW["/playing/tremolo"], value=10.0)
+    instrument.post(BEGIN, value=76.0, other=76.0)
+    signs = set()
+    for _ in range(100):
+        play(instrument, 441)
+        signs.add(np.sign(seen(instrument)["speed"]))
+    assert signs >= {-1.0, 1.0}
+
+
+def test_after_the_note_the_bow_is_lifted():
+    instrument = Instrument(RATE)
+    instrument.post(BEGIN, value=76.0, other=76.0)
+    instrument.post(END, frame=8000, value=76.0)
+    play(instrument, 44100)
+    assert seen(instrument)["string"] == NO_STRING

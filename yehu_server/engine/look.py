@@ -1,0 +1,98 @@
+"""A look at the instrument, for pictures: strings, bow, fingers, what the player hears. Compiled.
+
+It only reads. Beside a callback on another thread a look may be blurred: half of it a block older.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.controls.hands import bow_force, turned
+from yehu_server.controls.record import CONTROLS
+from yehu_server.controls.slots import FINGER_POSITION, FINGER_PRESS, POSITION, SIDE, SPEED
+from yehu_server.engine.atomics import at
+from yehu_server.engine.native import CONTROLS_AT, METERS_AT, MODEL_AT, PLAYER_AT, STATE_AT
+from yehu_server.engine.telemetry import METERS, SHAPE_POINTS, shape
+from yehu_server.jit import native
+from yehu_server.memory import carray
+from yehu_server.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
+from yehu_server.physics.schelleng import bridge_resistance, lower_limit, upper_limit
+from yehu_server.player.notes import told_pitch
+from yehu_server.player.record import PLAYER
+
+NO_STRING = -1
+LEAST_PRESS = 1e-6  # N; below, a finger is lifted
+
+LOOK = np.dtype(
+    [
+        ("frame", np.float64),  # of the next sample
+        ("rate", np.float64),  # Hz
+        ("pitch", np.float64),  # that is played (fractional MIDI note); NaN in silence
+        ("frequency", np.float64),  # of it (Hz); NaN in silence
+        # What the player hears: see ``player.ear`` and ``player.bowing_by_ear``.
+        ("certainty", np.float64),
+        ("error", np.float64),  # cents; positive where the string is sharp
+        ("slips", np.float64),  # in a period
+        ("peak", np.float64),  # of the sound, in the last sixtieth of a second
+        ("rms", np.float64),
+        ("length", np.float64),  # m; of the strings, from the loop to the bridge
+        ("string", np.float64),  # that is bowed, or NO_STRING
+        ("speed", np.float64),  # of the bow (m/s), with its direction
+        ("force", np.float64),  # of the bow (N)
+        ("beta", np.float64),  # of the bow
+        ("bow_x", np.float64),  # m from the loop
+        ("finger_x", np.float64, MAX_FINGERS),  # m from the loop
+        ("finger_press", np.float64, MAX_FINGERS),  # N; 0: lifted
+        # Schelleng's limits at a speed of 1 m/s and beta 1, for the string and pitch played: both
+        # grow with the speed; divide the upper one by beta, the lower by its square.
+        ("upper", np.float64),  # N
+        ("lower", np.float64),
+        ("shapes", np.float64, (STRINGS, SHAPE_POINTS)),  # m; displacement, from end to end
+    ]
+)
+
+
+@native("void(voidptr, voidptr)")
+def look(rig: Any, into: Any) -> None:
+    """Look at an instrument.
+
+    Parameters
+    ----------
+    rig : pointer to a record of dtype ``native.RIG``
+    into : pointer to a record of dtype LOOK
+
+    Real time: safe.
+    """
+    m = carray(at(rig, MODEL_AT), (1,), MODEL)[0]
+    s = carray(at(rig, STATE_AT), (1,), STATE)[0].motion
+    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
+    p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
+    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    seen = carray(into, (1,), LOOK)[0]
+    seen.frame, seen.rate = c.frame, m.rate
+    seen.pitch = told_pitch(p)
+    seen.frequency = p.a4 * math.exp2((seen.pitch - 69.0) / 12.0)
+    seen.certainty, seen.error, seen.slips = p.ear.certainty, p.ear.error, p.ear.slips
+    seen.peak, seen.rms = t.peak, t.rms
+    seen.length = m.bridge_x
+    side = c.value[SIDE]
+    string = 0 if side >= 0.0 else 1
+    seen.string = string if side != 0.0 else NO_STRING
+    seen.speed, seen.beta = c.value[SPEED] * turned(c), c.value[POSITION]
+    seen.force = abs(side) * bow_force(c, string, seen.speed)
+    seen.bow_x = c.bridge_x - seen.beta * (c.bridge_x - c.sounding_from)
+    for j in range(MAX_FINGERS):
+        seen.finger_x[j] = c.value[FINGER_POSITION[j]]
+        press = c.value[FINGER_PRESS[j]]
+        seen.finger_press[j] = press if press > LEAST_PRESS else 0.0
+    seen.upper = seen.lower = 0.0
+    if seen.frequency > 0.0:  # not NaN
+        Z, grip = math.sqrt(m.T[string] * m.rho_A[string]), m.mu_S - m.mu_C
+        seen.upper = upper_limit(Z, grip, 1.0, 1.0)
+        seen.lower = lower_limit(Z, grip, bridge_resistance(m, seen.frequency), 1.0, 1.0)
+    for i in range(STRINGS):
+        for point in range(SHAPE_POINTS):
+            seen.shapes[i, point] = shape(m, s, i, point)

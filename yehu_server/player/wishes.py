@@ -17,6 +17,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from yehu_server.controls.record import CONTROLS
 from yehu_server.jit import compiled_exactly, native
 from yehu_server.memory import carray
 from yehu_server.player import left_hand, notes
+from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.player.ownership import (
     USUAL_MS,
     forget,
@@ -37,12 +39,16 @@ from yehu_server.player.record import PLAYER
 from yehu_server.player.rows import (
     ASSIST,
     BEND,
+    BOW_FORCE,
+    BOW_SPEED,
     DYNAMICS,
     EVENNESS,
     EXPRESSION,
+    HIGHEST,
     IS_ENGINES,
     IS_OWNED,
     LISTENING,
+    LOWEST,
     POSITION,
     PRESS,
     PRESSURE,
@@ -64,6 +70,7 @@ KINDS = (
     "ramp", "write", "hold", "express", "begin", "end", "slide", "draw", "lift", "stop", "release",
 )  # fmt: skip
 RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, DRAW, LIFT, STOP, RELEASE = range(len(KINDS))
+LONGEST = 1e9  # frames of a ramp, ms of a glide
 
 WISH = np.dtype(
     [
@@ -80,7 +87,9 @@ WISH = np.dtype(
 def fulfil(
     player: Any, controls: Any, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
-    """Fulfil a wish, given by its fields; one of no kind, or for no parameter, changes nothing.
+    """Fulfil a wish, given by its fields, within the ranges of what it moves.
+
+    One of no kind, for no parameter, or with a number that is not finite changes nothing.
 
     Parameters
     ----------
@@ -91,16 +100,18 @@ def fulfil(
     """
     p = carray(player, (1,), PLAYER)[0]
     c = carray(controls, (1,), CONTROLS)[0]
+    if not (math.isfinite(value) and math.isfinite(other)):
+        return
     if kind == RAMP:
-        take(c, index, value, int(other))
+        take(c, index, value, int(bounded(other, 0.0, LONGEST)))
     elif kind == BEGIN:
-        notes.begin(p, c, frame, index, value, other)
+        notes.begin(p, c, frame, index, value, bounded(other, LOWEST_NOTE, HIGHEST_NOTE))
     elif kind == END:
         notes.end(p, c, index, value, other != 0.0)
     elif kind == SLIDE:
-        notes.slide(p, c, value)
+        notes.slide(p, c, bounded(value, LOWEST_NOTE, HIGHEST_NOTE))
     elif kind == DRAW:
-        notes.draw_by_hand(p, c, value, other)
+        notes.draw_by_hand(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
     elif kind == LIFT:
         notes.lift_by_hand(p, c)
     elif kind == STOP:
@@ -110,9 +121,22 @@ def fulfil(
         p.by_hand = 0
     elif 0 <= index < ROWS:
         if kind in (WRITE, HOLD):
-            write(p, c, index, value, kind == HOLD, other)
+            glide_ms = bounded(other, 0.0, LONGEST)
+            write(p, c, index, in_range(index, value), kind == HOLD, glide_ms)
         elif kind == EXPRESS:
-            express(p, c, index, value)
+            express(p, c, index, in_range(index, value))
+
+
+@compiled_exactly
+def bounded(value: float, lo: float, hi: float) -> float:
+    """The value nearest to one that lies within bounds."""
+    return float(min(max(value, lo), hi))
+
+
+@compiled_exactly
+def in_range(row: int, value: float) -> float:
+    """The value nearest to one that a parameter can have."""
+    return bounded(value, LOWEST[row], HIGHEST[row])
 
 
 @compiled_exactly

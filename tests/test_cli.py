@@ -101,8 +101,9 @@ def test_each_command_has_help_with_examples(command, name, expected):
 
 
 COMMANDS = (
-    *("serve", "devices", "learn", "mappings", "practise", "presets", "render", "replay"),
-    *("simulate", "surfaces", "sweep", "mappings show", "mappings convert", "presets check"),
+    *("serve", "build", "devices", "learn", "mappings", "practise", "presets", "render"),
+    *("replay", "simulate", "surfaces", "sweep"),
+    *("mappings show", "mappings convert", "presets check"),
 )
 
 
@@ -112,7 +113,7 @@ def test_the_pages_that_help_names_come_along(command, name, monkeypatch):
     code, out, _ = command(*name.split(), "--help")
     assert code == 0
     pages = re.findall(r"\S*\w\.md\b", out)
-    assert pages or name not in ("serve", "replay", "simulate", "surfaces", "sweep")
+    assert pages or name not in ("serve", "build", "replay", "simulate", "surfaces", "sweep")
     wheel = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]
     wheel = wheel["targets"]["wheel"]
     for page in pages:
@@ -457,6 +458,7 @@ def test_an_output_that_cannot_be_written_is_found_before_anything_is_compiled(
         ("sweep", "gesture.json", "--vary", "bow_force=1", "-o"),
         ("mappings", "convert", "keyboard", "-o"),
         ("surfaces", "-o"),
+        ("build", "wasm", "-o"),
         ("serve", "--record"),
         ("serve", "--capture"),
     ],

@@ -179,28 +179,28 @@ class Native:
     def __init__(
         self, signature: str, function: Callable[..., Any], calls: Sequence[Native] = ()
     ) -> None:
-        self._signature = signature
-        self._function = function
-        self._calls = calls
+        self.signature = signature
+        self.function = function
+        self.calls = calls
         self.name = f"yehu_{function.__name__}"
 
     @cached_property
     def _made(self) -> Any:
-        signature = sigutils.normalize_signature(self._signature)
+        signature = sigutils.normalize_signature(self.signature)
         options = {"nopython": True, "error_model": "numpy", "fastmath": FASTMATH}
-        return _cached(CFunc(self._function, signature, {}, options), self._function)
+        return _cached(CFunc(self.function, signature, {}, options), self.function)
 
     @cached_property
     def compiled(self) -> Any:
         """numba's object for it, with ``inspect_llvm()``."""
-        for other in self._calls:
+        for other in self.calls:
             binding.add_symbol(other.name, other.address)
         self._made.compile()
         return self._made
 
     def keep(self) -> None:
         """Compile it into the cache, in a process that won't call it."""
-        for other in self._calls:
+        for other in self.calls:
             binding.add_symbol(other.name, 1)  # an address is wanted to finish, not to call
         self._made.compile()
 
@@ -213,7 +213,7 @@ class Native:
     def call(self) -> Callable[..., Any]:
         """The function for Python, which runs without the GIL."""
         if IS_PLAIN:
-            return self._function
+            return self.function
         return cast("Callable[..., Any]", self.compiled.ctypes)
 
     @property
@@ -223,8 +223,8 @@ class Native:
         It is compiled apart from them: in a process of its own, where there is one to spare.
         """
         if IS_PLAIN:
-            return self._function
-        arguments, returned = sigutils.normalize_signature(self._signature)
+            return self.function
+        arguments, returned = sigutils.normalize_signature(self.signature)
         return types.ExternalFunction(self.name, returned(*arguments))
 
     @property

@@ -19,8 +19,8 @@ log=$venv/setup.log
 # Python 3.13 and newer: for ALSA and, as its wheels are, for JACK.
 debian_packages=(libportaudio2)
 debian_build_packages=(g++ libasound2-dev libjack-jackd2-dev pkg-config)
-# What only tests need: a JACK server, and real OSC senders.
-debian_test_packages=(jackd2 liblo-tools puredata-core)
+# What only tests need: a JACK server, real OSC senders, a linker for WebAssembly, and what runs it.
+debian_test_packages=(jackd2 liblo-tools puredata-core lld nodejs)
 
 # Python 3.12 and 3.11 first, since nothing has to be compiled for them. numba sets the newest.
 python_candidates=(python3.12 python3.11 python3.13 python3.14 python3 python)
@@ -233,6 +233,7 @@ is_there() {
             esac
             return 1
             ;;
+        nodejs) command -v node >/dev/null ;;
         libjack-jackd2-dev) pkg-config --exists jack 2>/dev/null ;; # also JACK 1's will do
         *) [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ;;
     esac

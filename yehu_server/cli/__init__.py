@@ -12,6 +12,7 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server import __version__
 from yehu_server.cli import (
+    build,
     devices,
     learn,
     mappings,
@@ -66,6 +67,7 @@ def _parser() -> Parser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for command in (
         serve,
+        build,
         devices,
         learn,
         mappings,

@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ahead.phrases import PHRASES, played
+
+from yehu_server.ahead.build import build
+from yehu_server.ahead.kept import page_module
+from yehu_server.ahead.link import page_linker
+
+HERE = Path(__file__).parent
+
+
+@pytest.fixture(scope="session")
+def wasm() -> Path:
+    """The WebAssembly module of the present sources."""
+    if page_linker() is None:
+        pytest.skip("there is no wasm-ld")
+    return page_module()
+
+
+@pytest.fixture(scope="session")
+def library(tmp_path_factory) -> Path:
+    """A folder with the library and its header."""
+    folder = tmp_path_factory.mktemp("library")
+    build("library", folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def here() -> dict[str, np.ndarray]:
+    """The samples of each phrase, by this process."""
+    return {name: played(wishes)[0] for name, wishes in PHRASES.items()}
+
+
+@pytest.fixture(scope="session")
+def by_any_processor(tmp_path_factory) -> dict[str, np.ndarray]:
+    """The samples of each phrase, with instructions that any processor has."""
+    folder = tmp_path_factory.mktemp("any")
+    environment = {
+        **os.environ,
+        "NUMBA_CPU_NAME": "generic",
+        "NUMBA_CPU_FEATURES": "",
+        "PYTHONPATH": os.pathsep.join(map(str, (HERE.parent, HERE.parents[1]))),
+    }
+    command = [sys.executable, str(HERE / "phrases.py"), str(folder)]
+    subprocess.run(command, env=environment, check=True, capture_output=True)
+    return {name: np.fromfile(folder / f"{name}.f32", np.float32) for name in PHRASES}

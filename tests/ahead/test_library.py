@@ -1,0 +1,77 @@
+"""The C library plays what the server plays, from a program without Python."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
+from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED
+
+from yehu_server.ahead.sources import sources_hash
+from yehu_server.params.table import find
+
+HERE = Path(__file__).parent
+STRICT = ["-std=c11", "-Wall", "-Wextra", "-pedantic", "-Werror"]
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+
+
+@pytest.fixture(scope="module")
+def program(library, tmp_path_factory) -> Path:
+    """A C program that plays wishes."""
+    path = tmp_path_factory.mktemp("program") / "play"
+    libraries = ["-L", str(library), "-lyehu", f"-Wl,-rpath,{library}"]
+    command = ["cc", *STRICT, f"-I{library}", str(HERE / "play.c"), "-o", str(path), *libraries]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return path
+
+
+@pytest.fixture
+def by_c(program, tmp_path):
+    def play(wishes, frames=FRAMES, rate=RATE, block=BLOCK):
+        lines, samples = tmp_path / "wishes", tmp_path / "samples"
+        lines.write_text("".join(" ".join(map(repr, wish)) + "\n" for wish in wishes))
+        command = [program, repr(rate), str(frames), str(block), lines, samples]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        return np.fromfile(samples, np.float32), done
+
+    return play
+
+
+@pytest.mark.parametrize("name", PHRASES)
+def test_a_phrase_begins_as_here_and_stays_as_near_as_processors_are(
+    by_c, here, by_any_processor, name
+):
+    sound, done = by_c(PHRASES[name])
+    assert done.returncode == 0
+    assert begins_alike(sound, here[name])
+    cents, decibels = apart(sound, here[name])
+    usual_cents, usual_decibels = apart(by_any_processor[name], here[name])
+    assert cents <= max(2.0 * usual_cents, NEAR_CENTS)
+    assert decibels <= max(2.0 * usual_decibels, NEAR_DB)
+
+
+def test_it_plays_the_very_samples_of_numbas_code_for_any_processor(by_c, by_any_processor):
+    assert np.array_equal(by_c(STOPPED)[0], by_any_processor["stopped"])
+
+
+def test_it_tells_sources_frame_losses_rate_and_values(by_c):
+    told = by_c(STOPPED, frames=1000)[1].stdout.split()
+    default = find("/playing/bow_position").default
+    assert told == [sources_hash().lstrip("0"), "1000", "0", "48000", f"{default:.17g}"]
+
+
+def test_a_rate_that_it_was_not_built_for_is_refused(by_c):
+    done = by_c([], rate=32000.0)[1]
+    assert (done.returncode, done.stderr) == (4, "no instrument at 32000 Hz\n")
+
+
+def test_it_needs_the_c_library_alone(library):
+    command = [shutil.which("objdump"), "-p", library / "libyehu.so"]
+    listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    needed = {line.split()[1] for line in listed.splitlines() if "NEEDED" in line}
+    assert needed <= {"libm.so.6", "libc.so.6"}

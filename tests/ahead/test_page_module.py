@@ -1,0 +1,98 @@
+"""The WebAssembly module plays what the server plays."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
+from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED, played
+
+from yehu_server.ahead.layout import look_length
+from yehu_server.ahead.section import section_of
+from yehu_server.ahead.sources import sources_hash
+from yehu_server.engine.look import LOOK, look
+from yehu_server.params.table import TABLE
+
+HERE = Path(__file__).parent
+pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
+
+
+@pytest.fixture
+def node(tmp_path, wasm):
+    """Runs one of this folder's scripts by Node, with a job; returns what it reports."""
+
+    def run(script: str, **job):
+        file = tmp_path / "job.json"
+        file.write_text(json.dumps({"wasm": str(wasm), "lookLength": look_length(), **job}))
+        command = ["node", str(HERE / script), str(file)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return run
+
+
+@pytest.fixture
+def by_node(node, tmp_path):
+    def play(wishes, frames=FRAMES, rate=RATE, block=BLOCK):
+        job = {"rate": rate, "frames": frames, "block": block, "wishes": wishes}
+        report = node("play.mjs", **job, rows=len(TABLE), samples=str(tmp_path / "samples"))
+        return np.fromfile(tmp_path / "samples", np.float32), report
+
+    return play
+
+
+@pytest.mark.parametrize("name", PHRASES)
+def test_a_phrase_begins_as_here_and_stays_as_near_as_processors_are(
+    by_node, here, by_any_processor, name
+):
+    sound, report = by_node(PHRASES[name])
+    assert report["finite"]
+    assert report["lost"] == 0
+    assert np.abs(sound).max() > 0.01
+    assert begins_alike(sound, here[name])
+    cents, decibels = apart(sound, here[name])
+    usual_cents, usual_decibels = apart(by_any_processor[name], here[name])
+    assert cents <= max(2.0 * usual_cents, NEAR_CENTS)
+    assert decibels <= max(2.0 * usual_decibels, NEAR_DB)
+
+
+def test_blocks_of_any_size_give_the_same_samples(by_node):
+    whole = by_node(STOPPED, frames=9600)[0]
+    for block in (1, 37, 960):
+        assert np.array_equal(by_node(STOPPED, frames=9600, block=block)[0], whole)
+
+
+def test_it_tells_values_and_looks_as_here(by_node):
+    frames = 4 * BLOCK  # so early that rounding has not grown
+    report = by_node(STOPPED, frames=frames)[1]
+    _, instrument = played(STOPPED, frames=frames)
+    seen = np.zeros(1, LOOK)
+    look.call(instrument.address, seen.ctypes.data)
+    expected = np.frombuffer(seen.tobytes(), np.float64)
+    found = np.array([np.nan if number is None else number for number in report["look"]])
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
+    defaults = [param.default for param in TABLE]
+    assert report["values"] == pytest.approx(defaults)
+
+
+def test_it_names_the_sources_that_it_was_built_from(by_node, wasm):
+    assert section_of(wasm.read_bytes()).split()[-1] == sources_hash()
+    assert by_node([], frames=BLOCK)[1]["sources"] == sources_hash()
+
+
+def test_a_rate_that_it_was_not_built_for_is_refused(node, tmp_path):
+    with pytest.raises(AssertionError, match="not built for 32000 Hz"):
+        node("play.mjs", rate=32000, frames=1, block=1, wishes=[], samples=str(tmp_path / "s"))
+
+
+def test_a_million_random_wishes_make_neither_a_trap_nor_a_number_that_is_not_finite(node):
+    report = node("fuzz.mjs", rate=RATE, seed=1, count=1_000_000, rows=len(TABLE))
+    assert report["posted"] == 1_000_000
+    assert report["finite"]
+    assert report["loudest"] > 0.01

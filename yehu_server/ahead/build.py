@@ -1,0 +1,95 @@
+"""Build the instrument for pages and for C programs, in a process of its own.
+
+numba compiles for one processor in a process, so another one's code is made in another process:
+`python -m yehu_server.ahead`.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from yehu_server import __version__
+from yehu_server.ahead import interface, link
+from yehu_server.ahead.header import header
+from yehu_server.ahead.images import image
+from yehu_server.ahead.module import joined
+from yehu_server.ahead.section import with_section
+from yehu_server.ahead.sources import sources_hash
+from yehu_server.ahead.targets import PAGE, Target, here
+from yehu_server.errors import OutputError, ParameterError, YehuError
+from yehu_server.files import replacing
+
+PAGE_FILE, HEADER_FILE = "yehu.wasm", "yehu.h"
+LIBRARY_FILE = "libyehu.dylib" if sys.platform == "darwin" else "libyehu.so"
+WHATS = ("wasm", "library")
+RATES = (44100.0, 48000.0)  # Hz
+ANY = "generic"  # processor
+STRANGE = "is not a recognized processor"  # LLVM's word
+
+
+def build(what: str, folder: Path, *, rates: Sequence[float] = RATES, cpu: str = ANY) -> list[Path]:
+    """Build one of WHATS into a folder; return the files written.
+
+    Parameters
+    ----------
+    rates : sequence of float
+        Sample rates (Hz) at which an instrument can be made.
+    cpu : str
+        The processor of a library, by LLVM's name.
+
+    Raises
+    ------
+    YehuError
+        Where something is missing to build with, or the folder cannot be written.
+    """
+    command = [sys.executable, "-m", "yehu_server.ahead", what, str(folder), cpu]
+    command += [f"{rate!r}" for rate in rates]
+    environment = {**os.environ, "NUMBA_CPU_NAME": cpu, "NUMBA_CPU_FEATURES": ""}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own
+    if STRANGE in done.stderr:
+        raise ParameterError(f"{cpu!r} is no processor that LLVM knows")
+    if done.returncode != 0:
+        raise YehuError(done.stderr.strip().rpartition("\n")[2] or f"exit code {done.returncode}")
+    return [Path(line) for line in done.stdout.splitlines()]
+
+
+def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> list[Path]:
+    """Build in this process, which compiles for the processor wanted; see `build`."""
+    functions = interface.functions(rates, [image(rate) for rate in rates], sources_hash())
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory() as scratch:
+            code, linked = Path(scratch) / "yehu.o", Path(scratch) / "linked"
+            if what == "wasm":
+                code.write_bytes(compiled(functions, PAGE))
+                link.link_page(code, [function.name for function in functions], linked)
+                module = with_section(linked.read_bytes(), f"{__version__} {sources_hash()}")
+                return [_written(folder / PAGE_FILE, module)]
+            code.write_bytes(compiled(functions, here(cpu)))
+            linked = linked.with_name(LIBRARY_FILE)
+            link.link_library(code, linked)
+            text = header(functions, version=__version__, sources=sources_hash(), rates=rates)
+            return [
+                _written(folder / LIBRARY_FILE, linked.read_bytes()),
+                _written(folder / HEADER_FILE, text.encode()),
+            ]
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror}") from error
+
+
+def compiled(functions: Sequence[Any], target: Target) -> bytes:
+    """An object file of functions for a machine."""
+    code: bytes = target.machine().emit_object(joined(functions, target))
+    return code
+
+
+def _written(path: Path, content: bytes) -> Path:
+    with replacing(path) as partial:
+        partial.write_bytes(content)
+    return path

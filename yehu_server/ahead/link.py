@@ -1,0 +1,71 @@
+"""Link compiled code into a WebAssembly module, or a shared library."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from yehu_server.errors import YehuError
+
+PAGE_LINKERS = ("wasm-ld", *(f"wasm-ld-{version}" for version in range(22, 13, -1)))
+LIBRARY_LINKERS = ("cc", "gcc", "clang")
+PAGE_BYTES = 65536  # of WebAssembly's memory
+STACK_BYTES = 1 << 18
+
+
+def page_linker() -> str | None:
+    """The path of LLVM's linker for WebAssembly, where there is one."""
+    return _first(PAGE_LINKERS)
+
+
+def link_page(code: Path, exports: Iterable[str], into: Path) -> None:
+    """Link an object file into a WebAssembly module with its own memory.
+
+    Raises
+    ------
+    YehuError
+        Where there is no linker, or it fails.
+    """
+    linker = page_linker()
+    if linker is None:
+        raise YehuError("there is no wasm-ld here; Debian's package lld has it")
+    options = [
+        "--no-entry",
+        "--allow-undefined",  # what it needs of the page; `module.joined` has checked it
+        "--strip-all",
+        "--export=__heap_base",
+        "-z",
+        f"stack-size={STACK_BYTES}",
+        *(f"--export={name}" for name in exports),
+    ]
+    _run([linker, *options, str(code), "-o", str(into)])
+
+
+def link_library(code: Path, into: Path) -> None:
+    """Link an object file into a shared library.
+
+    Raises
+    ------
+    YehuError
+        Where there is no linker, or it fails.
+    """
+    linker = _first(LIBRARY_LINKERS)
+    if linker is None:
+        raise YehuError("there is no C compiler here, whose linker makes the library")
+    options = ["-shared", "-s"]
+    if sys.platform == "linux":
+        options += ["-Wl,--build-id=none", f"-Wl,-soname,{into.name}"]
+    _run([linker, *options, str(code), "-lm", "-o", str(into)])
+
+
+def _first(names: Iterable[str]) -> str | None:
+    return next((path for path in map(shutil.which, names) if path is not None), None)
+
+
+def _run(command: list[str]) -> None:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - ours
+    if done.returncode != 0:
+        raise YehuError(f"{Path(command[0]).name}: {done.stderr.strip() or done.returncode}")

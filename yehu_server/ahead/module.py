@@ -1,0 +1,159 @@
+"""Join compiled functions into one LLVM module that holds no Python, for any machine.
+
+numba's functions call Python only to tell of an exception. These raise none, so what would call it
+stops the program instead, and falls away where LLVM sees that it is never reached.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from llvmlite import binding
+
+from yehu_server.ahead.targets import Target
+from yehu_server.errors import YehuError
+from yehu_server.jit import Native
+
+# What the machine's C library gives, or the page.
+OUTSIDE = frozenset(
+    "clock_gettime cos exp exp2 log log10 log2 memcpy memmove memset pow sin sqrt tan tanh".split()
+)
+LAYOUT = re.compile(r'^target datalayout = ".*"', re.MULTILINE)
+TRIPLE = re.compile(r'^target triple = ".*"', re.MULTILINE)
+TRAP = "declare void @llvm.trap()"
+PYTHONS = re.compile(
+    r"^declare (?P<returns>[^@\n]*)@(?P<name>(?:Py|NRT_|numba_)\w+)\((?P<takes>[^)\n]*)\).*$",
+    re.MULTILINE,
+)
+PYTHONS_GLOBAL = re.compile(r"^@(?P<name>Py\w+) = external .*global i8$", re.MULTILINE)
+COMMON = re.compile(r"= common ((?:local_)?unnamed_addr )?global")
+# numba's count of an array's references. None has an owner here; on x86 it is an intrinsic.
+COUNTED_DOWN = re.compile(
+    r"(?P<into>%\S+) = (?:tail )?call i8 @llvm\.x86\.atomic\.sub\.cc\.i64"
+    r"\(ptr (?:nonnull )?(?P<at>%\S+), i64 (?P<by>\d+), i32 \d+\)"
+)
+MODE = re.compile(r"^ *(?:tail )?call void @llvm\.x86\.sse\.(?:st|ld)mxcsr\(.*\)$", re.MULTILINE)
+# LLVM calls it for products of 128 bits, which WebAssembly has none of.
+MULTIPLY = "__multi3"
+MULTIPLY_128 = f"""
+define hidden void @{MULTIPLY}(ptr %into, i64 %a, i64 %a_high, i64 %b, i64 %b_high) {{
+  %a_low = and i64 %a, 4294967295
+  %a_up = lshr i64 %a, 32
+  %b_low = and i64 %b, 4294967295
+  %b_up = lshr i64 %b, 32
+  %low = mul i64 %a_low, %b_low
+  %cross = mul i64 %a_up, %b_low
+  %other = mul i64 %a_low, %b_up
+  %up = mul i64 %a_up, %b_up
+  %low_up = lshr i64 %low, 32
+  %sum = add i64 %cross, %low_up
+  %sum_low = and i64 %sum, 4294967295
+  %sum_up = lshr i64 %sum, 32
+  %middle = add i64 %other, %sum_low
+  %middle_up = lshr i64 %middle, 32
+  %high_1 = add i64 %up, %sum_up
+  %high_2 = add i64 %high_1, %middle_up
+  %high_3 = mul i64 %a_high, %b
+  %high_4 = mul i64 %a, %b_high
+  %high_5 = add i64 %high_2, %high_3
+  %high = add i64 %high_5, %high_4
+  %product = mul i64 %a, %b
+  store i64 %product, ptr %into, align 8
+  %at_high = getelementptr i8, ptr %into, i32 8
+  store i64 %high, ptr %at_high, align 8
+  ret void
+}}
+"""
+
+
+def joined(functions: Sequence[Native], target: Target) -> Any:
+    """Join functions, and those that they call by symbol, into a module for a machine.
+
+    They keep their names (`Native.name`); all else is internal.
+
+    Raises
+    ------
+    YehuError
+        Where they need what neither a page nor a C library has.
+    """
+    module, *others = map(_module, dict.fromkeys(_with_called(functions)))
+    for other in others:
+        module.link_in(other)
+    machine = target.machine()
+    module = binding.parse_assembly(_for_machine(str(module), target, str(machine.target_data)))
+    exported = {function.name for function in functions} | {MULTIPLY}
+    for symbol in (*module.functions, *module.global_variables):
+        if not symbol.is_declaration and symbol.name not in exported:
+            symbol.linkage = binding.Linkage.internal
+    _drop_unused(module, machine)
+    module.verify()
+    if strange := set(unresolved(module)) - OUTSIDE:
+        raise YehuError(f"compiled code calls {', '.join(sorted(strange))}, which nothing has")
+    return module
+
+
+def unresolved(module: Any) -> list[str]:
+    """The functions that a module calls and does not have, in order."""
+    return sorted(
+        function.name
+        for function in module.functions
+        if function.is_declaration and not function.name.startswith("llvm.")
+    )
+
+
+def _with_called(functions: Iterable[Native]) -> Iterable[Native]:
+    for function in functions:
+        yield from _with_called(function.calls)
+        yield function
+
+
+def _module(function: Native) -> Any:
+    """The module of one function as numba optimised it, with the name that C calls it by."""
+    made = function.compiled
+    # `inspect_llvm()` shows nothing of what came from the cache.
+    text = str(made._library._get_module_for_linking())  # noqa: SLF001
+    module = binding.parse_assembly(text)
+    entry = module.get_function(made.native_name)
+    entry.name, entry.linkage = function.name, binding.Linkage.external
+    return module
+
+
+def _for_machine(text: str, target: Target, layout: str) -> str:
+    """A module's text, for another machine and without Python."""
+    text = LAYOUT.sub(f'target datalayout = "{layout}"', text)
+    text = TRIPLE.sub(f'target triple = "{target.triple}"', text)
+    text = COMMON.sub("= internal global", text)
+    text = PYTHONS_GLOBAL.sub(r"@\g<name> = internal global i8 0", text)
+    text = COUNTED_DOWN.sub(_count_down, text)
+    text = PYTHONS.sub(_trap, text)
+    text += f"\n{TRAP}\n" if TRAP not in text else ""
+    if not target.sets_mode:
+        text = MODE.sub("", text) + MULTIPLY_128
+    return text
+
+
+def _count_down(found: re.Match[str]) -> str:
+    into = found["into"]
+    was, last = (f"%{word}.{into[1:]}" for word in ("was", "last"))
+    return (
+        f"{was} = atomicrmw sub ptr {found['at']}, i64 {found['by']} seq_cst\n"
+        f"  {last} = icmp eq i64 {was}, {found['by']}\n"
+        f"  {into} = zext i1 {last} to i8"
+    )
+
+
+def _trap(declared: re.Match[str]) -> str:
+    body = "{\n  call void @llvm.trap()\n  unreachable\n}"
+    return f"define internal {declared['returns']}@{declared['name']}({declared['takes']}) {body}"
+
+
+def _drop_unused(module: Any, machine: Any) -> None:
+    """Remove what nothing that is exported reaches."""
+    builder = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options())
+    passes = binding.create_new_module_pass_manager()
+    passes.add_simplify_cfg_pass()
+    passes.add_global_dead_code_eliminate_pass()
+    passes.add_strip_dead_prototype_pass()
+    passes.run(module, builder)

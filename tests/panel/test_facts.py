@@ -1,0 +1,128 @@
+"""The facts that the page gets are those of the server."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import mido
+import pytest
+
+from yehu_server.panel import examples, facts
+from yehu_server.params.spec import Curve
+from yehu_server.params.table import SLOT, TABLE, find
+from yehu_server.player.rows import IS_ENGINES, IS_OWNED, ROW
+from yehu_server.player.wishes import KINDS
+from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.mapping import load, shipped_mappings
+from yehu_server.playing.presets import Presets
+from yehu_server.playing.tuning import read_tuning
+from yehu_server.score.smf import read_score
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def known() -> dict:
+    """The facts as the page reads them."""
+    text = facts.module(facts.facts())
+    body = text.removeprefix(facts.HEAD).removeprefix("export default ").rstrip().rstrip(";")
+    return json.loads(re.sub(r",\n}$", "\n}", body))
+
+
+def test_the_facts_are_the_same_in_each_process():
+    program = "from yehu_server.panel import facts; print(facts.module(facts.facts()))"
+    texts = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+            cwd=ROOT,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(texts) == 1
+    assert str(ROOT) not in texts.pop()
+
+
+def test_each_parameter_is_there_with_its_numbers(known):
+    rows = known["parameters"]
+    assert [row["address"] for row in rows] == [param.address for param in TABLE]
+    for row in rows:
+        param = find(row["address"])
+        assert row["row"] == ROW[param.address]
+        assert row["slot"] == SLOT.get(param.address)
+        assert row["owned"] == IS_OWNED[row["row"]]
+        assert (row["slot"] is not None) == IS_ENGINES[row["row"]]
+        assert Curve(row["curve"]) is param.curve
+        assert (row["lo"], row["hi"], row["default"]) == (param.lo, param.hi, param.default)
+        assert (row["unit"], row["doc"]) == (param.unit, param.doc)
+        assert (row["smoothMs"], row["isChoice"]) == (param.smooth_ms, param.is_choice)
+
+
+def test_each_kind_of_wish_has_its_number(known):
+    assert [KINDS[number].upper() for number in known["kinds"].values()] == list(known["kinds"])
+    assert sorted(known["kinds"].values()) == list(range(len(KINDS)))
+
+
+def bind_of(settings: dict) -> Bind:
+    curve = settings["curve"]
+    return Bind(
+        settings["source"],
+        settings["target"],
+        settings["span"] and tuple(settings["span"]),
+        Curve(curve) if isinstance(curve, str) else Breakpoints(tuple(map(tuple, curve))),
+        settings["invert"],
+        settings["smoothingMs"],
+        tuple(settings["channels"]),
+        settings["isSoft"],
+        tuple(settings["inputRange"]),
+        settings["isExclusive"],
+        settings["isGlobal"],
+    )
+
+
+def test_each_mapping_can_be_made_again(known):
+    assert list(known["mappings"]) == shipped_mappings()
+    for name, settings in known["mappings"].items():
+        mapping = load(name)
+        assert tuple(map(bind_of, settings["binds"])) == mapping.binds
+        assert tuple(settings["start"].items()) == mapping.start
+        assert (settings["mpe"], settings["about"]) == (mapping.mpe, mapping.about)
+    assert {known["defaultMapping"], known["mpeMapping"]} <= set(known["mappings"])
+
+
+def test_each_preset_is_there(known, tmp_path):
+    presets = Presets(tmp_path)
+    assert list(known["presets"]["shipped"]) == presets.names()
+    for name, settings in known["presets"]["shipped"].items():
+        preset = presets.load(name)
+        assert settings["values"] == dict(preset.values)
+        assert (settings["about"], settings["program"]) == (preset.about, preset.program)
+
+
+def test_each_tuning_is_there(known):
+    assert known["tunings"]["equal"]["keys"] is None
+    for name, settings in known["tunings"].items():
+        if name == "equal":
+            continue
+        tuning = read_tuning(*map(Path, name.split(", ")))
+        assert settings["keys"] == [tuning.pitch(key, 440.0) for key in range(128)]
+        assert settings["fixed"] == (", " in name)
+
+
+def test_each_example_has_its_events():
+    found = examples.examples()
+    assert set(found) == {file.stem for file in (ROOT / "examples").glob("*.mid")}
+    for name, example in found.items():
+        events = read_score(ROOT / "examples" / f"{name}.mid").events
+        assert example["mapping"] in shipped_mappings()
+        for (seconds, data), event in zip(example["events"], events, strict=True):
+            assert seconds == pytest.approx(event.time_s, abs=1e-6)
+            assert mido.Message.from_bytes(data) == event.message

@@ -18,7 +18,6 @@ from panel import streams
 from yehu_server.panel import facts, styles
 from yehu_server.params.preset import morph
 from yehu_server.params.table import find
-from yehu_server.player.wishes import END
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.messages import MidiPlayer
@@ -165,29 +164,10 @@ def expected(stream: dict[str, Any], mappings: dict[str, Mapping], presets: Pres
     }
 
 
-def in_order(wishes: np.ndarray) -> np.ndarray:
-    """The wishes, those of keys that end together in the order of the keys."""
-    wishes, start = wishes.copy(), 0
-    for number, (_, kind, _, _, other) in enumerate(wishes):
-        if kind == END and other != 0.0:
-            continue
-        keys = wishes[start : number + 1, 2:4]
-        keys[:] = keys[np.lexsort(keys.T)]
-        start = number + 1
-    return wishes
-
-
 def is_same(told: list[float], wanted: list[float]) -> bool:
     if len(told) != len(wanted):
         return False
     return np.allclose(np.array(told), np.array(wanted), rtol=1e-12, atol=1e-12)
-
-
-def is_same_wishes(told: list[float], wanted: list[float]) -> bool:
-    if len(told) != len(wanted) or is_same(told, wanted):
-        return len(told) == len(wanted)
-    both = (in_order(np.array(wishes, float).reshape(-1, 5)) for wishes in (told, wanted))
-    return np.allclose(*both, rtol=1e-12, atol=1e-12)
 
 
 def test_the_page_wishes_what_the_server_wishes(node, playing, mappings, tmp_path):
@@ -208,7 +188,7 @@ def test_the_page_wishes_what_the_server_wishes(node, playing, mappings, tmp_pat
     kinds = set()
     for number, (stream, page) in enumerate(zip(played, told, strict=True)):
         server = expected(stream, mappings, presets)
-        assert is_same_wishes(page["wishes"], server["wishes"]), (number, stream)
+        assert is_same(page["wishes"], server["wishes"]), (number, stream)
         assert is_same(page["sound"], server["sound"]), (number, stream)
         assert is_same(page["positions"], server["positions"]), (number, stream)
         kinds |= set(server["wishes"][1::5])

@@ -175,10 +175,8 @@ export class Notes {
    */
   letGo(channel, frame) {
     const { sustain, sustained } = this.#channels.at(channel);
-    for (const each of this.#channels.zone(channel)) {
-      const keys = this.#wishes.held(each);
-      if (sustain) keys.forEach((key) => sustained.add(key));
-      else this.#end(keys, frame);
-    }
+    const keys = this.#channels.zone(channel).flatMap((each) => this.#wishes.held(each));
+    if (sustain) keys.forEach((key) => sustained.add(key));
+    else this.#end(keys, frame);
   }
 }

@@ -218,7 +218,7 @@ class MidiPlayer:
         if self._wishes.holds(key) and not pedals and frame is not None:
             state.retriggered[key.note] = frame
         for pedal in pedals:
-            pedal.sustained.discard(key)
+            pedal.sustained.pop(key, None)
         is_first = self._scope.add(key.channel)
         before = self._controllers.begin_note(key, velocity)
         values = self._controllers.values_of(key) if self._wishes.has(key) else {}
@@ -244,7 +244,7 @@ class MidiPlayer:
             if pedal is None:
                 ended.append(key)
             else:
-                pedal.sustained.add(key)
+                pedal.sustained[key] = None
         self._end_notes(ended, frame)
 
     def end_all(self, *, frame: int | None = None) -> None:
@@ -284,11 +284,11 @@ class MidiPlayer:
             self._end_notes([*elsewhere, *here], frame)
             self._wishes.stop_sound(frame=frame)
         elif control >= ALL_NOTES_OFF:  # the mode messages 124-127 include it
-            for each in self._zone(channel):
-                if state.sustain:
-                    state.sustained.update(self._wishes.held(each))
-                else:
-                    self._end_notes(self._wishes.held(each), frame)
+            keys = [key for each in self._zone(channel) for key in self._wishes.held(each)]
+            if state.sustain:
+                state.sustained.update(dict.fromkeys(keys))
+            else:
+                self._end_notes(keys, frame)
         elif control == RESET_CONTROLLERS:
             self._reset_controllers(channel, frame)
         elif control in (RPN, RPN_FINE, NRPN, NRPN_FINE):
@@ -308,7 +308,7 @@ class MidiPlayer:
 
     def _lift_pedal(self, state: MidiChannel, frame: int | None) -> None:
         state.sustain = False
-        sustained, state.sustained = state.sustained, set()
+        sustained, state.sustained = state.sustained, {}
         self._release(sustained, frame)
 
     def _change_program(self, channel: int, program: int, frame: int | None) -> None:
@@ -371,7 +371,7 @@ class MidiPlayer:
         affected = self._zone(channel)
         if not self._zones[port].configure(own, members):
             return
-        for each in {*affected, *self._zone(channel)}:
+        for each in sorted({*affected, *self._zone(channel)}):
             self._end(each, frame)
             self._controllers.forget(each)
         self._channels[channel].selected = Selected(True, *MPE_CONFIGURATION)

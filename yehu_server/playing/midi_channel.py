@@ -34,7 +34,8 @@ class MidiChannel:
     retriggered: dict[float, int] = field(default_factory=dict)  # held notes, and the frame
     bend_range: float | None = None  # semitones, once RPN 0 has set it
     sustain: bool = False
-    sustained: set[Key] = field(default_factory=set)  # released while the pedal is down
+    # Keys released while the pedal is down, in that order: they end so.
+    sustained: dict[Key, None] = field(default_factory=dict)
     selected: Selected = field(default_factory=Selected)
     bank: tuple[int, int] = (0, 0)
 

@@ -120,7 +120,7 @@ class TargetValues:
                 value *= self._velocity_factor(bind.target)
             elif bind.is_by_range:
                 value = self._bend(bind, channel)
-                for each in {master, other_channel}:
+                for each in dict.fromkeys((master, other_channel)):
                     value += 0.0 if each is None else self._bend(bind, each)
             values[bind.target] = Written(move.number, value)
         return {address: written.value for address, written in values.items()}

@@ -101,8 +101,8 @@ def test_each_command_has_help_with_examples(command, name, expected):
 
 
 COMMANDS = (
-    *("serve", "build", "devices", "learn", "mappings", "practise", "presets", "render"),
-    *("replay", "simulate", "surfaces", "sweep"),
+    *("serve", "build", "devices", "learn", "mappings", "page", "practise", "presets"),
+    *("render", "replay", "simulate", "surfaces", "sweep"),
     *("mappings show", "mappings convert", "presets check"),
 )
 

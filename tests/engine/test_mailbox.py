@@ -77,7 +77,7 @@ def live(rate: float = RATE) -> Instrument:
 
 # ---------------------------------------------------------------- the ring between threads
 
-_post = numba.njit(native.post._function)
+_post = numba.njit(native.post.function)
 
 
 @numba.cfunc("int64(voidptr, int64, int64)")

@@ -53,7 +53,7 @@ def machine(name: str) -> numba.core.codegen.CPUCodeLibrary:
     call = getattr(native, name)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(jit, "IS_CACHED", False)
-        return jit.Native(call._signature, call._function, call._calls).compiled._library
+        return jit.Native(call.signature, call.function, call.calls).compiled._library
 
 
 def parsed(name: str) -> llvm.ModuleRef:
@@ -70,7 +70,7 @@ def parts(name: str) -> dict[str, str]:
 
 def body(name: str) -> str:
     """The name of the call's own function, inside numba's wrapper."""
-    function = getattr(native, name)._function
+    function = getattr(native, name).function
     path = [*function.__module__.split("."), name]
     is_mine = re.compile("_ZN" + "".join(f"{len(word)}{word}" for word in path) + "B")
     (mine,) = [part for part in parts(name) if is_mine.match(part)]
@@ -132,9 +132,9 @@ WORDS = ["POSTED", "DRAINED", "REPORTED", "READ", "VERSION", "TAPED"]
 def test_these_are_all_calls_and_those_compiled_apart_are_of_them():
     assert {getattr(native, name) for name in CALLS} == set(PLAYED_BY)
     for name in CALLS:
-        apart = {f"yehu_{other._function.__name__}" for other in getattr(native, name)._calls}
+        apart = {f"yehu_{other.function.__name__}" for other in getattr(native, name).calls}
         assert apart == APART.get(name, set())
-        assert set(getattr(native, name)._calls) <= set(PLAYED_BY)
+        assert set(getattr(native, name).calls) <= set(PLAYED_BY)
 
 
 @pytest.mark.parametrize("name", CALLS)

@@ -22,7 +22,7 @@ from yehu_server.memory import carray
 from yehu_server.physics.layout import STATE
 from yehu_server.player.notes import told_pitch
 from yehu_server.player.record import PLAYER
-from yehu_server.player.rows import ROWS
+from yehu_server.player.rows import ROWS, SLOT_OF
 
 Array = Any
 
@@ -57,6 +57,9 @@ def value(rig: Any, parameter: int) -> float:
     """The value that a parameter has, or moves to; NaN for none."""
     if not 0 <= parameter < ROWS:
         return np.nan
+    if SLOT_OF[parameter] >= 0:
+        controls = carray(at(rig, engine.CONTROLS_AT), (1,), CONTROLS)[0]
+        return float(controls.target[SLOT_OF[parameter]])
     return float(carray(at(rig, engine.PLAYER_AT), (1,), PLAYER)[0].value[parameter])
 
 

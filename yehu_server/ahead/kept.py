@@ -14,8 +14,8 @@ from yehu_server.jit import data_folder
 
 log = logging.getLogger(__name__)
 
-# Releases have it; a checkout has that of the last release.
-SHIPPED = Path(__file__).with_name(PAGE_FILE)
+# Of the last release, with the facts of its sources beside it.
+SHIPPED = Path(__file__).parent / "shipped" / PAGE_FILE
 
 
 def page_module() -> Path:

@@ -30,6 +30,14 @@ def whole(text: str) -> int:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
 
 
+def port(text: str) -> int:
+    """Convert the number of a port, 0 to 65535."""
+    value = whole(text)
+    if not 0 <= value <= 65535:
+        raise argparse.ArgumentTypeError(f"{value} is not a port, 0 to 65535")
+    return value
+
+
 def seed(text: str) -> int:
     """Convert a seed, 0 to 65535."""
     value = whole(text)

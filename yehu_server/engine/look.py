@@ -12,7 +12,7 @@ import numpy as np
 
 from yehu_server.controls.hands import bow_force, turned
 from yehu_server.controls.record import CONTROLS
-from yehu_server.controls.slots import FINGER_POSITION, FINGER_PRESS, POSITION, SIDE, SPEED
+from yehu_server.controls.slots import FINGER_POSITION, FINGER_PRESS, POSITION, SIDE, SLOTS, SPEED
 from yehu_server.engine.atomics import at
 from yehu_server.engine.native import CONTROLS_AT, METERS_AT, MODEL_AT, PLAYER_AT, STATE_AT
 from yehu_server.engine.telemetry import METERS, SHAPE_POINTS, shape
@@ -50,6 +50,7 @@ LOOK = np.dtype(
         # grow with the speed; divide the upper one by beta, the lower by its square.
         ("upper", np.float64),  # N
         ("lower", np.float64),
+        ("targets", np.float64, SLOTS),  # values that the engine's parameters have or move to
         ("shapes", np.float64, (STRINGS, SHAPE_POINTS)),  # m; displacement, from end to end
     ]
 )
@@ -93,6 +94,8 @@ def look(rig: Any, into: Any) -> None:
         Z, grip = math.sqrt(m.T[string] * m.rho_A[string]), m.mu_S - m.mu_C
         seen.upper = upper_limit(Z, grip, 1.0, 1.0)
         seen.lower = lower_limit(Z, grip, bridge_resistance(m, seen.frequency), 1.0, 1.0)
+    for slot in range(SLOTS):
+        seen.targets[slot] = c.target[slot]
     for i in range(STRINGS):
         for point in range(SHAPE_POINTS):
             seen.shapes[i, point] = shape(m, s, i, point)

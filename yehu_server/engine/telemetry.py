@@ -111,8 +111,10 @@ def close_window(t: Any, m: Any, s: Any) -> None:
 @compiled
 def shape(m: Any, s: Any, i: int, point: int) -> float:
     """Displacement (m) of string `i` at one of SHAPE_POINTS, from end to end."""
-    node = 1 + (point * m.N[i] + (SHAPE_POINTS - 1) // 2) // (SHAPE_POINTS - 1)
-    return float(s.u[s.level, i, node])
+    place = point * m.N[i] / (SHAPE_POINTS - 1)
+    node = int(place)
+    u = s.u[s.level, i]
+    return float(u[1 + node] + (place - node) * (u[2 + node] - u[1 + node]))
 
 
 @compiled

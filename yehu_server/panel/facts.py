@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from yehu_server.ahead.build import RATES
+from yehu_server.ahead.layout import look_layout, look_length
+from yehu_server.ahead.sources import sources_hash
 from yehu_server.files import write_text
 from yehu_server.panel.constants import constants
 from yehu_server.panel.examples import examples
@@ -28,6 +31,10 @@ def facts() -> dict[str, Any]:
         "mpeMapping": MPE,
         "presets": presets(),
         "tunings": tunings(),
+        "look": look_layout(),
+        "lookLength": look_length(),
+        "rates": list(RATES),
+        "builtFrom": sources_hash(),
     }
 
 

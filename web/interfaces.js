@@ -1,0 +1,63 @@
+/**
+ * The types that parts of the page share; nothing here runs.
+ *
+ * @typedef {(frame: number | null, kind: number, index: number, value: number, other: number)
+ *   => void} Post One wish; frame null is now.
+ *
+ * @typedef {object} Heard What the ear finds in the bowed string.
+ * @property {number} certainty 0 to 1: how alike its motion is to that some periods ago
+ * @property {number} errorCents of the pitch, from the one wished for
+ * @property {number} slips in a period
+ *
+ * @typedef {object} Bow
+ * @property {0 | 1 | -1} string -1: lifted
+ * @property {number} speed m/s; the sign is its direction
+ * @property {number} force N
+ * @property {number} beta distance from the bridge, as a share of the sounding length
+ * @property {number} x m from the loop
+ *
+ * @typedef {object} Finger
+ * @property {number} x m from the loop
+ * @property {number} press N
+ * @property {number} string
+ *
+ * @typedef {object} Snapshot The instrument at one moment, some 60 times a second.
+ * @property {number} frame
+ * @property {number} time s
+ * @property {number} pitch fractional MIDI note; NaN in silence
+ * @property {Heard} heard
+ * @property {number} level dBFS
+ * @property {[Float32Array, Float32Array]} shape displacement of each string from loop to bridge, m
+ * @property {Bow} bow
+ * @property {Finger[]} fingers those that press
+ * @property {number} period s
+ * @property {{length: number}} string m, from the loop to the bridge
+ * @property {{min: number, max: number}} schelleng limits of the bow force here and now, N
+ *
+ * @typedef {object} Status
+ * @property {'worklet' | 'script'} backend
+ * @property {number} rate Hz
+ * @property {number} loadPercent
+ * @property {number} latencyMs
+ * @property {number} dropouts
+ * @property {boolean} running
+ *
+ * @typedef {object} SoundMembers
+ * @property {Post} post
+ * @property {() => void} close
+ * @property {() => void} [resume] go on after the browser has suspended it
+ * @property {Snapshot} state the latest; the event 'state' tells of a new one
+ * @property {Status} status
+ * @property {AnalyserNode} analyser
+ * @property {{start: () => void, stop: () => Blob | Promise<Blob>}} [record] writes WAV
+ * @property {(address: string) => number | undefined} [target] where a parameter of bow and
+ *   fingers moves to
+ *
+ * @typedef {EventTarget & SoundMembers} Sound
+ *
+ * @typedef {import('./playing/player.js').Player} Player What the page asks of the instrument.
+ * @typedef {import('./playing/player.js').NoteId} NoteId
+ * @typedef {import('./playing/table.js').Param} Parameter A row of the parameter table.
+ */
+
+export {};

@@ -1,0 +1,123 @@
+/**
+ * The instrument as both ways of sounding run it: in an audio worklet, or on the page's own thread.
+ * It takes messages and tells others.
+ */
+
+import { Kernel, NOW } from "./kernel.js";
+
+const LOOKS_A_SECOND = 60;
+const WISH = 5; // numbers: frame or NOW, kind, index, value, other
+const CHUNK = 4096; // recorded frames that are told at a time
+const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
+
+/**
+ * @typedef {object} Take
+ * @property {Float64Array} [wishes] WISH numbers each
+ * @property {boolean} [record] begins or ends a recording
+ * @property {Float64Array} [seen] a look, given back
+ *
+ * @typedef {object} Told
+ * @property {Float64Array} [seen] a look
+ * @property {number} [load] share of the time that computing takes
+ * @property {number} [dropped] wishes that there was no room for, so far
+ * @property {Float32Array} [recorded] samples
+ * @property {boolean} [isLast] of a recording
+ */
+
+export class Engine {
+  /**
+   * @param {BufferSource} bytes of the WebAssembly module
+   * @param {number} rate in Hz
+   * @param {number} most frames of a block
+   * @param {number} lookLength numbers of a look
+   * @param {(told: Told, buffers: ArrayBufferLike[]) => void} tell
+   */
+  constructor(bytes, rate, most, lookLength, tell) {
+    this.kernel = new Kernel(new WebAssembly.Module(bytes), rate, most, lookLength);
+    this.rate = rate;
+    this.tell = tell;
+    this.block = this.kernel.out.subarray(0, most);
+    /** @type {Float64Array[]} */
+    this.free = Array.from({ length: MOST_LOOKS }, () => new Float64Array(lookLength));
+    this.nextLook = 0;
+    this.frame = 0;
+    this.dropped = 0;
+    this.busyMs = 0;
+    this.measuredFrom = 0;
+    /** @type {Float32Array | null} */
+    this.chunk = null;
+    this.filled = 0;
+  }
+
+  /** @param {Take} message */
+  take({ wishes, record, seen }) {
+    if (seen) this.free.push(seen);
+    if (wishes) {
+      for (let i = 0; i < wishes.length; i += WISH) {
+        const isTaken = this.kernel.post(
+          wishes[i], wishes[i + 1], wishes[i + 2], wishes[i + 3], wishes[i + 4],
+        ); // prettier-ignore
+        if (!isTaken) this.dropped += 1;
+      }
+    }
+    if (record === true) {
+      this.chunk = new Float32Array(CHUNK);
+      this.filled = 0;
+    } else if (record === false) this.#endRecording();
+  }
+
+  /**
+   * Compute the next samples.
+   * @param {Float32Array} out
+   */
+  fill(out) {
+    const began = Date.now(); // worklets have no finer clock; its mean is right
+    this.kernel.compute(out.length);
+    out.set(out.length === this.block.length ? this.block : this.block.subarray(0, out.length));
+    this.frame += out.length;
+    if (this.chunk) this.#record(out);
+    if (this.frame >= this.nextLook) this.#look();
+    this.busyMs += Date.now() - began;
+  }
+
+  #look() {
+    this.nextLook = this.frame + this.rate / LOOKS_A_SECOND;
+    const seen = this.free.pop();
+    if (!seen) return;
+    seen.set(this.kernel.look());
+    /** @type {Told} */
+    const told = { seen };
+    const measured = this.frame - this.measuredFrom;
+    if (measured >= this.rate) {
+      told.load = (1e-3 * this.busyMs * this.rate) / measured;
+      told.dropped = this.dropped;
+      this.measuredFrom = this.frame;
+      this.busyMs = 0;
+    }
+    this.tell(told, [seen.buffer]);
+  }
+
+  /** @param {Float32Array} out */
+  #record(out) {
+    for (const sample of out) {
+      if (!this.chunk) return;
+      this.chunk[this.filled] = sample;
+      this.filled += 1;
+      if (this.filled === CHUNK) {
+        const recorded = this.chunk;
+        this.chunk = new Float32Array(CHUNK);
+        this.filled = 0;
+        this.tell({ recorded }, [recorded.buffer]);
+      }
+    }
+  }
+
+  #endRecording() {
+    if (!this.chunk) return;
+    const recorded = this.chunk.slice(0, this.filled);
+    this.chunk = null;
+    this.tell({ recorded, isLast: true }, [recorded.buffer]);
+  }
+}
+
+export { NOW, WISH };

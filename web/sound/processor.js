@@ -1,0 +1,37 @@
+/** The instrument in an audio worklet: computes samples on the browser's audio thread. */
+
+import { Engine } from "./engine.js";
+
+const MOST_FRAMES = 128;
+
+/* global AudioWorkletProcessor, registerProcessor, sampleRate */
+
+class Processor extends AudioWorkletProcessor {
+  /** @param {{processorOptions: {bytes: ArrayBuffer, lookLength: number}}} options */
+  constructor({ processorOptions: { bytes, lookLength } }) {
+    super();
+    this.engine = new Engine(bytes, sampleRate, MOST_FRAMES, lookLength, (told, buffers) =>
+      this.port.postMessage(told, /** @type {Transferable[]} */ (buffers)),
+    );
+    this.isOpen = true;
+    this.port.onmessage = ({ data }) => {
+      if (data.close) this.isOpen = false;
+      else this.engine.take(data);
+    };
+  }
+
+  /**
+   * @param {Float32Array[][]} _inputs
+   * @param {Float32Array[][]} outputs
+   */
+  process(_inputs, outputs) {
+    const [first, ...others] = outputs[0];
+    for (let done = 0; done < first.length; done += MOST_FRAMES) {
+      this.engine.fill(first.subarray(done, done + MOST_FRAMES));
+    }
+    for (const other of others) other.set(first);
+    return this.isOpen;
+  }
+}
+
+registerProcessor("yehu", Processor);

@@ -1,0 +1,172 @@
+/** The sound of this page: posts wishes to the instrument, and tells what it does. */
+
+import facts from "../facts.js";
+import { openBackend } from "./backends.js";
+import { NOW } from "./engine.js";
+import { snapshotOf, targetOf } from "./snapshot.js";
+import { wav } from "./wav.js";
+
+/** @typedef {import('../interfaces.js').Status} Status */
+/** @typedef {import('./engine.js').Told} Told */
+
+const USUAL_RATE = 48000;
+const WATCH_MS = 500;
+const LAG_S = 0.03; // by which sound falls behind the clock where samples were missing
+const FFT = 4096;
+const FADE_S = 0.01;
+
+export class Sound extends EventTarget {
+  /**
+   * Open the sound, after a touch: else browsers keep silent.
+   * @returns {Promise<Sound>}
+   */
+  static async open() {
+    const context = newContext();
+    const resumed = context.resume(); // while the touch counts
+    try {
+      const answer = await fetch(new URL("../yehu.wasm", import.meta.url));
+      if (!answer.ok) throw new Error(`yehu.wasm: ${answer.status} ${answer.statusText}`);
+      const bytes = await answer.arrayBuffer();
+      const sound = new Sound(context);
+      await sound.#connect(bytes);
+      await resumed;
+      return sound;
+    } catch (error) {
+      await context.close();
+      throw error;
+    }
+  }
+
+  /** @param {AudioContext} context */
+  constructor(context) {
+    super();
+    this.context = context;
+    this.seen = new Float64Array(facts.lookLength);
+    this.state = snapshotOf(this.seen);
+    this.analyser = new AnalyserNode(context, { fftSize: FFT, smoothingTimeConstant: 0.6 });
+    this.gain = new GainNode(context, { gain: 1 });
+    this.loadPercent = 0;
+    this.dropped = 0;
+    this.dropouts = 0;
+    /** @type {number[]} */
+    this.wishes = [];
+    /** @type {Float32Array[] | null} */
+    this.chunks = null;
+    /** @type {((blob: Blob) => void) | null} */
+    this.recorded = null;
+    this.record = { start: () => this.#startRecording(), stop: () => this.#stopRecording() };
+    this.#watch();
+  }
+
+  /** @param {ArrayBuffer} bytes */
+  async #connect(bytes) {
+    this.backend = await openBackend(this.context, bytes, facts.lookLength, (told) =>
+      this.#hear(told),
+    );
+    this.backend.node.connect(this.gain).connect(this.analyser).connect(this.context.destination);
+  }
+
+  /**
+   * Post a wish; `frame` null is now.
+   * @type {import('../interfaces.js').Post}
+   */
+  post(frame, kind, index, value, other) {
+    if (this.wishes.length === 0) queueMicrotask(() => this.#send());
+    this.wishes.push(frame ?? NOW, kind, index, value, other);
+  }
+
+  /** All wishes of one turn of the page go together. */
+  #send() {
+    const wishes = Float64Array.from(this.wishes);
+    this.wishes.length = 0;
+    this.backend?.take({ wishes }, [wishes.buffer]);
+  }
+
+  /** @param {string} address of a parameter of bow or fingers */
+  target(address) {
+    return targetOf(this.seen, address);
+  }
+
+  /** @returns {Status} */
+  get status() {
+    const { baseLatency = 0, outputLatency = 0, sampleRate, state } = this.context;
+    return {
+      backend: this.backend?.name ?? "worklet",
+      rate: sampleRate,
+      loadPercent: this.loadPercent,
+      latencyMs: 1e3 * (baseLatency + outputLatency),
+      dropouts: this.dropouts,
+      running: state === "running",
+    };
+  }
+
+  /** Go on after the browser has suspended it. */
+  resume() {
+    return this.context.resume();
+  }
+
+  close() {
+    clearInterval(this.watching);
+    const end = this.context.currentTime + FADE_S;
+    this.gain.gain.linearRampToValueAtTime(0, end);
+    setTimeout(() => {
+      this.backend?.close();
+      this.context.close();
+    }, 2e3 * FADE_S);
+  }
+
+  /** @param {Told} told */
+  #hear({ seen, load, dropped, recorded, isLast }) {
+    if (recorded && this.chunks) {
+      this.chunks.push(recorded);
+      if (isLast) {
+        this.recorded?.(wav(this.chunks, this.context.sampleRate));
+        this.chunks = this.recorded = null;
+      }
+    }
+    if (load !== undefined) this.loadPercent = 100 * load;
+    if (dropped !== undefined) this.dropped = dropped;
+    if (seen) {
+      this.seen.set(seen);
+      this.state = snapshotOf(this.seen);
+      this.backend?.take({ seen }, [/** @type {ArrayBuffer} */ (seen.buffer)]);
+      this.dispatchEvent(new Event("state"));
+    }
+  }
+
+  #startRecording() {
+    this.chunks = [];
+    this.backend?.take({ record: true });
+  }
+
+  /** @returns {Promise<Blob>} */
+  #stopRecording() {
+    return new Promise((resolve) => {
+      this.recorded = resolve;
+      this.backend?.take({ record: false });
+    });
+  }
+
+  /** Count the times when the sound fell behind the clock. */
+  #watch() {
+    let before = this.#lag();
+    this.watching = setInterval(() => {
+      const now = this.#lag();
+      if (this.context.state === "running" && !document.hidden && now - before > LAG_S) {
+        this.dropouts += 1;
+      }
+      before = now;
+    }, WATCH_MS);
+  }
+
+  #lag() {
+    return performance.now() / 1e3 - this.context.currentTime;
+  }
+}
+
+function newContext() {
+  const context = new AudioContext({ latencyHint: "interactive" });
+  if (facts.rates.includes(context.sampleRate)) return context;
+  context.close();
+  return new AudioContext({ latencyHint: "interactive", sampleRate: USUAL_RATE });
+}

@@ -1,0 +1,100 @@
+/** Opens the page in a Chromium of its own, and does with it what a person would. */
+
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+const FLAGS = [
+  "--no-sandbox",
+  "--disable-gpu",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+];
+
+export const SIZES = {
+  phone: { width: 360, height: 740 },
+  tablet: { width: 1180, height: 820 },
+  desk: { width: 1440, height: 900 },
+};
+
+/**
+ * Run a scenario in a browser, and print what it returns as JSON.
+ * @param {(browser: import("playwright-core").BrowserContext, url: string) => Promise<unknown>} scenario
+ * @param {object} options of the context
+ */
+export async function run(scenario, options = {}) {
+  const [url, program] = process.argv.slice(2);
+  const folder = mkdtempSync(join(tmpdir(), "yehu-browser-"));
+  const browser = await chromium.launchPersistentContext(folder, {
+    executablePath: program,
+    args: FLAGS,
+    headless: true,
+    viewport: SIZES.desk,
+    hasTouch: true,
+    locale: "en-GB",
+    ...options,
+  });
+  try {
+    console.log(JSON.stringify(await scenario(browser, url)));
+  } finally {
+    await browser.close();
+    rmSync(folder, { recursive: true, force: true });
+  }
+}
+
+/**
+ * Open the page, and collect what goes wrong on it.
+ * @param {import("playwright-core").BrowserContext} browser
+ * @param {string} url
+ */
+export async function open(browser, url) {
+  const page = await browser.newPage();
+  /** @type {string[]} */
+  const errors = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) errors.push(message.text());
+  });
+  page.on("pageerror", (error) => errors.push(String(error)));
+  page.on("requestfailed", (request) => errors.push(`failed: ${request.url()}`));
+  await page.goto(url);
+  await page.waitForSelector("#ways input");
+  return { page, errors };
+}
+
+/**
+ * Fingers on the screen, through the browser's own input.
+ * @param {import("playwright-core").Page} page
+ */
+export async function fingersOf(page) {
+  const session = await page.context().newCDPSession(page);
+  /** @param {string} type @param {{x: number, y: number, id: number, force?: number}[]} touchPoints */
+  const send = (type, touchPoints) =>
+    session.send("Input.dispatchTouchEvent", { type, touchPoints });
+  return send;
+}
+
+/**
+ * The wishes since the last call: [name of its kind, index, value, other, frame].
+ * @param {import("playwright-core").Page} page
+ */
+export function wishes(page) {
+  return page.evaluate(async () => {
+    const { default: facts } = await import("/facts.js");
+    const names = Object.fromEntries(
+      Object.entries(facts.kinds).map(([name, kind]) => [kind, name]),
+    );
+    return globalThis.imitation.wishes.splice(0).map(([kind, ...rest]) => [names[kind], ...rest]);
+  });
+}
+
+/**
+ * The keys that are held, as far as the wishes tell.
+ * @param {import("playwright-core").Page} page
+ */
+export function held(page) {
+  return page.evaluate(() => globalThis.imitation?.notes.length ?? null);
+}

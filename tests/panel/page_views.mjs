@@ -1,0 +1,193 @@
+/** Looks at the page in every size, theme and language; prints what it finds. */
+
+import { SIZES, held, open, run, wishes } from "./browser.mjs";
+
+/** Elements that a finger should be able to touch, and their sizes. */
+const TARGETS = "button:not([hidden]), select, input, summary, canvas[tabindex]";
+
+/** Stands for a browser with one MIDI keyboard; runs in the page. */
+function pretendMidi() {
+  const input = { id: "one", name: "Keys", state: "connected", onmidimessage: null };
+  const access = { inputs: new Map([["one", input]]), onstatechange: null };
+  const pull = () => {
+    input.state = "disconnected";
+    access.onstatechange();
+  };
+  Object.assign(globalThis, { pretended: { input, pull } });
+  Object.defineProperty(navigator, "requestMIDIAccess", { value: async () => access });
+}
+
+await run(async (browser, url) => {
+  await browser.addInitScript(pretendMidi);
+  /** @type {Record<string, any>} */
+  const found = { layouts: {}, errors: [] };
+  for (const [size, viewport] of Object.entries(SIZES)) {
+    const { page, errors } = await open(browser, url);
+    await page.setViewportSize(viewport);
+    const layout = {};
+    for (const panel of ["see", "sound", "tunes", "keep", "connect", "all"]) {
+      await page.click(`#tab-${panel}`);
+      layout[panel] = await page.evaluate((targets) => {
+        const small = [...document.querySelectorAll(targets)]
+          .filter((element) => {
+            if (!element.checkVisibility()) return false;
+            // A label's whole room is its control's.
+            const { width, height } = (element.closest("label") ?? element).getBoundingClientRect();
+            return Math.min(width, height) < 43.5;
+          })
+          .map((element) => element.outerHTML.slice(0, 120));
+        const nameless = [...document.querySelectorAll("button, select, input, canvas")]
+          .filter(
+            (element) =>
+              element.checkVisibility() &&
+              !element.textContent.trim() &&
+              !element.getAttribute("aria-label") &&
+              !element.closest("label"),
+          )
+          .map((element) => element.outerHTML.slice(0, 120));
+        return { wide: document.documentElement.scrollWidth - innerWidth, small, nameless };
+      }, TARGETS);
+    }
+    const bottom = async (id) => {
+      const box = await page.locator(id).boundingBox();
+      return box.y + box.height;
+    };
+    found.layouts[size] = {
+      panels: layout,
+      height: viewport.height,
+      hands: Math.max(await bottom("#fingerboard"), await bottom("#bow")),
+    };
+    found.errors.push(...errors);
+    await page.close();
+  }
+
+  const { page, errors } = await open(browser, url);
+  // The way through the page by the tab key, from its beginning to the tabs.
+  found.focus = [];
+  for (let i = 0; i < 14; i++) {
+    await page.keyboard.press("Tab");
+    found.focus.push(
+      await page.evaluate(() => {
+        const { id, type, textContent, ariaLabel } = document.activeElement;
+        const ring = getComputedStyle(document.activeElement).outlineStyle;
+        return { id, name: ariaLabel ?? (textContent.trim() || type), ring };
+      }),
+    );
+  }
+  await page.click("#start");
+  await page.waitForFunction(() => globalThis.imitation);
+  await page.waitForTimeout(700);
+  found.status = await page.textContent("#status");
+
+  // The bow, placed by the diagram.
+  await page.click("#tab-see");
+  await wishes(page);
+  const diagram = await page.locator("#schelleng").boundingBox();
+  await page.mouse.move(diagram.x + diagram.width * 0.3, diagram.y + diagram.height * 0.7);
+  await page.mouse.down();
+  await page.mouse.move(diagram.x + diagram.width * 0.8, diagram.y + diagram.height * 0.2);
+  await page.mouse.up();
+  found.placed = await wishes(page);
+
+  await page.click("#tab-sound");
+  await wishes(page);
+  await page.click("#panel-sound .cards button:nth-child(3)");
+  found.preset = await wishes(page);
+
+  await page.click("#tab-all");
+  await page.fill("#panel-all input[type=search]", "bow speed");
+  found.search = await page.evaluate(() =>
+    [...document.querySelectorAll("#panel-all .parameter:not([hidden]) code")].map(
+      (code) => code.textContent,
+    ),
+  );
+  await page.fill("#panel-all input[type=search]", "/playing/attack");
+  const number = page.locator("#panel-all .parameter:not([hidden]) input[type=number]");
+  await number.fill("9999");
+  await number.press("Enter");
+  found.clamped = { shown: await number.inputValue(), wishes: await wishes(page) };
+  await page.click("#panel-all .parameter:not([hidden]) .reset");
+  found.reset = { shown: await number.inputValue(), wishes: await wishes(page) };
+
+  await page.click("#tab-tunes");
+  await page.locator("#panel-tunes button").first().click();
+  await page.waitForTimeout(2500);
+  found.tune = (await wishes(page)).filter(([kind]) => kind === "BEGIN").length;
+  await page.locator("#panel-tunes button").first().click();
+  found.tuneStopped = { held: await held(page), wishes: await wishes(page) };
+  await wishes(page);
+
+  // What is kept and loaded again asks for the same.
+  await page.click("#tab-keep");
+  const keep = page.getByRole("button", { name: "Keep", exact: true });
+  await keep.click();
+  await page.keyboard.press("KeyX");
+  await page.keyboard.press("KeyC");
+  found.played = await wishes(page);
+  const download = page.waitForEvent("download");
+  await page.locator("#panel-keep button[aria-pressed=true]").click();
+  const file = await (await download).path();
+  found.kept = (await import("node:fs")).readFileSync(file, "utf8").trim().split("\n").slice(1);
+  await wishes(page);
+  await page.locator("#panel-keep input[type=file]").setInputFiles(file);
+  await page.waitForTimeout(900);
+  found.replayed = await wishes(page);
+  await page.locator("#panel-keep input[type=file]").setInputFiles({
+    name: "wrong.jsonl",
+    mimeType: "text/plain",
+    buffer: Buffer.from('{"format":1}\n[1]'),
+  });
+  await page.waitForTimeout(200);
+  found.wrong = await page.textContent("#panel-keep section:nth-child(2) p[role=status]");
+
+  // A keyboard that is plugged in, plays, and is pulled out while a key is down.
+  await page.click("#tab-connect");
+  await page.getByRole("button", { name: "Use MIDI keyboards" }).click();
+  await page.waitForSelector("#panel-connect select:not([hidden])");
+  await wishes(page);
+  await page.evaluate(() => {
+    const { input } = globalThis.pretended;
+    input.onmidimessage({ data: Uint8Array.of(0x90, 70, 100) });
+    globalThis.pretended.pull();
+  });
+  found.midi = await wishes(page);
+  found.inputs = await page.locator("#panel-connect option").allTextContents();
+
+  // A tune that waits for its notes.
+  await page.click("#tab-tunes");
+  await page.locator("#panel-tunes button").nth(1).click();
+  const bar = page.locator("#panel-tunes progress").first();
+  found.along = [await bar.evaluate((element) => element.value)];
+  const first = await page.evaluate(async () => {
+    const { default: examples } = await import("/examples.js");
+    return examples.shi_bei_jiu.events.find(([, [status]]) => (status & 0xf0) === 0x90)[1][1];
+  });
+  await page.keyboard.press(first === 65 ? "KeyX" : "KeyZ"); // a wrong one
+  found.along.push(await bar.evaluate((element) => element.value));
+  await page.evaluate((pitch) => {
+    globalThis.imitation.wishes.length = 0;
+    const keys = ["Z", "S", "X", "D", "C", "F", "V", "B", "H", "N", "J", "M"];
+    const code = `Key${keys[pitch - 65]}`;
+    for (const type of ["keydown", "keyup"])
+      window.dispatchEvent(new KeyboardEvent(type, { code }));
+  }, first);
+  found.along.push(await bar.evaluate((element) => element.value));
+  await page.keyboard.press("Escape");
+  found.alongEnded = await bar.isHidden();
+
+  await page.click("#theme");
+  found.theme = await page.evaluate(() => document.documentElement.dataset.theme);
+  await page.click("#language");
+  await page.waitForFunction(() => document.title === "椰胡");
+  await page.waitForSelector("#ways input");
+  found.language = await page.evaluate(() => ({
+    lang: document.documentElement.lang,
+    start: document.querySelector("#start").textContent,
+    theme: document.documentElement.dataset.theme,
+    bare: [...document.querySelectorAll("[data-text]")]
+      .filter((e) => e.textContent === e.dataset.text)
+      .map((e) => e.dataset.text),
+  }));
+  found.errors.push(...errors);
+  return found;
+});

@@ -1,0 +1,47 @@
+"""The pictures show the motion that the string has, and name it as the ear hears it."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import subprocess
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+NODE = shutil.which("node")
+RUNNER = Path(__file__).with_name("page_pictures.mjs")
+
+pytestmark = pytest.mark.skipif(NODE is None, reason="there is no Node here")
+
+
+@pytest.fixture(scope="module")
+def answers() -> Any:
+    done = subprocess.run([str(NODE), str(RUNNER)], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("period", ["exact", "drifting"])
+def test_the_slowed_corner_runs_around_once_at_one_speed(answers, period: str) -> None:
+    """Also where the period is told wrong by a third of a cent, of which 5 s make 0.4 periods."""
+    way = answers[period]
+    steps = [(after - before + 0.5) % 1.0 - 0.5 for before, after in pairwise(way)]
+    assert math.fsum(steps) == pytest.approx(63 / 64, abs=0.06)
+    assert max(abs(step - 1 / 64) for step in steps) < 0.06
+
+
+def test_a_string_is_shown_from_where_it_rests(answers) -> None:
+    """A finger displaces it by 12 times as much as it swings."""
+    assert answers["rest"] < 0.1 * 0.25  # a tenth of the greatest swing
+
+
+def test_each_regime_is_named(answers) -> None:
+    assert answers["regimes"] == {name: name for name in answers["regimes"]}
+
+
+def test_the_pitch_that_sounds_is_the_one_heard_if_any_is(answers) -> None:
+    assert answers["pitch"] == pytest.approx(69.12)
+    assert answers["unheard"] == 69.0

@@ -1,0 +1,66 @@
+/** Finds and makes elements of the page. */
+
+/**
+ * The element of an id, of the class expected.
+ * @template {Element} T
+ * @param {string} id
+ * @param {new () => T} type
+ * @returns {T}
+ */
+export function find(id, type) {
+  const element = document.getElementById(id);
+  if (!(element instanceof type)) throw new TypeError(`#${id} is no ${type.name}`);
+  return element;
+}
+
+/**
+ * Make an element.
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, string | boolean | number>} [attributes] true: without value
+ * @param {(Node | string)[]} [children]
+ * @returns {HTMLElementTagNameMap[K]}
+ */
+export function make(tag, attributes = {}, children = []) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === false) continue;
+    element.setAttribute(name, value === true ? "" : String(value));
+  }
+  element.append(...children);
+  return element;
+}
+
+/**
+ * A switch, as a labelled checkbox.
+ * @param {string} text
+ * @param {boolean} isOn
+ * @param {(isOn: boolean) => void} changed
+ */
+export function makeSwitch(text, isOn, changed) {
+  const box = make("input", { type: "checkbox", role: "switch" });
+  box.checked = isOn;
+  box.addEventListener("change", () => changed(box.checked));
+  return make("label", { class: "switch" }, [box, make("span", {}, [text])]);
+}
+
+/**
+ * Give a button, or withhold it with the reason in words.
+ * @param {HTMLButtonElement} button
+ * @param {string} [reason] why it cannot be used; none: it can
+ */
+export function allow(button, reason) {
+  button.disabled = reason !== undefined;
+  button.title = reason ?? "";
+}
+
+/**
+ * Offer a file for download.
+ * @param {Blob} blob
+ * @param {string} name
+ */
+export function offer(blob, name) {
+  const link = make("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000); // long after it was read
+}

@@ -1,0 +1,117 @@
+/** The computer's keyboard as a piano of two rows: F4 to F5, and F5 to F6. */
+
+/** @typedef {import('./hands.js').Hands} Hands */
+
+import { HIGHEST, LOWEST } from "./scale.js";
+
+/** Keys by their places, so that any national layout is the same piano. */
+const LOWER = [
+  "KeyZ",
+  "KeyS",
+  "KeyX",
+  "KeyD",
+  "KeyC",
+  "KeyF",
+  "KeyV",
+  "KeyB",
+  "KeyH",
+  "KeyN",
+  "KeyJ",
+  "KeyM",
+  "Comma",
+  "KeyL",
+  "Period",
+  "Semicolon",
+  "Slash",
+];
+const UPPER = [
+  "KeyQ",
+  "Digit2",
+  "KeyW",
+  "Digit3",
+  "KeyE",
+  "Digit4",
+  "KeyR",
+  "KeyT",
+  "Digit6",
+  "KeyY",
+  "Digit7",
+  "KeyU",
+  "KeyI",
+];
+const FIRST_LOWER = 65;
+const FIRST_UPPER = 77;
+const OCTAVE = { Minus: -12, Equal: 12 };
+const VELOCITY = 0.63;
+const SILENCE = "Escape";
+
+/** Notes of the keys, without the octave keys. */
+export const NOTES = new Map([
+  ...LOWER.map((code, step) => /** @type {[string, number]} */ ([code, FIRST_LOWER + step])),
+  ...UPPER.map((code, step) => /** @type {[string, number]} */ ([code, FIRST_UPPER + step])),
+]);
+
+/** Elements that take letters themselves. */
+const WRITING = "input:not([type=range], [type=checkbox], [type=radio]), select, textarea";
+
+export class Keys extends EventTarget {
+  /**
+   * @param {Hands} hands
+   * @param {import('./tuned.js').Tuned} tuned
+   */
+  constructor(hands, tuned) {
+    super();
+    this.tuned = tuned;
+    this.hands = hands;
+    this.octave = 0;
+    /** @type {Set<string>} */
+    this.down = new Set();
+    window.addEventListener("keydown", (event) => this.#press(event));
+    window.addEventListener("keyup", (event) => this.#release(event.code));
+    window.addEventListener("blur", () => this.releaseAll());
+    window.addEventListener("pagehide", () => this.releaseAll());
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden) this.releaseAll();
+    });
+    // A field that takes letters also takes the keyup.
+    document.addEventListener("focusin", (event) => {
+      if (event.target instanceof Element && event.target.matches(WRITING)) this.releaseAll();
+    });
+  }
+
+  /** Lift all keys. */
+  releaseAll() {
+    for (const code of [...this.down]) this.#release(code);
+  }
+
+  /** @param {KeyboardEvent} event */
+  #press(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing) return;
+    if (event.target instanceof Element && event.target.matches(WRITING)) return;
+    if (event.code in OCTAVE) {
+      this.#shift(OCTAVE[/** @type {keyof typeof OCTAVE} */ (event.code)]);
+      return;
+    }
+    if (event.code === SILENCE) this.dispatchEvent(new Event("silence"));
+    const note = NOTES.get(event.code);
+    if (note === undefined) return;
+    event.preventDefault(); // "/" and "'" would open the browser's search
+    if (event.repeat || this.down.has(event.code)) return;
+    const pitch = this.tuned.pitchOf(note + this.octave);
+    if (pitch === null || Math.round(pitch) < LOWEST || Math.round(pitch) > HIGHEST) return;
+    this.down.add(event.code);
+    this.dispatchEvent(new Event("play"));
+    this.hands.touch(event.code, pitch, VELOCITY);
+  }
+
+  /** @param {string} code */
+  #release(code) {
+    if (this.down.delete(code)) this.hands.lift(code);
+  }
+
+  /** @param {number} semitones */
+  #shift(semitones) {
+    this.octave = Math.min(Math.max(this.octave + semitones, -12), 12);
+    this.dispatchEvent(new Event("octave"));
+  }
+}

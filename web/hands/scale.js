@@ -1,0 +1,80 @@
+/** Where pitches are on the fingerboard, and what they are called. */
+
+import facts from "../facts.js";
+
+/** The instrument's lowest and highest notes (MIDI), and its open strings. */
+export const LOWEST = facts.notes.LOWEST_NOTE;
+export const HIGHEST = facts.notes.HIGHEST_NOTE;
+export const OPEN = facts.notes.OPEN;
+/** Room beside the first and the last note, semitones. */
+const MARGIN = 0.6;
+/** A finger's room for a semitone, px; where there is less, a part of the board is shown. */
+const ROOM = 22;
+const LEAST_SHOWN = 13;
+
+const NAMES = facts.notes.NAMES.map((name) => name.replace("#", "♯"));
+
+/** @param {number} pitch */
+export function nameOf(pitch) {
+  const note = Math.round(pitch);
+  return `${NAMES[((note % 12) + 12) % 12]}${Math.floor(note / 12) - 1}`;
+}
+
+/** @param {number} note */
+export function isNatural(note) {
+  return NAMES[((note % 12) + 12) % 12].length === 1;
+}
+
+/** @param {number} pitch */
+export function withinRange(pitch) {
+  return Math.min(Math.max(pitch, LOWEST), HIGHEST);
+}
+
+/** The part of the range that is shown, on a line of some length. */
+export class Scale {
+  /**
+   * @param {number} length px
+   * @param {number} lowest note that should be shown first
+   */
+  constructor(length, lowest = LOWEST) {
+    const whole = HIGHEST - LOWEST;
+    this.length = Math.max(length, 1);
+    this.span = Math.min(whole, Math.max(LEAST_SHOWN, Math.floor(length / ROOM - 2 * MARGIN)));
+    this.first = Math.min(Math.max(lowest, LOWEST), HIGHEST - this.span);
+  }
+
+  /** Whether some notes are not shown. */
+  get isPart() {
+    return this.span < HIGHEST - LOWEST;
+  }
+
+  /** @param {number} pitch */
+  placeOf(pitch) {
+    return ((pitch - this.first + MARGIN) / (this.span + 2 * MARGIN)) * this.length;
+  }
+
+  /** @param {number} place px */
+  pitchAt(place) {
+    return (place / this.length) * (this.span + 2 * MARGIN) + this.first - MARGIN;
+  }
+}
+
+/**
+ * A finger that lands in tune: at first on the nearest note, and from there as it slides. After
+ * a semitone it is where the board says.
+ */
+export class Landing {
+  /**
+   * @param {number} place pitch where the finger touched the board
+   * @param {number} nearest note of the tuning
+   */
+  constructor(place, nearest) {
+    this.place = place;
+    this.offset = nearest - place;
+  }
+
+  /** @param {number} place pitch where the finger is now */
+  pitchAt(place) {
+    return place + this.offset * Math.max(0, 1 - Math.abs(place - this.place));
+  }
+}

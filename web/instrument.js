@@ -1,0 +1,118 @@
+/** The instrument of this page: its sound, once it is open, and its player. */
+
+/** @typedef {import('./interfaces.js').Sound} Sound */
+/** @typedef {import('./interfaces.js').Post} Post */
+
+import facts from "./facts.js";
+import { Player } from "./playing/player.js";
+
+/** Wishes before the sound is open wait for it; more than these are of no use to anybody. */
+const MOST_WAITING = 1000;
+const AHEAD_S = 0.25;
+const AHEAD_HIDDEN_S = 1.5;
+
+/**
+ * Tells by events: 'start' when it sounds, 'fail' when it cannot (with the error as `error`),
+ * 'silence' when all has to end, and 'wish' of each wish (a `CustomEvent<Wish>`).
+ *
+ * @typedef {object} Wish
+ * @property {number} frame
+ * @property {number} kind
+ * @property {number} index
+ * @property {number} value
+ * @property {number} other
+ */
+export class Instrument extends EventTarget {
+  constructor() {
+    super();
+    /** @type {Sound | null} */
+    this.sound = null;
+    this.isSeen = false;
+    /** @type {Promise<void> | null} */
+    this.opening = null;
+    /** @type {unknown} */
+    this.error = null;
+    /** @type {Parameters<Post>[]} */
+    this.waiting = [];
+    this.player = new Player(facts, this.#sink());
+  }
+
+  /**
+   * Where the player's wishes go.
+   * @returns {import('./playing/wishes.js').Sink}
+   */
+  #sink() {
+    const instrument = this;
+    return {
+      post: (...wish) => instrument.post(...wish),
+      target: (address) => instrument.sound?.target?.(address),
+      get frame() {
+        return instrument.frame;
+      },
+      get rate() {
+        return instrument.sound?.status.rate ?? 0;
+      },
+    };
+  }
+
+  /** Number of the sample at which a wish is fulfilled now, about. */
+  get frame() {
+    return this.state?.frame ?? 0;
+  }
+
+  /**
+   * Frame until which timed messages should be given to the player by now: a little ahead, and
+   * more in a hidden page, which is woken once a second only.
+   */
+  get horizon() {
+    const rate = this.sound?.status.rate ?? 0;
+    return this.frame + Math.round(rate * (document.hidden ? AHEAD_HIDDEN_S : AHEAD_S));
+  }
+
+  /** The latest snapshot, or null before the first. */
+  get state() {
+    return this.isSeen && this.sound ? this.sound.state : null;
+  }
+
+  /** @type {Post} */
+  post(frame, kind, index, value, other) {
+    if (this.sound) this.sound.post(frame, kind, index, value, other);
+    else if (this.waiting.length < MOST_WAITING)
+      this.waiting.push([null, kind, index, value, other]);
+    this.dispatchEvent(
+      new CustomEvent("wish", {
+        detail: { frame: frame ?? this.frame, kind, index, value, other },
+      }),
+    );
+  }
+
+  /** Open the sound, which a browser allows after a touch only; at most once. */
+  start() {
+    if (this.sound && !this.sound.status.running) this.sound.resume?.();
+    this.opening ??= this.#open();
+    return this.opening;
+  }
+
+  /** End all that plays or sounds. */
+  silence() {
+    this.dispatchEvent(new Event("silence")); // tunes and hands end first
+    this.player.panic();
+  }
+
+  async #open() {
+    try {
+      const { Sound } = await import("./sound/sound.js");
+      /** @type {Sound} */
+      const sound = await Sound.open();
+      sound.addEventListener("state", () => (this.isSeen = true), { once: true });
+      this.sound = sound;
+      for (const wish of this.waiting.splice(0)) sound.post(...wish);
+      this.error = null;
+      this.dispatchEvent(new Event("start"));
+    } catch (error) {
+      this.error = error;
+      this.opening = null; // another touch may try again
+      this.dispatchEvent(new Event("fail"));
+    }
+  }
+}

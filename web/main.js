@@ -1,0 +1,109 @@
+/** Puts the page together. */
+
+import { find } from "./elements.js";
+import { Bow } from "./hands/bow.js";
+import { Diagram } from "./hands/diagram.js";
+import { Fingerboard } from "./hands/fingerboard.js";
+import { Hands } from "./hands/hands.js";
+import { Keys } from "./hands/keys.js";
+import { Tuned } from "./hands/tuned.js";
+import { Instrument } from "./instrument.js";
+import { Board } from "./pictures/board.js";
+import { Bowing } from "./pictures/bowing.js";
+import { Level } from "./pictures/level.js";
+import { Gallery } from "./pictures/picture.js";
+import { Schelleng } from "./pictures/schelleng.js";
+import { Spectrum } from "./pictures/spectrum.js";
+import { Strings } from "./pictures/strings.js";
+import { Tuner } from "./pictures/tuner.js";
+import { settings } from "./settings.js";
+import { showConnections } from "./views/connect.js";
+import { showHeader } from "./views/header.js";
+import { showKeeping } from "./views/keep.js";
+import { showParameters } from "./views/parameters.js";
+import { showSeeing } from "./views/see.js";
+import { showSounds } from "./views/sounds.js";
+import { showTabs } from "./views/tabs.js";
+import { showTunes } from "./views/tunes.js";
+import { showWays } from "./views/ways.js";
+import { fillWords, loadWords } from "./words.js";
+
+/**
+ * All that the views work with.
+ * @typedef {object} Page
+ * @property {Instrument} instrument
+ * @property {Hands} hands
+ * @property {Tuned} tuned
+ * @property {Keys} keys
+ * @property {Fingerboard} fingerboard
+ * @property {Bow} bow
+ * @property {Board} board
+ * @property {Strings} strings
+ * @property {Gallery} gallery
+ */
+
+/** @returns {Page} */
+function assemble() {
+  const instrument = new Instrument();
+  const hands = new Hands(instrument.player);
+  const tuned = new Tuned();
+  const keys = new Keys(hands, tuned);
+  const fingerboard = new Fingerboard(find("fingerboard", HTMLCanvasElement), hands, tuned);
+  const bow = new Bow(find("bow", HTMLCanvasElement), hands);
+  const board = new Board(fingerboard.element, fingerboard);
+  const strings = new Strings(find("strings", HTMLCanvasElement));
+  const gallery = new Gallery(() => instrument.state);
+  gallery.hang(board);
+  gallery.hang(new Bowing(bow.element, bow));
+  gallery.hang(strings);
+  gallery.hang(new Tuner(find("tuner", HTMLCanvasElement)));
+  gallery.hang(new Level(find("level", HTMLCanvasElement)));
+  const schelleng = new Schelleng(find("schelleng", HTMLCanvasElement));
+  gallery.hang(schelleng);
+  new Diagram(schelleng, instrument.player);
+  gallery.hang(
+    new Spectrum(find("spectrum", HTMLCanvasElement), () => instrument.sound?.analyser ?? null),
+  );
+  return { instrument, hands, tuned, keys, fingerboard, bow, board, strings, gallery };
+}
+
+/** @param {Page} page */
+function connect({ instrument, hands, keys, fingerboard, bow }) {
+  hands.isAssisted = settings.isAssisted;
+  fingerboard.isLandingInTune = settings.isLandingInTune;
+  // Whoever plays wants to hear it: any hand on the instrument starts the sound.
+  for (const hand of [keys, fingerboard, bow]) {
+    hand.addEventListener("play", () => instrument.start());
+  }
+  keys.addEventListener("silence", () => instrument.silence());
+  instrument.addEventListener("silence", () => hands.rest());
+  instrument.addEventListener("start", () => {
+    instrument.sound?.addEventListener("state", () => {
+      if (instrument.state) bow.follow(instrument.state);
+    });
+  });
+}
+
+async function main() {
+  await loadWords();
+  fillWords(document);
+  find("page", HTMLElement).hidden = false; // measured by what follows
+  const page = assemble();
+  connect(page);
+  showHeader(page);
+  showWays(page);
+  showTabs(page);
+  showSeeing(page);
+  showSounds(page);
+  showTunes(page);
+  showKeeping(page);
+  showConnections(page);
+  showParameters(page);
+}
+
+main().catch((error) => {
+  const notice = find("notice", HTMLElement);
+  notice.hidden = false;
+  notice.textContent = String(error);
+  throw error;
+});

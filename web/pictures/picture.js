@@ -1,0 +1,175 @@
+/** A canvas that is drawn 60 times a second while somebody can see it, and otherwise not at all. */
+
+/** @typedef {import('../interfaces.js').Snapshot} Snapshot */
+
+/**
+ * @typedef {object} Moment What a picture is drawn from.
+ * @property {Snapshot | null} state null before the start
+ * @property {boolean} isNew the state is another than at the last moment
+ * @property {number} now s
+ * @property {number} elapsed s since the last moment; 0 at the first
+ * @property {boolean} isCalm whoever looks wants as little motion as possible
+ *
+ * @typedef {Record<Colour, string>} Colours
+ * @typedef {'ink' | 'soft' | 'faint' | 'line' | 'paper' | 'surface' | 'inner' | 'outer' | 'accent'
+ *   | 'good' | 'bad' | 'glow'} Colour
+ */
+
+/** Custom properties of the style sheet. */
+const COLOURS = /** @type {Colour[]} */ ([
+  "ink",
+  "soft",
+  "faint",
+  "line",
+  "paper",
+  "surface",
+  "inner",
+  "outer",
+  "accent",
+  "good",
+  "bad",
+  "glow",
+]);
+const MOST_DOTS = 3; // per px: finer is not seen, and costs
+/** A large picture is drawn as one of this size, magnified: it is read from the last row. */
+const LARGE = { width: 640, height: 400, most: 3 };
+
+/** @type {Colours | null} */
+let colours = null;
+
+/** Read the colours of the present theme. */
+function readColours() {
+  const style = getComputedStyle(document.documentElement);
+  const found = COLOURS.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]);
+  colours = /** @type {Colours} */ (Object.fromEntries(found));
+  return colours;
+}
+
+/** Read them again, after the theme changed. */
+export function forgetColours() {
+  colours = null;
+}
+
+/**
+ * The font of the page, for text in a picture.
+ * @param {number} size px
+ * @param {number} [weight]
+ */
+export function font(size, weight = 400) {
+  return `${weight} ${size}px system-ui, -apple-system, "Noto Sans", "PingFang SC", sans-serif`;
+}
+
+/** A base for pictures, which say how they are drawn. */
+export class Picture {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.canvas = canvas;
+    const context = canvas.getContext("2d");
+    if (!context) throw new Error("this browser has no canvas");
+    this.context = context;
+    this.width = 0;
+    this.height = 0;
+    this.isSeen = true;
+    this.isStale = true; // has to be drawn even where nothing moves
+    new ResizeObserver(() => {
+      this.isStale = true;
+    }).observe(canvas);
+    new IntersectionObserver((entries) => {
+      this.isSeen = entries[entries.length - 1].isIntersecting;
+      this.isStale = true;
+    }).observe(canvas);
+  }
+
+  get colours() {
+    return colours ?? readColours();
+  }
+
+  /**
+   * Draw one moment, if it can be seen and differs from the last.
+   * @param {Moment} moment
+   */
+  show(moment) {
+    if (!this.isSeen) return;
+    if (!this.isStale && !this.changes(moment)) return;
+    if (this.isStale) this.#fit();
+    if (this.width === 0 || this.height === 0) return;
+    this.context.clearRect(0, 0, this.width, this.height);
+    this.draw(this.context, moment);
+  }
+
+  /**
+   * Whether it has to be drawn again at a moment.
+   * @param {Moment} moment
+   */
+  changes(moment) {
+    return moment.state !== null;
+  }
+
+  /**
+   * Draw it.
+   * @param {CanvasRenderingContext2D} _context in px
+   * @param {Moment} _moment
+   */
+  draw(_context, _moment) {
+    throw new Error("says each picture");
+  }
+
+  /** As many dots as the screen has. */
+  #fit() {
+    this.isStale = false;
+    const { clientWidth, clientHeight } = this.canvas;
+    const room = Math.min(clientWidth / LARGE.width, clientHeight / LARGE.height, LARGE.most);
+    const zoom = this.canvas.closest(".large") ? Math.max(room, 1) : 1;
+    const dots = Math.min(devicePixelRatio || 1, MOST_DOTS);
+    this.width = clientWidth / zoom;
+    this.height = clientHeight / zoom;
+    this.canvas.width = Math.round(clientWidth * dots);
+    this.canvas.height = Math.round(clientHeight * dots);
+    this.context.setTransform(dots * zoom, 0, 0, dots * zoom, 0, 0);
+  }
+}
+
+/** Shows pictures, moment by moment. */
+export class Gallery {
+  /** @param {() => Snapshot | null} latest */
+  constructor(latest) {
+    this.latest = latest;
+    /** @type {Picture[]} */
+    this.pictures = [];
+    this.calm = matchMedia("(prefers-reduced-motion: reduce)");
+    this.last = 0;
+    /** @type {Snapshot | null} */
+    this.seen = null;
+    // The browser asks for no frames while the page is hidden, so that nothing is drawn then.
+    requestAnimationFrame((now) => this.#next(now));
+  }
+
+  /** @param {Picture} picture */
+  hang(picture) {
+    this.pictures.push(picture);
+  }
+
+  /** Draw all anew: the theme or the language has changed. */
+  renew() {
+    forgetColours();
+    for (const picture of this.pictures) picture.isStale = true;
+  }
+
+  /** @param {number} now ms */
+  #next(now) {
+    requestAnimationFrame((next) => this.#next(next));
+    const state = this.latest();
+    const elapsed = this.last ? Math.min((now - this.last) / 1000, 0.1) : 0;
+    /** @type {Moment} */
+    const moment = {
+      state,
+      isNew: state !== this.seen,
+      now: now / 1000,
+      elapsed,
+      isCalm: this.calm.matches,
+    };
+    this.last = now;
+    this.seen = state;
+    for (const picture of this.pictures) picture.show(moment);
+  }
+}

@@ -1,0 +1,142 @@
+/** The tuner: the note that sounds, and how far from it, in cents; now and over the last seconds. */
+
+/** @typedef {import('./picture.js').Moment} Moment */
+
+import { nameOf } from "../hands/scale.js";
+import { Picture, font } from "./picture.js";
+import { soundingPitch } from "./regime.js";
+
+const RANGE = 50; // cents to either side
+const TRUE_WITHIN = 5;
+const LASTS = 4; // s of the trace
+const SMOOTH = 0.08; // s
+
+export class Tuner extends Picture {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    super(canvas);
+    /** @type {{time: number, pitch: number}[]} */
+    this.trace = [];
+    this.pitch = NaN;
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {Moment} moment
+   */
+  draw(context, { state, isNew, now, elapsed }) {
+    if (state && isNew) this.#hear(soundingPitch(state), now, elapsed);
+    const { width, height } = this;
+    const note = Math.round(this.pitch);
+    const left = Math.min(120, width * 0.3);
+    const sounds = !Number.isNaN(this.pitch);
+    const cents = (this.pitch - note) * 100;
+    const isTrue = Math.abs(cents) <= TRUE_WITHIN;
+    context.textBaseline = "middle";
+    context.textAlign = "left";
+    context.fillStyle = sounds ? this.colours.ink : this.colours.faint;
+    context.font = font(Math.min(height * 0.42, left * 0.45), 600);
+    context.fillText(sounds ? nameOf(note) : "–", 2, height * 0.4);
+    if (sounds) {
+      context.font = font(13);
+      context.fillStyle = isTrue ? this.colours.good : this.colours.soft;
+      const sign = cents < 0 ? "−" : "+";
+      context.fillText(`${sign}${Math.abs(cents).toFixed(0)} ct`, 4, height * 0.8);
+    }
+    this.#frame(context, left);
+    this.#trace(context, left, note, now);
+    if (sounds) this.#needle(context, left, cents, isTrue);
+  }
+
+  /**
+   * @param {number} pitch
+   * @param {number} now s
+   * @param {number} elapsed s
+   */
+  #hear(pitch, now, elapsed) {
+    const share = Math.min(elapsed / SMOOTH, 1);
+    const isNear = Math.abs(pitch - this.pitch) < 0.5;
+    this.pitch = isNear ? this.pitch + share * (pitch - this.pitch) : pitch;
+    this.trace.push({ time: now, pitch: this.pitch });
+    while (this.trace.length && this.trace[0].time < now - LASTS) this.trace.shift();
+  }
+
+  /**
+   * @param {number} left
+   * @param {number} cents
+   */
+  #across(left, cents) {
+    return left + ((cents + RANGE) / (2 * RANGE)) * (this.width - left - 8);
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {number} left
+   */
+  #frame(context, left) {
+    const bottom = this.height - 20;
+    context.font = font(11);
+    context.textAlign = "center";
+    context.textBaseline = "top";
+    for (let cents = -RANGE; cents <= RANGE; cents += 10) {
+      const x = this.#across(left, cents);
+      const isLong = cents % 25 === 0 || cents === 0;
+      context.fillStyle = cents === 0 ? this.colours.soft : this.colours.line;
+      context.fillRect(
+        x - 0.5,
+        cents === 0 ? 6 : bottom - (isLong ? 10 : 6),
+        1,
+        cents === 0 ? bottom - 6 : isLong ? 10 : 6,
+      );
+      if (Math.abs(cents) === RANGE || cents === 0) {
+        context.fillStyle = this.colours.soft;
+        const text = cents === 0 ? "0" : `${cents > 0 ? "+" : "−"}${Math.abs(cents)}`;
+        const inset = cents === 0 ? 0 : cents > 0 ? -8 : 8;
+        context.fillText(text, x + inset, bottom + 5);
+      }
+    }
+  }
+
+  /**
+   * The pitch over time: the latest at the bottom, as the needle leaves it behind.
+   * @param {CanvasRenderingContext2D} context
+   * @param {number} left
+   * @param {number} note
+   * @param {number} now
+   */
+  #trace(context, left, note, now) {
+    const bottom = this.height - 20;
+    context.save();
+    context.beginPath();
+    context.rect(left, 0, this.width - left, bottom);
+    context.clip();
+    context.strokeStyle = this.colours.faint;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    let last = NaN;
+    for (const { time, pitch } of this.trace) {
+      const x = this.#across(left, (pitch - note) * 100);
+      const y = bottom - ((now - time) / LASTS) * bottom;
+      // Another note, or one after silence, begins another line.
+      if (Math.abs(pitch - last) < 0.5) context.lineTo(x, y);
+      else if (!Number.isNaN(pitch)) context.moveTo(x, y);
+      last = pitch;
+    }
+    context.stroke();
+    context.restore();
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {number} left
+   * @param {number} cents
+   * @param {boolean} isTrue
+   */
+  #needle(context, left, cents, isTrue) {
+    const bottom = this.height - 20;
+    context.fillStyle = isTrue ? this.colours.good : this.colours.accent;
+    context.beginPath();
+    context.roundRect(this.#across(left, cents) - 2.5, bottom - 26, 5, 26, 2.5);
+    context.fill();
+  }
+}

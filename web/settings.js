@@ -1,0 +1,46 @@
+/** What this browser remembers of how someone likes the page. */
+
+const KEY = "yehu";
+
+/** What is remembered, and what holds at first. */
+const FIRST = {
+  language: "", // '': the browser's
+  theme: "", // '': the system's
+  direction: "across",
+  isAssisted: true,
+  isLandingInTune: true,
+  view: "slowed",
+  panel: "see",
+};
+
+/** @typedef {typeof FIRST} Values */
+
+/** @returns {Values} */
+function read() {
+  try {
+    const kept = JSON.parse(localStorage.getItem(KEY) ?? "{}");
+    /** @type {Record<string, unknown>} */
+    const values = { ...FIRST };
+    for (const [name, first] of Object.entries(FIRST)) {
+      if (typeof kept[name] === typeof first) values[name] = kept[name];
+    }
+    return /** @type {Values} */ (values);
+  } catch {
+    return { ...FIRST }; // nothing may be kept here, or it is no JSON
+  }
+}
+
+export const settings = read();
+
+/**
+ * Change some, and remember them.
+ * @param {Partial<Values>} changes
+ */
+export function remember(changes) {
+  Object.assign(settings, changes);
+  try {
+    localStorage.setItem(KEY, JSON.stringify(settings));
+  } catch {
+    // Private windows keep nothing: the settings then last as long as the page.
+  }
+}

@@ -1,0 +1,61 @@
+/** The header: start, status, language, theme. */
+
+/** @typedef {import('../main.js').Page} Page */
+
+import { find } from "../elements.js";
+import { remember, settings } from "../settings.js";
+import { language, say } from "../words.js";
+
+const EVERY = 500; // ms
+
+/** @param {Page} page */
+export function showHeader({ instrument, gallery }) {
+  const start = find("start", HTMLButtonElement);
+  const status = find("status", HTMLElement);
+  start.addEventListener("click", () => {
+    if (instrument.sound?.status.running) instrument.silence();
+    else instrument.start();
+  });
+  instrument.addEventListener("start", () => {
+    start.textContent = say("header.silence");
+    start.classList.remove("main");
+  });
+  instrument.addEventListener("fail", () => {
+    const notice = find("notice", HTMLElement);
+    notice.hidden = false;
+    notice.textContent = say("header.fail", { why: String(instrument.error) });
+  });
+  const tell = () => {
+    status.textContent = statusText(instrument.sound?.status ?? null);
+  };
+  tell();
+  setInterval(() => {
+    if (!document.hidden && instrument.sound) tell();
+  }, EVERY);
+  find("language", HTMLButtonElement).addEventListener("click", () => {
+    remember({ language: language() === "zh" ? "en" : "zh" });
+    location.reload();
+  });
+  find("theme", HTMLButtonElement).addEventListener("click", () => {
+    const isDark = settings.theme ? settings.theme === "dark" : darkSystem.matches;
+    remember({ theme: isDark ? "light" : "dark" });
+    document.documentElement.dataset.theme = settings.theme;
+    gallery.renew();
+  });
+  darkSystem.addEventListener("change", () => gallery.renew());
+}
+
+const darkSystem = matchMedia("(prefers-color-scheme: dark)");
+
+/**
+ * The state of the sound in a line.
+ * @param {import('../interfaces.js').Status | null} status
+ */
+export function statusText(status) {
+  if (!status) return say("status.off");
+  if (!status.running) return say("status.waiting");
+  const load = status.loadPercent.toFixed(0);
+  const latency = status.latencyMs.toFixed(0);
+  const dropouts = status.dropouts ? say("status.dropouts", { count: status.dropouts }) : "";
+  return say("status.on", { load, latency }) + dropouts;
+}

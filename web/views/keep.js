@@ -1,0 +1,140 @@
+/** Records the sound, and keeps what was played, to be played again. */
+
+/** @typedef {import('../main.js').Page} Page */
+/** @typedef {import('../instrument.js').Instrument} Instrument */
+
+import { allow, find, make, offer } from "../elements.js";
+import { Keeper, Replayer, readPerformance } from "../performance.js";
+import { say } from "../words.js";
+
+/** @param {Page} page */
+export function showKeeping({ instrument }) {
+  find("panel-keep", HTMLElement).append(recording(instrument), performances(instrument));
+}
+
+/**
+ * A button that is on or off, and says which.
+ * @param {string} off key of its text
+ * @param {string} on
+ * @param {(isOn: boolean) => void | Promise<void>} changed
+ */
+function toggle(off, on, changed) {
+  const button = make("button", { type: "button", "aria-pressed": "false" }, [say(off)]);
+  const set = (/** @type {boolean} */ isOn) => {
+    button.setAttribute("aria-pressed", String(isOn));
+    button.textContent = say(isOn ? on : off);
+  };
+  button.addEventListener("click", () => {
+    const isOn = button.getAttribute("aria-pressed") !== "true";
+    set(isOn);
+    changed(isOn);
+  });
+  return { button, set };
+}
+
+/**
+ * A name for a file of now.
+ * @param {string} ending
+ */
+function fileName(ending) {
+  const stamp = new Date().toISOString().slice(0, 19).replace(/[T:]/g, "-");
+  return `yehu-${stamp}.${ending}`;
+}
+
+/** @param {Instrument} instrument */
+function recording(instrument) {
+  const time = make("output", { class: "soft" });
+  let begun = 0;
+  const { button } = toggle("keep.record", "keep.stop", async (isOn) => {
+    const record = instrument.sound?.record;
+    if (!record) return;
+    begun = isOn ? performance.now() : 0;
+    if (isOn) record.start();
+    else offer(await record.stop(), fileName("wav"));
+  });
+  setInterval(() => {
+    if (begun && !document.hidden) time.textContent = clock((performance.now() - begun) / 1000);
+  }, 250);
+  const judge = () => {
+    const why = reason(instrument, Boolean(instrument.sound?.record));
+    allow(button, why);
+    time.textContent = why ?? "";
+  };
+  instrument.addEventListener("start", judge);
+  judge();
+  return make("section", { class: "group" }, [
+    make("h2", {}, [say("keep.sound")]),
+    make("p", { class: "soft" }, [say("keep.sound.about")]),
+    make("div", { class: "row" }, [button, time]),
+  ]);
+}
+
+/** @param {Instrument} instrument */
+function performances(instrument) {
+  const keeper = new Keeper(instrument);
+  const word = make("p", { class: "soft", role: "status" });
+  const keep = toggle("keep.begin", "keep.stop", (isOn) => {
+    if (isOn) keeper.start();
+    else offer(keeper.stop(), fileName("jsonl"));
+  });
+  const input = make("input", {
+    type: "file",
+    accept: ".jsonl",
+    hidden: true,
+    "aria-label": say("keep.load"),
+  });
+  /** @type {Replayer | null} */
+  let replayer = null;
+  const load = toggle("keep.load", "keep.stop", (isOn) => {
+    load.set(replayer !== null);
+    if (!isOn) replayer?.stop();
+    else input.click();
+  });
+  input.addEventListener("change", async () => {
+    const file = input.files?.[0];
+    input.value = "";
+    if (!file) return;
+    try {
+      const read = await readPerformance(file);
+      replayer = new Replayer(instrument, read);
+      load.set(true);
+      word.textContent = file.name;
+      replayer.addEventListener("end", () => {
+        replayer = null;
+        load.set(false);
+        word.textContent = "";
+      });
+    } catch {
+      word.textContent = say("keep.wrong", { name: file.name });
+    }
+  });
+  instrument.addEventListener("silence", () => replayer?.stop());
+  const judge = () => {
+    const why = reason(instrument, true);
+    for (const { button } of [keep, load]) allow(button, why);
+    word.textContent = why ?? "";
+  };
+  instrument.addEventListener("start", judge);
+  judge();
+  return make("section", { class: "group" }, [
+    make("h2", {}, [say("keep.performance")]),
+    make("p", { class: "soft" }, [say("keep.performance.about")]),
+    make("div", { class: "row" }, [keep.button, load.button, input]),
+    word,
+  ]);
+}
+
+/**
+ * Why something cannot be used, if it cannot.
+ * @param {Instrument} instrument
+ * @param {boolean} isThere
+ */
+function reason(instrument, isThere) {
+  if (!instrument.sound) return say("keep.first");
+  return isThere ? undefined : say("missing");
+}
+
+/** @param {number} seconds */
+function clock(seconds) {
+  return `${Math.floor(seconds / 60)}:${String(Math.floor(seconds % 60)).padStart(2, "0")}`;
+}

@@ -1,0 +1,144 @@
+/** All parameters of the table, with search; each with its unit, its default and what it is. */
+
+/** @typedef {import('../main.js').Page} Page */
+/** @typedef {import('../playing/table.js').Param} Param */
+
+import { find, make } from "../elements.js";
+import { TABLE } from "../playing/table.js";
+import { say, sayOr } from "../words.js";
+import { makeRange, nameFor, unitFor, written } from "./slider.js";
+import { whileShown } from "./tabs.js";
+
+/** Groups in the order of their use; others follow. */
+const ORDER = [
+  "playing",
+  "bow",
+  "finger",
+  "vibrato",
+  "pluck",
+  "string",
+  "body",
+  "output",
+  "engine",
+];
+const EVERY = 250; // ms
+
+/** @param {Page} page */
+export function showParameters({ instrument }) {
+  const panel = find("panel-all", HTMLElement);
+  const search = make("input", {
+    type: "search",
+    "aria-label": say("all.search"),
+    placeholder: say("all.search"),
+  });
+  const none = make("p", { class: "soft", role: "status" });
+  const groups = [...new Set([...ORDER, ...TABLE.map(({ group }) => group)])].map((name) => {
+    const rows = TABLE.filter(({ group }) => group === name).map((param) => row(instrument, param));
+    const count = make("span", { class: "soft" }, [String(rows.length)]);
+    const details = make("details", {}, [
+      make("summary", {}, [sayOr(`group.${name}`, name), " ", count]),
+      ...rows.map(({ element }) => element),
+    ]);
+    details.open = name === ORDER[0];
+    return { rows, details };
+  });
+  search.addEventListener("input", () => {
+    const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+    let found = 0;
+    for (const { rows, details } of groups) {
+      let inGroup = 0;
+      for (const { element, text } of rows) {
+        element.hidden = !words.every((word) => text.includes(word));
+        if (!element.hidden) inGroup++;
+      }
+      details.hidden = inGroup === 0;
+      if (words.length) details.open = inGroup > 0;
+      found += inGroup;
+    }
+    none.textContent = found ? "" : say("all.none");
+  });
+  const reset = make("button", { type: "button" }, [say("all.reset")]);
+  reset.addEventListener("click", () => {
+    for (const { rows } of groups) for (const one of rows) one.reset();
+  });
+  panel.append(
+    make("div", { class: "row" }, [make("div", { class: "wide" }, [search]), reset]),
+    none,
+    ...groups.map(({ details }) => details),
+  );
+  whileShown(
+    panel,
+    () => {
+      for (const { rows, details } of groups) {
+        if (details.open) for (const one of rows) one.follow();
+      }
+    },
+    EVERY,
+  );
+}
+
+/**
+ * @param {import('../instrument.js').Instrument} instrument
+ * @param {Param} param
+ */
+function row({ player }, param) {
+  const { address, doc, lo, hi, unit } = param;
+  const number = make("input", {
+    type: "number",
+    min: lo,
+    max: hi,
+    step: "any",
+    "aria-label": nameFor(address),
+  });
+  const tell = (/** @type {number} */ value) => {
+    number.value = written(param, value);
+  };
+  const { range, show } = makeRange(player, address, (value) => {
+    tell(value);
+    mark(value);
+  });
+  const back = make(
+    "button",
+    {
+      type: "button",
+      class: "quiet reset",
+      title: say("all.back", { value: written(param, param.default) }),
+      "aria-label": `${nameFor(address)}: ${say("all.back", { value: written(param, param.default) })}`,
+    },
+    ["↺"],
+  );
+  const element = make("div", { class: "parameter" }, [
+    make("h3", {}, [nameFor(address)]),
+    make("div", { class: "value" }, [number, make("span", {}, [unitFor(unit)])]),
+    back,
+    range,
+    make("p", {}, [sayOr(`about${address}`, doc), " ", make("code", {}, [address])]),
+  ]);
+
+  /** @param {number} value */
+  function mark(value) {
+    element.classList.toggle("changed", written(param, value) !== written(param, param.default));
+  }
+  const follow = () => {
+    const value = player.value(address);
+    show(value);
+    if (document.activeElement !== number) tell(value);
+    mark(value);
+  };
+  const reset = () => {
+    if (player.value(address) !== param.default) player.write(address, param.default);
+    tell(player.value(address));
+    follow();
+  };
+  number.addEventListener("change", () => {
+    const value = number.valueAsNumber;
+    if (Number.isFinite(value)) player.write(address, Math.min(Math.max(value, lo), hi));
+    tell(player.value(address));
+    follow();
+  });
+  back.addEventListener("click", reset);
+  follow();
+  const text =
+    `${nameFor(address)} ${address} ${doc} ${sayOr(`about${address}`, "")}`.toLowerCase();
+  return { element, text, follow, reset };
+}

@@ -1,0 +1,62 @@
+/** The page's words, in the language chosen. */
+
+import { settings } from "./settings.js";
+
+/** @type {Record<string, string>} */
+let texts = {};
+
+export const LANGUAGES = /** @type {const} */ (["en", "zh"]);
+
+/** @returns {'en' | 'zh'} */
+export function language() {
+  const wished = settings.language || navigator.language;
+  return wished.toLowerCase().startsWith("zh") ? "zh" : "en";
+}
+
+/** Load the words of the language. */
+export async function loadWords() {
+  const module = language() === "zh" ? import("./texts/zh.js") : import("./texts/en.js");
+  texts = (await module).default;
+  document.documentElement.lang = language() === "zh" ? "zh-Hans" : "en";
+  document.title = say("title");
+}
+
+/**
+ * The text of a key, with `{name}` filled in from the values.
+ * @param {string} key
+ * @param {Record<string, string | number>} [values]
+ */
+export function say(key, values = {}) {
+  return (texts[key] ?? key).replace(/\{(\w+)\}/g, (whole, name) => String(values[name] ?? whole));
+}
+
+/**
+ * The text of a key, or another where there is none.
+ * @param {string} key
+ * @param {string} otherwise
+ */
+export function sayOr(key, otherwise) {
+  return texts[key] ?? otherwise;
+}
+
+/**
+ * Put the words into all elements that name one: `data-text` is content, `data-label` the name
+ * that screen readers read, `data-hint` a placeholder.
+ * @param {ParentNode} root
+ */
+export function fillWords(root) {
+  for (const element of root.querySelectorAll("[data-text]")) {
+    element.textContent = say(/** @type {HTMLElement} */ (element).dataset.text ?? "");
+  }
+  for (const element of root.querySelectorAll("[data-label]")) {
+    const label = say(/** @type {HTMLElement} */ (element).dataset.label ?? "");
+    element.setAttribute("aria-label", label);
+    if (element instanceof HTMLButtonElement) element.title = label;
+  }
+  for (const element of root.querySelectorAll("[data-hint]")) {
+    element.setAttribute(
+      "placeholder",
+      say(/** @type {HTMLElement} */ (element).dataset.hint ?? ""),
+    );
+  }
+}

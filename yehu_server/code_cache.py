@@ -8,6 +8,7 @@ told in one line and compiled anew; what cannot be kept is played all the same.
 from __future__ import annotations
 
 import hashlib
+import io
 import logging
 import pickle
 import sys
@@ -23,6 +24,8 @@ from yehu_server.sealed import SealError, read_sealed, write_sealed
 
 log = logging.getLogger(__name__)
 
+TYPES_REPORT = 5  # its place in what numba keeps besides the machine code
+
 DAMAGED, FULL = "is damaged", "cannot be kept"
 _troubles: set[str] = set()  # of this process: each is told once
 
@@ -31,6 +34,21 @@ def _tell(trouble: str, line: str) -> None:
     if trouble not in _troubles:
         _troubles.add(trouble)
         log.warning("%s", line)
+
+
+def parts_of(result: Any) -> tuple[Any, bytes]:
+    """What numba keeps of what it compiled: the machine code, and the rest, which is not for it.
+
+    The rest has no path of this machine in it: numba's report on types, which has some, stays out.
+    """
+    code, *rest = result._reduce()  # noqa: SLF001 - there is no other way
+    rest[TYPES_REPORT] = ""
+    return code, dumps(tuple(rest))
+
+
+def payload_of(code: Any, rest: bytes) -> bytes:
+    """What a file of the cache holds."""
+    return bytes(dumps(code)) + rest
 
 
 class CodeCache(NullCache):  # type: ignore[misc]
@@ -56,12 +74,14 @@ class CodeCache(NullCache):  # type: ignore[misc]
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the code for a signature; None where it has to be compiled."""
         target_context.refresh()
-        path = self._path(sig, target_context.codegen())
+        path = self.path(sig)
         try:
             payload = read_sealed(path)
             if payload is None:
                 return None
-            return CompileResult._rebuild(target_context, *pickle.loads(payload))  # noqa: S301, SLF001 - it is sealed
+            parts = io.BytesIO(payload)
+            code, rest = pickle.load(parts), pickle.load(parts)  # noqa: S301 - it is sealed
+            return CompileResult._rebuild(target_context, code, *rest)  # noqa: SLF001
         except Exception as error:  # noqa: BLE001 - nothing in a cache is worth not playing
             reason = error if isinstance(error, SealError) else repr(error)
             _tell(DAMAGED, f"{path}: {reason}; compiling anew")
@@ -72,7 +92,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
         if FULL in _troubles or data.library.has_dynamic_globals or data.lifted:
             return
         try:
-            write_sealed(self._path(sig, data.codegen), dumps(data._reduce()))  # noqa: SLF001
+            write_sealed(self.path(sig), payload_of(*parts_of(data)))
         except Exception as error:  # noqa: BLE001 - neither a full disk nor a numba unlike ours
             reason = getattr(error, "strerror", None) or repr(error)
             _tell(FULL, f"{self._folder}: {reason}; compiled code is not kept for the next start")
@@ -80,10 +100,12 @@ class CodeCache(NullCache):  # type: ignore[misc]
     def holds(self, sig: Any) -> bool:
         """Whether the code for a signature is there and sound."""
         try:
-            return read_sealed(self._path(sig, cpu_target.target_context.codegen())) is not None
+            return read_sealed(self.path(sig)) is not None
         except SealError:
             return False
 
-    def _path(self, sig: Any, codegen: Any) -> Path:
-        key = repr((sig, codegen.magic_tuple(), self._own))
+    def path(self, sig: Any) -> Path:
+        """The file for a signature, on this processor."""
+        processor = cpu_target.target_context.codegen().magic_tuple()
+        key = repr((sig, processor, self._own))
         return self._folder / f"{self._stem}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.code"

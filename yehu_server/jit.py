@@ -10,7 +10,7 @@ import errno
 import os
 import shutil
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
@@ -23,6 +23,8 @@ from numba.core.ccallback import CFunc
 from numba.core.compiler import Compiler
 from platformdirs import user_cache_dir
 
+from yehu_server.bitcode import start
+from yehu_server.bitcode.capture import Capture
 from yehu_server.code_cache import CodeCache
 from yehu_server.code_key import key_of
 from yehu_server.errors import YehuError
@@ -44,7 +46,7 @@ def source_hash() -> str:
     package = Path(__file__).parent
     sources = [
         source
-        for folder in ("physics", "params", "controls", "player", "engine")
+        for folder in ("physics", "params", "controls", "player", "engine", "bitcode")
         for source in sorted((package / folder).glob("*.py"))
     ]
     return key_of(
@@ -183,6 +185,7 @@ class Native:
         self.function = function
         self.calls = calls
         self.name = f"yehu_{function.__name__}"
+        self.full_name = f"{function.__module__}.{function.__qualname__}"
 
     @cached_property
     def _made(self) -> Any:
@@ -193,6 +196,7 @@ class Native:
     @cached_property
     def compiled(self) -> Any:
         """numba's object for it, with ``inspect_llvm()``."""
+        make_of_shipped([self])
         for other in self.calls:
             binding.add_symbol(other.name, other.address)
         self._made.compile()
@@ -203,6 +207,16 @@ class Native:
         for other in self.calls:
             binding.add_symbol(other.name, 1)  # an address is wanted to finish, not to call
         self._made.compile()
+
+    def capture(self, into: Capture) -> None:
+        """Compile it to be shipped, in a process that won't call it."""
+        into.export(self._made, self.full_name)
+        self.keep()
+
+    @property
+    def file(self) -> Path:
+        """Its file in the cache."""
+        return Path(self._made._cache.path(self._made._sig))  # noqa: SLF001
 
     @property
     def is_kept(self) -> bool:
@@ -239,6 +253,21 @@ class Native:
         if IS_PLAIN:
             raise YehuError("NUMBA_DISABLE_JIT: plain Python has no address for C")
         return int(self.compiled.address)
+
+
+_asked_for: set[str] = set()  # of this process: each is made of what is shipped, or not, once
+
+
+def make_of_shipped(functions: Iterable[Native]) -> None:
+    """Make machine code of what is shipped for those that are not in the cache, where possible."""
+    wanted = [
+        function
+        for function in functions
+        if IS_CACHED and function.full_name not in _asked_for and not function.is_kept
+    ]
+    _asked_for.update(function.full_name for function in wanted)
+    if wanted:
+        start.make({function.full_name: function.file for function in wanted}, source_hash())
 
 
 def native(signature: str, calls: Sequence[Native] = ()) -> Callable[[Callable[..., Any]], Native]:

@@ -26,6 +26,7 @@ def beginnings(monkeypatch) -> list[list[str]]:
 
         kill = wait
 
+    monkeypatch.setattr(warming, "make_of_shipped", lambda _functions: None)
     monkeypatch.setattr(warming.subprocess, "Popen", Beside)
     monkeypatch.setattr(warming.os, "cpu_count", lambda: 2)
     return begun

@@ -144,16 +144,29 @@ def server_of(arguments: argparse.Namespace) -> tuple[str, int]:
     return parse_address(arguments.server, *OSC_ADDRESS)
 
 
-def warn_of_compiling(arguments: argparse.Namespace) -> None:
-    """Warn where the model will be compiled: at its first use, or always if it is not cached."""
-    from yehu_server.jit import WHY_NOT_CACHED, cache_folder
+def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> None:
+    """Warn where the model will be compiled: at its first use, or always if it is not cached.
+
+    Parameters
+    ----------
+    plays : bool
+        Whether the command plays the instrument, which is what code is made of in advance.
+    """
+    from yehu_server.bitcode.start import why_not
+    from yehu_server.jit import WHY_NOT_CACHED, cache_folder, source_hash
 
     if arguments.quiet:
-        pass
-    elif WHY_NOT_CACHED:
+        return
+    if WHY_NOT_CACHED:
         warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
-    elif not any(cache_folder().glob("*.code")):
+    elif any(cache_folder().glob("*.code")):
+        return
+    elif not plays:
         warn("compiling for this machine, once ...")
+    elif reason := why_not(source_hash()):
+        warn(f"compiling for this machine, once, for half a minute: {reason}")
+    else:
+        warn("preparing for this processor, once ...")
 
 
 @contextlib.contextmanager

@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
             f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"
         )
     start = time.perf_counter()
-    warn_of_compiling(arguments)
+    warn_of_compiling(arguments, plays=False)
     with progress_bar(arguments, "simulating") as progress:
         result = simulate(
             gesture,

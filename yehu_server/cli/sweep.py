@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
     axes = [axis_of(text) for text in arguments.vary]
     runs = variations(gesture.source, axes, arguments.gesture.parent)
     start = time.perf_counter()
-    warn_of_compiling(arguments)
+    warn_of_compiling(arguments, plays=False)
     with progress_bar(arguments, "sweeping", "runs") as progress:
         rows = sweep(
             runs,

@@ -1,7 +1,8 @@
 """Compile what playing needs, before the first sound; or load it from the cache.
 
-The callback calls the player by name, so both can be compiled at a time: the callback in a process
-of its own, which leaves it in the cache.
+At the first start machine code is made of the bitcode that is shipped. Where none is for this
+machine and these sources, all is compiled, the callback in a process of its own, which leaves it
+in the cache: it calls the player by name, so both can be compiled at a time.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ import os
 import subprocess
 import sys
 
+from yehu_server.bitcode.capture import capturing
+from yehu_server.bitcode.shipped import Shipped
 from yehu_server.engine.native import (
     callback,
     frame_at,
@@ -19,7 +22,7 @@ from yehu_server.engine.native import (
     read_reports,
     taped,
 )
-from yehu_server.jit import IS_CACHED, IS_PLAIN
+from yehu_server.jit import IS_CACHED, IS_PLAIN, make_of_shipped
 from yehu_server.player.listening import attend
 from yehu_server.player.wishes import fulfil
 
@@ -30,6 +33,7 @@ def warm_up() -> None:
     """Compile all functions that playing needs, or load them from the cache."""
     if IS_PLAIN:
         return
+    make_of_shipped(PLAYED_BY)
     with contextlib.ExitStack() as stack:
         beside = None
         if IS_CACHED and (os.cpu_count() or 1) > 1 and not callback.is_kept:
@@ -41,6 +45,14 @@ def warm_up() -> None:
         if beside is not None:
             beside.wait()
     _ = callback.address
+
+
+def capture() -> Shipped:
+    """What to ship, for a shorter first start; in a new process, with an empty cache."""
+    with capturing() as captured:
+        for function in PLAYED_BY:
+            function.capture(captured)
+    return captured.shipped()
 
 
 def is_warm() -> bool:

@@ -218,3 +218,18 @@ def player_record() -> Any:
     player = prepare_player(Quantities(), 44100.0, values)[0]
     begin_tuning(player, 88.0)
     return player
+
+
+def test_a_bow_drawn_by_hand_is_heard_and_left_alone():
+    play = Play(detuned=-30.0)
+    play.wishes.slide(76.0)
+    play.wishes.draw(0.15, 0.6)
+    run_for(play.instrument, 0.1)
+    fingers, force = play.fingers(), play.instrument.target("/bow/force")
+    run_for(play.instrument, 0.6)
+    certainty, slips, error = play.instrument.heard()
+    assert certainty > 0.9
+    assert slips == pytest.approx(1.0, abs=0.2)
+    assert error == pytest.approx(-30.0, abs=15.0)
+    assert play.fingers() == fingers
+    assert play.instrument.target("/bow/force") == force

@@ -15,7 +15,7 @@ from yehu_server.controls.record import CONTROLS
 from yehu_server.controls.slots import FINGER_POSITION, FINGER_PRESS, POSITION, SIDE, SLOTS, SPEED
 from yehu_server.engine.atomics import at
 from yehu_server.engine.native import CONTROLS_AT, METERS_AT, MODEL_AT, PLAYER_AT, STATE_AT
-from yehu_server.engine.telemetry import METERS, SHAPE_POINTS, shape
+from yehu_server.engine.telemetry import METERS, SHAPE_POINTS, displacement
 from yehu_server.jit import native
 from yehu_server.memory import carray
 from yehu_server.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
@@ -51,7 +51,7 @@ LOOK = np.dtype(
         ("upper", np.float64),  # N
         ("lower", np.float64),
         ("targets", np.float64, SLOTS),  # values that the engine's parameters have or move to
-        ("shapes", np.float64, (STRINGS, SHAPE_POINTS)),  # m; displacement, from end to end
+        ("shapes", np.float64, (STRINGS, SHAPE_POINTS)),  # m; displacement, from loop to bridge
     ]
 )
 
@@ -98,4 +98,5 @@ def look(rig: Any, into: Any) -> None:
         seen.targets[slot] = c.target[slot]
     for i in range(STRINGS):
         for point in range(SHAPE_POINTS):
-            seen.shapes[i, point] = shape(m, s, i, point)
+            place = point * m.bridge_x / m.h[i] / (SHAPE_POINTS - 1)
+            seen.shapes[i, point] = displacement(s, i, place)

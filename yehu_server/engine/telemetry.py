@@ -105,13 +105,12 @@ def close_window(t: Any, m: Any, s: Any) -> None:
     t.window += 1
     for i in range(STRINGS):
         for point in range(SHAPE_POINTS):
-            t.shapes[i, point] = shape(m, s, i, point)
+            t.shapes[i, point] = displacement(s, i, point * m.N[i] / (SHAPE_POINTS - 1))
 
 
 @compiled
-def shape(m: Any, s: Any, i: int, point: int) -> float:
-    """Displacement (m) of string `i` at one of SHAPE_POINTS, from end to end."""
-    place = point * m.N[i] / (SHAPE_POINTS - 1)
+def displacement(s: Any, i: int, place: float) -> float:
+    """Displacement (m) of string `i` at a place, in nodes from its end at the loop."""
     node = int(place)
     u = s.u[s.level, i]
     return float(u[1 + node] + (place - node) * (u[2 + node] - u[1 + node]))

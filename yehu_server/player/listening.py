@@ -8,12 +8,12 @@ import numpy as np
 
 from yehu_server.controls.hands import vibrato_at
 from yehu_server.controls.record import CONTROLS
-from yehu_server.controls.slots import DEPTH, RATE
+from yehu_server.controls.slots import DEPTH, RATE, SIDE
 from yehu_server.jit import compiled_exactly, native
 from yehu_server.memory import carray
 from yehu_server.player.bowing_by_ear import help_bow
 from yehu_server.player.ear import BEHIND, HEARD, hear
-from yehu_server.player.notes import sounding_pitch
+from yehu_server.player.notes import told_pitch
 from yehu_server.player.record import PLAYER
 from yehu_server.player.rows import LISTENING
 from yehu_server.player.tuning_by_ear import tune
@@ -22,6 +22,8 @@ from yehu_server.player.tuning_by_ear import tune
 @native("void(voidptr, voidptr, voidptr)")
 def attend(player: Any, controls: Any, sound: Any) -> None:
     """Listen to the bowed string, and act on what is heard; at the frames of ``ear.next``.
+
+    Of a bow that is drawn by hand the player only hears.
 
     Parameters
     ----------
@@ -35,15 +37,17 @@ def attend(player: Any, controls: Any, sound: Any) -> None:
     c = carray(controls, (1,), CONTROLS)[0]
     heard = carray(sound, (2 * HEARD,), np.float64)
     p.ear.next += p.ear.hop
-    is_bowed = p.sounding >= 0 and p.side != 0.0 and p.by_hand == 0
+    by_hand = p.by_hand != 0
+    is_bowed = c.value[SIDE] != 0.0 if by_hand else p.sounding >= 0 and p.side != 0.0
     if p.value[LISTENING] == 0.0 or not is_bowed or c.frame < p.settled_at:
         p.ear.certainty = 0.0
         return
-    pitch = sounding_pitch(p)
+    pitch = told_pitch(p)
     aim = pitch + vibrato_semitones(p, c)
     hear(p.ear, heard, c.frame, p.rate / (p.a4 * 2.0 ** ((aim - 69.0) / 12.0)))
-    tune(p, c, pitch)
-    help_bow(p, c, pitch)
+    if not by_hand:  # who draws the bow corrects it
+        tune(p, c, pitch)
+        help_bow(p, c, pitch)
 
 
 @compiled_exactly

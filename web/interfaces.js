@@ -50,8 +50,14 @@
  * @property {Status} status
  * @property {AnalyserNode} analyser
  * @property {{start: () => void, stop: () => Blob | Promise<Blob>}} [record] writes WAV
+ * @property {{start: () => void, stop: () => Promise<Kept>}} [keep] what is fulfilled
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
  *   fingers moves to
+ *
+ * @typedef {object} Kept
+ * @property {number} from frame
+ * @property {number} to frame
+ * @property {number[]} wishes five numbers each: frame, kind, index, value, other
  *
  * @typedef {EventTarget & SoundMembers} Sound
  *

@@ -1,62 +1,83 @@
-/** Keeps what was played as a file, and plays such a file again. */
+/** Keeps what was played as a capture of the server's format, and plays such a file again. */
 
 /** @typedef {import('./instrument.js').Instrument} Instrument */
 /** @typedef {import('./instrument.js').Wish} Wish */
+/** @typedef {import('./interfaces.js').Kept} Kept */
 
 import facts from "./facts.js";
 import { TABLE, find } from "./playing/table.js";
 
-const FORMAT = "yehu performance";
-const VERSION = 1;
+const FORMAT = "yehu-server capture";
+const VERSION = 2;
 const MOST_BYTES = 64 << 20;
 const EVERY = 60; // ms
+const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW } = facts.kinds;
 const NAMES = Object.keys(facts.kinds).map((name) => name.toLowerCase());
-const SETTINGS = new Set([facts.kinds.WRITE, facts.kinds.HOLD, facts.kinds.EXPRESS]);
+const OF_SLOT = TABLE.filter(({ slot }) => slot !== null).map(({ address }) => address);
+const SILENCE = "silence"; // in place of an engine's parameter
+const WISH = 5;
 
-/** Listens to the wishes of the player, and writes them down. */
+/** Keeps the wishes that the instrument fulfils. */
 export class Keeper {
   /** @param {Instrument} instrument */
   constructor(instrument) {
     this.instrument = instrument;
-    /** @type {string[]} */
-    this.lines = [];
-    this.begun = 0;
-    this.isOn = false;
-    instrument.addEventListener("wish", (event) => {
-      if (this.isOn) this.#keep(/** @type {CustomEvent<Wish>} */ (event).detail);
-    });
+    /** @type {Record<string, number>} */
+    this.values = {};
+  }
+
+  /** Whether there is something that can keep wishes. */
+  get isAble() {
+    return Boolean(this.instrument.sound?.keep);
   }
 
   start() {
-    const { player, sound, frame } = this.instrument;
-    const values = TABLE.filter(({ owned }) => !owned).map(({ address }) => [
-      address,
-      player.value(address),
-    ]);
-    this.lines = [
-      JSON.stringify({
-        format: FORMAT,
-        version: VERSION,
-        rate: sound?.status.rate,
-        values: Object.fromEntries(values),
-      }),
-    ];
-    this.begun = frame;
-    this.isOn = true;
-  }
-
-  /** @param {Wish} wish */
-  #keep({ frame, kind, index, value, other }) {
-    const place = SETTINGS.has(kind) ? TABLE[index].address : index;
-    const at = Math.max(frame - this.begun, 0);
-    this.lines.push(JSON.stringify([at, NAMES[kind], place, value, other]));
+    const { player, sound } = this.instrument;
+    const own = TABLE.filter(({ owned }) => !owned);
+    this.values = Object.fromEntries(own.map(({ address }) => [address, player.value(address)]));
+    sound?.keep?.start();
   }
 
   /** End, and return the file. */
-  stop() {
-    this.isOn = false;
-    return new Blob([this.lines.join("\n"), "\n"], { type: "application/jsonl" });
+  async stop() {
+    const { sound } = this.instrument;
+    if (!sound?.keep) throw new Error("nothing is kept");
+    const kept = await sound.keep.stop();
+    const answer = await fetch(new URL(`captures/${sound.status.rate}.json`, import.meta.url));
+    if (!answer.ok) throw new Error(`${answer.status} ${answer.statusText}`);
+    const head = await answer.json();
+    Object.assign(head.values, this.values);
+    const lines = [head, ...linesOf(kept), { end: kept.to - kept.from }];
+    const text = lines.map((line) => `${JSON.stringify(line)}\n`);
+    return new Blob(text, { type: "application/jsonl" });
   }
+}
+
+/** @param {Kept} kept */
+function linesOf({ from, wishes }) {
+  const lines = [];
+  for (let i = 0; i < wishes.length; i += WISH) {
+    const [frame, ...wish] = wishes.slice(i, i + WISH);
+    lines.push(lineOf(frame - from, wish[0], wish[1], wish[2], wish[3]));
+  }
+  return lines.sort((one, other) => Number(one[0]) - Number(other[0]));
+}
+
+/**
+ * @param {number} frame
+ * @param {number} kind
+ * @param {number} index
+ * @param {number} value
+ * @param {number} other
+ */
+function lineOf(frame, kind, index, value, other) {
+  const line = [frame, NAMES[kind]];
+  if (kind === RAMP) return [...line, OF_SLOT[index] ?? SILENCE, value, other];
+  if (kind === WRITE || kind === HOLD) return [...line, TABLE[index].address, value, other];
+  if (kind === EXPRESS) return [...line, TABLE[index].address, value];
+  if (kind === BEGIN || kind === END) return [...line, index, value, other];
+  if (kind === SLIDE || kind === STOP) return [...line, value];
+  return kind === DRAW ? [...line, value, other] : line;
 }
 
 /**
@@ -67,7 +88,7 @@ export class Keeper {
  */
 
 /**
- * Read a file of a performance; throws an error where it is none.
+ * Read a capture, of a page or a server; throws an error where it is none.
  * @param {Blob} file
  * @returns {Promise<Performance>}
  */
@@ -82,19 +103,31 @@ export async function readPerformance(file) {
     find(address);
     finite(value);
   }
-  const wishes = lines.map((line) => wishOf(JSON.parse(line)));
-  return { rate, values, wishes: wishes.sort((one, other) => one.frame - other.frame) };
+  const told = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no wishes
+  const wishes = told.map(wishOf);
+  return {
+    rate,
+    values: Object.fromEntries(Object.entries(values).filter(([address]) => !find(address).owned)),
+    wishes: wishes.sort((one, other) => one.frame - other.frame),
+  };
 }
 
 /**
  * @param {unknown[]} line
  * @returns {Wish}
  */
-function wishOf([frame, name, place, value, other]) {
+function wishOf([frame, name, ...rest]) {
   const kind = NAMES.indexOf(String(name));
   if (kind < 0) throw new TypeError(`no ${name}`);
-  const index = SETTINGS.has(kind) ? find(String(place)).row : finite(place);
-  return { frame: finite(frame), kind, index, value: finite(value), other: finite(other) };
+  /** @type {Wish} */
+  const wish = { frame: finite(frame), kind, index: 0, value: 0, other: 0 };
+  if ([RAMP, WRITE, HOLD, EXPRESS].includes(kind)) {
+    const address = String(rest.shift());
+    if (kind !== RAMP) wish.index = find(address).row;
+    else wish.index = address === SILENCE ? OF_SLOT.length : OF_SLOT.indexOf(find(address).address);
+  } else if (kind === BEGIN || kind === END) wish.index = finite(rest.shift());
+  [wish.value, wish.other] = [finite(rest[0] ?? 0), finite(rest[1] ?? 0)];
+  return wish;
 }
 
 /** @param {unknown} value */

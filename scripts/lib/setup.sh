@@ -19,8 +19,9 @@ log=$venv/setup.log
 # Python 3.13 and newer: for ALSA and, as its wheels are, for JACK.
 debian_packages=(libportaudio2)
 debian_build_packages=(g++ libasound2-dev libjack-jackd2-dev pkg-config)
-# What only tests need: a JACK server, real OSC senders, a linker for WebAssembly, and what runs it.
-debian_test_packages=(jackd2 liblo-tools puredata-core lld nodejs)
+# What only tests need: a JACK server, real OSC senders, a linker for WebAssembly, and what runs it
+# and the page.
+debian_test_packages=(jackd2 liblo-tools puredata-core lld npm chromium)
 
 # Python 3.12 and 3.11 first, since nothing has to be compiled for them. numba sets the newest.
 python_candidates=(python3.12 python3.11 python3.13 python3.14 python3 python)
@@ -217,6 +218,20 @@ if not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")):
     fi
 }
 
+# Installs what checks the page, from package-lock.json; without it those tests skip.
+node_packages() {
+    local made_from
+    command -v npm >/dev/null || return 0
+    made_from=$(cksum <"$root/package-lock.json")
+    [ "$(cat "$root/node_modules/.stamp" 2>/dev/null)" = "$made_from" ] && return
+    say "installing what checks the page"
+    if (cd "$root" && npm ci --ignore-scripts --no-audit --no-fund) >"$log" 2>&1 </dev/null; then
+        printf '%s\n' "$made_from" >"$root/node_modules/.stamp"
+    else
+        say "npm ci failed: the page is not tested in a browser; the log is $log"
+    fi
+}
+
 # Prints those of the given Debian packages that are not there.
 missing() {
     local package
@@ -233,7 +248,7 @@ is_there() {
             esac
             return 1
             ;;
-        nodejs) command -v node >/dev/null ;;
+        npm) command -v npm >/dev/null && command -v node >/dev/null ;;
         libjack-jackd2-dev) pkg-config --exists jack 2>/dev/null ;; # also JACK 1's will do
         *) [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ;;
     esac

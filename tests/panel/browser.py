@@ -51,10 +51,11 @@ def served(generated: Path) -> Iterator[str]:
     Parameters
     ----------
     generated : Path
-        The folder that ``facts.js`` and ``examples.js`` were written into.
+        The folder that ``facts.js``, ``examples.js`` and ``captures/`` were written into.
     """
     replaced = {"/sound/sound.js": HERE / "imitation.js"}
-    replaced |= {f"/{name}": generated / name for name in ("facts.js", "examples.js")}
+    for file in generated.rglob("*.js*"):
+        replaced[f"/{file.relative_to(generated)}"] = file
     handler = type("Handler", (_Handler,), {"replaced": replaced})
     server = http.server.ThreadingHTTPServer(
         ("127.0.0.1", 0), lambda *args: handler(*args, directory=str(WEB))
@@ -69,10 +70,10 @@ def served(generated: Path) -> Iterator[str]:
         thread.join()
 
 
-def drive(scenario: str, url: str) -> Any:
+def drive(scenario: str, url: str, *words: str) -> Any:
     """Run a scenario of this folder in a browser; return what it found."""
     done = subprocess.run(
-        [str(NODE), str(HERE / scenario), url, str(CHROMIUM)],
+        [str(NODE), str(HERE / scenario), url, str(CHROMIUM), *words],
         capture_output=True, text=True, timeout=LIMIT_S, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

@@ -46,6 +46,20 @@ export class Sound extends EventTarget {
       start: () => {},
       stop: () => new Blob(["RIFF"], { type: "audio/wav" }),
     };
+    /** @type {number[]} */
+    this.kept = [];
+    this.keep = {
+      start: () => {
+        this.kept = [];
+        this.keptFrom = this.state?.frame ?? 0;
+      },
+      stop: async () => ({
+        from: this.keptFrom,
+        to: this.state?.frame ?? 0,
+        wishes: this.kept,
+      }),
+    };
+    this.keptFrom = 0;
     this.state = this.#snapshot();
     const tick = () => {
       this.state = this.#snapshot();
@@ -60,7 +74,9 @@ export class Sound extends EventTarget {
 
   /** @type {import("../../web/interfaces.js").Post} */
   post(frame, kind, index, value, other) {
-    this.wishes.push([kind, index, value, other, frame ?? this.state?.frame ?? 0]);
+    const at = frame ?? this.state?.frame ?? 0;
+    this.wishes.push([kind, index, value, other, at]);
+    this.kept.push(at, kind, index, value, other);
     const key = `${index} ${value}`;
     if (kind === BEGIN) {
       this.notes.push({ key, pitch: other });
@@ -124,7 +140,7 @@ export class Sound extends EventTarget {
       },
       fingers: stop > 0.01 ? [{ x: stop, press: 1.5, string }] : [],
       period,
-      string: { length: LENGTH, T: 50.6, rhoA: 1.19e-3, impedance: 0.245 },
+      string: { length: LENGTH },
       schelleng: { min, max },
     };
   }

@@ -9,6 +9,7 @@ import pytest
 from panel.browser import drive, missing, served
 
 from yehu_server.panel import facts
+from yehu_server.panel.beginnings import write_beginnings
 from yehu_server.params.table import TABLE
 from yehu_server.playing.presets import Presets
 
@@ -22,6 +23,7 @@ def found(tmp_path_factory) -> Any:
     """What a visitor found."""
     generated = tmp_path_factory.mktemp("generated")
     facts.write(generated)
+    write_beginnings(generated / "captures")
     with served(generated) as url:
         return drive("page_views.mjs", url)
 
@@ -119,7 +121,8 @@ def test_what_was_kept_is_played_again(found) -> None:
 
     assert len(notes(found["played"])) == 4
     assert notes(found["replayed"]) == notes(found["played"])
-    kept = [json.loads(line) for line in found["kept"]]
+    *kept, end = (json.loads(line) for line in found["kept"])
+    assert end["end"] > 0
     assert [line[1] for line in kept if line[1] in ("begin", "end")] == ["begin", "end"] * 2
 
 

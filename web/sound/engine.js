@@ -14,6 +14,7 @@ const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
  * @typedef {object} Take
  * @property {Float64Array} [wishes] WISH numbers each
  * @property {boolean} [record] begins or ends a recording
+ * @property {boolean} [keep] begins or ends keeping the wishes that are fulfilled
  * @property {Float64Array} [seen] a look, given back
  *
  * @typedef {object} Told
@@ -22,6 +23,7 @@ const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
  * @property {number} [dropped] wishes that there was no room for, so far
  * @property {Float32Array} [recorded] samples
  * @property {boolean} [isLast] of a recording
+ * @property {{from: number, to: number, wishes: number[]}} [kept] frames, and WISH numbers each
  */
 
 export class Engine {
@@ -47,10 +49,13 @@ export class Engine {
     /** @type {Float32Array | null} */
     this.chunk = null;
     this.filled = 0;
+    /** @type {number[] | null} */
+    this.kept = null;
+    this.keptFrom = 0;
   }
 
   /** @param {Take} message */
-  take({ wishes, record, seen }) {
+  take({ wishes, record, keep, seen }) {
     if (seen) this.free.push(seen);
     if (wishes) {
       for (let i = 0; i < wishes.length; i += WISH) {
@@ -58,7 +63,15 @@ export class Engine {
           wishes[i], wishes[i + 1], wishes[i + 2], wishes[i + 3], wishes[i + 4],
         ); // prettier-ignore
         if (!isTaken) this.dropped += 1;
+        else if (this.kept) {
+          this.kept.push(Math.max(wishes[i], this.frame), ...wishes.subarray(i + 1, i + WISH));
+        }
       }
+    }
+    if (keep === true) [this.kept, this.keptFrom] = [[], this.frame];
+    else if (keep === false && this.kept) {
+      this.tell({ kept: { from: this.keptFrom, to: this.frame, wishes: this.kept } }, []);
+      this.kept = null;
     }
     if (record === true) {
       this.chunk = new Float32Array(CHUNK);

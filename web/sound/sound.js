@@ -55,6 +55,9 @@ export class Sound extends EventTarget {
     /** @type {((blob: Blob) => void) | null} */
     this.recorded = null;
     this.record = { start: () => this.#startRecording(), stop: () => this.#stopRecording() };
+    /** @type {((kept: NonNullable<Told["kept"]>) => void) | null} */
+    this.kept = null;
+    this.keep = { start: () => this.backend?.take({ keep: true }), stop: () => this.#stopKeeping() };
     this.#watch();
   }
 
@@ -116,7 +119,8 @@ export class Sound extends EventTarget {
   }
 
   /** @param {Told} told */
-  #hear({ seen, load, dropped, recorded, isLast }) {
+  #hear({ seen, load, dropped, recorded, isLast, kept }) {
+    if (kept) this.kept?.(kept);
     if (recorded && this.chunks) {
       this.chunks.push(recorded);
       if (isLast) {
@@ -144,6 +148,14 @@ export class Sound extends EventTarget {
     return new Promise((resolve) => {
       this.recorded = resolve;
       this.backend?.take({ record: false });
+    });
+  }
+
+  /** @returns {Promise<NonNullable<Told["kept"]>>} */
+  #stopKeeping() {
+    return new Promise((resolve) => {
+      this.kept = resolve;
+      this.backend?.take({ keep: false });
     });
   }
 

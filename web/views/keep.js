@@ -73,9 +73,9 @@ function recording(instrument) {
 function performances(instrument) {
   const keeper = new Keeper(instrument);
   const word = make("p", { class: "soft", role: "status" });
-  const keep = toggle("keep.begin", "keep.stop", (isOn) => {
+  const keep = toggle("keep.begin", "keep.stop", async (isOn) => {
     if (isOn) keeper.start();
-    else offer(keeper.stop(), fileName("jsonl"));
+    else offer(await keeper.stop(), fileName("jsonl"));
   });
   const input = make("input", {
     type: "file",
@@ -110,9 +110,9 @@ function performances(instrument) {
   });
   instrument.addEventListener("silence", () => replayer?.stop());
   const judge = () => {
-    const why = reason(instrument, true);
-    for (const { button } of [keep, load]) allow(button, why);
-    word.textContent = why ?? "";
+    allow(keep.button, reason(instrument, keeper.isAble));
+    allow(load.button, reason(instrument, true));
+    word.textContent = reason(instrument, true) ?? "";
   };
   instrument.addEventListener("start", judge);
   judge();

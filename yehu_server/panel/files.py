@@ -9,9 +9,10 @@ from pathlib import Path
 from yehu_server.ahead.kept import page_module
 from yehu_server.errors import OutputError
 from yehu_server.files import replacing, shipped_folder
+from yehu_server.panel.beginnings import write_beginnings
 from yehu_server.panel.facts import write
 
-MODULE = "yehu.wasm"
+MODULE, CAPTURES = "yehu.wasm", "captures"
 SERVED = {".css", ".html", ".js", ".svg", ".webmanifest"}
 FACTS = "facts.js"
 GENERATED = {FACTS, "examples.js"}
@@ -48,11 +49,17 @@ def write_page(folder: Path) -> list[Path]:
             _copy(page_folder() / file, folder / file)
         _copy(module, folder / MODULE)
         write(folder)
+        written = write_beginnings(folder / CAPTURES)
         if (beside := module.with_name(FACTS)).is_file():  # of the module's own sources
             _copy(beside, folder / FACTS)
     except OSError as error:
         raise OutputError(f"{folder}: {error.strerror}") from error
-    return [*files, *map(Path, sorted(GENERATED)), Path(MODULE)]
+    return [
+        *files,
+        *map(Path, sorted(GENERATED)),
+        *(path.relative_to(folder) for path in written),
+        Path(MODULE),
+    ]
 
 
 def _copy(source: Path, target: Path) -> None:

@@ -91,7 +91,8 @@ def from_line(line: list[Any]) -> Fields:
         index, value = _setting(*values)
     elif kind in (BEGIN, END):
         channel, key, last = values
-        index, value = _whole(channel, -1, MOST_CHANNELS), _within(key, 0.0, HIGHEST_KEY)
+        index = _whole(channel, -MOST_CHANNELS, MOST_CHANNELS)  # below 0: no MIDI channel
+        value = _within(key, 0.0, HIGHEST_KEY)
         other = _within(last, 0.0, HIGHEST_KEY) if kind == BEGIN else float(_whole(last, 0, 1))
     elif kind == STOP:
         (panic,) = values

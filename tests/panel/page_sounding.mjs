@@ -1,0 +1,108 @@
+/**
+ * Plays the page itself, with its WebAssembly, as a static site: over https's stand-in, loopback, and
+ * over plain http under a name that browsers don't trust.
+ *
+ *   node page_sounding.mjs URL CHROMIUM FOLDER [TUNE]
+ *
+ * Downloads go to FOLDER. With a TUNE that tune is played to its end, and nothing else.
+ */
+
+import { FLAGS, open, run } from "./browser.mjs";
+
+const NAME = "page.example"; // not a secure context; Chromium is told that it is this machine
+const [, , folder, tune] = process.argv.slice(2);
+const KEY = "KeyV"; // B4
+const DEPRECATED = "ScriptProcessorNode is deprecated"; // but there is nothing else there
+
+/** Keeps what the page makes to analyse its sound; runs in the page. */
+function keepAnalysers() {
+  const Original = globalThis.AnalyserNode;
+  globalThis.analysers = [];
+  globalThis.AnalyserNode = class extends Original {
+    constructor(...words) {
+      super(...words);
+      globalThis.analysers.push(this);
+    }
+  };
+}
+
+/**
+ * Start the sound by a key; return after how long (ms) it is heard.
+ * @param {import("playwright-core").Page} page
+ */
+async function start(page) {
+  const began = Date.now();
+  await page.click("#start");
+  await page.keyboard.down(KEY);
+  await page.waitForFunction(() => {
+    const [analyser] = globalThis.analysers;
+    const samples = new Float32Array(analyser?.fftSize ?? 0);
+    analyser?.getFloatTimeDomainData(samples);
+    return samples.some((sample) => Math.abs(sample) > 0.01);
+  });
+  return Date.now() - began;
+}
+
+/**
+ * Press a button and save what it offers.
+ * @param {import("playwright-core").Page} page
+ * @param {import("playwright-core").Locator} button
+ * @param {string} name
+ */
+async function save(page, button, name) {
+  const download = page.waitForEvent("download");
+  await button.click();
+  await (await download).saveAs(`${folder}/${name}`);
+}
+
+/** @param {import("playwright-core").Page} page */
+async function playAndKeep(page) {
+  await page.click("#tab-keep");
+  await page.getByRole("button", { name: "Record", exact: true }).click();
+  await page.getByRole("button", { name: "Keep", exact: true }).click();
+  await page.keyboard.down(KEY);
+  await page.waitForTimeout(1500);
+  const status = await page.textContent("#status");
+  await page.keyboard.up(KEY);
+  await page.waitForTimeout(300);
+  const pressed = page.locator("#panel-keep button[aria-pressed=true]");
+  await save(page, pressed.nth(1), "kept.jsonl");
+  await save(page, pressed.first(), "recorded.wav");
+  return status;
+}
+
+await run(
+  async (browser, url) => {
+    await browser.addInitScript(keepAnalysers);
+    const { page, errors } = await open(browser, url);
+    const found = { seconds: (await start(page)) / 1e3 };
+    await page.keyboard.up(KEY);
+    if (tune) {
+      await page.click("#tab-tunes");
+      const button = page.getByRole("button", { name: `Listen: ${tune}` });
+      await button.click();
+      await page.waitForTimeout(5000);
+      found.pressed = await button.getAttribute("aria-pressed");
+      await page.waitForFunction(
+        () => !document.querySelector("#panel-tunes [aria-pressed=true]"),
+        undefined,
+        { timeout: 90_000 },
+      );
+      return { ...found, errors };
+    }
+    found.status = await playAndKeep(page);
+    const untrusted = await open(browser, url.replace("127.0.0.1", NAME));
+    found.secure = await untrusted.page.evaluate(() => isSecureContext);
+    await start(untrusted.page);
+    await untrusted.page.keyboard.up(KEY);
+    await untrusted.page.click("#tab-keep");
+    await untrusted.page.getByRole("button", { name: "Record", exact: true }).click();
+    await untrusted.page.keyboard.down(KEY);
+    await untrusted.page.waitForTimeout(1500);
+    const pressed = untrusted.page.locator("#panel-keep button[aria-pressed=true]");
+    await save(untrusted.page, pressed.first(), "script.wav");
+    const told = untrusted.errors.filter((error) => !error.includes(DEPRECATED));
+    return { ...found, errors: [...errors, ...told] };
+  },
+  { args: [...FLAGS, `--host-resolver-rules=MAP ${NAME} 127.0.0.1`], acceptDownloads: true },
+);

@@ -1,0 +1,88 @@
+"""The page sounds in a browser, from a plain file server; what it records and keeps is right."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+from panel.browser import drive, missing
+
+from yehu_server.ahead.link import page_linker
+from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.cli import main
+from yehu_server.panel.files import write_page
+from yehu_server.panel.web_server import server_of, url_of
+from yehu_server.player.calibration import frequency_hz
+
+pytestmark = [
+    pytest.mark.skipif(missing() is not None, reason=str(missing())),
+    pytest.mark.skipif(page_linker() is None, reason="there is no wasm-ld"),
+]
+B4 = 71.0
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory):
+    """The page, written as static files and served."""
+    folder = tmp_path_factory.mktemp("page")
+    write_page(folder)
+    with server_of(folder, 0) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield url_of(server)
+        server.shutdown()
+        thread.join()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """Where downloads go."""
+    return tmp_path_factory.mktemp("downloads")
+
+
+@pytest.fixture(scope="module")
+def found(url, folder):
+    return drive("page_sounding.mjs", url, str(folder))
+
+
+def off_by(sound: np.ndarray, rate: float) -> float:
+    """How far (cents) the loudest part of a sound is from B4."""
+    loudest = int(np.argmax(np.convolve(sound**2, np.ones(rate // 4), "valid")))
+    return cents(pitch_hz(sound[loudest : loudest + rate // 4], rate), frequency_hz(B4, 440.0))
+
+
+def test_it_sounds_soon_and_without_an_error(found):
+    assert found["errors"] == []
+    assert found["seconds"] < 10.0  # 0.3 s on a free machine
+    assert "ms" in found["status"]
+
+
+@pytest.mark.parametrize("name", ["recorded.wav", "script.wav"])
+def test_what_is_recorded_is_the_note_that_was_played(found, folder, name):
+    assert found
+    sound, rate = soundfile.read(folder / name, dtype="float32")
+    assert np.isfinite(sound).all()
+    assert np.abs(sound).max() > 0.03
+    assert abs(off_by(sound, rate)) < 10.0
+
+
+def test_without_a_worklet_the_script_processor_sounds(found):
+    assert found["secure"] is False
+
+
+def test_the_server_replays_what_was_kept(found, folder, tmp_path):
+    assert found
+    assert main(["replay", str(folder / "kept.jsonl"), "-o", str(tmp_path / "kept.wav")]) == 0
+    sound, rate = soundfile.read(tmp_path / "kept.wav", dtype="float32")
+    assert len(sound) / rate == pytest.approx(1.9, abs=1.0)
+    assert abs(off_by(sound, rate)) < 10.0
+
+
+@pytest.mark.slow
+def test_a_tune_plays_to_its_end(url, folder):
+    found = drive("page_sounding.mjs", url, str(folder), "mpe phrase")
+    assert found["errors"] == []
+    assert found["pressed"] == "true"

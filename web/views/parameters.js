@@ -36,7 +36,7 @@ export function showParameters({ instrument }) {
     const rows = TABLE.filter(({ group }) => group === name).map((param) => row(instrument, param));
     const count = make("span", { class: "soft" }, [String(rows.length)]);
     const details = make("details", {}, [
-      make("summary", {}, [sayOr(`group.${name}`, name), " ", count]),
+      make("summary", {}, [make("h2", {}, [sayOr(`group.${name}`, name)]), " ", count]),
       ...rows.map(({ element }) => element),
     ]);
     details.open = name === ORDER[0];

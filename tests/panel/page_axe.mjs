@@ -1,0 +1,29 @@
+/** Looks for what keeps people out, by axe-core, in each view, dark and light; prints what it finds. */
+
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { SIZES, open, run } from "./browser.mjs";
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
+const VIEWS = ["see", "sound", "tunes", "keep", "connect", "all"];
+
+await run(async (browser, url) => {
+  const found = [];
+  for (const colorScheme of ["light", "dark"]) {
+    for (const viewport of [SIZES.phone, SIZES.desk]) {
+      const { page } = await open(browser, url);
+      await page.emulateMedia({ colorScheme });
+      await page.setViewportSize(viewport);
+      await page.evaluate(AXE); // past the page's policy, which allows its own scripts only
+      for (const view of VIEWS) {
+        await page.click(`#tab-${view}`);
+        const { violations } = await page.evaluate(() => globalThis.axe.run());
+        for (const { id, impact, nodes } of violations) {
+          found.push({ view, colorScheme, width: viewport.width, id, impact, html: nodes[0].html });
+        }
+      }
+      await page.close();
+    }
+  }
+  return found;
+});

@@ -39,7 +39,7 @@ export async function run(scenario, options = {}) {
     ...options,
   });
   try {
-    console.log(JSON.stringify(await scenario(browser, url)));
+    console.log(JSON.stringify((await scenario(browser, url)) ?? null));
   } finally {
     await browser.close();
     rmSync(folder, { recursive: true, force: true });

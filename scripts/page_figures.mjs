@@ -1,0 +1,36 @@
+// Makes the pictures of the page in docs/figures, from a page that is being shown:
+//
+//   scripts/yehu page --port 8010 &
+//   node scripts/page_figures.mjs http://127.0.0.1:8010/ /usr/bin/chromium docs/figures
+
+import { FLAGS, SIZES, open, run } from "../tests/panel/browser.mjs";
+
+const [, , folder] = process.argv.slice(2);
+const PICTURES = [
+  { name: "desk", size: SIZES.desk, colorScheme: "light", view: "see", key: "KeyR" },
+  { name: "tablet", size: SIZES.tablet, colorScheme: "dark", view: "sound", key: "KeyW" },
+  { name: "phone", size: SIZES.phone, colorScheme: "light", view: null, key: "KeyC" },
+];
+const SETTLED_MS = 4000;
+
+await run(
+  async (browser, url) => {
+    for (const { name, size, colorScheme, view, key } of PICTURES) {
+      const { page } = await open(browser, url);
+      await page.emulateMedia({ colorScheme });
+      await page.setViewportSize(size);
+      if (view) await page.click(`#tab-${view}`);
+      await page.click("#start");
+      await page.keyboard.down(key);
+      await page.waitForTimeout(SETTLED_MS);
+      await page.evaluate(() => {
+        document.activeElement.blur();
+        scrollTo(0, 0);
+      });
+      await page.screenshot({ path: `${folder}/page_${name}.png` });
+      await page.keyboard.up(key);
+      await page.close();
+    }
+  },
+  { args: FLAGS },
+);

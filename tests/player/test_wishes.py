@@ -1,0 +1,51 @@
+"""Wishes are kept within range by the player itself: programs without Python can post anything."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.params.table import SLOT, TABLE, find
+from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, KINDS, SLIDE, WRITE
+
+
+def after(*wishes: tuple[int, int, float, float]):
+    """The player's record, and the controls', after some wishes."""
+    instrument = Instrument(44100.0)
+    for kind, index, value, other in wishes:
+        assert instrument.post(kind, index=index, value=value, other=other)
+    instrument.process(np.zeros(64, np.float32))
+    return instrument._rig["player"][0].copy(), instrument._rig["controls"][0].copy()
+
+
+@pytest.mark.parametrize("kind", range(len(KINDS)), ids=KINDS)
+@pytest.mark.parametrize("numbers", [(math.nan, 0.0), (0.5, math.nan), (math.inf, 0.5)], ids=str)
+def test_a_number_that_is_not_finite_changes_nothing(kind, numbers):
+    for found, untouched in zip(after((kind, 1, *numbers)), after(), strict=True):
+        assert found.tobytes() == untouched.tobytes()
+
+
+@pytest.mark.parametrize("kind", [WRITE, HOLD, EXPRESS])
+@pytest.mark.parametrize("beyond", [-1e308, 1e308])
+def test_a_value_beyond_its_range_becomes_the_ranges_end(kind, beyond):
+    for row, param in enumerate(TABLE):
+        if param.owned or param.address.startswith("/engine"):
+            continue
+        player, _ = after((kind, row, beyond, 0.0))
+        assert player["value"][row] == (param.lo if beyond < 0.0 else param.hi), param.address
+
+
+@pytest.mark.parametrize(("pitch", "played"), [(-1e9, LOWEST_NOTE), (1e9, HIGHEST_NOTE)])
+def test_a_pitch_beyond_the_range_becomes_its_end(pitch, played):
+    assert after((BEGIN, 0, 60.0, pitch))[0]["held_pitch"][0] == played
+    assert after((SLIDE, 0, pitch, 0.0))[0]["finger_pitch"] == played
+
+
+def test_a_bow_drawn_too_fast_and_too_hard_is_drawn_as_it_can_be():
+    player, controls = after((DRAW, 0, 1e6, 1e6))
+    assert player["speed"] == find("/bow/speed").hi
+    assert controls["target"][SLOT["/bow/force"]] == find("/bow/force").hi

@@ -235,6 +235,26 @@ def test_the_score_of_a_manner_is_always_the_same(practice):
     assert len(scores) == 1
 
 
+def test_a_tuning_moves_each_note_to_its_nearest_pitch():
+    tuned = practising.pitches_near_notes({66.0: 66.3, 67.0: 66.9, 68.0: 68.6}.get)
+    assert [tuned[note] for note in (65, 66, 67, 68, 69)] == [65.0, 66.3, 66.9, 68.0, 68.6]
+
+
+def test_with_a_tuning_notes_are_practised_at_its_pitches(monkeypatch):
+    played = []
+
+    def speaks(instrument, _near):
+        player = instrument._rig["player"][0]
+        played.append(float(player["held_pitch"][player["sounding"]]))
+        return True, 0.0
+
+    monkeypatch.setattr(practising, "_speaks", speaks)
+    practice = Practice(RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35)
+    manner = ordinary_table()[0, PLACE, 70 - FIRST]
+    assert practice.score(Search(0, 70, PLACE, manner), manner, PASSAGES) == 1.0
+    assert set(played) == {70.35}
+
+
 @pytest.fixture
 def one_note(monkeypatch) -> None:
     """Practise a single note, with a single passage at each trial."""
@@ -254,6 +274,17 @@ def test_what_practise_writes_render_takes(command, render, tmp_path):
     assert changed.sum() == summary["improved"]
     assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
     assert render("--practice", path)[1]["practice"] == str(path)
+
+
+@pytest.mark.usefixtures("one_note")
+def test_practise_takes_a_tuning_and_refuses_a_map_without_a_scale(command, tmp_path):
+    path = tmp_path / "tuned.json"
+    code, _, error = command("practise", "-o", path, "--tuning", "chaozhou-seven-equal", "--quiet")
+    assert code == 0, error
+    assert read_practice(path).shape == ordinary_table().shape
+    code, _, error = command("practise", "-o", path, "--keyboard-map", "chaozhou")
+    assert code == 2
+    assert "--keyboard-map needs a scale" in error
 
 
 @pytest.mark.usefixtures("one_note")

@@ -14,13 +14,17 @@ from yehu_server.cli.arguments import (
     warn_of_compiling,
 )
 from yehu_server.cli.converters import target
+from yehu_server.cli.style_options import add_tuning, tuning_of
 from yehu_server.cli.terminal import tell
+
+A4 = 440.0  # Hz
 
 EXAMPLES = """\
 examples:
   yehu-server practise -o mine.json
   yehu-server practise --instrument heavy_bridge.toml --rate 48000 -o heavy.json
   yehu-server practise --preset sul-ponticello -o near.json
+  yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
   yehu-server render tune.mid -o tune.wav --practice mine.json
 
 Begins with what comes with this version, and takes a quarter of an hour or more on two cores. The
@@ -49,6 +53,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--preset", metavar="NAME", help="practise for the bow of a preset alone, in less time"
     )
+    add_tuning(parser)
     add_reporting(parser)
 
 
@@ -66,17 +71,20 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.presets import Presets
 
     check_rate(arguments.rate)
-    own = [] if arguments.instrument is None else [arguments.instrument]
+    tuning = tuning_of(arguments)
+    own = [*tuning.files, *([] if arguments.instrument is None else [arguments.instrument])]
     check_target(arguments.output)
     check_apart({"-o": arguments.output}, own)
     values = {} if arguments.preset is None else Presets().load(arguments.preset).values
-    quantities = read_quantities(arguments.instrument) if own else Quantities()
+    quantities = read_quantities(arguments.instrument) if arguments.instrument else Quantities()
     start = time.perf_counter()
     warn_of_compiling(arguments)
     warm_up()
     with progress_bar(arguments, "calibrating", "notes") as progress:
         calibration = calibration_for(arguments.rate, quantities, progress=progress)
-    practice = Practice(arguments.rate, quantities, calibration, values)
+    practice = Practice(
+        arguments.rate, quantities, calibration, values, lambda key: tuning.pitch(key, A4)
+    )
     with progress_bar(arguments, "practising", "notes") as progress:
         table = practice.learn(progress, table=shipped_practice(arguments.rate))
     write_practice(arguments.output, table, arguments.rate)

@@ -14,6 +14,7 @@ from yehu_server.errors import ParameterError
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
     from yehu_server.playing.style import Style
+    from yehu_server.playing.tuning import Tuning
 
 
 def add_playing(group: Any) -> None:
@@ -61,18 +62,7 @@ def add_playing(group: Any) -> None:
         metavar="HZ",
         help=f"reference pitch, {LOWEST_A4:g} to {HIGHEST_A4:g} (default: 440)",
     )
-    group.add_argument(
-        "--tuning",
-        type=Path,
-        metavar="FILE.scl",
-        help="a Scala scale, or the name of a shipped one, from C up (default: equal temperament)",
-    )
-    group.add_argument(
-        "--keyboard-map",
-        type=Path,
-        metavar="FILE.kbm",
-        help="a Scala keyboard map, or the name of a shipped one; it fixes the pitch in Hz",
-    )
+    add_tuning(group)
     group.add_argument(
         "--range",
         choices=("transpose", "clamp", "skip"),
@@ -92,6 +82,37 @@ def add_playing(group: Any) -> None:
         metavar="N",
         help="seed of the random variation between notes, 0 to 65535 (default: 0)",
     )
+
+
+def add_tuning(group: Any) -> None:
+    """Add the options that tell which pitch each key has, to a parser or a group of its options."""
+    group.add_argument(
+        "--tuning",
+        type=Path,
+        metavar="FILE.scl",
+        help="a Scala scale, or the name of a shipped one, from C up (default: equal temperament)",
+    )
+    group.add_argument(
+        "--keyboard-map",
+        type=Path,
+        metavar="FILE.kbm",
+        help="a Scala keyboard map, or the name of a shipped one; it fixes the pitch in Hz",
+    )
+
+
+def tuning_of(arguments: argparse.Namespace) -> Tuning:
+    """The tuning that the options of `add_tuning` ask for.
+
+    Raises
+    ------
+    YehuError
+        Where a file is wrong.
+    """
+    from yehu_server.playing.tuning import EQUAL, read_tuning
+
+    if arguments.keyboard_map is not None and arguments.tuning is None:
+        raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
+    return read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL
 
 
 def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:
@@ -137,10 +158,7 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
     from yehu_server.playing.presets import Presets
     from yehu_server.playing.range_policy import RangePolicy
     from yehu_server.playing.style import Style
-    from yehu_server.playing.tuning import EQUAL, read_tuning
 
-    if arguments.keyboard_map is not None and arguments.tuning is None:
-        raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
     own_first = is_live or arguments.presets is not None
     presets = Presets(arguments.presets, own_first=own_first)
     start: tuple[tuple[str, float], ...] = ()
@@ -159,7 +177,7 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
         programs=arguments.programs,
         settings=tuple(assignment(text) for text in arguments.set),
         a4=arguments.a4,
-        tuning=read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL,
+        tuning=tuning_of(arguments),
         policy=RangePolicy(arguments.range),
         open_strings=OpenStrings(arguments.open_strings),
         seed=arguments.seed,

@@ -71,6 +71,7 @@ FIRM_SHARES = (0.7, 0.85, 1.2)
 FINE_FARTHERS, FINE_SHARES = (0.95, 1.0, 1.05), (0.88, 1.0, 1.13)
 FLAUTANDO_SHARES = (1.0, 1.3, 1.6, 2.0, 2.4)
 NEAREST, FARTHEST = 0.055, 0.36  # bow positions
+HALF = 0.5  # semitones
 
 
 @dataclass(frozen=True)
@@ -130,6 +131,9 @@ class Practice:
     values : mapping
         Values of parameters, by address: those of the bow's place, speed and pressure alone are
         practised.
+    tuning : callable
+        Maps a key to its pitch, both fractional MIDI notes, or None. Each note is practised at the
+        pitch nearest to it; by default at its own.
 
     Attributes
     ----------
@@ -143,8 +147,10 @@ class Practice:
         quantities: Quantities,
         calibration: Calibration,
         values: Mapping[str, float] | None = None,
+        tuning: Callable[[float], float | None] = float,
     ) -> None:
         values = values or {}
+        self._pitches = pitches_near_notes(tuning)
         self._rate = rate
         self._speeds: tuple[float, ...] = SPEEDS
         self._pressures: tuple[float, ...] = PRESSURES
@@ -262,12 +268,14 @@ class Practice:
     def score(self, search: Search, manner: Array, passages: Iterable[Passage]) -> float:
         """How well a note speaks in some passages: at best 1."""
         table = ordinary_table()
-        table[search.string, :, search.note - FIRST] = manner
+        pitch = self._pitches[search.note]
+        for row in {math.floor(pitch), math.ceil(pitch)}:
+            table[search.string, :, row - FIRST] = manner
         instrument = Instrument(
             self._rate, self._tuned, calibration=self._calibration, bowing=table
         )
         instrument.bow_by_tables()
-        wishes = Wishes(instrument)
+        wishes = Wishes(instrument, tuning=lambda key: self._pitches[int(key)])
         wishes.write("/playing/variation", 0.0)
         wishes.write("/playing/bow_position", PLACES[search.place])
         if search.is_high_on_f:
@@ -310,6 +318,17 @@ class Practice:
         wishes.note_off(Key(0, note), frame=end)
         play_until(BEFORE_S + EACH_S)
         return early, late, error
+
+
+def pitches_near_notes(tuning: Callable[[float], float | None]) -> dict[int, float]:
+    """The pitch of a tuning that is nearest to each note, within a quarter tone; else the note."""
+    keys = (tuning(float(key)) for key in range(128))
+    pitches = [pitch for pitch in keys if pitch is not None]
+    found = {}
+    for note in range(LOWEST_NOTE, HIGHEST_NOTE + 1):
+        nearest = min(pitches, key=lambda pitch: abs(pitch - note), default=float(note))
+        found[note] = nearest if abs(nearest - note) <= HALF else float(note)
+    return found
 
 
 def _speaks(instrument: Instrument, near: float) -> tuple[bool, float]:

@@ -16,7 +16,7 @@ from yehu_server.ahead.layout import look_length
 from yehu_server.ahead.section import section_of
 from yehu_server.ahead.sources import sources_hash
 from yehu_server.engine.look import LOOK, look
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import SLOT, TABLE
 
 HERE = Path(__file__).parent
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
@@ -77,8 +77,11 @@ def test_it_tells_values_and_looks_as_here(by_node):
     expected = np.frombuffer(seen.tobytes(), np.float64)
     found = np.array([np.nan if number is None else number for number in report["look"]])
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
-    defaults = [param.default for param in TABLE]
-    assert report["values"] == pytest.approx(defaults)
+    values = [
+        instrument.target(param.address) if param.address in SLOT else param.default
+        for param in TABLE
+    ]
+    assert report["values"] == pytest.approx(values)
 
 
 def test_it_names_the_sources_that_it_was_built_from(by_node, wasm):

@@ -32,6 +32,8 @@ export class Instrument extends EventTarget {
     this.opening = null;
     /** @type {unknown} */
     this.error = null;
+    /** How the sound is opened; `change` takes another way. @type {() => Promise<Sound>} */
+    this.way = openHere;
     /** @type {Parameters<Post>[]} */
     this.waiting = [];
     this.player = new Player(facts, this.#sink());
@@ -46,6 +48,7 @@ export class Instrument extends EventTarget {
     return {
       post: (...wish) => instrument.post(...wish),
       target: (address) => instrument.sound?.target?.(address),
+      told: (address) => instrument.sound?.told?.(address),
       get frame() {
         return instrument.frame;
       },
@@ -57,7 +60,7 @@ export class Instrument extends EventTarget {
 
   /** Number of the sample at which a wish is fulfilled now, about. */
   get frame() {
-    return this.state?.frame ?? 0;
+    return this.sound?.frame ?? this.state?.frame ?? 0;
   }
 
   /**
@@ -93,6 +96,20 @@ export class Instrument extends EventTarget {
     return this.opening;
   }
 
+  /**
+   * Sound in another way from now on; it begins when it is started.
+   * @param {() => Promise<Sound>} way
+   */
+  change(way) {
+    this.dispatchEvent(new Event("silence"));
+    if (this.sound) this.player.endNotes(); // only what this page holds
+    this.waiting.length = 0;
+    this.sound?.close();
+    this.sound = this.opening = null;
+    this.isSeen = false;
+    this.way = way;
+  }
+
   /** End all that plays or sounds. */
   silence() {
     this.dispatchEvent(new Event("silence")); // tunes and hands end first
@@ -100,19 +117,29 @@ export class Instrument extends EventTarget {
   }
 
   async #open() {
+    const { way } = this;
     try {
-      const { Sound } = await import("./sound/sound.js");
-      /** @type {Sound} */
-      const sound = await Sound.open();
+      const sound = await way();
+      if (way !== this.way) {
+        sound.close(); // another way was chosen meanwhile
+        return;
+      }
       sound.addEventListener("state", () => (this.isSeen = true), { once: true });
       this.sound = sound;
       for (const wish of this.waiting.splice(0)) sound.post(...wish);
       this.error = null;
       this.dispatchEvent(new Event("start"));
     } catch (error) {
+      if (way !== this.way) return;
       this.error = error;
       this.opening = null; // another touch may try again
       this.dispatchEvent(new Event("fail"));
     }
   }
+}
+
+/** @returns {Promise<Sound>} */
+export async function openHere() {
+  const { Sound } = await import("./sound/sound.js");
+  return Sound.open();
 }

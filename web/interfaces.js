@@ -35,7 +35,7 @@
  * @property {{min: number, max: number}} schelleng limits of the bow force here and now, N
  *
  * @typedef {object} Status
- * @property {'worklet' | 'script'} backend
+ * @property {'worklet' | 'script' | 'remote' | 'listening'} backend the latter two: a server's
  * @property {number} rate Hz
  * @property {number} loadPercent
  * @property {number} latencyMs
@@ -48,11 +48,14 @@
  * @property {() => void} [resume] go on after the browser has suspended it
  * @property {Snapshot} state the latest; the event 'state' tells of a new one
  * @property {Status} status
- * @property {AnalyserNode} analyser
+ * @property {AnalyserNode | null} analyser null: the page hears nothing
  * @property {{start: () => void, stop: () => Blob | Promise<Blob>}} [record] writes WAV
  * @property {{start: () => void, stop: () => Promise<Kept>}} [keep] what is fulfilled
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
  *   fingers moves to
+ * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
+ *   others set them too
+ * @property {number} [frame] that sounds now, about; else that of the state
  *
  * @typedef {object} Kept
  * @property {number} from frame

@@ -11,6 +11,7 @@ const FIRST = {
   isLandingInTune: true,
   view: "slowed",
   panel: "see",
+  way: "", // of sounding, where there is a server; '': there where it has a device, else listening
 };
 
 /** @typedef {typeof FIRST} Values */

@@ -214,6 +214,26 @@ def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]
     return lines
 
 
+def page_lines(host: str, port: int, lan: str, *, networks: Sequence[str]) -> list[str]:
+    """Lines that tell where the page is, and who may play with it."""
+    address = ipaddress.ip_address(host)
+    is_anywhere = address.is_unspecified
+    lines = [f"the page at http://{shown('127.0.0.1' if is_anywhere else host, port)}/"]
+    if address.is_loopback:
+        lines.append("for a phone on this network: yehu-server serve --lan")
+        return lines
+    if is_anywhere:
+        lines.append(f"on a phone: http://{shown(lan, port)}/")
+    others = [
+        network
+        for network in networks
+        if not ipaddress.ip_network(network, strict=False).is_loopback
+    ]
+    who = f"at {' or '.join(others)}" if others else "on this network"
+    lines.append(f"anyone {who} may play and listen, without a password")
+    return lines
+
+
 def query_line(host: str, port: int, lan: str) -> str:
     """A line with the address of OSCQuery."""
     address = ipaddress.ip_address(host)

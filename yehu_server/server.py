@@ -1,6 +1,7 @@
-"""The live server: connects instrument, player, audio output, OSC, MIDI and OSCQuery.
+"""The live server: connects instrument, player, audio output, OSC, MIDI, OSCQuery and the page.
 
 web thread ─> OSC thread ──┐
+             pages process ┤
                            ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
               MIDI process ┘                              └─> meters, applied wishes, tape
 """
@@ -38,6 +39,7 @@ from yehu_server.errors import YehuError
 from yehu_server.files import anything, check_free, check_target, nothing, shipped_folder
 from yehu_server.jit import IS_PLAIN
 from yehu_server.lasting import keep_on
+from yehu_server.panel.pages import PageOptions, Pages
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.delay import Delay
@@ -62,6 +64,7 @@ class ServeOptions:
     osc: Address = OSC_ADDRESS
     allowed: Allowed = field(default_factory=Allowed)
     http: WebOptions | None = None  # None: no OSCQuery
+    page: PageOptions | None = None  # None: no page
     announce: bool | None = None  # None: what other machines can reach
     style: Style = field(default_factory=Style)
     reread: Callable[[], Mapping] | None = (
@@ -126,12 +129,10 @@ class Server:
             self.handler = OscHandler(self.player, self)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
             undo.callback(self.osc.stop)
-            self.web: WebServer | None = None
-            if options.http is not None:
-                folder = shipped_folder("mappings")
-                sources = Sources(self.player.values, self.status, folder, self._more_calls)
-                self.web = WebServer(options.http, self.osc, self.handler.clients, sources)
-                undo.callback(self.web.stop)
+            self.pages = self._pages()
+            undo.callback(self._close, self.pages)
+            self.web = self._web()
+            undo.callback(self._close, self.web)
             if options.capture is not None:
                 self.instrument.report_wishes()
             for address, value in options.style.settings:
@@ -147,12 +148,36 @@ class Server:
             self._follower = MappingFollower(self.player, options.reread, changed, said)
         services = announced(self.osc, self.web, options.announce)
         self._announcer = Announcer(services, said) if services else None
-        self._ways_in: list[OscPorts | WebServer | Announcer | MidiPorts] = [self.osc]
-        self._ways_in += [way for way in (self.web, self._announcer, self.midi) if way is not None]
+        self._ways_in: list[OscPorts | WebServer | Announcer | MidiPorts | Pages] = [self.osc]
+        others = (self.web, self._announcer, self.midi, self.pages)
+        self._ways_in += [way for way in others if way is not None]
         self._ending, self._hurry = threading.Event(), threading.Event()
         self._troubles = Troubles(said)
         keep = (self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", said)
         self._keeper = threading.Thread(target=keep_on, args=keep, name="keeper", daemon=True)
+
+    def _pages(self) -> Pages | None:
+        if self.options.page is None:
+            return None
+        memory = self.output.memory.descriptor
+        return Pages(self.player, self.options.page, memory, self._for_pages, self._said)
+
+    def _web(self) -> WebServer | None:
+        if self.options.http is None:
+            return None
+        sources = Sources(
+            self.player.values,
+            self.status,
+            shipped_folder("mappings"),
+            self._more_calls,
+            lambda: None if self.pages is None else self.pages.port,
+        )
+        return WebServer(self.options.http, self.osc, self.handler.clients, sources)
+
+    @staticmethod
+    def _close(way: WebServer | Pages | None) -> None:
+        if way is not None:
+            way.stop()
 
     def start(self) -> None:
         """Start to play.
@@ -294,6 +319,12 @@ class Server:
                 uptime_s=time.monotonic() - self._started,
             )
         )
+
+    def _for_pages(self) -> dict[str, float | str | None]:
+        """What pages are told of the sound; any thread may call."""
+        state = self.output.state
+        delay_ms = 1e3 * self.player.delay / self.instrument.rate
+        return {"device": state.device, "latencyMs": state.latency_ms + delay_ms}
 
     def _more_calls(self) -> list[Call]:
         """The calls with this server's presets, and the user's own addresses."""

@@ -26,6 +26,8 @@ const TOLD_WITHIN_S = 0.1;
  * @property {number} [seed] of the variation between notes
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
  *   fingers moves to
+ * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
+ *   others set them too
  */
 
 /** Asks the player of an instrument for notes and parameters. */
@@ -37,7 +39,7 @@ export class Wishes {
   #value = new Map();
   /** @type {Set<string>} */
   #kept = new Set();
-  /** Direct writes to bow and fingers. @type {Map<string, {value: number, frame: number}>} */
+  /** Direct writes to bow and fingers, and what others may set too. @type {Map<string, {value: number, frame: number}>} */
   #written = new Map();
   /** Held keys in the order pressed, and the frame each begins at. @type {Map<Key, number>} */
   #held = new Map();
@@ -72,7 +74,19 @@ export class Wishes {
    * @returns {number}
    */
   value(address) {
-    return this.#value.get(address) ?? this.#owned(find(address));
+    const own = this.#value.get(address);
+    if (own === undefined) return this.#owned(find(address));
+    return this.#isRecent(address) ? own : (this.#sink.told?.(address) ?? own);
+  }
+
+  /**
+   * Whether a parameter was written so lately that the sound may not tell it yet.
+   * @param {string} address
+   */
+  #isRecent(address) {
+    const written = this.#written.get(address);
+    if (written === undefined) return false;
+    return this.#frame < written.frame + TOLD_WITHIN_S * (this.#sink.rate ?? 0);
   }
 
   /**
@@ -84,8 +98,7 @@ export class Wishes {
     const written = this.#written.get(param.address);
     const told = this.#sink.target?.(param.address);
     if (written === undefined) return told ?? param.default;
-    const isRecent = this.#frame < written.frame + TOLD_WITHIN_S * (this.#sink.rate ?? 0);
-    return isRecent ? written.value : (told ?? written.value);
+    return this.#isRecent(param.address) ? written.value : (told ?? written.value);
   }
 
   /**
@@ -109,6 +122,7 @@ export class Wishes {
       return this.value(address);
     } else {
       this.#value.set(address, accepted);
+      if (this.#sink.told) this.#note(address, accepted, frame);
     }
     if (hold) this.#kept.add(address);
     this.#sink.post(frame, hold ? HOLD : WRITE, param.row, accepted, glideMs);

@@ -20,6 +20,9 @@ export default {
   "status.dropouts": " · drop-outs {count}",
   "status.worklet": "AudioWorklet",
   "status.script": "ScriptProcessor",
+  "status.broken": "The server does not answer; trying again",
+  "status.remote": "the server’s sound",
+  "status.listening": "the server’s sound, heard here",
 
   "play.name": "The instrument",
   "strings.name": "Both strings in motion, with bow and fingers",
@@ -163,6 +166,22 @@ export default {
     "Two rows are a piano from F4 to F6. − and = change the octave of both; Escape silences.",
   "connect.octave": "Octave: {octave}",
   "connect.sound": "Sound",
+
+  "server.name": "The server",
+  "server.here": "Here",
+  "server.there": "There",
+  "server.listen": "Listen",
+  "server.here.about":
+    "This page sounds by itself. What you play is also played on the server and on other pages that sound by themselves.",
+  "server.there.about":
+    "You play the server’s instrument and see it. It sounds where the server is.",
+  "server.listen.about": "You play the server’s instrument and hear it in this page.",
+  "server.preparing": "The server is still preparing what this page needs to sound by itself.",
+  "server.impossible": "This server cannot give pages a sound of their own.",
+  "server.device": "It plays on {device}.",
+  "server.silent": "It plays on no device: listen here.",
+  "server.pages": "Pages connected: {count}",
+  "server.gone": "The server does not answer. This page tries again by itself.",
 
   "all.search": "Search parameters",
   "all.none": "No parameter has these words.",

@@ -36,6 +36,9 @@ export function showConnections(page) {
     keyboard(page),
     make("section", { class: "group" }, [make("h2", {}, [say("connect.sound")]), status]),
   );
+  if (document.querySelector('meta[name="yehu-server"]')) {
+    import("./server.js").then(({ showServer }) => panel.prepend(showServer(page.instrument)));
+  }
 }
 
 /** @param {Page} page */

@@ -53,7 +53,9 @@ const darkSystem = matchMedia("(prefers-color-scheme: dark)");
  */
 export function statusText(status) {
   if (!status) return say("status.off");
-  if (!status.running) return say("status.waiting");
+  if (!status.running) {
+    return say(status.backend === "remote" ? "status.broken" : "status.waiting");
+  }
   const load = status.loadPercent.toFixed(0);
   const latency = status.latencyMs.toFixed(0);
   const dropouts = status.dropouts ? say("status.dropouts", { count: status.dropouts }) : "";

@@ -9,7 +9,8 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+import webbrowser
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from yehu_server.cli.arguments import add_command, progress_bar, warn_of_compiling
@@ -21,6 +22,7 @@ EXAMPLES = """\
 examples:
   yehu-server serve
   yehu-server serve --midi-in keystep --audio-device "hifi, ALSA" --latency 0.01
+  yehu-server serve --lan --open
   yehu-server serve --osc 192.168.1.5:9000 --osc-allow 192.168.1.0/24
   yehu-server serve --http 192.168.1.5:9001 --http-allow 192.168.1.0/24
   yehu-server serve --record take.wav --capture take.jsonl
@@ -29,7 +31,7 @@ The OSC messages are described in docs/osc.md,
 OSCQuery in docs/oscquery.md. Ctrl-C ends it.
 """
 
-FILES_NEEDED = 40  # open files: 30 of the server, and some for clients
+FILES_NEEDED = 44  # open files: 34 of the server, and some for clients
 REFRESHES_PER_SECOND = 10
 
 
@@ -109,6 +111,8 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
             say(line)
         if server.web is not None:
             say(query_line(server.web.host, server.web.port, lan_address()))
+        if server.pages is not None and options.page is not None:
+            _tell_of_page(server.pages, options.page.networks, say, opens=arguments.open)
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
         log.debug("the receive buffer for OSC has %d kB", buffer_kb)
         log.info("Ctrl-C ends")
@@ -117,6 +121,19 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     finally:
         server.stop()
     return 0 if server.kept_all else 2
+
+
+def _tell_of_page(
+    pages: Any, networks: Sequence[str], say: Callable[[str], None], *, opens: bool
+) -> None:
+    from yehu_server.control.addresses import lan_address
+    from yehu_server.report import page_lines
+
+    lines = page_lines(pages.host, pages.port, lan_address(), networks=networks)
+    for line in lines:
+        say(line)
+    if opens:
+        webbrowser.open(lines[0].rpartition(" ")[2])
 
 
 def _wait(ended: threading.Event, duration_s: float | None) -> None:

@@ -4,16 +4,26 @@ from __future__ import annotations
 
 import argparse
 from functools import partial
+from ipaddress import ip_network
 from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import add_config
-from yehu_server.cli.converters import positive, target, whole, within
+from yehu_server.cli.converters import port, positive, target, whole, within
 from yehu_server.cli.log import LEVELS
 from yehu_server.cli.style_options import add_playing, mapping_of, style_of
-from yehu_server.control.addresses import HTTP_ADDRESS, OSC_ADDRESS, shown
+from yehu_server.control.addresses import (
+    ANYWHERE,
+    HTTP_ADDRESS,
+    OSC_ADDRESS,
+    lan_address,
+    parse_address,
+    shown,
+)
 from yehu_server.params.table import PREFIX
+
+HERE = ("127.0.0.0/8", "::1")
 
 
 def add_arguments(parser: Parser) -> None:
@@ -22,6 +32,7 @@ def add_arguments(parser: Parser) -> None:
     _add_midi(parser.add_argument_group("MIDI"))
     _add_osc(parser.add_argument_group("OSC"))
     _add_web(parser.add_argument_group("OSCQuery"))
+    _add_page(parser.add_argument_group("the page"))
     _add_playing(parser.add_argument_group("playing"))
     running = parser.add_argument_group("running")
     _add_running(running)
@@ -122,6 +133,23 @@ def _add_web(group: Any) -> None:
     )
 
 
+def _add_page(group: Any) -> None:
+    group.add_argument(
+        "--panel-port",
+        type=port,
+        metavar="N",
+        help="port of the page, on the host of --http; 0: a free one (default: the port of --http "
+        "and 1, or a free one where that is taken; none with --no-http)",
+    )
+    group.add_argument("--no-panel", action="store_true", help="no page")
+    group.add_argument("--open", action="store_true", help="open the page in the browser")
+    group.add_argument(
+        "--lan",
+        action="store_true",
+        help="offer the page to the local network, whose phones and computers may then play",
+    )
+
+
 def _add_playing(group: Any) -> None:
     add_playing(group)
     group.add_argument(
@@ -185,7 +213,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
         Where a value or file is wrong.
     """
     from yehu_server.audio.output import OutputOptions
-    from yehu_server.control.addresses import Allowed, parse_address
+    from yehu_server.control.addresses import Allowed
     from yehu_server.control.midi_process import check_api
     from yehu_server.control.ports import MidiOptions
     from yehu_server.control.web import WebOptions
@@ -218,6 +246,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
         http=WebOptions(parse_address(arguments.http, *HTTP_ADDRESS), Allowed(arguments.http_allow))
         if arguments.http != "none"
         else None,
+        page=_page_of(arguments),
         announce=arguments.announce,
         style=style,
         reread=partial(mapping_of, arguments, is_live=True) if arguments.watch else None,
@@ -229,6 +258,29 @@ def options_of(arguments: argparse.Namespace) -> Any:
     if arguments.recordings is not None:
         options.recordings = arguments.recordings
     return options
+
+
+def _page_of(arguments: argparse.Namespace) -> Any:
+    """Where the page is served; None where it is not."""
+    from yehu_server.errors import ParameterError
+    from yehu_server.panel.pages import PageOptions
+
+    wished = arguments.panel_port
+    has_page = arguments.lan or arguments.open or wished is not None or arguments.http != "none"
+    if arguments.no_panel or not has_page:
+        if arguments.lan or arguments.open:
+            raise ParameterError("--no-panel: there is no page to open")
+        return None
+    given = (
+        HTTP_ADDRESS if arguments.http == "none" else parse_address(arguments.http, *HTTP_ADDRESS)
+    )
+    host, beside = given
+    number = wished if wished is not None else (beside + 1) % (1 << 16) if beside else 0
+    networks = list(arguments.http_allow)
+    if arguments.lan:
+        lan = str(ip_network(f"{lan_address()}/24", strict=False))
+        host, networks = ANYWHERE, [*networks, lan, *HERE]
+    return PageOptions((host, number), networks, wished is not None)
 
 
 # ---------------------------------------------------------------- converters

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from aiohttp import web
 
@@ -42,9 +43,11 @@ IDLE_S = 15.0  # before an idle connection is closed
 ENDING_S = 0.2  # to finish answers at the end
 HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-store"}
 PARAMETERS = "parameters.html"
+PANEL = """
+<li><a href="/panel/">The instrument</a></li>"""
 PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>yehu-server</title></head>
-<body><h1>yehu-server</h1><ul>
+<body><h1>yehu-server</h1><ul>{panel}
 <li><a href="/{parameters}">Parameters</a></li>
 <li><a href="/?HOST_INFO">OSCQuery</a>: <a href="{prefix}">the tree</a></li>
 <li><a href="/metrics">Metrics</a></li>
@@ -68,6 +71,7 @@ class Sources:
     status: Callable[[], Mapping[str, float | str]]  # by name
     folder: Path  # that has the page of parameters
     more_calls: Callable[[], Iterable[Call]] = tuple  # beside calls.CALLS
+    page_port: Callable[[], int | None] = lambda: None  # where the page is served, if it is
 
 
 class WebServer:
@@ -89,7 +93,7 @@ class WebServer:
         self._sockets = WebSockets(osc, clients, self.traffic)
         self._metrics = Metrics(sources.status)
         self._names = own_names()
-        self._listening = _listen(*options.address)
+        self._listening = listen("OSCQuery", *options.address)
         self.host, self.port = self._listening.getsockname()[:2]
         self._talking: set[web.RequestHandler] = set()  # connections that are WebSockets
         self._thread = LoopThread(
@@ -173,8 +177,12 @@ class WebServer:
             return web.Response(body=body, headers=HEADERS | {"Content-Type": content_type})
         if request.path == f"/{PARAMETERS}":
             return self._parameters()
+        page_port = self._sources.page_port()
+        if request.path in {"/panel", "/panel/"} and page_port is not None:
+            raise web.HTTPTemporaryRedirect(f"http://{_with_port(request.host, page_port)}/")
         if request.path == "/" and not request.query_string and _reads_html(request):
-            return _html(PAGE.format(parameters=PARAMETERS, prefix=PREFIX))
+            link = "" if page_port is None else PANEL
+            return _html(PAGE.format(panel=link, parameters=PARAMETERS, prefix=PREFIX))
         return self._query(request)
 
     def _check(self, request: web.Request) -> None:
@@ -226,14 +234,26 @@ class WebServer:
             raise web.HTTPNotFound(text="this page is not installed\n") from None
 
 
-def _listen(host: str, port: int) -> socket.socket:
+def listen(what: str, host: str, port: int) -> socket.socket:
+    """Listen at an address, by IPv4 and IPv6 where that is one; `what` is named in errors.
+
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
+    """
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         dualstack = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
         return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
     except OSError as error:
         where = shown(host, port)
-        raise DeviceError(f"OSCQuery: cannot listen at {where}: {why(error)}") from error
+        raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}") from error
+
+
+def _with_port(host: str, port: int) -> str:
+    """The host of a request's header Host, which was checked, with another port."""
+    return shown(urlsplit(f"//{host}").hostname or "", port)
 
 
 def _is_text(received: str) -> bool:

@@ -20,6 +20,7 @@ from yehu_server.playing.binds import Bind
 from yehu_server.playing.learner import Found, Learner
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.style import Style
+from yehu_server.playing.visitor import Visitor, Wish
 from yehu_server.playing.wishes import Key
 
 ELSEWHERE = -1  # the channel of notes that do not come from MIDI
@@ -73,6 +74,7 @@ class LivePlayer:
         self._learner = Learner()
         self._found: Callable[[Found], None] | None = None
         self._latest = 0  # the latest frame of any call
+        self._visitors: dict[int, Visitor] = {}
 
     def frame_of(self, arrived_ns: int | None = None) -> int:
         """The frame for a message that arrived at this ``time.monotonic_ns()``; by default, now."""
@@ -261,6 +263,32 @@ class LivePlayer:
         with self._lock:
             self._midi.begin_again(frame=self._after_all(frame))
             self.panic(frame=frame)
+
+    # -- other players' wishes -----------------------------------------------------------------
+
+    def fulfil(self, number: int, wish: Wish, *, frame: int) -> None:
+        """Fulfil a wish of a visitor: another program's player, known by its number.
+
+        Raises
+        ------
+        ParameterError
+            Where nobody can wish that.
+        """
+        with self._lock:
+            if wish.ends_all:
+                self.panic(frame=frame)
+                return
+            visitor = self._visitors.get(number)
+            if visitor is None:
+                visitor = self._visitors[number] = Visitor(self._wishes, self._midi.write, number)
+            visitor.take(wish, self._at(frame))
+
+    def dismiss(self, number: int, *, frame: int) -> None:
+        """End what a visitor still holds, and forget it."""
+        with self._lock:
+            visitor = self._visitors.pop(number, None)
+            if visitor is not None:
+                visitor.leave(self._after_all(frame))
 
 
 def _key(note: float) -> Key:

@@ -184,7 +184,12 @@ class Wishes:
         return None if tuned is None else self._policy.fit(tuned)
 
     def note_on(
-        self, key: Key, values: Mapping[str, float] | None = None, *, frame: int | None = None
+        self,
+        key: Key,
+        values: Mapping[str, float] | None = None,
+        *,
+        frame: int | None = None,
+        tuned: float | None = None,
     ) -> bool:
         """Begin a note, legato where another sounds, else with a new stroke of the bow.
 
@@ -194,9 +199,12 @@ class Wishes:
         ----------
         values : mapping
             Values of parameters, by address, for this note.
+        tuned : float
+            Its pitch (fractional MIDI note); by default as the tuning has it.
         """
         self._forget_ended()
-        tuned, pitch = self._tuning(key.note), self._pitch(key)
+        tuned = self._tuning(key.note) if tuned is None else tuned
+        pitch = None if tuned is None else self._policy.fit(tuned)
         if tuned is None or pitch is None or abs(pitch - tuned) > OPEN_WITHIN:
             self.notes_out_of_range += 1
         if pitch is None:

@@ -1,0 +1,58 @@
+/** The sound of another clock is heard without a gap; prints what was found for each clock. */
+
+import { pathToFileURL } from "node:url";
+
+const [file] = process.argv.slice(2);
+const { Listened } = await import(pathToFileURL(file).href);
+
+const RATE = 48000;
+const BLOCK = 128;
+const SETTLED_S = 5;
+
+/** Numbers that look random, and are the same each time. */
+function randoms() {
+  let state = 1;
+  return () => (state = (state * 16807) % 2147483647) / 2147483647;
+}
+
+/**
+ * Listen for a while to a tone of 1 kHz.
+ * @param {{ppm: number, seconds: number, lateS: number, ownRate?: number}} options
+ */
+function listen({ ppm, seconds, lateS, ownRate = RATE }) {
+  const sound = new Listened(ownRate, RATE);
+  const random = randoms();
+  const out = new Float32Array(BLOCK);
+  const fills = [];
+  let [sent, sendAt, crossings, before] = [0, 0, 0, 0];
+  for (let block = 0; block * BLOCK < seconds * ownRate; block++) {
+    const now = (block * BLOCK) / ownRate;
+    for (; sendAt <= now; sendAt += 0.0025 + lateS * random()) {
+      const made = Math.floor((sendAt * RATE * (1 + ppm * 1e-6)) / BLOCK) * BLOCK;
+      const samples = Float32Array.from({ length: made - sent }, (_, i) =>
+        Math.sin((2 * Math.PI * 1000 * (sent + i)) / RATE),
+      );
+      if (made > sent) sound.write(sent, samples);
+      sent = made;
+    }
+    sound.fillIn(out);
+    if (now < SETTLED_S) continue;
+    fills.push(sound.fill);
+    for (const sample of out) {
+      if (before < 0 && sample >= 0) crossings++;
+      before = sample;
+    }
+  }
+  const frequency = crossings / (seconds - SETTLED_S);
+  fills.sort((one, other) => one - other);
+  return { gaps: sound.gaps, aim: sound.aim, most: fills.at(-1), frequency };
+}
+
+console.log(
+  JSON.stringify({
+    fast: listen({ ppm: 200, seconds: 600, lateS: 0.003 }),
+    slow: listen({ ppm: -200, seconds: 600, lateS: 0.003 }),
+    otherRate: listen({ ppm: 0, seconds: 60, lateS: 0.003, ownRate: 44100 }),
+    late: listen({ ppm: 0, seconds: 60, lateS: 0.05 }),
+  }),
+);

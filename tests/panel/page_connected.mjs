@@ -1,0 +1,74 @@
+/** Uses the page of a server: there, listening, here, and while the server is away. */
+
+import { createInterface } from "node:readline";
+
+import { fingersOf, open, run } from "./browser.mjs";
+
+const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
+
+/** Tell the test where the scenario is, and wait until it answers. @param {string} step */
+async function reach(step) {
+  console.error(step);
+  return (await lines.next()).value;
+}
+
+await run(async (browser, url) => {
+  const { page, errors } = await open(browser, url);
+  const touch = await fingersOf(page);
+  const found = {};
+  const status = () => page.locator("#status").textContent();
+  await page.click("#tab-connect");
+  await page.waitForSelector("#way-there[aria-pressed], #way-listen[aria-pressed]");
+  found.first = await page.locator('.choice [id^="way-"][aria-pressed=true]').getAttribute("id");
+  found.reachable = await reach("opened");
+
+  await page.click("#way-there");
+  await page.waitForFunction(() => document.querySelector("#status").textContent.includes("load"));
+  found.there = await status();
+  const board = await page.locator("#fingerboard").boundingBox();
+  const finger = { x: board.x + board.width / 2, y: board.y + board.height / 2, id: 1 };
+  await touch("touchStart", [finger]);
+  await reach("holds");
+  await touch("touchEnd", []);
+  await reach("let go");
+  await page.click("#tab-all");
+  await reach("watches");
+  found.shown = await page.evaluate(async () => {
+    const rows = [...document.querySelectorAll("#panel-all .parameter")];
+    const row = rows.find((one) => one.querySelector("code").textContent === "/playing/pressure");
+    const number = row.querySelector("input[type=number]");
+    for (let i = 0; i < 100 && number.value !== "0.62"; i++) {
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+    return number.value;
+  });
+
+  await page.click("#tab-connect");
+  await page.click("#way-listen");
+  await page.waitForFunction(() => /listen|heard/i.test(document.querySelector("#panel-connect").textContent));
+  await reach("listens");
+  await page.waitForTimeout(3000);
+  found.listening = await status();
+  found.panel = await page.locator("#panel-connect").textContent();
+  await reach("has listened");
+
+  await page.waitForSelector("#way-here:not([disabled])", { timeout: 120000 });
+  await page.click("#way-here");
+  await page.waitForFunction(() => /AudioWorklet/.test(document.querySelector("#panel-connect").textContent));
+  await touch("touchStart", [finger]);
+  await reach("plays here");
+  await touch("touchEnd", []);
+  await reach("let go here");
+
+  await page.click("#way-there");
+  found.errors = [...errors];
+  await reach("stop the server");
+  await page.waitForFunction(() => /does not answer/.test(document.querySelector("#status").textContent));
+  await reach("start the server");
+  await page.waitForFunction(() => /load/.test(document.querySelector("#status").textContent));
+  await touch("touchStart", [finger]);
+  await reach("holds again");
+  await touch("touchEnd", []);
+  process.stdin.destroy(); // else Node waits for more
+  return found;
+});

@@ -1,0 +1,147 @@
+"""A browser with the page of a server: it plays there, hears it, plays here, and survives it."""
+
+from __future__ import annotations
+
+import json
+import re
+import socket
+import subprocess
+import time
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from panel.browser import CHROMIUM, HERE, NODE, missing
+
+from yehu_server.audio.output import OutputOptions
+from yehu_server.panel.pages import PageOptions
+from yehu_server.server import ServeOptions, Server
+
+pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+
+HOST = "127.0.0.1"
+PRESSURE = "/playing/pressure"
+PATIENCE_S = 30.0
+
+
+def until(condition: Callable[[], Any]) -> bool:
+    deadline = time.monotonic() + PATIENCE_S
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+def start(port: int) -> Server:
+    server = Server(
+        ServeOptions(
+            output=OutputOptions(device="null"),
+            midi=None,
+            osc=(HOST, 0),
+            page=PageOptions((HOST, port), is_wished=True),
+        )
+    )
+    server.start()
+    return server
+
+
+def stop(server: Server) -> None:
+    server.hurry()
+    server.stop()
+
+
+def free_port() -> int:
+    with socket.create_server((HOST, 0)) as probe:
+        return int(probe.getsockname()[1])
+
+
+class Stage:
+    """The server, and what it does at each step of the scenario."""
+
+    def __init__(self, port: int) -> None:
+        self.port = port
+        self.server = start(port)
+        self.found: dict[str, bool] = {}
+
+    def reach(self, step: str) -> None:
+        player = self.server.player
+        if step in ("holds", "plays here", "holds again"):
+            self.found[step] = until(lambda: player.pitch is not None)
+        elif step in ("let go", "let go here"):
+            self.found[step] = until(lambda: player.pitch is None)
+        elif step == "watches":
+            player.write(PRESSURE, 0.62, frame=player.frame_of())
+        elif step == "listens":
+            player.note_on(69.0, 100.0, frame=player.frame_of())
+        elif step == "has listened":
+            player.panic(frame=player.frame_of())
+            until(lambda: player.pitch is None)
+        elif step == "stop the server":
+            stop(self.server)
+        elif step == "start the server":
+            self.server = start(self.port)
+
+
+@pytest.fixture(scope="module")
+def seen() -> tuple[dict[str, Any], dict[str, bool]]:
+    """What the page found, and what the server found at each step."""
+    port = free_port()
+    stage = Stage(port)
+    command = [str(NODE), str(HERE / "page_connected.mjs"), f"http://{HOST}:{port}/", str(CHROMIUM)]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdin is not None
+        assert process.stderr is not None
+        assert process.stdout is not None
+        said = []
+        for line in process.stderr:
+            said.append(line)
+            stage.reach(line.strip())
+            if process.poll() is None:
+                try:
+                    process.stdin.write("go\n")
+                    process.stdin.flush()
+                except BrokenPipeError:
+                    break
+        out = process.stdout.read()
+    stop(stage.server)
+    assert process.returncode == 0, "".join(said)
+    return json.loads(out), stage.found
+
+
+def test_a_page_hears_a_server_without_a_device_if_nobody_chose(seen) -> None:
+    assert seen[0]["first"] == "way-listen"
+
+
+def test_there_a_finger_plays_the_server(seen) -> None:
+    page, server = seen
+    assert server["holds"]
+    assert server["let go"]
+    assert "load" in page["there"]
+
+
+def test_there_the_page_shows_what_others_set(seen) -> None:
+    assert seen[0]["shown"] == "0.62"
+
+
+def test_listening_the_page_has_the_sound_and_few_gaps_until_enough_of_it_waits(seen) -> None:
+    assert "heard here" in seen[0]["panel"]
+    assert "load" in seen[0]["listening"]
+    found = re.search(r"drop-outs (\d+)", seen[0]["listening"])
+    assert found is None or int(found[1]) <= 5
+
+
+def test_here_the_page_sounds_and_the_server_plays_along(seen) -> None:
+    _, server = seen
+    assert server["plays here"]
+    assert server["let go here"]
+
+
+def test_a_server_that_comes_back_is_played_again(seen) -> None:
+    assert seen[1]["holds again"]
+
+
+def test_nothing_goes_wrong_on_the_page(seen) -> None:
+    assert seen[0]["errors"] == []

@@ -1,0 +1,40 @@
+/** Plays the server's sound on the browser's audio thread. */
+
+import { Listened } from "./listened.js";
+
+const TELL_S = 0.5;
+
+/* global AudioWorkletProcessor, registerProcessor, sampleRate */
+
+class Listening extends AudioWorkletProcessor {
+  /** @param {{processorOptions: {rate: number}}} options */
+  constructor({ processorOptions: { rate } }) {
+    super();
+    this.sound = new Listened(sampleRate, rate);
+    this.isOpen = true;
+    this.untold = 0;
+    this.port.onmessage = ({ data }) => {
+      if (data.close) this.isOpen = false;
+      else if (data.port) data.port.onmessage = this.port.onmessage;
+      else this.sound.write(data.frame, data.samples);
+    };
+  }
+
+  /**
+   * @param {Float32Array[][]} _inputs
+   * @param {Float32Array[][]} outputs
+   */
+  process(_inputs, outputs) {
+    const [first, ...others] = outputs[0];
+    this.sound.fillIn(first);
+    for (const other of others) other.set(first);
+    this.untold += first.length;
+    if (this.untold > TELL_S * sampleRate) {
+      this.untold = 0;
+      this.port.postMessage({ fill: this.sound.fill, gaps: this.sound.gaps });
+    }
+    return this.isOpen;
+  }
+}
+
+registerProcessor("listening", Listening);

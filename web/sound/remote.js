@@ -1,0 +1,112 @@
+/**
+ * The instrument of the server, for the page: posts wishes to it, and tells what it does; the page
+ * may also hear it. It has the same interface as `Sound`.
+ */
+
+import facts from "../facts.js";
+import { TABLE } from "../playing/table.js";
+import { Listener } from "./listener.js";
+import { snapshotOf, targetOf } from "./snapshot.js";
+import { NOW } from "./engine.js";
+
+/** @typedef {import('./line.js').Line} Line */
+/** @typedef {import('../interfaces.js').Status} Status */
+
+/** Rows of parameters that the engine does not own, by address. */
+const ROWS = new Map(TABLE.filter(({ owned }) => !owned).map(({ address, row }) => [address, row]));
+
+/** Tells by events: 'state' of a new snapshot. */
+export class Remote extends EventTarget {
+  /**
+   * @param {Line} line to the server
+   * @param {boolean} listens whether the page hears the server; only after a touch
+   * @returns {Promise<Remote>}
+   */
+  static async open(line, listens) {
+    const opening = listens ? Listener.open(line.status.rate) : null; // while the touch counts
+    await line.ready;
+    return new Remote(line, await opening);
+  }
+
+  /**
+   * @param {Line} line
+   * @param {Listener | null} listener
+   */
+  constructor(line, listener) {
+    super();
+    this.line = line;
+    this.listener = listener;
+    this.seen = new Float64Array(facts.lookLength + facts.parameters.length);
+    this.isSeen = false;
+    this.state = snapshotOf(this.seen);
+    this.analyser = listener?.analyser ?? null;
+    /** @type {number[]} */
+    this.wishes = [];
+    this.look = (/** @type {Event} */ event) => {
+      this.seen.set(/** @type {CustomEvent<Float64Array>} */ (event).detail);
+      this.isSeen = true;
+      this.state = snapshotOf(this.seen);
+      this.dispatchEvent(new Event("state"));
+    };
+    line.addEventListener("look", this.look);
+    line.want({ looks: true, sounds: false });
+  }
+
+  /**
+   * Post a wish; `frame` null is now.
+   * @type {import('../interfaces.js').Post}
+   */
+  post(frame, kind, index, value, other) {
+    if (this.wishes.length === 0) queueMicrotask(() => this.#send());
+    this.wishes.push(frame ?? NOW, kind, index, value, other);
+  }
+
+  /** All wishes of one turn of the page go together. */
+  #send() {
+    this.line.send(Float64Array.from(this.wishes));
+    this.wishes.length = 0;
+  }
+
+  get frame() {
+    return Math.round(this.line.frame);
+  }
+
+  /** @param {string} address of a parameter of bow or fingers */
+  target(address) {
+    return targetOf(this.seen, address);
+  }
+
+  /**
+   * The value of any other parameter, whoever set it.
+   * @param {string} address
+   */
+  told(address) {
+    const row = ROWS.get(address);
+    return row === undefined || !this.isSeen ? undefined : this.seen[facts.lookLength + row];
+  }
+
+  /** @returns {Status} */
+  get status() {
+    const { rate, load, dropouts, latencyMs } = this.line.status;
+    const heard = this.listener?.status;
+    return {
+      backend: this.listener ? "listening" : "remote",
+      rate,
+      loadPercent: 100 * load,
+      latencyMs: latencyMs + (heard?.latencyMs ?? 0),
+      dropouts: dropouts + (heard?.dropouts ?? 0),
+      running: this.line.isOpen && (heard?.running ?? true),
+    };
+  }
+
+  /** Go on after the browser has suspended the sound. */
+  resume() {
+    return this.listener?.resume();
+  }
+
+  close() {
+    this.line.removeEventListener("look", this.look);
+    this.line.want({ looks: false, sounds: false });
+    this.listener?.close();
+  }
+}

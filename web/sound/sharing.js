@@ -1,0 +1,107 @@
+/** Shares what a page that sounds by itself plays: with the server, and with other such pages. */
+
+/** @typedef {import('../instrument.js').Instrument} Instrument */
+/** @typedef {import('../instrument.js').Wish} Wish */
+/** @typedef {import('./line.js').Line} Line */
+
+import facts from "../facts.js";
+import { NOW } from "./engine.js";
+
+const { BEGIN, END } = facts.kinds;
+// Channels of another page's keys, as the server keeps visitors apart.
+const FIRST = 1 << 16;
+const CHANNELS = 1 << 12;
+
+export class Sharing {
+  /**
+   * @param {Instrument} instrument
+   * @param {Line} line
+   */
+  constructor(instrument, line) {
+    this.instrument = instrument;
+    this.line = line;
+    /** @type {number[]} */
+    this.wishes = [];
+    /** Keys that other pages hold: pairs of channel and key. @type {Map<number, number[][]>} */
+    this.held = new Map();
+    this.own = (/** @type {Event} */ event) =>
+      this.#share(/** @type {CustomEvent<Wish>} */ (event).detail);
+    this.others = (/** @type {Event} */ event) => {
+      const { page, wishes } = /** @type {CustomEvent} */ (event).detail;
+      for (const wish of wishes) this.#play(page, wish);
+    };
+    this.left = (/** @type {Event} */ event) =>
+      this.#let(/** @type {CustomEvent<number>} */ (event).detail);
+    this.broken = () => {
+      for (const page of [...this.held.keys()]) this.#let(page);
+    };
+    instrument.addEventListener("wish", this.own);
+    line.addEventListener("wishes", this.others);
+    line.addEventListener("left", this.left);
+    line.addEventListener("break", this.broken);
+    line.want({ looks: false, sounds: true });
+  }
+
+  /** @param {Wish} wish */
+  #share({ frame, kind, index, value, other }) {
+    const { sound, frame: here } = this.instrument;
+    const ahead = (frame - here) / (sound?.status.rate ?? 1);
+    const there = Math.round(this.line.frame + ahead * this.line.status.rate);
+    if (this.wishes.length === 0) queueMicrotask(() => this.#send());
+    this.wishes.push(ahead > 0 ? Math.max(there, 0) : NOW, kind, index, value, other);
+  }
+
+  #send() {
+    this.line.send(Float64Array.from(this.wishes));
+    this.wishes.length = 0;
+  }
+
+  /**
+   * @param {number} page
+   * @param {Float64Array} wish
+   */
+  #play(page, [frame, kind, index, value, other]) {
+    const { sound } = this.instrument;
+    if (!sound) return;
+    const ahead = frame === NOW ? 0 : (frame - this.line.frame) / this.line.status.rate;
+    const at = ahead > 0 ? Math.round(this.instrument.frame + ahead * sound.status.rate) : null;
+    const isKey = kind === BEGIN || kind === END;
+    const channel = FIRST + page * CHANNELS + CHANNELS / 2 + index;
+    if (isKey) this.#remember(page, kind, channel, value);
+    sound.post(at, kind, isKey ? channel : index, value, other);
+  }
+
+  /**
+   * @param {number} page
+   * @param {number} kind
+   * @param {number} channel
+   * @param {number} key
+   */
+  #remember(page, kind, channel, key) {
+    const held = (this.held.get(page) ?? []).filter(
+      ([ofChannel, ofKey]) => ofChannel !== channel || ofKey !== key,
+    );
+    if (kind === BEGIN) held.push([channel, key]);
+    this.held.set(page, held);
+  }
+
+  /**
+   * End what a page held that is gone.
+   * @param {number} page
+   */
+  #let(page) {
+    for (const [channel, key] of this.held.get(page) ?? []) {
+      this.instrument.sound?.post(null, END, channel, key, 0);
+    }
+    this.held.delete(page);
+  }
+
+  close() {
+    this.broken();
+    this.instrument.removeEventListener("wish", this.own);
+    this.line.removeEventListener("wishes", this.others);
+    this.line.removeEventListener("left", this.left);
+    this.line.removeEventListener("break", this.broken);
+    this.line.want({ looks: false, sounds: false });
+  }
+}

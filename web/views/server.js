@@ -1,0 +1,102 @@
+/** Where the sound of a page that has a server is made, and where it is heard. */
+
+/** @typedef {import('../instrument.js').Instrument} Instrument */
+/** @typedef {'here' | 'there' | 'listen'} Way */
+
+import facts from "../facts.js";
+import { make } from "../elements.js";
+import { openHere } from "../instrument.js";
+import { TABLE } from "../playing/table.js";
+import { remember, settings } from "../settings.js";
+import { Line } from "../sound/line.js";
+import { Remote } from "../sound/remote.js";
+import { Sharing } from "../sound/sharing.js";
+import { say } from "../words.js";
+
+/** @type {Way[]} */
+const WAYS = ["here", "there", "listen"];
+
+/**
+ * The choice, and the state of the server.
+ * @param {Instrument} instrument
+ */
+export function showServer(instrument) {
+  const line = new Line();
+  const about = make("p", { class: "soft" });
+  const state = make("p", { class: "soft", role: "status" });
+  const choice = make("div", { class: "choice", role: "group", "aria-label": say("server.name") });
+  /** @type {Way | null} */
+  let chosen = null;
+  let rate = 0;
+  /** @type {Sharing | null} */
+  let sharing = null;
+  const buttons = WAYS.map((way) => {
+    const button = make("button", { type: "button", id: `way-${way}` }, [say(`server.${way}`)]);
+    button.addEventListener("click", () => {
+      remember({ way });
+      choose(way);
+      instrument.start(); // while the touch counts
+    });
+    choice.append(button);
+    return { way, button };
+  });
+
+  /** @param {Way} way */
+  function choose(way) {
+    sharing?.close();
+    sharing = null;
+    chosen = way;
+    rate = line.status.rate;
+    instrument.change(way === "here" ? openAlike : () => Remote.open(line, way === "listen"));
+    if (way === "here") sharing = new Sharing(instrument, line);
+    if (way === "there") instrument.start(); // a picture needs no touch
+    about.textContent = say(`server.${way}.about`);
+    tell();
+  }
+
+  /** The sound of this page, with the parameters that its player knows. */
+  async function openAlike() {
+    const sound = await openHere();
+    for (const { address, row, owned } of TABLE) {
+      if (!owned) sound.post(null, facts.kinds.WRITE, row, instrument.player.value(address), 0);
+    }
+    return sound;
+  }
+
+  function tell() {
+    const { device, pages, sounds } = line.status;
+    for (const { way, button } of buttons) {
+      button.setAttribute("aria-pressed", String(way === chosen));
+      button.disabled = way === "here" && sounds !== "ready";
+    }
+    const own = { preparing: say("server.preparing"), ready: "", none: say("server.impossible") };
+    const told = [
+      device ? say("server.device", { device }) : say("server.silent"),
+      say("server.pages", { count: pages }),
+      own[sounds],
+    ];
+    state.textContent = line.isOpen ? told.filter(Boolean).join(" ") : say("server.gone");
+  }
+
+  line.addEventListener("status", () => {
+    const { device, sounds } = line.status;
+    if (chosen === null) {
+      const first = WAYS.find((way) => way === settings.way) ?? (device ? "there" : "listen");
+      choose(first === "here" && sounds !== "ready" ? "there" : first);
+    } else if (chosen === "listen" && rate !== line.status.rate) {
+      choose(chosen); // another server, at another rate
+      instrument.start();
+    }
+    tell();
+  });
+  line.addEventListener("break", () => {
+    if (chosen !== "here") instrument.silence(); // the server has ended what this page held
+    tell();
+  });
+  return make("section", { class: "group" }, [
+    make("h2", {}, [say("server.name")]),
+    choice,
+    about,
+    state,
+  ]);
+}

@@ -1,0 +1,40 @@
+"""Makes what pages need to sound themselves: it may take a minute.
+
+The process of its own has the lowest priority: whoever plays meanwhile must not hear of it.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+from yehu_server.ahead.kept import page_module
+from yehu_server.ahead.section import section_of
+from yehu_server.ahead.sources import sources_hash
+from yehu_server.child import Parent
+from yehu_server.errors import YehuError
+from yehu_server.panel.beginnings import write_beginnings
+
+LOWEST = 19
+
+
+def main() -> None:
+    """Tell the parent process the module's file, or why there is none; before, small files."""
+    parent = Parent()
+    os.nice(LOWEST)
+    try:
+        with tempfile.TemporaryDirectory(prefix="yehu-page-") as folder:
+            for file in write_beginnings(Path(folder)):
+                parent.tell("beginning", name=file.name, text=file.read_text("utf-8"))
+        path = page_module()
+        if section_of(path.read_bytes()).split()[-1:] != [sources_hash()]:
+            raise YehuError("there is none of the present sources")  # noqa: TRY301
+    except (YehuError, OSError) as error:
+        parent.tell("none", reason=str(error))
+    else:
+        parent.tell("module", path=str(path))
+
+
+if __name__ == "__main__":
+    main()

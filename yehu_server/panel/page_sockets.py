@@ -1,0 +1,226 @@
+"""The WebSockets of pages: they get looks, sound and each other's wishes, and send wishes.
+
+A message of numbers is a sequence of float64, little-endian. From a page it is wishes, of WISH
+numbers each. To a page its first number says what follows: LOOK or WISHES, or it comes from the
+socket of sound: then it is one frame number, and float32 samples from there on.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import struct
+import time
+from collections.abc import AsyncIterator, Callable, Mapping
+from typing import Any
+
+import numpy as np
+from aiohttp import WSMsgType, web
+
+from yehu_server.control.allowance import Allowance
+from yehu_server.panel.frames import TEXT, frame_of, write
+from yehu_server.panel.seen import Seen
+from yehu_server.player.wishes import KINDS, RAMP
+
+LOOK, WISHES = 0.0, 1.0
+WISH = 5  # numbers: frame or NOW, kind, index, value, other
+NOW = -1.0
+LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.0025, 1.0
+IDLE_S = 0.05  # between looks whether somebody listens
+MOST_PAGES, MOST_UNSENT = 64, 1 << 16  # bytes
+MOST_WISHES = 1024  # of a message
+MESSAGE_BYTES = 8 * WISH * MOST_WISHES
+WISHES_PER_S, WISHES_AT_ONCE = 2000.0, 4000.0
+HEARTBEAT_S, CLOSING_S = 10.0, 0.3
+WRONG = 1008  # close code: against the rules
+# A page that is heard for the first time hears this much of what was just played.
+FIRST_FRAMES = 512
+
+Tell = Callable[..., None]
+
+
+class Page:
+    """A page that is connected, by its number."""
+
+    def __init__(self, number: int, transport: Any) -> None:
+        self.number = number
+        self.transport = transport
+        self.looks = self.sounds = False  # whether it wants looks; whether it sounds itself
+        self.allowance = Allowance(WISHES_PER_S, WISHES_AT_ONCE)
+
+
+class PageSockets:
+    """All WebSockets of pages.
+
+    Parameters
+    ----------
+    tell : callable
+        Tells the control process an event, with its details.
+    status : callable
+        The state of the server, beside what is in the record, of JSON's types.
+    """
+
+    def __init__(self, seen: Seen, tell: Tell, status: Callable[[], Mapping[str, Any]]) -> None:
+        self._seen = seen
+        self._tell = tell
+        self._status = status
+        self._pages: dict[web.WebSocketResponse, Page] = {}
+        self._listeners: dict[web.WebSocketResponse, Any] = {}
+
+    @property
+    def count(self) -> int:
+        """Number of open WebSockets."""
+        return len(self._pages) + len(self._listeners)
+
+    # -- serving one -------------------------------------------------------------------------
+
+    async def serve_page(self, request: web.Request) -> web.WebSocketResponse:
+        """Serve a page until it goes."""
+        socket = await _open(request)
+        page = Page(self._free_number(), request.transport)
+        self._pages[socket] = page
+        try:
+            self._send_status(page)
+            async for message in socket:
+                if message.type is WSMsgType.BINARY:
+                    wishes = read_wishes(message.data)
+                elif message.type is WSMsgType.TEXT and self._obey(page, message.data):
+                    continue
+                else:
+                    wishes = None
+                if wishes is None:
+                    await socket.close(code=WRONG)
+                    break
+                await self._pass_on(page, wishes)
+        finally:
+            del self._pages[socket]
+            self._tell("left", page=page.number)
+            text = frame_of(json.dumps({"left": page.number}).encode(), TEXT)
+            for other in self._pages.values():
+                write(other.transport, text, MOST_UNSENT)
+        return socket
+
+    async def serve_listener(self, request: web.Request) -> web.WebSocketResponse:
+        """Send the sound to a page until it goes."""
+        socket = await _open(request)
+        self._listeners[socket] = request.transport
+        try:
+            async for _ in socket:  # only its end matters
+                pass
+        finally:
+            self._listeners.pop(socket, None)
+        return socket
+
+    def _free_number(self) -> int:
+        taken = {page.number for page in self._pages.values()}
+        return next(number for number in range(MOST_PAGES + 1) if number not in taken)
+
+    def _obey(self, page: Page, text: str) -> bool:
+        """Do what a page asks for; return whether that can be asked."""
+        try:
+            asked = json.loads(text)
+            page.looks, page.sounds = asked["looks"] is True, asked["sounds"] is True
+        except (ValueError, KeyError, TypeError, RecursionError):
+            return False
+        return True
+
+    async def _pass_on(self, page: Page, wishes: Any) -> None:
+        """Tell the control process and other pages that sound; a hasty page waits."""
+        arrived_ns = time.monotonic_ns()
+        self._tell("wishes", page=page.number, at=arrived_ns, wishes=wishes.tolist())
+        frame = frame_of(struct.pack("<2d", WISHES, page.number) + wishes.tobytes())
+        for other in self._pages.values():
+            if other is not page and other.sounds:
+                write(other.transport, frame, MOST_UNSENT)
+        page.allowance.spend(len(wishes))
+        if (left := page.allowance.left(time.monotonic())) < 0.0:
+            await asyncio.sleep(-left / WISHES_PER_S)
+
+    # -- telling all -------------------------------------------------------------------------
+
+    async def send_looks(self) -> None:
+        """Send looks, for ever."""
+        async for _ in every(LOOK_S):
+            viewers = [page for page in self._pages.values() if page.looks]
+            if viewers:
+                frame = frame_of(struct.pack("<d", LOOK) + self._seen.look())
+                for page in viewers:
+                    write(page.transport, frame, MOST_UNSENT)
+
+    async def send_sound(self) -> None:
+        """Send the sound, for ever."""
+        sent = 0
+        while True:
+            if not self._listeners:
+                await asyncio.sleep(IDLE_S)
+                sent = self._seen.taped() - FIRST_FRAMES
+                continue
+            end = self._seen.taped()
+            if end > sent:
+                begin, samples = self._seen.sound(max(sent, 0), end)
+                frame = frame_of(struct.pack("<d", begin) + samples)
+                for transport in self._listeners.values():
+                    write(transport, frame, MOST_UNSENT)
+            sent = end
+            await asyncio.sleep(SOUND_S)
+
+    async def send_status(self) -> None:
+        """Send the status, for ever."""
+        async for _ in every(STATUS_S):
+            for page in self._pages.values():
+                self._send_status(page)
+
+    async def close(self) -> None:
+        """Close all."""
+        sockets = [*self._pages, *self._listeners]
+        await asyncio.gather(
+            *(socket.close(code=1001) for socket in sockets), return_exceptions=True
+        )
+
+    def _send_status(self, page: Page) -> None:
+        load, dropouts = self._seen.load()
+        status = {
+            "page": page.number,
+            "pages": len(self._pages),
+            "rate": self._seen.rate,
+            "frame": self._seen.taped(),
+            "load": load,
+            "dropouts": dropouts,
+            **self._status(),
+        }
+        text = json.dumps({"status": status}, allow_nan=False)
+        write(page.transport, frame_of(text.encode(), TEXT), MOST_UNSENT)
+
+
+def read_wishes(data: bytes) -> Any:
+    """The wishes of a message, in rows of WISH numbers; None where one is wrong."""
+    if not data or len(data) % (8 * WISH) or len(data) > MESSAGE_BYTES:
+        return None
+    wishes = np.frombuffer(data, "<f8").reshape(-1, WISH)
+    frames, kinds, indices = wishes[:, 0], wishes[:, 1], wishes[:, 2]
+    is_right = (
+        np.isfinite(wishes).all()
+        and (frames >= NOW).all()
+        and ((kinds > RAMP) & (kinds < len(KINDS))).all()
+        and (wishes[:, :3] == np.rint(wishes[:, :3])).all()
+        and (np.abs(indices) < 1 << 31).all()
+        and (frames < 1 << 53).all()
+    )
+    return wishes if is_right else None
+
+
+async def every(period_s: float) -> AsyncIterator[None]:
+    """Yield periodically; periods that were missed are left out."""
+    due = time.monotonic()
+    while True:
+        yield
+        due = max(due + period_s, time.monotonic())
+        await asyncio.sleep(due - time.monotonic())
+
+
+async def _open(request: web.Request) -> web.WebSocketResponse:
+    socket = web.WebSocketResponse(
+        timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=MESSAGE_BYTES, compress=False
+    )
+    await socket.prepare(request)
+    return socket

@@ -138,6 +138,7 @@ def test_serve_tells_what_is_no_news_to_a_player_only_where_it_is_asked_to(
         output=SimpleNamespace(state=SimpleNamespace(problem="")),
         osc=SimpleNamespace(**vars(address), traffic=SimpleNamespace(buffer_bytes=400_000)),
         web=address,
+        pages=None,
         start=lambda: None,
         stop=lambda: None,
         kept_all=True,

@@ -156,7 +156,7 @@ def test_an_audio_server_that_hangs_is_left_and_taken_up_again(jackd, serve, tmp
 
 def test_an_audio_process_that_crashes_is_replaced(jackd, serve, tmp_path):
     jackd.start()
-    server, osc = begun(serve, tmp_path)
+    server, osc = begun(serve, tmp_path, "--no-panel")  # so that it is the only other process
     before = wait_for_frames(osc, 4_000)
     said = len(server.lines)
     (audio,) = server.family()

@@ -6,6 +6,7 @@
 
 import facts from "./facts.js";
 import { TABLE, find } from "./playing/table.js";
+import { WISH } from "./sound/kernel.js";
 
 const FORMAT = "yehu-server capture";
 const VERSION = 2;
@@ -15,7 +16,6 @@ const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW } = facts.kind
 const NAMES = Object.keys(facts.kinds).map((name) => name.toLowerCase());
 const OF_SLOT = TABLE.filter(({ slot }) => slot !== null).map(({ address }) => address);
 const SILENCE = "silence"; // in place of an engine's parameter
-const WISH = 5;
 
 /** Keeps the wishes that the instrument fulfils. */
 export class Keeper {

@@ -1,9 +1,17 @@
-// Sets the chosen theme before anything is drawn; all else waits for the modules.
+// Sets the theme before anything is drawn, the chosen one or the system's; all else waits for the
+// modules.
 (() => {
-  try {
-    const { theme } = JSON.parse(localStorage.getItem("yehu") ?? "{}");
-    if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;
-  } catch {
-    // Nothing is kept here: the system's theme.
-  }
+  const darkSystem = matchMedia("(prefers-color-scheme: dark)");
+  const show = () => {
+    let theme;
+    try {
+      ({ theme } = JSON.parse(localStorage.getItem("yehu") ?? "{}"));
+    } catch {
+      // Nothing is kept here.
+    }
+    const isChosen = theme === "dark" || theme === "light";
+    document.documentElement.dataset.theme = isChosen ? theme : darkSystem.matches ? "dark" : "light";
+  };
+  darkSystem.addEventListener("change", show);
+  show();
 })();

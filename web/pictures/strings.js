@@ -3,13 +3,13 @@
 /** @typedef {import('../interfaces.js').Snapshot} Snapshot */
 /** @typedef {import('./picture.js').Moment} Moment */
 
+import { POINTS } from "../sound/snapshot.js";
 import { say } from "../words.js";
 import { Picture, font } from "./picture.js";
 import { Rest } from "./rest.js";
 import { Stroboscope } from "./stroboscope.js";
 
 const STRINGS = /** @type {const} */ (["inner", "outer"]);
-const POINTS = 64;
 /** Periods a second in the slowed view. */
 const SLOW = 0.4;
 /** The picture's scale follows the greatest swing, m; a smaller one is not drawn larger. */

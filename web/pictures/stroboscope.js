@@ -1,7 +1,8 @@
 /** Slows a string's motion down: shapes are collected by their phase in the period. */
 
+import { POINTS } from "../sound/snapshot.js";
+
 const BINS = 64;
-const POINTS = 64;
 /** Longest that a bin is kept without news, in snapshots: a slow drift of the motion is followed. */
 const OLDEST = 150;
 /** How many bins the phase may be wrong at each shape, where the period is not known exactly. */

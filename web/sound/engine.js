@@ -3,10 +3,9 @@
  * It takes messages and tells others.
  */
 
-import { Kernel, NOW } from "./kernel.js";
+import { Kernel, WISH } from "./kernel.js";
 
 const LOOKS_A_SECOND = 60;
-const WISH = 5; // numbers: frame or NOW, kind, index, value, other
 const CHUNK = 4096; // recorded frames that are told at a time
 const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
 
@@ -20,7 +19,6 @@ const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
  * @typedef {object} Told
  * @property {Float64Array} [seen] a look
  * @property {number} [load] share of the time that computing takes
- * @property {number} [dropped] wishes that there was no room for, so far
  * @property {Float32Array} [recorded] samples
  * @property {boolean} [isLast] of a recording
  * @property {{from: number, to: number, wishes: number[]}} [kept] frames, and WISH numbers each
@@ -43,7 +41,6 @@ export class Engine {
     this.free = Array.from({ length: MOST_LOOKS }, () => new Float64Array(lookLength));
     this.nextLook = 0;
     this.frame = 0;
-    this.dropped = 0;
     this.busyMs = 0;
     this.measuredFrom = 0;
     /** @type {Float32Array | null} */
@@ -62,8 +59,7 @@ export class Engine {
         const isTaken = this.kernel.post(
           wishes[i], wishes[i + 1], wishes[i + 2], wishes[i + 3], wishes[i + 4],
         ); // prettier-ignore
-        if (!isTaken) this.dropped += 1;
-        else if (this.kept) {
+        if (isTaken && this.kept) {
           this.kept.push(Math.max(wishes[i], this.frame), ...wishes.subarray(i + 1, i + WISH));
         }
       }
@@ -103,7 +99,6 @@ export class Engine {
     const measured = this.frame - this.measuredFrom;
     if (measured >= this.rate) {
       told.load = (1e-3 * this.busyMs * this.rate) / measured;
-      told.dropped = this.dropped;
       this.measuredFrom = this.frame;
       this.busyMs = 0;
     }
@@ -132,5 +127,3 @@ export class Engine {
     this.tell({ recorded, isLast: true }, [recorded.buffer]);
   }
 }
-
-export { NOW, WISH };

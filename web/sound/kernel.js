@@ -12,6 +12,9 @@ const SECOND_NS = 1_000_000_000n;
 /** Wishes for the frame that is computed next, whichever it is, have this one. */
 export const NOW = -1;
 
+/** Numbers of a wish in a message: frame or NOW, kind, index, value, other. */
+export const WISH = 5;
+
 /**
  * What the module needs of its surroundings.
  * @param {() => DataView} view of its memory

@@ -1,10 +1,11 @@
 /** The line to the server: a WebSocket that is opened again whenever it breaks. */
 
+import { WISH } from "./kernel.js";
+
 const AGAIN_MS = 500;
 const AGAIN_AT_MOST_MS = 5000;
 const LOOK = 0; // what the first number of a message says
 const WISHES = 1;
-const WISH = 5; // numbers
 const MOST_UNSENT = 1 << 16; // bytes
 
 /**

@@ -7,7 +7,7 @@ import facts from "../facts.js";
 import { TABLE } from "../playing/table.js";
 import { Listener } from "./listener.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
-import { NOW } from "./engine.js";
+import { NOW } from "./kernel.js";
 
 /** @typedef {import('./line.js').Line} Line */
 /** @typedef {import('../interfaces.js').Status} Status */

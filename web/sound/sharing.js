@@ -5,7 +5,7 @@
 /** @typedef {import('./line.js').Line} Line */
 
 import facts from "../facts.js";
-import { NOW } from "./engine.js";
+import { NOW } from "./kernel.js";
 
 const { BEGIN, END } = facts.kinds;
 // Channels of another page's keys, as the server keeps visitors apart.

@@ -4,7 +4,8 @@ import facts from "../facts.js";
 
 /** @typedef {import('../interfaces.js').Snapshot} Snapshot */
 
-const POINTS = 64;
+/** Points of a string's shape. */
+export const POINTS = facts.look.shapes[1] / 2;
 const LEAST_DB = -160;
 
 /** Where each field begins. @type {Record<string, number>} */

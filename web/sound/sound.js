@@ -2,7 +2,7 @@
 
 import facts from "../facts.js";
 import { openBackend } from "./backends.js";
-import { NOW } from "./engine.js";
+import { NOW } from "./kernel.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { wav } from "./wav.js";
 
@@ -46,7 +46,6 @@ export class Sound extends EventTarget {
     this.analyser = new AnalyserNode(context, { fftSize: FFT, smoothingTimeConstant: 0.6 });
     this.gain = new GainNode(context, { gain: 1 });
     this.loadPercent = 0;
-    this.dropped = 0;
     this.dropouts = 0;
     /** @type {number[]} */
     this.wishes = [];
@@ -119,7 +118,7 @@ export class Sound extends EventTarget {
   }
 
   /** @param {Told} told */
-  #hear({ seen, load, dropped, recorded, isLast, kept }) {
+  #hear({ seen, load, recorded, isLast, kept }) {
     if (kept) this.kept?.(kept);
     if (recorded && this.chunks) {
       this.chunks.push(recorded);
@@ -129,7 +128,6 @@ export class Sound extends EventTarget {
       }
     }
     if (load !== undefined) this.loadPercent = 100 * load;
-    if (dropped !== undefined) this.dropped = dropped;
     if (seen) {
       this.seen.set(seen);
       this.state = snapshotOf(this.seen);

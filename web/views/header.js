@@ -37,7 +37,7 @@ export function showHeader({ instrument, gallery }) {
     location.reload();
   });
   find("theme", HTMLButtonElement).addEventListener("click", () => {
-    const isDark = settings.theme ? settings.theme === "dark" : darkSystem.matches;
+    const isDark = document.documentElement.dataset.theme === "dark";
     remember({ theme: isDark ? "light" : "dark" });
     document.documentElement.dataset.theme = settings.theme;
     gallery.renew();

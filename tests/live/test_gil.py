@@ -87,8 +87,11 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     assert (found[half:] >= 0).mean() > 0.95  # nothing but what was played
 
 
-# The stream and the GIL in one process; prints the callback's counters.
-SAME_PROCESS = """
+SECONDS = 4
+
+# The stream and the GIL in one process. While the GIL is held for a second, several times, prints
+# what the callback counted in each.
+SAME_PROCESS = f"""
 import ctypes, json, mmap, os
 from yehu_server.audio.devices import choose, load_portaudio, outputs
 from yehu_server.audio.output import SharedMemory
@@ -96,22 +99,22 @@ from yehu_server.audio.stream import Stream
 from yehu_server.engine.instrument import Instrument
 
 memory = SharedMemory()
-instrument = Instrument(48000.0, memory=memory.buffer)
+instrument = Instrument({RATE:.1f}, memory=memory.buffer)
 sounddevice = load_portaudio()
 device = choose(outputs(sounddevice), "system, JACK")
-order = {"memory": memory.descriptor, "rate": 48000.0, "blocksize": 128, "channels": 1,
-         "latency": "low"}
+order = {{"memory": memory.descriptor, "rate": {RATE:.1f}, "blocksize": {BLOCK}, "channels": 1,
+         "latency": "low"}}
 stream = Stream(sounddevice, device, order)
 stream.start()
-usleep = ctypes.PyDLL(None).usleep
+hold_the_gil = ctypes.PyDLL(None).usleep
 ctypes.CDLL(None).usleep(500_000)
 counts = []
-for hold in (False, True):
+for _ in range({SECONDS}):
     before = instrument.meters().copy()
-    usleep(1_000_000) if hold else ctypes.CDLL(None).usleep(1_000_000)
+    hold_the_gil({A_SECOND_US})
     after = instrument.meters().copy()
-    counts.append({what: int(after[what] - before[what])
-                   for what in ("frame", "callbacks", "late_callbacks", "underruns", "missed")})
+    counts.append({{what: int(after[what] - before[what])
+                   for what in ("frame", "callbacks", "late_callbacks", "underruns", "missed")}})
 print(json.dumps(counts), flush=True)
 stream.close()
 os._exit(0)
@@ -127,12 +130,15 @@ def test_the_gil_of_the_process_that_holds_the_stream_stops_nothing(jackd):
         timeout=120.0,
         check=True,
     )
-    free, held = json.loads(run.stdout)
-    assert held["frame"] > 0.7 * RATE  # a busy machine misses some blocks
-    assert held["callbacks"] > 0.7 * RATE / BLOCK
-    assert held["missed"] <= free["missed"] + 1
-    assert held["late_callbacks"] <= 2 * free["late_callbacks"] + 10
-    assert held["underruns"] <= 2 * free["underruns"] + 10
+    # A callback that needs the GIL loses nearly all of each second's 375 blocks. Other
+    # processes cost some of any second's, so the quietest second counts.
+    held = min(json.loads(run.stdout), key=lambda second: second["underruns"])
+    blocks_a_second = RATE / BLOCK
+    assert held["frame"] > 0.7 * RATE
+    assert held["callbacks"] > 0.7 * blocks_a_second
+    assert held["missed"] < 0.1 * blocks_a_second
+    assert held["late_callbacks"] < 0.1 * blocks_a_second
+    assert held["underruns"] < 0.1 * blocks_a_second
 
 
 def test_holding_the_gil_holds_python():

@@ -1,5 +1,9 @@
 /** Finds and makes elements of the page. */
 
+import { inWords } from "./words.js";
+
+/** @typedef {string | (() => string)} Words A function is asked again in another language. */
+
 /**
  * The element of an id, of the class expected.
  * @template {Element} T
@@ -14,26 +18,36 @@ export function find(id, type) {
 }
 
 /**
- * Make an element.
+ * Make an element. One with words of functions should stay as long as the page.
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
- * @param {Record<string, string | boolean | number>} [attributes] true: without value
- * @param {(Node | string)[]} [children]
+ * @param {Record<string, Words | boolean | number>} [attributes] true: without value
+ * @param {(Node | Words)[]} [children]
  * @returns {HTMLElementTagNameMap[K]}
  */
 export function make(tag, attributes = {}, children = []) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === false) continue;
-    element.setAttribute(name, value === true ? "" : String(value));
+    if (typeof value === "function") inWords(() => element.setAttribute(name, value()));
+    else element.setAttribute(name, value === true ? "" : String(value));
   }
-  element.append(...children);
+  element.append(...children.map((child) => (typeof child === "function" ? words(child) : child)));
   return element;
+}
+
+/** @param {() => string} tell */
+function words(tell) {
+  const text = new Text();
+  inWords(() => {
+    text.data = tell();
+  });
+  return text;
 }
 
 /**
  * A switch, as a labelled checkbox.
- * @param {string} text
+ * @param {Words} text
  * @param {boolean} isOn
  * @param {(isOn: boolean) => void} changed
  */

@@ -2,12 +2,15 @@
 
 /** @typedef {import('./interfaces.js').Sound} Sound */
 /** @typedef {import('./interfaces.js').Post} Post */
+/** @typedef {import('./playing/mapping.js').MappingFacts} MappingFacts */
 
 import facts from "./facts.js";
 import { Player } from "./playing/player.js";
 
 /** Wishes before the sound is open wait for it; more than these are of no use to anybody. */
 const MOST_WAITING = 1000;
+/** @type {Record<string, MappingFacts>} */
+const MAPPINGS = facts.mappings;
 const AHEAD_S = 0.25;
 const AHEAD_HIDDEN_S = 1.5;
 
@@ -37,6 +40,8 @@ export class Instrument extends EventTarget {
     /** @type {Parameters<Post>[]} */
     this.waiting = [];
     this.player = new Player(facts, this.#sink());
+    /** What controllers move while no tune brings its own. @type {MappingFacts} */
+    this.mapping = MAPPINGS[facts.defaultMapping];
   }
 
   /**

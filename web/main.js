@@ -8,6 +8,7 @@ import { Hands } from "./hands/hands.js";
 import { Keys } from "./hands/keys.js";
 import { Tuned } from "./hands/tuned.js";
 import { Instrument } from "./instrument.js";
+import { Midi } from "./midi.js";
 import { Board } from "./pictures/board.js";
 import { Bowing } from "./pictures/bowing.js";
 import { Level } from "./pictures/level.js";
@@ -17,6 +18,7 @@ import { Spectrum } from "./pictures/spectrum.js";
 import { Strings } from "./pictures/strings.js";
 import { Tuner } from "./pictures/tuner.js";
 import { settings } from "./settings.js";
+import { Taught } from "./taught.js";
 import { showConnections } from "./views/connect.js";
 import { showHeader } from "./views/header.js";
 import { showKeeping } from "./views/keep.js";
@@ -40,12 +42,16 @@ import { fillWords, loadWords } from "./words.js";
  * @property {Board} board
  * @property {Strings} strings
  * @property {Gallery} gallery
+ * @property {Taught} taught
+ * @property {Midi} midi
  */
 
 /** @returns {Page} */
 function assemble() {
   const instrument = new Instrument();
   const hands = new Hands(instrument.player);
+  const taught = new Taught(instrument);
+  const midi = new Midi(instrument, taught);
   const tuned = new Tuned();
   const keys = new Keys(hands, tuned);
   const fingerboard = new Fingerboard(find("fingerboard", HTMLCanvasElement), hands, tuned);
@@ -64,7 +70,7 @@ function assemble() {
   gallery.hang(
     new Spectrum(find("spectrum", HTMLCanvasElement), () => instrument.sound?.analyser ?? null),
   );
-  return { instrument, hands, tuned, keys, fingerboard, bow, board, strings, gallery };
+  return { instrument, hands, tuned, keys, fingerboard, bow, board, strings, gallery, taught, midi };
 }
 
 /** @param {Page} page */

@@ -11,6 +11,9 @@ const FIRST = {
   isLandingInTune: true,
   view: "slowed",
   panel: "see",
+  mapping: "", // '': the default one
+  /** Binds that were learned, by the mapping that they lie over. @type {Record<string, unknown>} */
+  learned: {},
   way: "", // of sounding, where there is a server; '': there where it has a device, else listening
 };
 
@@ -23,7 +26,7 @@ function read() {
     /** @type {Record<string, unknown>} */
     const values = { ...FIRST };
     for (const [name, first] of Object.entries(FIRST)) {
-      if (typeof kept[name] === typeof first) values[name] = kept[name];
+      if (typeof kept[name] === typeof first && kept[name] !== null) values[name] = kept[name];
     }
     return /** @type {Values} */ (values);
   } catch {

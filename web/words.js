@@ -1,11 +1,13 @@
 /** The page's words, in the language chosen. */
 
-import { settings } from "./settings.js";
+import { remember, settings } from "./settings.js";
 
 /** @type {Record<string, string>} */
 let texts = {};
 
 export const LANGUAGES = /** @type {const} */ (["en", "zh"]);
+
+const changes = new EventTarget();
 
 /** @returns {'en' | 'zh'} */
 export function language() {
@@ -19,6 +21,27 @@ export async function loadWords() {
   texts = (await module).default;
   document.documentElement.lang = language() === "zh" ? "zh-Hans" : "en";
   document.title = say("title");
+}
+
+/**
+ * Speak another language from now on; nothing else changes.
+ * @param {'en' | 'zh'} chosen
+ */
+export async function speak(chosen) {
+  remember({ language: chosen });
+  await loadWords();
+  fillWords(document);
+  changes.dispatchEvent(new Event("change"));
+}
+
+/**
+ * Do what puts words on the page, now and whenever the language has changed. For what stays as long
+ * as the page.
+ * @param {() => void} tell
+ */
+export function inWords(tell) {
+  changes.addEventListener("change", tell);
+  tell();
 }
 
 /**

@@ -65,6 +65,42 @@ export async function open(browser, url) {
   return { page, errors };
 }
 
+/** Stands for a browser with one MIDI keyboard; runs in the page. */
+export function pretendMidi() {
+  const input = { id: "one", name: "Keys", state: "connected", onmidimessage: null };
+  const access = { inputs: new Map([["one", input]]), onstatechange: null };
+  const pull = () => {
+    input.state = "disconnected";
+    access.onstatechange();
+  };
+  Object.assign(globalThis, { pretended: { input, pull } });
+  Object.defineProperty(navigator, "requestMIDIAccess", { value: async () => access });
+}
+
+/**
+ * Send a MIDI message from that keyboard.
+ * @param {import("playwright-core").Page} page
+ * @param {number[]} bytes
+ */
+export function sendMidi(page, ...bytes) {
+  return page.evaluate(
+    (data) => globalThis.pretended.input.onmidimessage({ data: Uint8Array.from(data) }),
+    bytes,
+  );
+}
+
+/** Keeps what the page makes to analyse its sound; runs in the page. */
+export function keepAnalysers() {
+  const Original = globalThis.AnalyserNode;
+  globalThis.analysers = [];
+  globalThis.AnalyserNode = class extends Original {
+    constructor(...words) {
+      super(...words);
+      globalThis.analysers.push(this);
+    }
+  };
+}
+
 /**
  * Fingers on the screen, through the browser's own input.
  * @param {import("playwright-core").Page} page

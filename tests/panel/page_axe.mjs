@@ -7,7 +7,14 @@ import { SIZES, open, run } from "./browser.mjs";
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
 const VIEWS = ["see", "sound", "tunes", "keep", "connect", "all"];
 
+/** Lets the page remember something that was taught; runs in the page. */
+function teach() {
+  const keyboard = [{ source: "cc 74", target: "/playing/vibrato" }];
+  localStorage.yehu ??= JSON.stringify({ learned: { keyboard } });
+}
+
 await run(async (browser, url) => {
+  await browser.addInitScript(teach);
   const found = [];
   for (const colorScheme of ["light", "dark"]) {
     for (const viewport of [SIZES.phone, SIZES.desk]) {

@@ -3,6 +3,7 @@
 const web = new URL("../../web/", import.meta.url);
 const { Stroboscope } = await import(new URL("pictures/stroboscope.js", web));
 const { Rest } = await import(new URL("pictures/rest.js", web));
+const { Limits } = await import(new URL("pictures/limits.js", web));
 const { regimeOf, soundingPitch } = await import(new URL("pictures/regime.js", web));
 
 const POINTS = 64;
@@ -61,6 +62,21 @@ function restError() {
   return error;
 }
 
+/** The limits at three places, told of a bow that has just moved from one place to another. */
+function limits() {
+  const told = new Limits();
+  const [least, most] = [0.0008, 0.2]; // N at beta 1
+  for (const [beta, times] of [
+    [0.1, 120],
+    [0.2, 1],
+  ]) {
+    const bow = { string: 0, speed: 0.2, force: 0.5, beta, x: 0.3 };
+    const schelleng = { min: least / beta ** 2, max: most / beta };
+    for (let n = 0; n < times; n++) told.follow({ bow, schelleng }, 1 / 60);
+  }
+  return [...[0.05, 0.1, 0.4].map((beta) => told.at(beta)), told.tip];
+}
+
 const state = {
   pitch: 69,
   level: -12,
@@ -73,6 +89,7 @@ const bow = (/** @type {object} */ changes) => ({ ...state.bow, ...changes });
 console.log(
   JSON.stringify({
     rest: restError(),
+    limits: limits(),
     exact: corners(0),
     drifting: corners(2e-4),
     regimes: {

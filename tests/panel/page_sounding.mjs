@@ -7,24 +7,12 @@
  * Downloads go to FOLDER. With a TUNE that tune is played to its end, and nothing else.
  */
 
-import { FLAGS, open, run } from "./browser.mjs";
+import { FLAGS, keepAnalysers, open, run } from "./browser.mjs";
 
 const NAME = "page.example"; // not a secure context; Chromium is told that it is this machine
 const [, , folder, tune] = process.argv.slice(2);
 const KEY = "KeyV"; // B4
 const DEPRECATED = "ScriptProcessorNode is deprecated"; // but there is nothing else there
-
-/** Keeps what the page makes to analyse its sound; runs in the page. */
-function keepAnalysers() {
-  const Original = globalThis.AnalyserNode;
-  globalThis.analysers = [];
-  globalThis.AnalyserNode = class extends Original {
-    constructor(...words) {
-      super(...words);
-      globalThis.analysers.push(this);
-    }
-  };
-}
 
 /**
  * Start the sound by a key; return after how long (ms) it is heard.

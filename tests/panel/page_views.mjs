@@ -1,21 +1,9 @@
 /** Looks at the page in every size, theme and language; prints what it finds. */
 
-import { SIZES, held, open, run, wishes } from "./browser.mjs";
+import { SIZES, held, open, pretendMidi, run, wishes } from "./browser.mjs";
 
 /** Elements that a finger should be able to touch, and their sizes. */
 const TARGETS = "button:not([hidden]), select, input, summary, canvas[tabindex]";
-
-/** Stands for a browser with one MIDI keyboard; runs in the page. */
-function pretendMidi() {
-  const input = { id: "one", name: "Keys", state: "connected", onmidimessage: null };
-  const access = { inputs: new Map([["one", input]]), onstatechange: null };
-  const pull = () => {
-    input.state = "disconnected";
-    access.onstatechange();
-  };
-  Object.assign(globalThis, { pretended: { input, pull } });
-  Object.defineProperty(navigator, "requestMIDIAccess", { value: async () => access });
-}
 
 await run(async (browser, url) => {
   await browser.addInitScript(pretendMidi);
@@ -151,7 +139,7 @@ await run(async (browser, url) => {
     globalThis.pretended.pull();
   });
   found.midi = await wishes(page);
-  found.inputs = await page.locator("#panel-connect option").allTextContents();
+  found.inputs = await page.locator("#panel-connect section:first-child option").allTextContents();
 
   // A tune that waits for its notes.
   await page.click("#tab-tunes");

@@ -2,58 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import re
-import socket
-import subprocess
-import time
-from collections.abc import Callable
 from typing import Any
 
 import pytest
-from panel.browser import CHROMIUM, HERE, NODE, missing
-
-from yehu_server.audio.output import OutputOptions
-from yehu_server.panel.pages import PageOptions
-from yehu_server.server import ServeOptions, Server
+from panel.browser import missing
+from panel.serving import converse, free_port, start, stop, until
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
-HOST = "127.0.0.1"
 PRESSURE = "/playing/pressure"
-PATIENCE_S = 30.0
-
-
-def until(condition: Callable[[], Any]) -> bool:
-    deadline = time.monotonic() + PATIENCE_S
-    while not condition():
-        if time.monotonic() > deadline:
-            return False
-        time.sleep(0.01)
-    return True
-
-
-def start(port: int) -> Server:
-    server = Server(
-        ServeOptions(
-            output=OutputOptions(device="null"),
-            midi=None,
-            osc=(HOST, 0),
-            page=PageOptions((HOST, port), is_wished=True),
-        )
-    )
-    server.start()
-    return server
-
-
-def stop(server: Server) -> None:
-    server.hurry()
-    server.stop()
-
-
-def free_port() -> int:
-    with socket.create_server((HOST, 0)) as probe:
-        return int(probe.getsockname()[1])
 
 
 class Stage:
@@ -88,27 +46,9 @@ def seen() -> tuple[dict[str, Any], dict[str, bool]]:
     """What the page found, and what the server found at each step."""
     port = free_port()
     stage = Stage(port)
-    command = [str(NODE), str(HERE / "page_connected.mjs"), f"http://{HOST}:{port}/", str(CHROMIUM)]
-    with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
-        assert process.stdin is not None
-        assert process.stderr is not None
-        assert process.stdout is not None
-        said = []
-        for line in process.stderr:
-            said.append(line)
-            stage.reach(line.strip())
-            if process.poll() is None:
-                try:
-                    process.stdin.write("go\n")
-                    process.stdin.flush()
-                except BrokenPipeError:
-                    break
-        out = process.stdout.read()
+    found = converse("page_connected.mjs", port, stage.reach)
     stop(stage.server)
-    assert process.returncode == 0, "".join(said)
-    return json.loads(out), stage.found
+    return found, stage.found
 
 
 def test_a_page_hears_a_server_without_a_device_if_nobody_chose(seen) -> None:

@@ -12,7 +12,9 @@ from pathlib import Path
 import mido
 import pytest
 
+from yehu_server.errors import ParameterError
 from yehu_server.panel import examples, facts
+from yehu_server.panel.styles import tunings
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.player.rows import IS_ENGINES, IS_OWNED, ROW
@@ -115,6 +117,25 @@ def test_each_tuning_is_there(known):
         tuning = read_tuning(*map(Path, name.split(", ")))
         assert settings["keys"] == [tuning.pitch(key, 440.0) for key in range(128)]
         assert settings["fixed"] == (", " in name)
+
+
+def test_every_shipped_map_of_keys_is_offered(known):
+    maps = {file.stem for file in (ROOT / "tunings").glob("*.kbm")}
+    assert {name.partition(", ")[2] for name in known["tunings"]} == maps | {""}
+
+
+def test_a_scale_is_offered_on_the_maps_that_take_it_only(tmp_path, monkeypatch):
+    (tmp_path / "one.scl").write_text("no note but the first\n0\n")
+    (tmp_path / "five.scl").write_text("five\n5\n240.\n480.\n720.\n960.\n2/1\n")
+    head = "2\n0\n127\n60\n"
+    (tmp_path / "second.kbm").write_text(f"{head}61\n300.\n5\n0\n1\n")
+    (tmp_path / "first.kbm").write_text(f"{head}60\n300.\n5\n0\n1\n")
+    monkeypatch.setattr("yehu_server.panel.styles.shipped_folder", lambda _: tmp_path)
+    with pytest.raises(ParameterError, match="not mapped"):  # it has no degree 1
+        read_tuning(tmp_path / "one.scl", tmp_path / "second.kbm")
+    assert list(tunings()) == [
+        "equal", "five", "five, first", "five, second", "one",
+    ]  # fmt: skip
 
 
 def test_each_example_has_its_events():

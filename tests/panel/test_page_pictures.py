@@ -45,3 +45,12 @@ def test_each_regime_is_named(answers) -> None:
 def test_the_pitch_that_sounds_is_the_one_heard_if_any_is(answers) -> None:
     assert answers["pitch"] == pytest.approx(69.12)
     assert answers["unheard"] == 69.0
+
+
+def test_the_limits_are_known_at_every_place_of_the_bow(answers) -> None:
+    """The greatest force falls with the distance from the bridge, the least with its square."""
+    *places, tip = answers["limits"]
+    for beta, limits in zip([0.05, 0.1, 0.4], places, strict=True):
+        expected = {"least": 0.0008 / beta**2, "most": 0.2 / beta}
+        assert limits == pytest.approx(expected, rel=0.01)
+    assert tip == pytest.approx(0.0008 / 0.2, rel=0.01)

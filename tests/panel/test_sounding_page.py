@@ -21,7 +21,7 @@ pytestmark = [
     pytest.mark.skipif(missing() is not None, reason=str(missing())),
     pytest.mark.skipif(page_linker() is None, reason="there is no wasm-ld"),
 ]
-B4 = 71.0
+B4, E5 = 71.0, 76.0
 
 
 @pytest.fixture(scope="module")
@@ -48,10 +48,10 @@ def found(url, folder):
     return drive("page_sounding.mjs", url, str(folder))
 
 
-def off_by(sound: np.ndarray, rate: float) -> float:
-    """How far (cents) the loudest part of a sound is from B4."""
+def off_by(sound: np.ndarray, rate: int, note: float = B4) -> float:
+    """How far (cents) the loudest part of a sound is from a note."""
     loudest = int(np.argmax(np.convolve(sound**2, np.ones(rate // 4), "valid")))
-    return cents(pitch_hz(sound[loudest : loudest + rate // 4], rate), frequency_hz(B4, 440.0))
+    return cents(pitch_hz(sound[loudest : loudest + rate // 4], rate), frequency_hz(note, 440.0))
 
 
 def test_it_sounds_soon_and_without_an_error(found):
@@ -79,6 +79,37 @@ def test_the_server_replays_what_was_kept(found, folder, tmp_path):
     sound, rate = soundfile.read(tmp_path / "kept.wav", dtype="float32")
     assert len(sound) / rate == pytest.approx(1.9, abs=1.0)
     assert abs(off_by(sound, rate)) < 10.0
+
+
+@pytest.fixture(scope="module")
+def behind(url, folder):
+    return drive("page_behind.mjs", url, str(folder))
+
+
+def test_a_key_that_is_held_ends_when_another_tab_comes_to_the_front(behind):
+    assert behind["hasFocus"] is False
+    assert behind["keyEnded"]
+
+
+def test_what_sounds_goes_on_behind_another_tab(behind, folder):
+    assert behind["away"] > 3.0
+    assert behind["lag"] < 0.1
+    assert behind["noteEnded"]
+    sound, rate = soundfile.read(folder / "behind.wav", dtype="float32")
+    assert len(sound) / rate > behind["away"] + 1.0
+    moments = sound[: len(sound) // (rate // 20) * (rate // 20)].reshape(-1, rate // 20)
+    assert np.abs(moments).max(axis=1).min() > 0.01
+    assert abs(off_by(sound, rate, E5)) < 10.0
+
+
+def test_pictures_stop_behind_another_tab_and_come_back(behind):
+    drawn = behind["drawn"]
+    assert min(drawn["before"], drawn["after"]) > 10
+    assert drawn["away"] < 10  # of some 200
+
+
+def test_nothing_goes_wrong_behind_another_tab(behind):
+    assert behind["errors"] == []
 
 
 @pytest.mark.slow

@@ -35,5 +35,6 @@ export class Diagram {
     const { beta, force } = this.picture.pointAt(x, y);
     this.player.write("/bow/position", beta);
     this.player.write("/bow/force", force);
+    this.picture.isStale = true; // seen at once
   }
 }

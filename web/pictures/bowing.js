@@ -28,7 +28,7 @@ export class Bowing extends Picture {
    * @param {CanvasRenderingContext2D} context
    * @param {Moment} moment
    */
-  draw(context, { state, elapsed }) {
+  draw(context, { state, elapsed, isCalm }) {
     const { bow, width, height } = this;
     const isByHand = bow.hands.isBowing;
     if (!isByHand && state && state.bow.string >= 0) {
@@ -44,7 +44,7 @@ export class Bowing extends Picture {
     context.fillRect(0, y - thick / 2, width, thick);
     context.strokeStyle = this.colours.soft;
     context.lineWidth = 1;
-    const shift = ((bow.hair % GAP) + GAP) % GAP;
+    const shift = isCalm ? 0 : ((bow.hair % GAP) + GAP) % GAP;
     for (let x = shift - GAP; x < 1 + GAP; x += GAP) {
       context.beginPath();
       context.moveTo(x * width - 3, y + thick / 2);

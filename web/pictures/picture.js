@@ -7,7 +7,7 @@
  * @property {Snapshot | null} state null before the start
  * @property {boolean} isNew the state is another than at the last moment
  * @property {number} now s
- * @property {number} elapsed s since the last moment; 0 at the first
+ * @property {number} elapsed s since it was drawn last; 0 at first
  * @property {boolean} isCalm whoever looks wants as little motion as possible
  *
  * @typedef {Record<Colour, string>} Colours
@@ -30,6 +30,9 @@ const COLOURS = /** @type {Colour[]} */ ([
   "bad",
   "glow",
 ]);
+/** Whoever wants little motion sees a picture anew so often only, s; and at once what a hand has changed. */
+const CALM = 0.4;
+const LONGEST = 0.5; // s that a picture goes on by at once
 const MOST_DOTS = 3; // per px: finer is not seen, and costs
 /** A large picture is drawn as one of this size, magnified: it is read from the last row. */
 const LARGE = { width: 640, height: 400, most: 3 };
@@ -71,6 +74,7 @@ export class Picture {
     this.height = 0;
     this.isSeen = true;
     this.isStale = true; // has to be drawn even where nothing moves
+    this.drawnAt = 0; // s
     new ResizeObserver(() => {
       this.isStale = true;
     }).observe(canvas);
@@ -90,12 +94,28 @@ export class Picture {
    */
   show(moment) {
     if (!this.isSeen) return;
-    if (!this.isStale && !this.changes(moment)) return;
+    this.notice(moment);
+    const lasted = moment.now - this.drawnAt;
+    const isEarly = moment.isCalm && !this.isWanted && lasted < CALM;
+    if (!this.isStale && (isEarly || !this.changes(moment))) return;
     if (this.isStale) this.#fit();
     if (this.width === 0 || this.height === 0) return;
+    const elapsed = this.drawnAt ? Math.min(lasted, LONGEST) : 0;
+    this.drawnAt = moment.now;
     this.context.clearRect(0, 0, this.width, this.height);
-    this.draw(this.context, moment);
+    this.draw(this.context, { ...moment, elapsed });
   }
+
+  /** Whether somebody has asked for its motion. */
+  get isWanted() {
+    return false;
+  }
+
+  /**
+   * Take note of a moment, whether or not it is drawn.
+   * @param {Moment} _moment
+   */
+  notice(_moment) {}
 
   /**
    * Whether it has to be drawn again at a moment.
@@ -137,7 +157,6 @@ export class Gallery {
     /** @type {Picture[]} */
     this.pictures = [];
     this.calm = matchMedia("(prefers-reduced-motion: reduce)");
-    this.last = 0;
     /** @type {Snapshot | null} */
     this.seen = null;
     // The browser asks for no frames while the page is hidden, so that nothing is drawn then.
@@ -159,16 +178,9 @@ export class Gallery {
   #next(now) {
     requestAnimationFrame((next) => this.#next(next));
     const state = this.latest();
-    const elapsed = this.last ? Math.min((now - this.last) / 1000, 0.1) : 0;
+    const isNew = state !== this.seen;
     /** @type {Moment} */
-    const moment = {
-      state,
-      isNew: state !== this.seen,
-      now: now / 1000,
-      elapsed,
-      isCalm: this.calm.matches,
-    };
-    this.last = now;
+    const moment = { state, isNew, now: now / 1000, elapsed: 0, isCalm: this.calm.matches };
     this.seen = state;
     for (const picture of this.pictures) picture.show(moment);
   }

@@ -7,6 +7,7 @@
 /** @typedef {import('./picture.js').Moment} Moment */
 
 import { say } from "../words.js";
+import { Limits } from "./limits.js";
 import { Picture, font } from "./picture.js";
 import { regimeOf } from "./regime.js";
 
@@ -17,9 +18,7 @@ const FIRMEST = 10;
 const BETAS = [0.05, 0.1, 0.2, 0.4];
 const FORCES = [0.03, 0.1, 0.3, 1, 3];
 const TRAIL = 90; // places of the bow that are still seen
-const USUAL_BETA = 0.13;
 const WIDE = 0.38; // beta where the wedge is wide enough for its name
-const SMOOTH = 0.15; // s, of the limits: they follow the bow's speed
 const LEFT = 34;
 const RIGHT = 6;
 const BOTTOM = 34;
@@ -40,10 +39,7 @@ export class Schelleng extends Picture {
     /** @type {{beta: number, force: number}[]} */
     this.trail = [];
     this.string = -1;
-    this.beta = USUAL_BETA;
-    /** Logarithms of the limits at `beta`; at first those of an ordinary stroke. */
-    this.least = Math.log(0.04);
-    this.most = Math.log(1.46);
+    this.limits = new Limits();
   }
 
   /**
@@ -67,18 +63,9 @@ export class Schelleng extends Picture {
    * @param {Snapshot} state
    * @param {number} elapsed s
    */
-  #follow({ bow, schelleng }, elapsed) {
-    const { min, max } = schelleng;
-    if (bow.string >= 0 && min > 0 && max > 0 && bow.speed !== 0) {
-      const share = Math.min(elapsed / SMOOTH, 1);
-      // Carried to where the bow is now, along their slopes, before they are averaged.
-      const away = Math.log(this.beta / bow.beta);
-      this.least += 2 * away;
-      this.most += away;
-      this.beta = bow.beta;
-      this.least += share * (Math.log(min) - this.least);
-      this.most += share * (Math.log(max) - this.most);
-    }
+  #follow(state, elapsed) {
+    const { bow } = state;
+    this.limits.follow(state, elapsed);
     const force = Math.abs(bow.force);
     if (bow.string !== this.string || force < LIGHTEST)
       this.trail.length = 0; // another stroke
@@ -117,25 +104,15 @@ export class Schelleng extends Picture {
     };
   }
 
-  /**
-   * The limits at a place: the least force falls with its square, the greatest with itself.
-   * @param {number} beta
-   */
-  #limits(beta) {
-    const away = Math.log(this.beta / beta);
-    return { least: Math.exp(this.least + 2 * away), most: Math.exp(this.most + away) };
-  }
-
   /** @param {CanvasRenderingContext2D} context */
   #wedge(context) {
-    const tip = Math.min(this.beta * Math.exp(this.least - this.most), FARTHEST);
-    const first = Math.max(tip, NEAREST);
+    const first = Math.max(Math.min(this.limits.tip, FARTHEST), NEAREST);
     context.beginPath();
     for (const beta of [first, FARTHEST]) {
-      context.lineTo(this.#across(beta), this.#down(this.#limits(beta).most));
+      context.lineTo(this.#across(beta), this.#down(this.limits.at(beta).most));
     }
     for (const beta of [FARTHEST, first]) {
-      context.lineTo(this.#across(beta), this.#down(this.#limits(beta).least));
+      context.lineTo(this.#across(beta), this.#down(this.limits.at(beta).least));
     }
     context.closePath();
     context.globalAlpha = 0.14;
@@ -147,7 +124,7 @@ export class Schelleng extends Picture {
     for (const which of /** @type {const} */ (["most", "least"])) {
       context.beginPath();
       for (const beta of [NEAREST, FARTHEST]) {
-        context.lineTo(this.#across(beta), this.#down(this.#limits(beta)[which]));
+        context.lineTo(this.#across(beta), this.#down(this.limits.at(beta)[which]));
       }
       context.stroke();
     }
@@ -191,7 +168,7 @@ export class Schelleng extends Picture {
     context.fillText(say("regime.raucous"), right, 12);
     context.textAlign = "left";
     context.fillText(say("regime.slipping"), LEFT + 12, this.height - BOTTOM - 14);
-    const { least, most } = this.#limits(WIDE);
+    const { least, most } = this.limits.at(WIDE);
     const y = (this.#down(least) + this.#down(most)) / 2;
     context.fillStyle = this.colours.good;
     context.textAlign = "right";

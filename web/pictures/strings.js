@@ -2,6 +2,7 @@
 
 /** @typedef {import('../interfaces.js').Snapshot} Snapshot */
 /** @typedef {import('./picture.js').Moment} Moment */
+/** @typedef {'slowed' | 'moving' | 'still'} View */
 
 import { POINTS } from "../sound/snapshot.js";
 import { say } from "../words.js";
@@ -23,7 +24,7 @@ export class Strings extends Picture {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     super(canvas);
-    /** @type {'slowed' | 'moving'} */
+    /** @type {View} still: the room in which they move, and no motion */
     this.view = "slowed";
     this.slow = [new Stroboscope(), new Stroboscope()];
     this.rests = [new Rest(), new Rest()];
@@ -34,21 +35,28 @@ export class Strings extends Picture {
     this.hair = 0; // m of hair that have passed
   }
 
+  get isWanted() {
+    return this.view !== "still";
+  }
+
+  /** @param {Moment} moment */
+  notice({ state, isNew }) {
+    if (state && isNew) this.#collect(state);
+  }
+
   /**
    * @param {CanvasRenderingContext2D} context
    * @param {Moment} moment
    */
-  draw(context, moment) {
-    const { state } = moment;
-    if (state && moment.isNew) this.#collect(state);
-    if (!moment.isCalm) this.phase += SLOW * moment.elapsed;
-    if (state) this.hair += state.bow.speed * moment.elapsed;
+  draw(context, { state, elapsed }) {
+    if (this.view === "slowed") this.phase += SLOW * elapsed;
+    if (state && this.view !== "still") this.hair += state.bow.speed * elapsed;
     const lane = this.height / 2;
     const room = lane * 0.36;
     this.#ends(context);
     for (const string of /** @type {const} */ ([0, 1])) {
       const middle = lane * (string + 0.5);
-      this.#string(context, string, middle, room / this.swing, moment);
+      this.#string(context, string, middle, room / this.swing);
     }
     if (state) {
       for (const finger of state.fingers) this.#finger(context, state, finger);
@@ -91,9 +99,8 @@ export class Strings extends Picture {
    * @param {0 | 1} string
    * @param {number} middle px
    * @param {number} gain px for a metre
-   * @param {Moment} moment
    */
-  #string(context, string, middle, gain, { isCalm }) {
+  #string(context, string, middle, gain) {
     const colour = this.colours[STRINGS[string]];
     const trail = this.trails[string];
     context.strokeStyle = this.colours.line;
@@ -107,13 +114,13 @@ export class Strings extends Picture {
     this.#envelope(context, string, middle, gain);
     context.lineCap = context.lineJoin = "round";
     context.strokeStyle = colour;
-    if (this.view === "moving" && !isCalm) {
+    if (this.view === "moving") {
       trail.forEach((shape, i) => {
         context.globalAlpha = i === trail.length - 1 ? 1 : (0.3 * (i + 1)) / TRAIL;
         this.#line(context, shape, middle, gain, i === trail.length - 1 ? 2 : 1);
       });
       context.globalAlpha = 1;
-    } else if (this.slow[string].known > 0) {
+    } else if (this.view === "slowed" && this.slow[string].known > 0) {
       this.#line(context, this.slow[string].at(this.phase), middle, gain, 2.2);
     }
     if (!trail.length) this.#line(context, new Float32Array(POINTS), middle, gain, 2);

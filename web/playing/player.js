@@ -185,12 +185,21 @@ export class Player {
   }
 
   /**
-   * Take another mapping while notes sound.
+   * Take a shipped mapping while notes sound.
    * @param {string} name
    * @param {number | null} frame
    */
   applyMapping(name, frame = null) {
-    this.#midi.remap(new Mapping(named(this.#facts.mappings, name)), this.#at(frame));
+    this.remap(named(this.#facts.mappings, name), frame);
+  }
+
+  /**
+   * Take a mapping that is not shipped, while notes sound.
+   * @param {import('./mapping.js').MappingFacts} settings
+   * @param {number | null} frame
+   */
+  remap(settings, frame = null) {
+    this.#midi.remap(new Mapping(settings), this.#at(frame));
   }
 
   /** The mapping in use. */

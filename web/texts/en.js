@@ -161,6 +161,27 @@ export default {
   "connect.count": "Connected: {count}",
   "connect.waiting": "None is connected yet. Plug one in.",
   "connect.refused": "The browser did not allow it.",
+  "learn": "Learn",
+  "learn.name": "Teach a controller",
+  "learn.about":
+    "Choose a parameter, then move a knob, slider, pedal or wheel: it moves the parameter from then on. This browser remembers it.",
+  "learn.target": "Parameter to teach a control for",
+  "learn.move": "now move a control",
+  "learn.stop": "Stop",
+  "learn.by": "{source} moves it",
+  "learn.soft": "Soft take-over",
+  "learn.soft.about":
+    "A control has no effect until it comes to where its parameter is, so that nothing jumps.",
+  "learn.list": "What was taught",
+  "learn.from": "at the lower end of the control",
+  "learn.to": "at its upper end",
+  "learn.forget": "Forget",
+  "learn.save": "Save as a file",
+  "learn.save.about":
+    "A mapping file with the mapping under Sound as its base, for yehu-server serve --mapping.",
+  "source.bend": "Pitch bend",
+  "source.pressure": "Aftertouch",
+  "source.poly-pressure": "Aftertouch of a key",
   "connect.keyboard": "This computer’s keyboard",
   "connect.keyboard.about":
     "Two rows are a piano from F4 to F6. − and = change the octave of both; Escape silences.",

@@ -5,8 +5,9 @@
 import { find, make } from "../elements.js";
 import { NOTES } from "../hands/keys.js";
 import { isNatural, nameOf } from "../hands/scale.js";
-import { say } from "../words.js";
+import { inWords, say } from "../words.js";
 import { statusText } from "./header.js";
+import { showLearning } from "./learn.js";
 import { whileShown } from "./tabs.js";
 
 const ALL = "";
@@ -22,19 +23,18 @@ const SIGNS = { Comma: ",", Period: ".", Slash: "/", Semicolon: ";" };
 export function showConnections(page) {
   const panel = find("panel-connect", HTMLElement);
   const status = make("p", { class: "soft" });
-  whileShown(
-    panel,
-    () => {
-      const known = page.instrument.sound?.status ?? null;
-      const backend = known ? ` · ${say(`status.${known.backend}`)} · ${known.rate} Hz` : "";
-      status.textContent = statusText(known) + backend;
-    },
-    500,
-  );
+  const tell = () => {
+    const known = page.instrument.sound?.status ?? null;
+    const backend = known ? ` · ${say(`status.${known.backend}`)} · ${known.rate} Hz` : "";
+    status.textContent = statusText(known) + backend;
+  };
+  whileShown(panel, tell, 500);
+  inWords(tell);
   panel.append(
-    midi(page),
+    inputs(page),
+    showLearning(page),
     keyboard(page),
-    make("section", { class: "group" }, [make("h2", {}, [say("connect.sound")]), status]),
+    make("section", { class: "group" }, [make("h2", {}, [() => say("connect.sound")]), status]),
   );
   if (document.querySelector('meta[name="yehu-server"]')) {
     import("./server.js").then(({ showServer }) => panel.prepend(showServer(page.instrument)));
@@ -42,63 +42,32 @@ export function showConnections(page) {
 }
 
 /** @param {Page} page */
-function midi({ instrument }) {
-  const select = make("select", { "aria-label": say("connect.midi"), hidden: true });
+function inputs({ midi }) {
+  const select = make("select", { "aria-label": () => say("connect.midi") });
   const word = make("p", { class: "soft", role: "status" });
-  const ask = make("button", { type: "button" }, [say("connect.ask")]);
-  ask.disabled = !("requestMIDIAccess" in navigator);
-  word.textContent = say(
-    ask.disabled ? (window.isSecureContext ? "connect.none" : "connect.insecure") : "connect.about",
-  );
-  /** Inputs by their order of coming: each has 16 channels of its own. @type {string[]} */
-  const ports = [];
-
-  /** @param {MIDIAccess} access */
-  function list(access) {
-    const chosen = select.value;
-    const inputs = [...access.inputs.values()].filter(({ state }) => state === "connected");
+  const ask = make("button", { type: "button" }, [() => say("connect.ask")]);
+  ask.disabled = !midi.isAble;
+  ask.addEventListener("click", () => midi.open());
+  select.addEventListener("change", () => midi.choose(select.value));
+  const tell = () => {
+    const { inputs: connected } = midi;
     select.replaceChildren(
       make("option", { value: ALL }, [say("connect.all")]),
-      ...inputs.map((input) => make("option", { value: input.id }, [input.name ?? input.id])),
+      ...connected.map(({ id, name }) => make("option", { value: id }, [name ?? id])),
     );
-    select.value = inputs.some(({ id }) => id === chosen) ? chosen : ALL;
-    select.hidden = false;
-    word.textContent = inputs.length
-      ? say("connect.count", { count: inputs.length })
-      : say("connect.waiting");
-    for (const input of access.inputs.values()) listen(input);
-  }
-
-  /** @param {MIDIInput} input */
-  function listen(input) {
-    if (!ports.includes(input.id)) ports.push(input.id);
-    const port = ports.indexOf(input.id);
-    if (input.state === "disconnected") instrument.player.letGoOf(port);
-    input.onmidimessage = ({ data }) => {
-      const isChosen = select.value === ALL || select.value === input.id;
-      if (data && isChosen) instrument.player.midi(data, null, port);
-    };
-  }
-
-  ask.addEventListener("click", async () => {
-    await instrument.start();
-    try {
-      const access = await navigator.requestMIDIAccess();
-      access.onstatechange = () => list(access);
-      list(access);
-      ask.hidden = true;
-    } catch {
-      word.textContent = say("connect.refused");
-    }
-  });
-  select.addEventListener("change", () => {
-    // Notes of inputs that are no longer listened to would never end.
-    ports.forEach((id, port) => {
-      if (select.value !== ALL && id !== select.value) instrument.player.letGoOf(port);
-    });
-  });
+    select.value = midi.chosen;
+    select.hidden = !midi.isOpen;
+    ask.hidden = midi.isOpen;
+    if (!midi.isAble) word.textContent = say(midi.whyNot);
+    else if (midi.isRefused) word.textContent = say("connect.refused");
+    else if (!midi.isOpen) word.textContent = say("connect.about");
+    else if (connected.length === 0) word.textContent = say("connect.waiting");
+    else word.textContent = say("connect.count", { count: connected.length });
+  };
+  midi.addEventListener("change", tell);
+  inWords(tell);
   return make("section", { class: "group" }, [
-    make("h2", {}, [say("connect.midi")]),
+    make("h2", {}, [() => say("connect.midi")]),
     word,
     ask,
     select,
@@ -114,7 +83,7 @@ function keyboard({ keys }) {
     });
   };
   keys.addEventListener("octave", tell);
-  tell();
+  inWords(tell);
   const lines = ROWS.map((row, i) =>
     make(
       "div",
@@ -123,8 +92,8 @@ function keyboard({ keys }) {
     ),
   );
   return make("section", { class: "group" }, [
-    make("h2", {}, [say("connect.keyboard")]),
-    make("p", { class: "soft" }, [say("connect.keyboard.about")]),
+    make("h2", {}, [() => say("connect.keyboard")]),
+    make("p", { class: "soft" }, [() => say("connect.keyboard.about")]),
     make("div", { class: "keyboard", "aria-hidden": "true" }, lines),
     octave,
   ]);

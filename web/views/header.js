@@ -4,7 +4,7 @@
 
 import { find } from "../elements.js";
 import { remember, settings } from "../settings.js";
-import { language, say } from "../words.js";
+import { inWords, language, say, speak } from "../words.js";
 
 const EVERY = 500; // ms
 
@@ -17,6 +17,7 @@ export function showHeader({ instrument, gallery }) {
     else instrument.start();
   });
   instrument.addEventListener("start", () => {
+    start.dataset.text = "header.silence";
     start.textContent = say("header.silence");
     start.classList.remove("main");
   });
@@ -28,13 +29,12 @@ export function showHeader({ instrument, gallery }) {
   const tell = () => {
     status.textContent = statusText(instrument.sound?.status ?? null);
   };
-  tell();
+  inWords(tell);
   setInterval(() => {
     if (!document.hidden && instrument.sound) tell();
   }, EVERY);
   find("language", HTMLButtonElement).addEventListener("click", () => {
-    remember({ language: language() === "zh" ? "en" : "zh" });
-    location.reload();
+    speak(language() === "zh" ? "en" : "zh");
   });
   find("theme", HTMLButtonElement).addEventListener("click", () => {
     const isDark = document.documentElement.dataset.theme === "dark";
@@ -42,6 +42,7 @@ export function showHeader({ instrument, gallery }) {
     document.documentElement.dataset.theme = settings.theme;
     gallery.renew();
   });
+  inWords(() => gallery.renew());
   darkSystem.addEventListener("change", () => gallery.renew());
 }
 

@@ -5,7 +5,7 @@
 
 import { allow, find, make, offer } from "../elements.js";
 import { Keeper, Replayer, readPerformance } from "../performance.js";
-import { say } from "../words.js";
+import { inWords, say } from "../words.js";
 
 /** @param {Page} page */
 export function showKeeping({ instrument }) {
@@ -19,14 +19,20 @@ export function showKeeping({ instrument }) {
  * @param {(isOn: boolean) => void | Promise<void>} changed
  */
 function toggle(off, on, changed) {
-  const button = make("button", { type: "button", "aria-pressed": "false" }, [say(off)]);
-  const set = (/** @type {boolean} */ isOn) => {
+  let isOn = false;
+  const button = make("button", { type: "button" });
+  const tell = () => {
     button.setAttribute("aria-pressed", String(isOn));
     button.textContent = say(isOn ? on : off);
   };
+  const set = (/** @type {boolean} */ isOnNow) => {
+    isOn = isOnNow;
+    tell();
+  };
+  inWords(tell);
   button.addEventListener("click", () => {
-    const isOn = button.getAttribute("aria-pressed") !== "true";
-    set(isOn);
+    isOn = !isOn;
+    tell();
     changed(isOn);
   });
   return { button, set };
@@ -58,13 +64,13 @@ function recording(instrument) {
   const judge = () => {
     const why = reason(instrument, Boolean(instrument.sound?.record));
     allow(button, why);
-    time.textContent = why ?? "";
+    if (!begun) time.textContent = why ?? "";
   };
   instrument.addEventListener("start", judge);
-  judge();
+  inWords(judge);
   return make("section", { class: "group" }, [
-    make("h2", {}, [say("keep.sound")]),
-    make("p", { class: "soft" }, [say("keep.sound.about")]),
+    make("h2", {}, [() => say("keep.sound")]),
+    make("p", { class: "soft" }, [() => say("keep.sound.about")]),
     make("div", { class: "row" }, [button, time]),
   ]);
 }
@@ -81,7 +87,7 @@ function performances(instrument) {
     type: "file",
     accept: ".jsonl",
     hidden: true,
-    "aria-label": say("keep.load"),
+    "aria-label": () => say("keep.load"),
   });
   /** @type {Replayer | null} */
   let replayer = null;
@@ -112,13 +118,13 @@ function performances(instrument) {
   const judge = () => {
     allow(keep.button, reason(instrument, keeper.isAble));
     allow(load.button, reason(instrument, true));
-    word.textContent = reason(instrument, true) ?? "";
+    if (!replayer) word.textContent = reason(instrument, true) ?? "";
   };
   instrument.addEventListener("start", judge);
-  judge();
+  inWords(judge);
   return make("section", { class: "group" }, [
-    make("h2", {}, [say("keep.performance")]),
-    make("p", { class: "soft" }, [say("keep.performance.about")]),
+    make("h2", {}, [() => say("keep.performance")]),
+    make("p", { class: "soft" }, [() => say("keep.performance.about")]),
     make("div", { class: "row" }, [keep.button, load.button, input]),
     word,
   ]);

@@ -5,8 +5,9 @@
 
 import { find, make } from "../elements.js";
 import { TABLE } from "../playing/table.js";
-import { say, sayOr } from "../words.js";
-import { makeRange, nameFor, unitFor, written } from "./slider.js";
+import { inWords, say, sayOr } from "../words.js";
+import { makeLearning } from "./learn.js";
+import { aboutOf, makeRange, nameFor, unitFor, written } from "./slider.js";
 import { whileShown } from "./tabs.js";
 
 /** Groups in the order of their use; others follow. */
@@ -24,31 +25,34 @@ const ORDER = [
 const EVERY = 250; // ms
 
 /** @param {Page} page */
-export function showParameters({ instrument }) {
+export function showParameters({ instrument, taught, midi }) {
   const panel = find("panel-all", HTMLElement);
   const search = make("input", {
     type: "search",
-    "aria-label": say("all.search"),
-    placeholder: say("all.search"),
+    "aria-label": () => say("all.search"),
+    placeholder: () => say("all.search"),
   });
   const none = make("p", { class: "soft", role: "status" });
   const groups = [...new Set([...ORDER, ...TABLE.map(({ group }) => group)])].map((name) => {
-    const rows = TABLE.filter(({ group }) => group === name).map((param) => row(instrument, param));
+    const rows = TABLE.filter(({ group }) => group === name).map((param) =>
+      row(instrument, param, param.owned ? [] : makeLearning(param.address, taught, midi)),
+    );
     const count = make("span", { class: "soft" }, [String(rows.length)]);
     const details = make("details", {}, [
-      make("summary", {}, [make("h2", {}, [sayOr(`group.${name}`, name)]), " ", count]),
+      make("summary", {}, [make("h2", {}, [() => sayOr(`group.${name}`, name)]), " ", count]),
       ...rows.map(({ element }) => element),
     ]);
     details.open = name === ORDER[0];
     return { rows, details };
   });
-  search.addEventListener("input", () => {
+  const seek = () => {
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     let found = 0;
     for (const { rows, details } of groups) {
       let inGroup = 0;
       for (const { element, text } of rows) {
-        element.hidden = !words.every((word) => text.includes(word));
+        const all = text();
+        element.hidden = !words.every((word) => all.includes(word));
         if (!element.hidden) inGroup++;
       }
       details.hidden = inGroup === 0;
@@ -56,8 +60,10 @@ export function showParameters({ instrument }) {
       found += inGroup;
     }
     none.textContent = found ? "" : say("all.none");
-  });
-  const reset = make("button", { type: "button" }, [say("all.reset")]);
+  };
+  search.addEventListener("input", seek);
+  inWords(seek);
+  const reset = make("button", { type: "button" }, [() => say("all.reset")]);
   reset.addEventListener("click", () => {
     for (const { rows } of groups) for (const one of rows) one.reset();
   });
@@ -80,15 +86,16 @@ export function showParameters({ instrument }) {
 /**
  * @param {import('../instrument.js').Instrument} instrument
  * @param {Param} param
+ * @param {HTMLElement[]} learning what makes a control move it
  */
-function row({ player }, param) {
-  const { address, doc, lo, hi, unit } = param;
+function row({ player }, param, learning) {
+  const { address, lo, hi, unit } = param;
   const number = make("input", {
     type: "number",
     min: lo,
     max: hi,
     step: "any",
-    "aria-label": nameFor(address),
+    "aria-label": () => nameFor(address),
   });
   const tell = (/** @type {number} */ value) => {
     number.value = written(param, value);
@@ -102,17 +109,18 @@ function row({ player }, param) {
     {
       type: "button",
       class: "quiet reset",
-      title: say("all.back", { value: written(param, param.default) }),
-      "aria-label": `${nameFor(address)}: ${say("all.back", { value: written(param, param.default) })}`,
+      title: () => say("all.back", { value: written(param, param.default) }),
+      "aria-label": () => `${nameFor(address)}: ${say("all.back", { value: written(param, param.default) })}`,
     },
     ["↺"],
   );
   const element = make("div", { class: "parameter" }, [
-    make("h3", {}, [nameFor(address)]),
-    make("div", { class: "value" }, [number, make("span", {}, [unitFor(unit)])]),
+    make("h3", {}, [() => nameFor(address)]),
+    make("div", { class: "value" }, [number, make("span", {}, [() => unitFor(unit)])]),
     back,
     range,
-    make("p", {}, [sayOr(`about${address}`, doc), " ", make("code", {}, [address])]),
+    ...learning,
+    make("p", {}, [() => aboutOf(param), " ", make("code", {}, [address])]),
   ]);
 
   /** @param {number} value */
@@ -137,8 +145,7 @@ function row({ player }, param) {
     follow();
   });
   back.addEventListener("click", reset);
-  follow();
-  const text =
-    `${nameFor(address)} ${address} ${doc} ${sayOr(`about${address}`, "")}`.toLowerCase();
+  inWords(follow);
+  const text = () => `${nameFor(address)} ${address} ${param.doc} ${aboutOf(param)}`.toLowerCase();
   return { element, text, follow, reset };
 }

@@ -1,14 +1,18 @@
 /** The pictures beside the instrument: their words, and one of them large for all to see. */
 
 /** @typedef {import('../main.js').Page} Page */
+/** @typedef {import('../pictures/strings.js').View} View */
 
 import { find } from "../elements.js";
 import { nameOf } from "../hands/scale.js";
 import { regimeOf, soundingPitch } from "../pictures/regime.js";
 import { remember, settings } from "../settings.js";
-import { say } from "../words.js";
+import { inWords, say } from "../words.js";
 import { whileShown } from "./tabs.js";
 
+/** @type {View[]} */
+const VIEWS = ["slowed", "moving", "still"];
+const LINGERS = 2000; // ms after a note in which a finger on the diagram still places the bow
 const EVERY = 150; // ms: a word that changes faster is not read
 
 /** @param {Page} page */
@@ -16,12 +20,21 @@ export function showSeeing({ instrument, strings }) {
   const regime = find("regime", HTMLElement);
   const about = find("regime-about", HTMLElement);
   const tuner = find("tuner", HTMLCanvasElement);
-  about.textContent = say("regime.silent.about");
+  const schelleng = find("schelleng", HTMLCanvasElement);
+  let soundedAt = -Infinity;
+  inWords(() => {
+    const name = regime.dataset.regime;
+    regime.textContent = name ? say(`regime.${name}`) : "";
+    about.textContent = say(`regime.${name ?? "silent"}.about`);
+  });
   whileShown(
     find("panel-see", HTMLElement),
     () => {
       const { state } = instrument;
       if (!state) return;
+      if (state.bow.string >= 0) soundedAt = performance.now();
+      // A narrow page is scrolled by a finger on the diagram, but not while a note sounds.
+      schelleng.toggleAttribute("data-places", performance.now() - soundedAt < LINGERS);
       const name = regimeOf(state);
       if (regime.dataset.regime !== name) {
         regime.dataset.regime = name;
@@ -51,20 +64,29 @@ export function showSeeing({ instrument, strings }) {
 function chooseView(strings) {
   const buttons = /** @type {const} */ (["slowed", "moving"]).map((view) => {
     const button = find(`view-${view}`, HTMLButtonElement);
-    button.addEventListener("click", () => choose(view));
+    button.addEventListener("click", () => {
+      const next = strings.view === view ? "still" : view; // what moves can be stopped
+      remember({ view: next });
+      choose(next);
+    });
     return { view, button };
   });
 
-  /** @param {'slowed' | 'moving'} chosen */
+  /** @param {View} chosen */
   function choose(chosen) {
     strings.view = chosen;
     strings.isStale = true;
-    remember({ view: chosen });
     for (const { view, button } of buttons) {
       button.setAttribute("aria-pressed", String(view === chosen));
     }
   }
-  choose(settings.view === "moving" ? "moving" : "slowed");
+  // Nothing moves by itself before the eyes of whoever wants little motion.
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  const chosen = VIEWS.find((view) => view === settings.view) ?? "slowed";
+  choose(calm.matches ? "still" : chosen);
+  calm.addEventListener("change", () => {
+    if (calm.matches) choose("still");
+  });
 }
 
 /** @param {HTMLButtonElement} button */

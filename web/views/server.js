@@ -11,7 +11,7 @@ import { remember, settings } from "../settings.js";
 import { Line } from "../sound/line.js";
 import { Remote } from "../sound/remote.js";
 import { Sharing } from "../sound/sharing.js";
-import { say } from "../words.js";
+import { inWords, say } from "../words.js";
 
 /** @type {Way[]} */
 const WAYS = ["here", "there", "listen"];
@@ -24,14 +24,14 @@ export function showServer(instrument) {
   const line = new Line();
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
-  const choice = make("div", { class: "choice", role: "group", "aria-label": say("server.name") });
+  const choice = make("div", { class: "choice", role: "group", "aria-label": () => say("server.name") });
   /** @type {Way | null} */
   let chosen = null;
   let rate = 0;
   /** @type {Sharing | null} */
   let sharing = null;
   const buttons = WAYS.map((way) => {
-    const button = make("button", { type: "button", id: `way-${way}` }, [say(`server.${way}`)]);
+    const button = make("button", { type: "button", id: `way-${way}` }, [() => say(`server.${way}`)]);
     button.addEventListener("click", () => {
       remember({ way });
       choose(way);
@@ -50,7 +50,6 @@ export function showServer(instrument) {
     instrument.change(way === "here" ? openAlike : () => Remote.open(line, way === "listen"));
     if (way === "here") sharing = new Sharing(instrument, line);
     if (way === "there") instrument.start(); // a picture needs no touch
-    about.textContent = say(`server.${way}.about`);
     tell();
   }
 
@@ -69,6 +68,7 @@ export function showServer(instrument) {
       button.setAttribute("aria-pressed", String(way === chosen));
       button.disabled = way === "here" && sounds !== "ready";
     }
+    about.textContent = chosen ? say(`server.${chosen}.about`) : "";
     const own = { preparing: say("server.preparing"), ready: "", none: say("server.impossible") };
     const told = [
       device ? say("server.device", { device }) : say("server.silent"),
@@ -89,12 +89,13 @@ export function showServer(instrument) {
     }
     tell();
   });
+  inWords(tell);
   line.addEventListener("break", () => {
     if (chosen !== "here") instrument.silence(); // the server has ended what this page held
     tell();
   });
   return make("section", { class: "group" }, [
-    make("h2", {}, [say("server.name")]),
+    make("h2", {}, [() => say("server.name")]),
     choice,
     about,
     state,

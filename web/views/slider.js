@@ -5,7 +5,7 @@
 
 import { make } from "../elements.js";
 import { find, fromUnit, toUnit } from "../playing/table.js";
-import { sayOr } from "../words.js";
+import { inWords, sayOr } from "../words.js";
 
 const STEPS = 1000;
 
@@ -15,6 +15,14 @@ const STEPS = 1000;
  */
 export function nameFor(address) {
   return sayOr(`parameter${address}`, find(address).label);
+}
+
+/**
+ * What a parameter is, in a sentence.
+ * @param {Parameter} param
+ */
+export function aboutOf({ address, doc }) {
+  return sayOr(`about${address}`, doc);
 }
 
 /**
@@ -50,7 +58,7 @@ export function makeRange(player, address, changed) {
     min: 0,
     max: steps,
     step: 1,
-    "aria-label": nameFor(address),
+    "aria-label": () => nameFor(address),
   });
   let isHeld = false;
   range.addEventListener("pointerdown", () => {
@@ -82,16 +90,16 @@ export function makeRange(player, address, changed) {
  * A slider with its name and value above it.
  * @param {Player} player
  * @param {string} address
- * @param {string} [name] a shorter one
+ * @param {() => string} [name] a shorter one
  */
-export function makeSlider(player, address, name = nameFor(address)) {
+export function makeSlider(player, address, name = () => nameFor(address)) {
   const param = find(address);
   const output = make("output");
   const tell = (/** @type {number} */ value) => {
     output.textContent = `${written(param, value)} ${unitFor(param.unit)}`.trim();
   };
   const { range, show } = makeRange(player, address, tell);
-  const element = make("label", { class: "slider", title: param.doc }, [
+  const element = make("label", { class: "slider", title: () => aboutOf(param) }, [
     make("span", {}, [name]),
     output,
     range,
@@ -101,6 +109,6 @@ export function makeSlider(player, address, name = nameFor(address)) {
     show(value);
     tell(value);
   };
-  follow();
+  inWords(follow);
   return { element, follow };
 }

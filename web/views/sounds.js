@@ -4,10 +4,10 @@
 
 import { find, make } from "../elements.js";
 import facts from "../facts.js";
-import { say, sayOr } from "../words.js";
+import { inWords, say, sayOr } from "../words.js";
 
 /** @param {Page} page */
-export function showSounds({ instrument, tuned, board }) {
+export function showSounds({ instrument, tuned, board, taught }) {
   const { player } = instrument;
   find("panel-sound", HTMLElement).append(
     presets(player),
@@ -16,9 +16,7 @@ export function showSounds({ instrument, tuned, board }) {
       tuned.choose(name);
       board.isStale = true;
     }),
-    chooser("mapping", Object.keys(facts.mappings), facts.defaultMapping, (name) =>
-      player.applyMapping(name),
-    ),
+    chooser("mapping", Object.keys(facts.mappings), taught.name, (name) => taught.choose(name)),
   );
 }
 
@@ -27,14 +25,14 @@ function presets(player) {
   const group = make("div", {
     class: "cards",
     role: "group",
-    "aria-label": say("sound.presets"),
+    "aria-label": () => say("sound.presets"),
   });
   const cards = Object.values(facts.presets.shipped)
     .sort(byProgram)
     .map(({ name, about }) => {
       const card = make("button", { type: "button", "aria-pressed": "false" }, [
-        make("span", {}, [sayOr(`preset.${name}`, name)]),
-        make("small", {}, [sayOr(`preset.${name}.about`, about)]),
+        make("span", {}, [() => sayOr(`preset.${name}`, name)]),
+        make("small", {}, [() => sayOr(`preset.${name}.about`, about)]),
       ]);
       card.addEventListener("click", () => {
         player.applyPreset(name);
@@ -43,7 +41,7 @@ function presets(player) {
       return card;
     });
   group.append(...cards);
-  return make("section", { class: "group" }, [make("h2", {}, [say("sound.presets")]), group]);
+  return make("section", { class: "group" }, [make("h2", {}, [() => say("sound.presets")]), group]);
 }
 
 /**
@@ -64,8 +62,8 @@ function byProgram(one, other) {
 function chooser(what, names, first, apply) {
   const select = make(
     "select",
-    { "aria-label": say(`sound.${what}`) },
-    names.map((name) => make("option", { value: name }, [sayOr(`${what}.${name}`, name)])),
+    { "aria-label": () => say(`sound.${what}`) },
+    names.map((name) => make("option", { value: name }, [() => sayOr(`${what}.${name}`, name)])),
   );
   select.value = first;
   const about = make("p", { class: "soft" });
@@ -76,9 +74,9 @@ function chooser(what, names, first, apply) {
     apply(select.value);
     tell();
   });
-  tell();
+  inWords(tell);
   return make("section", { class: "group" }, [
-    make("h2", {}, [say(`sound.${what}`)]),
+    make("h2", {}, [() => say(`sound.${what}`)]),
     select,
     about,
   ]);

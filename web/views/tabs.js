@@ -22,7 +22,7 @@ export function showTabs({ gallery }) {
         id: `tab-${name}`,
         "aria-controls": `panel-${name}`,
       },
-      [say(`tab.${name}`)],
+      [() => say(`tab.${name}`)],
     );
     tab.addEventListener("click", () => {
       choose(name);

@@ -2,18 +2,22 @@
 
 /** @typedef {import('../main.js').Page} Page */
 /** @typedef {import('../tune.js').Tune} Tune */
+/** @typedef {'listen' | 'along'} Way */
 
 import { find, make } from "../elements.js";
 import facts from "../facts.js";
 import { TuneGuide, TunePlayer } from "../tune.js";
-import { say, sayOr } from "../words.js";
+import { inWords, say, sayOr } from "../words.js";
+
+/** @type {Way[]} */
+const WAYS = ["listen", "along"];
 
 /** @param {Page} page */
 export function showTunes(page) {
   const panel = find("panel-tunes", HTMLElement);
   const list = make("div", { class: "group" });
   page.instrument.addEventListener("silence", () => present?.stop());
-  panel.append(make("p", { class: "soft" }, [say("tunes.about")]), list);
+  panel.append(make("p", { class: "soft" }, [() => say("tunes.about")]), list);
   import("../examples.js").then(
     ({ default: examples }) => {
       // A JSON list has no type of its places, so that `events` is told here.
@@ -22,7 +26,7 @@ export function showTunes(page) {
       tunes.sort((one, other) => Number(isForOthers(one)) - Number(isForOthers(other)));
       list.append(...tunes.map((tune) => row(page, tune)));
     },
-    () => list.append(say("tunes.none")),
+    () => list.append(make("p", {}, [() => say("tunes.none")])),
   );
 }
 
@@ -39,20 +43,19 @@ let present = null;
  * @param {Tune} tune
  */
 function row(page, tune) {
-  const name = sayOr(`tune.${tune.name}`, tune.name.replace(/_/g, " "));
-  const listen = make(
-    "button",
-    { type: "button", "aria-label": `${say("tunes.listen")}: ${name}` },
-    [say("tunes.listen")],
-  );
-  const along = make("button", { type: "button", "aria-label": `${say("tunes.along")}: ${name}` }, [
-    say("tunes.along"),
-  ]);
+  const name = () => sayOr(`tune.${tune.name}`, tune.name.replace(/_/g, " "));
+  const buttons = WAYS.map((way) => {
+    const label = () => `${say(`tunes.${way}`)}: ${name()}`;
+    const button = make("button", { type: "button", "aria-label": label });
+    button.addEventListener("click", () => toggle(button, way));
+    inWords(() => tell(button, way));
+    return button;
+  });
   const bar = make("progress", { max: 1, value: 0, "aria-label": name, hidden: true });
 
   /**
    * @param {HTMLButtonElement} button
-   * @param {'listen' | 'along'} way
+   * @param {Way} way
    */
   async function toggle(button, way) {
     const isOn = button.getAttribute("aria-pressed") === "true";
@@ -66,7 +69,7 @@ function row(page, tune) {
         : new TuneGuide(page.instrument, tune);
     present = one;
     button.setAttribute("aria-pressed", "true");
-    button.textContent = say("tunes.stop");
+    tell(button, way);
     bar.hidden = false;
     one.addEventListener("move", () => {
       bar.value = one.progress;
@@ -74,7 +77,7 @@ function row(page, tune) {
     });
     one.addEventListener("end", () => {
       button.setAttribute("aria-pressed", "false");
-      button.textContent = say(`tunes.${way}`);
+      tell(button, way);
       bar.hidden = true;
       page.board.mark(null);
       if (present === one) present = null;
@@ -82,13 +85,20 @@ function row(page, tune) {
     one.start();
     if (way === "along") page.fingerboard.element.scrollIntoView({ block: "nearest" });
   }
-  listen.addEventListener("click", () => toggle(listen, "listen"));
-  along.addEventListener("click", () => toggle(along, "along"));
   const length = `${Math.floor(tune.seconds / 60)}:${String(Math.round(tune.seconds % 60)).padStart(2, "0")}`;
   return make("article", { class: "tune" }, [
     make("h2", {}, [name, " ", make("span", { class: "soft" }, [length])]),
-    make("p", { class: "soft" }, [sayOr(`tune.${tune.name}.about`, "")]),
-    make("div", { class: "row" }, [listen, along]),
+    make("p", { class: "soft" }, [() => sayOr(`tune.${tune.name}.about`, "")]),
+    make("div", { class: "row" }, buttons),
     bar,
   ]);
+}
+
+/**
+ * @param {HTMLButtonElement} button
+ * @param {Way} way
+ */
+function tell(button, way) {
+  const isOn = button.getAttribute("aria-pressed") === "true";
+  button.textContent = say(isOn ? "tunes.stop" : `tunes.${way}`);
 }

@@ -4,7 +4,7 @@
 
 import { find, make, makeSwitch } from "../elements.js";
 import { remember, settings } from "../settings.js";
-import { say } from "../words.js";
+import { inWords, say } from "../words.js";
 import { makeSlider } from "./slider.js";
 
 const SLIDERS = [
@@ -16,19 +16,21 @@ const EVERY = 250; // ms
 
 /** @param {Page} page */
 export function showWays({ instrument, hands, fingerboard }) {
-  const assist = makeSwitch(say("ways.assist"), settings.isAssisted, (isOn) => {
+  const assist = makeSwitch(() => say("ways.assist"), settings.isAssisted, (isOn) => {
     hands.rest();
     hands.isAssisted = isOn;
     remember({ isAssisted: isOn });
   });
-  assist.title = say("ways.assist.about");
-  const landing = makeSwitch(say("ways.landing"), settings.isLandingInTune, (isOn) => {
+  const landing = makeSwitch(() => say("ways.landing"), settings.isLandingInTune, (isOn) => {
     fingerboard.isLandingInTune = isOn;
     remember({ isLandingInTune: isOn });
   });
-  landing.title = say("ways.landing.about");
+  inWords(() => {
+    assist.title = say("ways.assist.about");
+    landing.title = say("ways.landing.about");
+  });
   const switches = make("div", { class: "switches" }, [assist, landing, directions(fingerboard)]);
-  const sliders = SLIDERS.map(([address, key]) => makeSlider(instrument.player, address, say(key)));
+  const sliders = SLIDERS.map(([address, key]) => makeSlider(instrument.player, address, () => say(key)));
   find("ways", HTMLElement).append(switches, ...sliders.map(({ element }) => element));
   setInterval(() => {
     if (!document.hidden) for (const slider of sliders) slider.follow();
@@ -42,10 +44,10 @@ function directions(fingerboard) {
   const choice = make("div", {
     class: "choice",
     role: "group",
-    "aria-label": say("ways.direction"),
+    "aria-label": () => say("ways.direction"),
   });
   const buttons = /** @type {const} */ (["across", "down"]).map((direction) => {
-    const button = make("button", { type: "button" }, [say(`ways.${direction}`)]);
+    const button = make("button", { type: "button" }, [() => say(`ways.${direction}`)]);
     button.addEventListener("click", () => choose(direction));
     choice.append(button);
     return { direction, button };

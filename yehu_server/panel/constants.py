@@ -12,6 +12,7 @@ from yehu_server.player.calibration import OPEN_NOTES
 from yehu_server.playing import (
     binds,
     controllers,
+    learner,
     live,
     messages,
     midi_channel,
@@ -36,7 +37,7 @@ def constants() -> dict[str, Any]:
         "preset": {"PROGRAMS": [preset.PROGRAMS[0], preset.PROGRAMS[-1]]},
         "sources": _of(
             sources, "BEND", "PRESSURE", "POLY_PRESSURE", "VELOCITY", "NOTE", "OF_ONE_NOTE",
-            "COARSE", "FINE_ABOVE", "STEPS", "FINEST", "CHANNELS",
+            "COARSE", "FINE_ABOVE", "STEPS", "FINEST", "CHANNELS", "RESERVED", "NO_NRPN",
         ),
         "binds": _of(binds, "PICKUP_WINDOW"),
         "controllers": _of(controllers, "KEPT_ON_RESET", "SPRUNG", "FINE_BITS"),
@@ -52,6 +53,7 @@ def constants() -> dict[str, Any]:
             zones, "LOWER_MASTER", "UPPER_MASTER", "MOST_MEMBERS", "MEMBER_BEND", "MASTER_BEND",
         ),
         "tuning": _of(tuning, "KEYS", "STANDARD_A4"),
+        "learner": _of(learner, "DISTANCE", "AT_REST"),
         "live": _of(live, "ELSEWHERE"),
     }  # fmt: skip
 

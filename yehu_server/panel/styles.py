@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from yehu_server.errors import ParameterError
 from yehu_server.files import shipped_folder
 from yehu_server.panel.parameters import camel
 from yehu_server.params.preset import SAVED, Preset
@@ -60,14 +62,15 @@ def preset(one: Preset) -> dict[str, Any]:
 
 
 def tunings() -> dict[str, Any]:
-    """Equal temperament, and the shipped scales: each by itself and on each keyboard map."""
+    """Equal temperament, and the shipped scales: each by itself and on each map that takes it."""
     folder = shipped_folder("tunings")
     scales, maps = (sorted(folder.glob(ending)) for ending in ("*.scl", "*.kbm"))
     found = {"equal": tuning(EQUAL)}
     for scale in scales:
         found[scale.stem] = tuning(read_tuning(scale))
         for keyboard in maps:
-            found[_name(scale, keyboard)] = tuning(read_tuning(scale, keyboard))
+            with suppress(ParameterError):  # the scale is not one for this map
+                found[_name(scale, keyboard)] = tuning(read_tuning(scale, keyboard))
     return found
 
 

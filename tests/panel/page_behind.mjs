@@ -1,0 +1,133 @@
+/**
+ * Puts the sounding page behind another tab, and brings it back.
+ *
+ *   node page_behind.mjs URL CHROMIUM FOLDER
+ *
+ * What is recorded goes to FOLDER. A Chromium without a window takes the focus from a page behind, but
+ * does not hide it. So what hidden pages are told is told to this one, and its tasks are stopped as a
+ * browser stops those of a page that it freezes, which is more than it does to one that sounds.
+ */
+
+import { keepAnalysers, open, pretendMidi, run, sendMidi } from "./browser.mjs";
+
+const [, , folder] = process.argv.slice(2);
+const KEY = "KeyV"; // B4
+const AWAY = 3000; // ms
+const NOTE = 76; // E5
+
+/** Keeps the contexts of the sound, and the times at which the strings are drawn; runs in the page. */
+function keepTimes() {
+  globalThis.contexts = [];
+  globalThis.drawn = [];
+  const Original = globalThis.AudioContext;
+  globalThis.AudioContext = class extends Original {
+    constructor(...words) {
+      super(...words);
+      globalThis.contexts.push(this);
+    }
+  };
+  const { clearRect } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+    if (this.canvas.id === "strings") globalThis.drawn.push(performance.now());
+    return clearRect.apply(this, box);
+  };
+}
+
+/**
+ * Wait until the page is loud or quiet.
+ * @param {import("playwright-core").Page} page
+ * @param {boolean} isLoud
+ */
+function until(page, isLoud) {
+  return page.waitForFunction(
+    (wanted) => {
+      const analyser = globalThis.analysers.at(-1);
+      const samples = new Float32Array(analyser?.fftSize ?? 0);
+      analyser?.getFloatTimeDomainData(samples);
+      const most = samples.reduce((found, sample) => Math.max(found, Math.abs(sample)), 0);
+      return wanted ? most > 0.01 : most < 0.003;
+    },
+    isLoud,
+    { polling: 50 },
+  );
+}
+
+/**
+ * How far the sound is behind the clock, s.
+ * @param {import("playwright-core").Page} page
+ */
+const lag = (page) =>
+  page.evaluate(() => performance.now() / 1e3 - globalThis.contexts.at(-1).currentTime);
+
+/** @param {import("playwright-core").Page} page @param {boolean} isHidden */
+function tellHidden(page, isHidden) {
+  return page.evaluate((hidden) => {
+    Object.defineProperty(document, "hidden", { value: hidden, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+  }, isHidden);
+}
+
+await run(
+  async (browser, url) => {
+    await browser.addInitScript(keepAnalysers);
+    await browser.addInitScript(keepTimes);
+    await browser.addInitScript(pretendMidi);
+    const { page, errors } = await open(browser, url);
+    const other = await browser.newPage();
+    for (const one of [page, other]) {
+      const session = await browser.newCDPSession(one);
+      await session.send("Emulation.setFocusEmulationEnabled", { enabled: false });
+    }
+    await page.bringToFront();
+    const found = {};
+
+    // A key that is held as the focus goes ends, though nobody tells of its release.
+    await page.click("#start");
+    await page.keyboard.down(KEY);
+    await until(page, true);
+    await other.bringToFront();
+    found.hasFocus = await page.evaluate(() => document.hasFocus());
+    found.keyEnded = Boolean(await until(page, false));
+    await page.bringToFront();
+    await page.keyboard.up(KEY);
+
+    // A key of a MIDI keyboard is held: it sounds on behind the other tab.
+    await page.click("#tab-connect");
+    await page.getByRole("button", { name: "Use MIDI keyboards" }).click();
+    await page.waitForFunction(() => globalThis.pretended.input.onmidimessage);
+    await page.click("#tab-keep");
+    await sendMidi(page, 0x90, NOTE, 90);
+    await until(page, true);
+    await page.waitForTimeout(500);
+    await page.getByRole("button", { name: "Record", exact: true }).click();
+    const before = await lag(page);
+    const session = await browser.newCDPSession(page);
+    await other.bringToFront();
+    await tellHidden(page, true);
+    await session.send("Page.setWebLifecycleState", { state: "frozen" });
+    const left = await page.evaluate(() => performance.now());
+    await new Promise((resolve) => setTimeout(resolve, AWAY));
+    const back = await page.evaluate(() => performance.now());
+    await session.send("Page.setWebLifecycleState", { state: "active" });
+    await tellHidden(page, false);
+    await page.bringToFront();
+    await page.waitForTimeout(1000);
+    found.lag = (await lag(page)) - before;
+    found.away = (back - left) / 1e3;
+    found.drawn = await page.evaluate(
+      ([from, to]) => ({
+        before: globalThis.drawn.filter((time) => time < from && time > from - 1000).length,
+        away: globalThis.drawn.filter((time) => time > from + 100 && time < to).length,
+        after: globalThis.drawn.filter((time) => time > to).length,
+      }),
+      [left, back],
+    );
+    const download = page.waitForEvent("download");
+    await page.locator("#panel-keep button[aria-pressed=true]").click();
+    await (await download).saveAs(`${folder}/behind.wav`);
+    await sendMidi(page, 0x80, NOTE, 0);
+    found.noteEnded = Boolean(await until(page, false));
+    return { ...found, errors };
+  },
+  { acceptDownloads: true },
+);

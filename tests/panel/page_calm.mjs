@@ -1,0 +1,147 @@
+/**
+ * Counts how often pictures are drawn, with and without the wish for little motion; and drags in the
+ * diagram on a narrow phone.
+ */
+
+import { SIZES, fingersOf, open, run, wishes } from "./browser.mjs";
+
+const SECOND = 1000;
+
+/** Counts the drawings of each canvas by its id, and what they draw; runs in the page. */
+function countDrawings() {
+  globalThis.drawn = {};
+  const { clearRect } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+    globalThis.drawn[this.canvas.id] = (globalThis.drawn[this.canvas.id] ?? 0) + 1;
+    return clearRect.apply(this, box);
+  };
+}
+
+/**
+ * Drawings in a second, by canvas, while a note sounds.
+ * @param {import("playwright-core").Page} page
+ */
+async function perSecond(page) {
+  await page.evaluate(() => (globalThis.drawn = {}));
+  await page.waitForTimeout(SECOND);
+  return page.evaluate(() => globalThis.drawn);
+}
+
+/**
+ * The longest transition or animation of any element, in seconds.
+ * @param {import("playwright-core").Page} page
+ */
+function longestTransition(page) {
+  return page.evaluate(() => {
+    const seconds = (text) => Math.max(...text.split(",").map(Number.parseFloat));
+    const all = [...document.querySelectorAll("*")].flatMap((element) =>
+      ["", "::before", "::after"].map((part) => {
+        const { transitionDuration, animationDuration } = getComputedStyle(element, part);
+        return Math.max(seconds(transitionDuration), seconds(animationDuration));
+      }),
+    );
+    return Math.max(...all.filter(Number.isFinite));
+  });
+}
+
+/**
+ * What each canvas shows, by its id.
+ * @param {import("playwright-core").Page} page
+ */
+function shown(page) {
+  return page.evaluate(() =>
+    [...document.querySelectorAll("canvas")].map((canvas) => [canvas.id, canvas.toDataURL()]),
+  );
+}
+
+/** @param {import("playwright-core").Page} page */
+const pressed = (page) => page.locator(".upright [aria-pressed=true]").allTextContents();
+
+/**
+ * Whether the hair of the bow is seen to move.
+ * @param {import("playwright-core").Page} page
+ */
+async function hairMoves(page) {
+  const look = () => page.locator("#bow").evaluate((canvas) => canvas.toDataURL());
+  const first = await look();
+  await page.waitForTimeout(SECOND);
+  return first !== (await look());
+}
+
+/**
+ * @param {import("playwright-core").BrowserContext} browser
+ * @param {string} url
+ * @param {"reduce" | "no-preference"} reducedMotion
+ */
+async function look(browser, url, reducedMotion) {
+  const { page, errors } = await open(browser, url);
+  await page.emulateMedia({ reducedMotion });
+  await page.reload();
+  await page.waitForSelector("#ways input");
+  const found = { pressed: await pressed(page), transition: await longestTransition(page) };
+  const silent = new Map(await shown(page));
+  await page.keyboard.down("KeyC");
+  await page.waitForTimeout(900);
+  const sounding = await shown(page);
+  found.changed = sounding.filter(([id, image]) => image !== silent.get(id)).map(([id]) => id);
+  found.drawn = await perSecond(page);
+  found.hair = await hairMoves(page);
+  await page.click("#view-slowed");
+  found.clicked = { pressed: await pressed(page), drawn: await perSecond(page) };
+  await page.keyboard.up("KeyC");
+  await page.reload();
+  await page.waitForSelector("#ways input");
+  found.again = await pressed(page);
+  await page.close();
+  return { ...found, errors };
+}
+
+/**
+ * Drag in the diagram, with and without a note.
+ * @param {import("playwright-core").BrowserContext} browser
+ * @param {string} url
+ */
+async function drag(browser, url) {
+  const { page, errors } = await open(browser, url);
+  await page.setViewportSize(SIZES.phone);
+  const touch = await fingersOf(page);
+  const found = { errors };
+  await page.click("#start");
+  await page.waitForFunction(() => globalThis.imitation);
+  await page.locator("#schelleng").scrollIntoViewIfNeeded();
+  for (const name of ["silent", "sounding"]) {
+    if (name === "sounding") await page.keyboard.down("KeyC");
+    await page.waitForTimeout(500);
+    await wishes(page);
+    await page.evaluate(() => {
+      globalThis.taken = false;
+      const take = () => (globalThis.taken = true);
+      document.querySelector("#schelleng").addEventListener("pointercancel", take, { once: true });
+    });
+    const { x, y, width, height } = await page.locator("#schelleng").boundingBox();
+    const at = (/** @type {number} */ share) => [
+      { x: x + width * (0.3 + share / 2), y: y + height * (0.25 + share / 2), id: 1 },
+    ];
+    await touch("touchStart", at(0));
+    for (let step = 1; step <= 10; step++) {
+      await touch("touchMove", at(step / 10));
+      await page.waitForTimeout(20);
+    }
+    await touch("touchEnd", []);
+    await page.waitForTimeout(300);
+    found[name] = {
+      taken: await page.evaluate(() => globalThis.taken), // by the browser, to scroll
+      wishes: await wishes(page),
+      room: { width, height },
+    };
+  }
+  await page.keyboard.up("KeyC");
+  return found;
+}
+
+await run(async (browser, url) => {
+  await browser.addInitScript(countDrawings);
+  const calm = await look(browser, url, "reduce"); // first: nothing is remembered yet
+  const lively = await look(browser, url, "no-preference");
+  return { calm, lively, drag: await drag(browser, url) };
+});

@@ -1,0 +1,92 @@
+/** MIDI learn: detects which source somebody moves, so that it can be bound. */
+
+import facts from '../facts.js';
+import { DefaultMap } from './default_map.js';
+import * as midi from './midi_bytes.js';
+import { DATA_ENTRY, NRPN, NRPN_FINE, RPN, RPN_FINE } from './midi_channel.js';
+import * as sources from './sources.js';
+
+const { DISTANCE, AT_REST } = facts.learner;
+const { RESERVED, NO_NRPN } = facts.sources;
+/** @type {ReadonlyMap<string, number>} */
+const REST = new Map(Object.entries(AT_REST));
+
+/**
+ * @typedef {object} Channel The control changes received on one channel.
+ * @property {number | null} before the control change before
+ * @property {[number | null, number | null]} nrpn the halves of the number selected
+ */
+
+/** Compares each source with where it began, until one has moved far enough to be meant. */
+export class Learner {
+  /** @type {Map<string, number>} by channel and source */
+  #beganAt = new Map();
+  /** @type {DefaultMap<number, Channel>} */
+  #channels = new DefaultMap(() => ({ before: null, nrpn: [null, null] }));
+  /** Channels and coarse halves of which a fine half was heard. @type {Set<string>} */
+  #pairs = new Set();
+
+  /**
+   * Receive a MIDI message; return the source, once one has moved far enough.
+   * @param {ArrayLike<number>} bytes
+   * @param {number} port
+   * @returns {string | null}
+   */
+  hear(bytes, port = 0) {
+    const kind = midi.kindOf(bytes);
+    if (kind === null || kind === midi.SYSTEM_RESET) return null;
+    const channel = sources.CHANNELS * port + (bytes[0] & 0x0f);
+    const [, first, second] = Array.from(bytes);
+    if (kind === midi.PITCH_WHEEL) {
+      return this.#moved(channel, sources.BEND, (first | (second << 7)) / sources.FINEST);
+    }
+    if (kind === midi.AFTERTOUCH) {
+      return this.#moved(channel, sources.PRESSURE, first / sources.STEPS);
+    }
+    if (kind === midi.POLY_TOUCH) {
+      return this.#moved(channel, sources.POLY_PRESSURE, second / sources.STEPS);
+    }
+    return kind === midi.CONTROL_CHANGE ? this.#control(channel, first, second) : null;
+  }
+
+  /**
+   * @param {number} channel
+   * @param {number} control
+   * @param {number} value
+   * @returns {string | null}
+   */
+  #control(channel, control, value) {
+    const state = this.#channels.at(channel);
+    const { before } = state;
+    state.before = control;
+    if (control === NRPN) state.nrpn[0] = value;
+    else if (control === NRPN_FINE) state.nrpn[1] = value;
+    else if (control === RPN || control === RPN_FINE) state.nrpn = [null, null];
+    else if (control === DATA_ENTRY && !state.nrpn.includes(null)) {
+      const number = (Number(state.nrpn[0]) << 7) | Number(state.nrpn[1]);
+      if (number < NO_NRPN) return this.#moved(channel, sources.nrpn(number), value / sources.STEPS);
+    }
+    if (RESERVED.includes(control)) return null;
+    const coarse = control - sources.FINE_ABOVE;
+    if (sources.isCoarse(coarse)) {
+      if (before === coarse) this.#pairs.add(`${channel} ${coarse}`);
+      if (this.#pairs.has(`${channel} ${coarse}`)) return null; // the fine half of a pair
+    }
+    const found = this.#moved(channel, sources.control(control), value / sources.STEPS);
+    const isPair = this.#pairs.has(`${channel} ${control}`);
+    return found !== null && isPair ? sources.pair(control) : found;
+  }
+
+  /**
+   * @param {number} channel
+   * @param {string} source
+   * @param {number} position
+   * @returns {string | null}
+   */
+  #moved(channel, source, position) {
+    const key = `${channel} ${source}`;
+    const began = this.#beganAt.get(key) ?? REST.get(source) ?? position;
+    this.#beganAt.set(key, began);
+    return Math.abs(position - began) >= DISTANCE ? source : null;
+  }
+}

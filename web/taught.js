@@ -1,0 +1,132 @@
+/** What MIDI controllers move: the mapping that was chosen, with what this browser has learned over it. */
+
+/** @typedef {import('./instrument.js').Instrument} Instrument */
+/** @typedef {import('./playing/binds.js').BindFacts} BindFacts */
+
+import facts from "./facts.js";
+import { bindOf, fileOf, merged, readLearned, spanned, withBind } from "./playing/learned.js";
+import { Learner } from "./playing/learner.js";
+import { remember, settings } from "./settings.js";
+
+const PATIENCE = 60_000; // ms to wait for something to be moved
+/** @type {Record<string, import('./playing/mapping.js').MappingFacts>} */
+const MAPPINGS = facts.mappings;
+
+/**
+ * Tells by events: 'change' of the binds or the mapping, and 'wait' when a wait begins or ends.
+ *
+ * @typedef {object} Wait
+ * @property {string} target
+ * @property {boolean} isSoft
+ * @property {Learner} learner
+ * @property {number} timer
+ */
+export class Taught extends EventTarget {
+  /** @type {Wait | null} */
+  #wait = null;
+
+  /** @param {Instrument} instrument */
+  constructor(instrument) {
+    super();
+    this.instrument = instrument;
+    /** What the last wait has found; null: nothing was moved. @type {BindFacts | null} */
+    this.found = null;
+    this.isSoft = false; // whether what is learned next waits for its target
+    /** Name of the mapping. */
+    this.name = Object.hasOwn(MAPPINGS, settings.mapping) ? settings.mapping : facts.defaultMapping;
+    /** Learned binds over this mapping. @type {readonly BindFacts[]} */
+    this.binds = readLearned(settings.learned[this.name]);
+    this.#apply();
+    instrument.addEventListener("silence", () => this.cancel());
+  }
+
+  /** @param {string} name of a shipped mapping */
+  choose(name) {
+    this.cancel();
+    this.name = name;
+    this.binds = readLearned(settings.learned[name]);
+    remember({ mapping: name });
+    this.#apply();
+  }
+
+  // -- learning ----------------------------------------------------------------------------
+
+  /** The parameter for which a control is awaited; null: none is. */
+  get awaited() {
+    return this.#wait?.target ?? null;
+  }
+
+  /**
+   * Bind the control that is moved next.
+   * @param {string} target
+   */
+  await(target) {
+    this.#end();
+    this.found = null;
+    const timer = window.setTimeout(() => this.cancel(), PATIENCE);
+    this.#wait = { target, isSoft: this.isSoft, learner: new Learner(), timer };
+    this.dispatchEvent(new Event("wait"));
+  }
+
+  /** Await nothing more. */
+  cancel() {
+    if (!this.#wait) return;
+    this.#end();
+    this.dispatchEvent(new Event("wait"));
+  }
+
+  #end() {
+    clearTimeout(this.#wait?.timer);
+    this.#wait = null;
+  }
+
+  /**
+   * Hear a MIDI message, before it is played.
+   * @param {Uint8Array} bytes
+   * @param {number} port
+   */
+  hear(bytes, port) {
+    const source = this.#wait?.learner.hear(bytes, port);
+    if (!source || !this.#wait) return;
+    this.found = bindOf(this.#wait.target, source, this.#wait.isSoft);
+    this.#keep(withBind(this.binds, this.found));
+    this.cancel();
+  }
+
+  // -- what was learned --------------------------------------------------------------------
+
+  /** @param {BindFacts} bind */
+  forget(bind) {
+    this.#keep(this.binds.filter((own) => own !== bind));
+  }
+
+  /**
+   * Give a bind other values of its target at the two ends.
+   * @param {BindFacts} bind
+   * @param {number} from
+   * @param {number} to
+   */
+  span(bind, from, to) {
+    const changed = spanned(bind, from, to);
+    this.#keep(this.binds.map((own) => (own === bind ? changed : own)));
+  }
+
+  /** All of it as a mapping file. */
+  file() {
+    const text = fileOf(this.name, MAPPINGS[this.name], this.binds);
+    return { name: `my-${this.name}.toml`, blob: new Blob([text], { type: "application/toml" }) };
+  }
+
+  /** @param {readonly BindFacts[]} binds */
+  #keep(binds) {
+    this.binds = binds;
+    remember({ learned: { ...settings.learned, [this.name]: binds } });
+    this.#apply();
+  }
+
+  #apply() {
+    this.instrument.mapping = merged(MAPPINGS[this.name], this.binds);
+    this.instrument.player.remap(this.instrument.mapping);
+    this.dispatchEvent(new Event("change"));
+  }
+}

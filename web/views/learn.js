@@ -1,0 +1,203 @@
+/** Teaches what the controls of MIDI devices move: one by one, and all that was taught. */
+
+/** @typedef {import('../main.js').Page} Page */
+/** @typedef {import('../taught.js').Taught} Taught */
+/** @typedef {import('../midi.js').Midi} Midi */
+/** @typedef {import('../playing/binds.js').BindFacts} BindFacts */
+
+import { allow, make, makeSwitch, offer } from "../elements.js";
+import { FREE } from "../playing/learned.js";
+import { BEND } from "../playing/sources.js";
+import { find } from "../playing/table.js";
+import { inWords, say, sayOr } from "../words.js";
+import { nameFor, unitFor, written } from "./slider.js";
+
+/**
+ * A button that teaches a control to move a parameter, and a line that tells which does.
+ * @param {string} target
+ * @param {Taught} taught
+ * @param {Midi} midi
+ */
+export function makeLearning(target, taught, midi) {
+  const button = make("button", { type: "button", class: "quiet knob", title: () => say("learn") });
+  const told = make("p", { class: "soft told", role: "status" });
+  teachBy(button, () => target, taught, midi);
+  const tell = () => {
+    const isAwaited = taught.awaited === target;
+    const bind = taught.binds.find((own) => own.target === target);
+    button.setAttribute("aria-label", `${say("learn")}: ${nameFor(target)}`);
+    button.setAttribute("aria-pressed", String(isAwaited));
+    button.classList.toggle("taught", bind !== undefined);
+    if (isAwaited) told.textContent = say("learn.move");
+    else told.textContent = bind ? say("learn.by", { source: sourceName(bind.source) }) : "";
+  };
+  follow(taught, tell);
+  return [button, told];
+}
+
+/**
+ * All that was taught, as a part of the panel of connections.
+ * @param {Page} page
+ */
+export function showLearning({ taught, midi }) {
+  const select = make("select", { "aria-label": () => say("learn.target") }, groups());
+  const button = make("button", { type: "button" });
+  teachBy(button, () => select.value, taught, midi);
+  const soft = makeSwitch(() => say("learn.soft"), taught.isSoft, (isOn) => {
+    taught.isSoft = isOn;
+  });
+  const about = make("p", { class: "soft" }, [() => say("learn.soft.about")]);
+  const word = make("p", { class: "soft", role: "status" });
+  const list = make("ul", { class: "binds", "aria-label": () => say("learn.list") });
+  const save = make("button", { type: "button" }, [() => say("learn.save")]);
+  save.addEventListener("click", () => {
+    const { blob, name } = taught.file();
+    offer(blob, name);
+  });
+  const saving = make("div", { class: "group" }, [
+    make("div", { class: "row" }, [save]),
+    make("p", { class: "soft" }, [() => say("learn.save.about")]),
+  ]);
+  const tell = () => {
+    const { awaited, found } = taught;
+    button.textContent = say(awaited ? "learn.stop" : "learn");
+    button.setAttribute("aria-pressed", String(awaited !== null));
+    if (awaited) word.textContent = `${nameFor(awaited)}: ${say("learn.move")}`;
+    else word.textContent = found ? `${nameFor(found.target)}: ${movedBy(found)}` : "";
+  };
+  /** @type {{key: string, element: HTMLElement, show: (bind: BindFacts) => void}[]} */
+  let rows = [];
+  const renew = () => {
+    const hadFocus = list.contains(document.activeElement);
+    rows = taught.binds.map((bind) => row(bind, taught));
+    list.replaceChildren(...rows.map(({ element }) => element));
+    list.hidden = saving.hidden = rows.length === 0;
+    if (hadFocus) (list.querySelector("button") ?? select).focus();
+  };
+  follow(taught, tell);
+  taught.addEventListener("change", () => {
+    const { binds } = taught;
+    // Rows stay where only their values have changed: somebody may be writing in one.
+    if (binds.map(keyOf).join() !== rows.map(({ key }) => key).join()) renew();
+    else rows.forEach(({ show }, at) => show(binds[at]));
+  });
+  inWords(renew);
+  return make("section", { class: "group" }, [
+    make("h2", {}, [() => say("learn.name")]),
+    make("p", { class: "soft" }, [() => say("learn.about")]),
+    make("div", { class: "row" }, [make("div", { class: "wide" }, [select]), button]),
+    make("div", {}, [soft, about]),
+    word,
+    list,
+    saving,
+  ]);
+}
+
+/**
+ * Tell what is taught, now and whenever it changes.
+ * @param {Taught} taught
+ * @param {() => void} tell
+ */
+function follow(taught, tell) {
+  for (const event of ["change", "wait"]) taught.addEventListener(event, tell);
+  inWords(tell);
+}
+
+/**
+ * Let a button await a control, or end that.
+ * @param {HTMLButtonElement} button
+ * @param {() => string} target
+ * @param {Taught} taught
+ * @param {Midi} midi
+ */
+function teachBy(button, target, taught, midi) {
+  const isOn = () => button.getAttribute("aria-pressed") === "true";
+  button.addEventListener("click", async () => {
+    if (isOn()) {
+      taught.cancel();
+      return;
+    }
+    await midi.open();
+    if (midi.isOpen) taught.await(target());
+  });
+  if (!midi.isAble) inWords(() => allow(button, say(midi.whyNot)));
+}
+
+/** The parameters by their groups. */
+function groups() {
+  const names = [...new Set(FREE.map(({ group }) => group))];
+  return names.map((name) =>
+    make(
+      "optgroup",
+      { label: () => sayOr(`group.${name}`, name) },
+      FREE.filter(({ group }) => group === name).map(({ address }) =>
+        make("option", { value: address }, [() => nameFor(address)]),
+      ),
+    ),
+  );
+}
+
+/** @param {BindFacts} bind */
+function keyOf({ source, target }) {
+  return `${source} ${target}`;
+}
+
+/**
+ * A bind, with the values at its ends, and a button that ends it.
+ * @param {BindFacts} bind
+ * @param {Taught} taught
+ */
+function row(bind, taught) {
+  const param = find(bind.target);
+  const name = nameFor(bind.target);
+  let ends = [param.lo, param.hi];
+  const inputs = ends.map((_, end) => {
+    const label = `${name}, ${say(end ? "learn.to" : "learn.from")}`;
+    const { lo: min, hi: max } = param;
+    const input = make("input", { type: "number", min, max, step: "any", "aria-label": label });
+    input.addEventListener("change", () => {
+      const value = Math.min(Math.max(input.valueAsNumber, min), max);
+      const [from, to] = ends.with(end, Number.isNaN(value) ? ends[end] : value);
+      taught.span(bind, from, to);
+    });
+    return input;
+  });
+  const show = (/** @type {BindFacts} */ present) => {
+    bind = present;
+    ends = [...(bind.span ?? [param.lo, param.hi])];
+    inputs.forEach((input, end) => {
+      input.value = written(param, ends[end]);
+    });
+  };
+  show(bind);
+  const forget = make("button", {
+    type: "button",
+    class: "quiet",
+    "aria-label": `${say("learn.forget")}: ${sourceName(bind.source)}, ${name}`,
+    title: say("learn.forget"),
+  });
+  forget.append("✕");
+  forget.addEventListener("click", () => taught.forget(bind));
+  // Pitch bend moves the bend by the bend range: it has no ends of its own.
+  const isByRange = bind.source === BEND && bind.target === "/playing/bend";
+  const span = [inputs[0], "–", inputs[1], ` ${unitFor(param.unit)}`];
+  const element = make("li", {}, [
+    make("span", {}, [make("strong", {}, [sourceName(bind.source)]), ` ${name}`]),
+    make("span", { class: "span" }, isByRange ? [] : span),
+    forget,
+  ]);
+  return { key: keyOf(bind), element, show };
+}
+
+/** @param {BindFacts} bind */
+function movedBy({ source }) {
+  return say("learn.by", { source: sourceName(source) });
+}
+
+/**
+ * The name of a source, for people.
+ * @param {string} source
+ */
+function sourceName(source) {
+  return sayOr(`source.${source}`, source.toUpperCase()); // cc 74, nrpn 300
+}

@@ -1,12 +1,16 @@
 """An hour of playing: deadlines beside an idle stream, memory, and a replay of all of it.
 
     .venv/bin/python bench/endurance.py [--seconds N] [--save bench/results/NAME.json]
+    .venv/bin/python bench/endurance.py --page --seconds 60 --turns 3
 
 `yehu-server serve` plays with --record and --capture. Another process sends dense OSC and MIDI, and
 OSCQuery clients listen to every address. An idle stream on the same device shows which deadlines
 the machine itself misses. Memory is sampled every few seconds. In the end the capture is replayed
 and compared with the recording, sample by sample. Without --audio-device the benchmark starts a
 JACK server with the dummy driver, which has no real-time rights.
+
+With --page it plays in turns, each time anew: without a page, and with one that looks, plays and
+listens.
 """
 
 from __future__ import annotations
@@ -33,6 +37,7 @@ import soundfile
 from load import CARD, SPAWN, send_load, sound_card
 from rich.console import Console
 from rich.table import Table
+from visitors import visit
 
 from yehu_server.audio.output import NULL, Output, OutputOptions
 from yehu_server.engine.instrument import Instrument
@@ -40,7 +45,7 @@ from yehu_server.engine.warming import warm_up
 
 COMMAND = [sys.executable, "-c", "from yehu_server.cli import main; raise SystemExit(main())"]
 STARTED_WITHIN_S, ENDED_WITHIN_S = 120.0, 60.0
-SETTLED_S = 3.0
+SETTLED_S = 8.0  # also what pages need is prepared by then
 SAMPLE_EVERY_S = 10.0
 PAGES = 8
 CALLBACKS = ("callbacks", "missed", "late_callbacks", "underruns")
@@ -119,16 +124,35 @@ def helper(work: Any, *arguments: Any) -> Iterator[Any]:
         process.join()
 
 
+@contextlib.contextmanager
+def visited(url: str | None) -> Iterator[None]:
+    """Where there is a page, have it look, play and listen."""
+    if url is None:
+        yield
+        return
+    results = SPAWN.SimpleQueue()
+    visitor = SPAWN.Process(target=visit, args=(url, 1, None, results), daemon=True)
+    visitor.start()
+    try:
+        yield
+        if not visitor.is_alive():
+            sys.exit("the page did not visit to the end")
+    finally:
+        visitor.kill()
+        visitor.join()
+
+
 # ---------------------------------------------------------------- the instrument
 
 
 class Playing:
     """``yehu-server serve`` as a command, its messages and metrics."""
 
-    def __init__(self, device: str, blocksize: int, folder: Path) -> None:
+    def __init__(self, device: str, blocksize: int, folder: Path, *, page: bool) -> None:
         words = ["--audio-device", device, "--blocksize", str(blocksize)]
         words += ["--osc", "127.0.0.1:0", "--http", "127.0.0.1:0"]
         words += ["--record", str(folder / "take.wav"), "--capture", str(folder / "take.jsonl")]
+        words += ["--panel-port", "0"] if page else ["--no-panel"]
         self.lines: list[str] = []
         self.process = subprocess.Popen(  # noqa: S603 - our own command
             [*COMMAND, "serve", *words], stderr=subprocess.PIPE, text=True
@@ -136,6 +160,7 @@ class Playing:
         threading.Thread(target=self._read, args=(self.process.stderr,), daemon=True).start()
         self.osc = int(self._said(r"OSC at [\d.]+:(\d+)"))
         self.http = int(self._said(r"OSCQuery at http://[\d.]+:(\d+)"))
+        self.page = self._said(r"the page at (http://\S+)") if page else None
 
     def _read(self, pipe: IO[str]) -> None:
         self.lines.extend(line.rstrip() for line in pipe)
@@ -200,12 +225,14 @@ def replayed_equal(folder: Path) -> tuple[int, int]:
 # ---------------------------------------------------------------- the whole
 
 
-def play(device: str, blocksize: int, seconds: float, folder: Path) -> dict[str, Any]:
+def play(
+    device: str, blocksize: int, seconds: float, folder: Path, *, page: bool = False
+) -> dict[str, Any]:
     """Play under load, replay the take, and return all counts."""
     with helper(play_idle, device, blocksize) as idle:
         idle.recv()
-        playing = Playing(device, blocksize, folder)
-        with helper(listen, playing.http) as pages:
+        playing = Playing(device, blocksize, folder, page=page)
+        with helper(listen, playing.http) as pages, visited(playing.page):
             sender = SPAWN.Process(target=send_load, args=(playing.osc,), daemon=True)
             sender.start()
             time.sleep(SETTLED_S)
@@ -267,9 +294,27 @@ def print_report(figures: dict[str, Any]) -> None:
     console.print(f"replay differs in {differing} of {frames} frames")
 
 
+def compare(rows: list[dict[str, Any]]) -> None:
+    """Print what pages cost: the counts of each turn, side by side."""
+    table = Table(title="in turns", title_justify="left")
+    told = ("missed_deadlines", "late_callbacks", "underruns", "late_events", "applied_events")
+    for column in ("", "idle late", "idle under-runs", *(what.replace("_", " ") for what in told)):
+        table.add_column(column)
+    for row in rows:
+        idle, own = row["idle_stream"], row["instrument"]
+        table.add_row(
+            "with a page" if row["page"] else "without",
+            *(str(idle[what]) for what in ("late_callbacks", "underruns")),
+            *(str(own[what]) for what in told),
+        )
+    Console(width=120).print(table)
+
+
 def main() -> None:
     """Measure and print everything."""
     parser = report.options(__doc__)
+    parser.add_argument("--page", action="store_true", help="in turns without and with a page")
+    parser.add_argument("--turns", type=int, default=1, help="of each kind (default: 1)")
     parser.add_argument("--seconds", type=float, default=3600.0, help="default: 3600")
     parser.add_argument("--blocksize", type=int, default=64)
     parser.add_argument("--audio-device", help="see yehu-server devices (default: a dummy)")
@@ -278,15 +323,18 @@ def main() -> None:
     if device == NULL:
         sys.exit("the silent clock has no deadlines")
     warm_up()  # compile before processes wait for each other
-    with (
-        sound_card(arguments.audio_device, arguments.blocksize),
-        tempfile.TemporaryDirectory() as f,
-    ):
-        figures = play(device, arguments.blocksize, arguments.seconds, Path(f))
-    print_report(figures)
+    rows = []
+    with sound_card(arguments.audio_device, arguments.blocksize):
+        for page in (False, True)[: 1 + arguments.page] * arguments.turns:
+            with tempfile.TemporaryDirectory() as f:
+                figures = play(device, arguments.blocksize, arguments.seconds, Path(f), page=page)
+            rows.append({"page": page, **figures})
+            print_report(figures)
+    if arguments.page:
+        compare(rows)
     report.save(
         arguments.save,
-        figures,
+        rows if len(rows) > 1 else figures,
         device=arguments.audio_device or report.NO_CARD,
         seconds=arguments.seconds,
         blocksize=arguments.blocksize,

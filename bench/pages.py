@@ -5,24 +5,27 @@
 
 A server plays under the load of `load.py`: 2,000 OSC and 600 MIDI messages a second. In turns
 nobody looks or listens, or a page looks and plays, beside so many listeners. The time to the ear
-is from a page's wish being sent until a listener receives the sample at which it is fulfilled,
-and the fill that a page aims at. The page's own device is added to that.
+is from a page's wish being sent until a listener's clock reaches the sample that fulfils it:
+as in `web/sound/listened.js`, that clock runs evenly, so far behind what is received on average as
+the fill that a page aims at. A gap is where sound came after its time. The page's own device is
+added to that. Without --audio-device, or
+with the device `null`, a JACK server with the dummy driver is started, which also carries MIDI.
 """
 
 from __future__ import annotations
 
-import asyncio
-import itertools
+import os
 import threading
 import time
+from pathlib import Path
 from typing import Any
 
-import aiohttp
 import numpy as np
 import report
 from load import CARD, SPAWN, send_load, sound_card
+from visitors import PARAMETER, visit
 
-from yehu_server.audio.output import OutputOptions
+from yehu_server.audio.output import NULL, OutputOptions
 from yehu_server.control.ports import MidiOptions
 from yehu_server.engine.warming import warm_up
 from yehu_server.panel.pages import PageOptions
@@ -32,53 +35,10 @@ from yehu_server.server import ServeOptions, Server
 
 HOST = "127.0.0.1"
 FILL = 512  # frames
+MOST_DRIFT = 0.005  # of the device's clock, that a listener follows; beyond, no time is told
+AVERAGE_S = 0.5  # over which a listener's clock follows what it receives
 SETTLED_S = 4.0
-WISH_S = 0.05
-PARAMETER, STEPS = "/playing/variation", 10_000  # whose values tell wishes apart
 COUNTERS = ("late_events", "applied", "late_callbacks", "callbacks", "underruns")
-
-
-async def _listen(session: aiohttp.ClientSession, url: str, heard: list[tuple[int, float]]) -> None:
-    async with session.ws_connect(f"{url}sound", max_msg_size=0) as socket:
-        async for message in socket:
-            frame = int(np.frombuffer(message.data[:8], "<f8")[0])
-            heard.append((frame + (len(message.data) - 8) // 4, time.monotonic()))
-
-
-async def _play(session: aiohttp.ClientSession, url: str, sent: list[tuple[float, float]]) -> None:
-    async with session.ws_connect(f"{url}socket") as socket:
-        await socket.send_str('{"looks": true, "sounds": false}')
-        reading = asyncio.ensure_future(_read(socket))
-        for number in itertools.count():
-            value = (number % STEPS) / STEPS
-            wish = [-1.0, WRITE, ROW[PARAMETER], value, 0.0]
-            sent.append((value, time.monotonic()))
-            await socket.send_bytes(np.array(wish, "<f8").tobytes())
-            await asyncio.sleep(WISH_S)
-        await reading
-
-
-async def _read(socket: aiohttp.ClientWebSocketResponse) -> None:
-    async for _ in socket:
-        pass
-
-
-def visit(url: str, listeners: int, seconds: float, results: Any) -> None:
-    """Look, play and listen; what is told is for one listener."""
-    sent: list[tuple[float, float]] = []
-    heard: list[list[tuple[int, float]]] = [[] for _ in range(listeners)]
-
-    async def meet() -> None:
-        connector = aiohttp.TCPConnector(limit=0)
-        async with aiohttp.ClientSession(connector=connector) as session:
-            tasks = [_listen(session, url, one) for one in heard]
-            await asyncio.wait(
-                [asyncio.ensure_future(task) for task in (*tasks, _play(session, url, sent))],
-                timeout=seconds,
-            )
-
-    asyncio.run(meet())
-    results.put((sent, heard[0] if heard else []))
 
 
 class Fulfilled:
@@ -111,6 +71,19 @@ def counters(server: Server) -> dict[str, int]:
     return {name: int(meters[name]) for name in COUNTERS}
 
 
+def cpu_of_pages() -> float:
+    """Seconds that the process of pages has computed, so far; Linux only."""
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (entry / "stat").read_text().rpartition(")")[2].split()
+            command = (entry / "cmdline").read_text()
+        except OSError:
+            continue
+        if words[1] == str(os.getpid()) and "page_process" in command:
+            return sum(map(int, words[11:13])) / os.sysconf("SC_CLK_TCK")
+    return 0.0
+
+
 def turn(server: Server, listeners: int | None, seconds: float) -> dict[str, Any]:
     """Measure for a while, with so many listeners and a page, or with nobody (None)."""
     results = SPAWN.Queue()
@@ -122,32 +95,45 @@ def turn(server: Server, listeners: int | None, seconds: float) -> dict[str, Any
         visitor.start()
     time.sleep(SETTLED_S)
     fulfilled = Fulfilled(server)
-    before = counters(server)
+    before, computed = counters(server), cpu_of_pages()
     time.sleep(seconds)
-    after = counters(server)
+    after, computed = counters(server), cpu_of_pages() - computed
+    rate = server.instrument.rate
     row: dict[str, Any] = {name: after[name] - before[name] for name in COUNTERS}
     row["late"] = row["late_events"] / max(1, row["applied"])
-    row["delay_ms"] = 1e3 * server.player.delay / server.instrument.rate
+    row["pace"] = row["callbacks"] * server.options.output.blocksize / rate / seconds
+    row["cpu_of_pages"] = computed / seconds
+    row["delay_ms"] = 1e3 * server.player.delay / rate
     if visitor is not None:
         sent, heard = results.get()
         visitor.join()
-        row["to_ear_ms"] = to_ear(sent, heard, fulfilled.frames, server.instrument.rate)
+        if abs(row["pace"] - 1.0) < MOST_DRIFT:
+            row |= to_ear(sent, heard, fulfilled.frames, rate)
     fulfilled.stop()
     return row
 
 
-def to_ear(sent: Any, heard: Any, fulfilled: Any, rate: float) -> list[float]:
-    """Median, 95 % and most of the time from wish to ear (ms)."""
+def to_ear(sent: Any, heard: Any, fulfilled: Any, rate: float) -> dict[str, Any]:
+    """Median, 95 % and most of the time from wish to ear (ms), and the number of gaps."""
     if not heard:
-        return []
+        return {}
     ends, times = np.array(heard).T
+    packet = float(np.median(np.diff(ends)))
+    count = round(AVERAGE_S * rate / packet)
+    # Frames received, in the average over a packet, are half of one fewer than with the packet.
+    behind = times - (ends - packet / 2.0 - FILL) / rate
+    behind = np.convolve(behind, np.full(count, 1.0 / count), "valid")
+    ends, times = ends[count - 1 :], times[count - 1 :]
     when = dict(sent)
     taken = [
-        1e3 * (times[np.searchsorted(ends, frame, "right")] - when[value] + FILL / rate)
+        1e3 * (behind[np.searchsorted(ends, frame, "right")] + frame / rate - when[value])
         for value, frame in fulfilled
-        if value in when and frame < ends[-1]
+        if value in when and ends[0] <= frame < ends[-1]
     ]
-    return [round(float(np.quantile(taken, share)), 2) for share in (0.5, 0.95, 1.0)]
+    return {
+        "to_ear_ms": [round(float(np.quantile(taken, share)), 2) for share in (0.5, 0.95, 1.0)],
+        "gaps": int(np.count_nonzero(times[1:] > behind[1:] + ends[:-1] / rate)),
+    }
 
 
 def main() -> None:
@@ -161,7 +147,8 @@ def main() -> None:
     arguments = parser.parse_args()
     warm_up()
     rows = []
-    with sound_card(arguments.audio_device, arguments.blocksize):
+    card = None if arguments.audio_device == NULL else arguments.audio_device
+    with sound_card(card, arguments.blocksize):
         options = ServeOptions(
             output=OutputOptions(arguments.audio_device or CARD, blocksize=arguments.blocksize),
             midi=MidiOptions(["load"]),

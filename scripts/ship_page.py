@@ -1,29 +1,27 @@
-"""Write the WebAssembly module that releases carry, and the facts of its sources, beside the code.
+"""Write the page that releases carry: its WebAssembly module, and all files as they are now.
 
     .venv/bin/python scripts/ship_page.py
 
-A checkout of newer sources compiles its own where there is a linker; where there is none, its page
-plays this one.
+A wheel's page takes the module. A checkout of newer sources compiles its own where there is a
+linker; where there is none, it shows this page, whole: an older module fits no newer page. Git
+keeps no second copy of files that are the same.
 """
 
 from __future__ import annotations
 
 import shutil
 
-from yehu_server.ahead.build import build
 from yehu_server.ahead.kept import SHIPPED
-from yehu_server.panel.facts import facts, module
-from yehu_server.panel.files import FACTS
+from yehu_server.panel.files import write_page
 
 
 def main() -> None:
-    """Build and write both files."""
-    shutil.rmtree(SHIPPED.parent, ignore_errors=True)
-    for path in build("wasm", SHIPPED.parent):
-        print(f"{path}: {path.stat().st_size} bytes")
-    path = SHIPPED.with_name(FACTS)
-    path.write_text(module(facts()), encoding="utf-8")
-    print(f"{path}: {path.stat().st_size} bytes")
+    """Write the page anew."""
+    folder = SHIPPED.parent
+    shutil.rmtree(folder, ignore_errors=True)
+    files = write_page(folder)
+    size = sum((folder / file).stat().st_size for file in files)
+    print(f"{folder}: {len(files)} files, {size} bytes")
 
 
 if __name__ == "__main__":

@@ -216,14 +216,14 @@ def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]
 
 def page_lines(host: str, port: int, lan: str, *, networks: Sequence[str]) -> list[str]:
     """Lines that tell where the page is, and who may play with it."""
-    address = ipaddress.ip_address(host)
-    is_anywhere = address.is_unspecified
+    is_anywhere = ipaddress.ip_address(host).is_unspecified
     lines = [f"the page at http://{shown('127.0.0.1' if is_anywhere else host, port)}/"]
-    if address.is_loopback:
+    phones = page_for_phones(host, port, lan)
+    if not phones:
         lines.append("for a phone on this network: yehu-server serve --lan")
         return lines
     if is_anywhere:
-        lines.append(f"on a phone: http://{shown(lan, port)}/")
+        lines.append(f"on a phone: {phones}")
     others = [
         network
         for network in networks
@@ -232,6 +232,14 @@ def page_lines(host: str, port: int, lan: str, *, networks: Sequence[str]) -> li
     who = f"at {' or '.join(others)}" if others else "on this network"
     lines.append(f"anyone {who} may play and listen, without a password")
     return lines
+
+
+def page_for_phones(host: str, port: int, lan: str) -> str:
+    """The address of the page for other machines; empty where it is for this one only."""
+    address = ipaddress.ip_address(host)
+    if address.is_loopback:
+        return ""
+    return f"http://{shown(lan if address.is_unspecified else host, port)}/"
 
 
 def query_line(host: str, port: int, lan: str) -> str:

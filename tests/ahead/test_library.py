@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import shutil
 import subprocess
 from pathlib import Path
@@ -13,21 +14,27 @@ from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED
 
 from yehu_server.ahead.sources import sources_hash
 from yehu_server.params.table import find
+from yehu_server.player.wishes import KINDS
 
 HERE = Path(__file__).parent
 STRICT = ["-std=c11", "-Wall", "-Wextra", "-pedantic", "-Werror"]
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
 
 
+def compiled(library: Path, into: Path, *sources: str) -> Path:
+    """A program of some of this folder's files and the library."""
+    libraries = ["-L", str(library), "-lyehu", f"-Wl,-rpath,{library}", "-rdynamic"]
+    files = [str(HERE / source) for source in sources]
+    command = ["cc", *STRICT, f"-I{library}", *files, "-o", str(into), *libraries]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return into
+
+
 @pytest.fixture(scope="module")
 def program(library, tmp_path_factory) -> Path:
     """A C program that plays wishes."""
-    path = tmp_path_factory.mktemp("program") / "play"
-    libraries = ["-L", str(library), "-lyehu", f"-Wl,-rpath,{library}"]
-    command = ["cc", *STRICT, f"-I{library}", str(HERE / "play.c"), "-o", str(path), *libraries]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return path
+    return compiled(library, tmp_path_factory.mktemp("program") / "play", "play.c")
 
 
 @pytest.fixture
@@ -75,3 +82,14 @@ def test_it_needs_the_c_library_alone(library):
     listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     needed = {line.split()[1] for line in listed.splitlines() if "NEEDED" in line}
     assert needed <= {"libm.so.6", "libc.so.6"}
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="the counter is for glibc")
+def test_it_allocates_nothing_neither_as_it_is_prepared_nor_in_a_million_frames(library, tmp_path):
+    program = compiled(library, tmp_path / "allocate", "allocate.c", "counted.c")
+    command = [program, str(1_000_000), str(len(KINDS))]
+    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    own, preparing, playing, frames = map(int, told)
+    assert own == 1  # of the program: it counts
+    assert (preparing, playing) == (0, 0)
+    assert frames >= 1_000_000

@@ -1,4 +1,4 @@
-"""The WebAssembly module that pages get: built once, or as shipped."""
+"""The WebAssembly module that pages get: as shipped, or built once."""
 
 from __future__ import annotations
 
@@ -14,30 +14,35 @@ from yehu_server.jit import data_folder
 
 log = logging.getLogger(__name__)
 
-# Of the last release, with the facts of its sources beside it.
+# Of the last release, with the whole page of then around it.
 SHIPPED = Path(__file__).parent / "shipped" / PAGE_FILE
 
 
 def page_module() -> Path:
-    """The WebAssembly module of the present sources, or else the one shipped.
+    """The WebAssembly module of the present sources.
 
     It is built where it was not yet, which takes a minute and needs a linker.
 
     Raises
     ------
     YehuError
-        Where there is none, and nothing to build it with.
+        Where it cannot be built.
     """
     folder = data_folder() / f"page-{sources_hash()}"
-    kept = folder / PAGE_FILE
-    for path in (SHIPPED, kept):
-        if path.is_file() and section_of(path.read_bytes()).split()[-1:] == [sources_hash()]:
+    for path in (SHIPPED, folder / PAGE_FILE):
+        if path.is_file() and _made(path)[-1:] == [sources_hash()]:
             return path
-    if page_linker() is not None:
-        log.warning("compiling the instrument for pages; it takes a minute, once")
-        return build("wasm", folder)[0]
-    if SHIPPED.is_file():
-        version = section_of(SHIPPED.read_bytes()).split()[0]
-        log.warning("the page plays version %s: there is no wasm-ld to build a newer one", version)
-        return SHIPPED
-    raise YehuError("nothing is built for pages, and there is no wasm-ld; Debian's lld has it")
+    if page_linker() is None:
+        raise YehuError("nothing is built for pages, and there is no wasm-ld; Debian's lld has it")
+    log.warning("compiling the instrument for pages; it takes a minute, once")
+    return build("wasm", folder)[0]
+
+
+def shipped_version() -> str:
+    """The version of the page that was shipped; empty where there is none."""
+    return next(iter(_made(SHIPPED)), "") if SHIPPED.is_file() else ""
+
+
+def _made(module: Path) -> list[str]:
+    """The version and the sources that a module was made of."""
+    return section_of(module.read_bytes()).split()

@@ -88,6 +88,18 @@ def add_output(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_folder(parser: argparse.ArgumentParser, *, required: bool = True, text: str = "") -> None:
+    """Add -o, for a folder to write to."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        required=required,
+        type=target,
+        metavar="FOLDER",
+        help=text or "folder to write to; created if missing",
+    )
+
+
 def check_output(arguments: argparse.Namespace) -> Callable[[Path], bool]:
     """Check that the output of `add_output` may be written; return which files it may replace.
 

@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command
-from yehu_server.cli.converters import positive, target
+from yehu_server.cli.arguments import add_command, add_folder
+from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
@@ -35,14 +35,7 @@ def add_to(commands: Any) -> None:
         choices=("wasm", "library"),
         help="wasm: a WebAssembly module, for pages; library: a shared library and its header",
     )
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=target,
-        required=True,
-        metavar="FOLDER",
-        help="folder to write to; created if missing",
-    )
+    add_folder(parser)
     parser.add_argument(
         "--rate",
         nargs="+",

@@ -8,8 +8,8 @@ import webbrowser
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command
-from yehu_server.cli.converters import port, target
+from yehu_server.cli.arguments import add_command, add_folder
+from yehu_server.cli.converters import port
 from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
@@ -33,13 +33,8 @@ def add_to(commands: Any) -> None:
         "page as static files, which may be put on any web server.",
         epilog=EXAMPLES,
     )
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=target,
-        metavar="FOLDER",
-        help="write the page here and end; the folder is created if missing",
-    )
+    wish = "write the page here and end; the folder is created if missing"
+    add_folder(parser, required=False, text=wish)
     parser.add_argument(
         "--port",
         type=port,

@@ -112,7 +112,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         if server.web is not None:
             say(query_line(server.web.host, server.web.port, lan_address()))
         if server.pages is not None and options.page is not None:
-            _tell_of_page(server.pages, options.page.networks, say, opens=arguments.open)
+            _tell_of_page(server.pages, options.page.networks, say, arguments)
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
         log.debug("the receive buffer for OSC has %d kB", buffer_kb)
         log.info("Ctrl-C ends")
@@ -124,15 +124,23 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
 
 
 def _tell_of_page(
-    pages: Any, networks: Sequence[str], say: Callable[[str], None], *, opens: bool
+    pages: Any,
+    networks: Sequence[str],
+    say: Callable[[str], None],
+    arguments: argparse.Namespace,
 ) -> None:
+    from yehu_server.cli.qr_code import show
     from yehu_server.control.addresses import lan_address
-    from yehu_server.report import page_lines
+    from yehu_server.report import page_for_phones, page_lines
 
-    lines = page_lines(pages.host, pages.port, lan_address(), networks=networks)
+    where = (pages.host, pages.port, lan_address())
+    lines = page_lines(*where, networks=networks)
     for line in lines:
         say(line)
-    if opens:
+    phones = page_for_phones(*where)
+    if phones and not arguments.quiet:
+        show(phones, sys.stderr)  # where the lines of the log are
+    if arguments.open:
         webbrowser.open(lines[0].rpartition(" ")[2])
 
 

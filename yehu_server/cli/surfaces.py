@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command
-from yehu_server.cli.converters import target
+from yehu_server.cli.arguments import add_command, add_folder
 from yehu_server.cli.terminal import tell
 from yehu_server.control.addresses import OSC_ADDRESS, parse_address, shown
 
@@ -31,14 +30,7 @@ def add_to(commands: Any) -> None:
         description="Write control surfaces and a page of the parameters, replacing older files.",
         epilog=EXAMPLES,
     )
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=target,
-        required=True,
-        metavar="FOLDER",
-        help="folder to write to; created if missing",
-    )
+    add_folder(parser)
     parser.add_argument(
         "--server",
         default=shown(*OSC_ADDRESS),

@@ -8,12 +8,13 @@ from typing import Any
 
 from yehu_server.cli.arguments import (
     add_command,
+    add_folder,
     add_gesture,
     add_reporting,
     progress_bar,
     warn_of_compiling,
 )
-from yehu_server.cli.converters import positive, target
+from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
@@ -36,14 +37,7 @@ def add_to(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     add_gesture(parser)
-    parser.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        type=target,
-        metavar="FOLDER",
-        help="folder for the results",
-    )
+    add_folder(parser, text="folder for the results")
     parser.add_argument(
         "--vary",
         action="append",

@@ -5,19 +5,16 @@ from __future__ import annotations
 import contextlib
 import logging
 import threading
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import mido
 
 from yehu_server.child import Child, Message
-from yehu_server.lasting import Backoff, keep_on
+from yehu_server.child_keeper import ChildKeeper
 from yehu_server.playing.live import Arrivals, LivePlayer
 
 log = logging.getLogger(__name__)
-
-LIVES_S = 5.0  # a process that ends sooner is started again only after a while
 
 
 @dataclass
@@ -48,10 +45,14 @@ class MidiPorts:
         self._changed = changed
         self._numbers: dict[str, int] = {}  # a port that comes back gets its old one
         self._connected: dict[str, None] = {}
-        self._ending = threading.Event()
-        self._gone = threading.Event()
-        self._backoff = Backoff()
-        self._thread = threading.Thread(target=self._supervise, name="MIDI", daemon=True)
+        self._keeper = ChildKeeper(  # it ends as JACK's server does
+            "yehu_server.control.midi_process",
+            "MIDI inputs",
+            heard=self._heard,
+            attend=self._attend,
+            ended=self._ended,
+            told=changed,
+        )
         self._missing: set[str] = set()  # patterns reported as matching nothing
         self.received = 0
         self.malformed = 0
@@ -64,36 +65,22 @@ class MidiPorts:
 
     def start(self) -> None:
         """Start to receive."""
-        self._thread.start()
+        self._keeper.start()
 
     def stop(self) -> None:
         """Stop receiving."""
-        self._ending.set()
-        self._gone.set()
-        if self._thread.is_alive():
-            self._thread.join()
+        self._keeper.stop()
 
-    def _supervise(self) -> None:
-        keep_on(self._serve, self._ending, 0.0, "MIDI inputs", self._changed)
-
-    def _serve(self) -> None:
-        """Run a process that holds the inputs until it ends, as it does when JACK's server ends."""
-        self._gone.clear()
-        if self._ending.is_set():  # `stop` set both before `_gone` was cleared
-            return
-        begun, options = time.monotonic(), self._options
-        child = Child("yehu_server.control.midi_process", self._heard)
+    def _attend(self, child: Child, gone: threading.Event) -> None:
+        options = self._options
         child.send(
             "open", patterns=list(options.patterns), virtual=options.virtual, api=options.api
         )
-        self._gone.wait()
-        child.stop()
-        if self._ending.is_set():
-            return
-        self._let_go()
-        if time.monotonic() - begun > LIVES_S:
-            self._backoff.worked()
-        self._ending.wait(self._backoff.failed())
+        gone.wait()
+
+    def _ended(self, by_itself: bool) -> None:
+        if by_itself:
+            self._let_go()
 
     def _heard(self, event: Message) -> None:
         kind = event["event"]
@@ -119,8 +106,6 @@ class MidiPorts:
         elif kind == "system":
             self.problem = ""
             log.info("MIDI: through %s", event["api"])
-        elif kind == "gone":
-            self._gone.set()
 
     def _tell_missing(self, pattern: str, present: Sequence[str]) -> None:
         if pattern not in self._missing:  # once, however often the process starts

@@ -25,7 +25,7 @@ from yehu_server.player.wishes import KINDS, RAMP
 LOOK, WISHES = 0.0, 1.0
 WISH = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
-LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.0025, 1.0
+LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.001, 1.0
 IDLE_S = 0.05  # between looks whether somebody listens
 MOST_PAGES, MOST_UNSENT = 64, 1 << 16  # bytes
 MOST_WISHES = 1024  # of a message

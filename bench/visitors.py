@@ -1,0 +1,71 @@
+"""A browser's part of a page without a browser: it looks and plays, and others listen."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import time
+from typing import Any
+
+import aiohttp
+import numpy as np
+
+from yehu_server.player.rows import ROW
+from yehu_server.player.wishes import WRITE
+
+WISH_S = 0.05
+PARAMETER, STEPS = "/playing/variation", 10_000  # whose values tell wishes apart
+
+
+def visit(url: str, listeners: int, seconds: float | None, results: Any) -> None:
+    """Look, play and listen.
+
+    Parameters
+    ----------
+    seconds : float or None
+        For so long; None is until it is killed.
+    results : Queue
+        Gets the values wished and the times, and of one listener the frames heard and the times.
+    """
+    sent: list[tuple[float, float]] = []
+    heard: list[list[tuple[int, float]]] = [[] for _ in range(listeners)]
+
+    async def meet() -> None:
+        connector = aiohttp.TCPConnector(limit=0)
+        async with aiohttp.ClientSession(connector=connector) as session:
+            tasks = [_listen(session, url, one) for one in heard]
+            ended, _ = await asyncio.wait(
+                [asyncio.ensure_future(task) for task in (*tasks, _play(session, url, sent))],
+                timeout=seconds,
+                return_when=asyncio.FIRST_COMPLETED,  # none should
+            )
+            for task in ended:
+                task.result()
+
+    asyncio.run(meet())
+    results.put((sent, heard[0] if heard else []))
+
+
+async def _listen(session: aiohttp.ClientSession, url: str, heard: list[tuple[int, float]]) -> None:
+    async with session.ws_connect(f"{url}sound", max_msg_size=0) as socket:
+        async for message in socket:
+            frame = int(np.frombuffer(message.data[:8], "<f8")[0])
+            heard.append((frame + (len(message.data) - 8) // 4, time.monotonic()))
+
+
+async def _play(session: aiohttp.ClientSession, url: str, sent: list[tuple[float, float]]) -> None:
+    async with session.ws_connect(f"{url}socket") as socket:
+        await socket.send_str('{"looks": true, "sounds": false}')
+        reading = asyncio.ensure_future(_read(socket))
+        for number in itertools.count():
+            value = (number % STEPS) / STEPS
+            wish = [-1.0, WRITE, ROW[PARAMETER], value, 0.0]
+            sent.append((value, time.monotonic()))
+            await socket.send_bytes(np.array(wish, "<f8").tobytes())
+            await asyncio.sleep(WISH_S)
+        await reading
+
+
+async def _read(socket: aiohttp.ClientWebSocketResponse) -> None:
+    async for _ in socket:
+        pass

@@ -1,0 +1,95 @@
+"""Without a linker: a page is that of the last release, whole, or there is none; and a server's
+page never mixes an older module with facts of now.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from yehu_server.ahead import kept
+from yehu_server.ahead.section import with_section
+from yehu_server.ahead.sources import sources_hash
+from yehu_server.errors import YehuError
+from yehu_server.panel import files, module_process
+from yehu_server.panel.files import write_page
+from yehu_server.panel.site import Site
+
+EMPTY = b"\0asm\1\0\0\0"
+OLDER = {
+    "index.html": b"the page of then",
+    "facts.js": b"export default { builtFrom: 'of then' };",
+    "captures/48000.json": b"{}",
+    "yehu.wasm": with_section(EMPTY, "0.0.9 0123456789abcdef"),
+}
+
+
+@pytest.fixture
+def shipped(tmp_path, monkeypatch) -> Path:
+    """A folder with the page of an older release; no newer module is kept or can be built."""
+    folder = tmp_path / "shipped"
+    for name, content in OLDER.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content)
+    for module in (kept, files):
+        monkeypatch.setattr(module, "SHIPPED", folder / "yehu.wasm")
+    monkeypatch.setattr(kept, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(kept, "page_linker", lambda: None)
+    return folder
+
+
+def told(monkeypatch) -> list[dict[str, Any]]:
+    """What the process that looks for a server's module tells."""
+    events: list[dict[str, Any]] = []
+    tell = lambda event, **details: events.append({"event": event, **details})  # noqa: E731
+    monkeypatch.setattr(module_process, "Parent", lambda: SimpleNamespace(tell=tell))
+    monkeypatch.setattr(module_process.os, "nice", lambda _: None)
+    module_process.main()
+    return events
+
+
+@pytest.mark.usefixtures("shipped")
+def test_a_page_is_written_whole_as_it_was_shipped_and_its_version_told(tmp_path, caplog) -> None:
+    written = write_page(tmp_path / "page")
+    assert {str(file): (tmp_path / "page" / file).read_bytes() for file in written} == OLDER
+    assert "the page is that of version 0.0.9: nothing is built" in caplog.text
+
+
+def test_a_shipped_module_of_these_sources_goes_with_the_page_of_now(
+    shipped, tmp_path, caplog
+) -> None:
+    (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {sources_hash()}"))
+    write_page(tmp_path / "page")
+    assert sources_hash() in (tmp_path / "page" / "facts.js").read_text("utf-8")
+    assert (tmp_path / "page" / "yehu.wasm").read_bytes().endswith(sources_hash().encode())
+    assert b"the page of then" not in (tmp_path / "page" / "index.html").read_bytes()
+    assert not caplog.records
+
+
+def test_without_any_page_the_error_tells_what_would_help(shipped, tmp_path) -> None:
+    (shipped / "yehu.wasm").unlink()
+    with pytest.raises(YehuError, match="Debian's lld"):
+        write_page(tmp_path / "page")
+    assert not (tmp_path / "page").exists()
+
+
+@pytest.mark.usefixtures("shipped")
+def test_a_server_offers_no_module_of_other_sources(monkeypatch) -> None:
+    events = told(monkeypatch)
+    assert [event["event"] for event in events if event["event"] != "beginning"] == ["none"]
+    assert "Debian's lld" in events[-1]["reason"]
+
+
+def test_a_server_offers_a_shipped_module_of_these_sources(shipped, monkeypatch) -> None:
+    (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {sources_hash()}"))
+    assert told(monkeypatch)[-1] == {"event": "module", "path": str(shipped / "yehu.wasm")}
+
+
+@pytest.mark.usefixtures("shipped")
+def test_a_servers_page_reads_looks_by_the_facts_of_the_server() -> None:
+    answer = Site().answer(SimpleNamespace(path="/facts.js", headers={}))
+    assert sources_hash().encode() in answer.body
+    assert b"of then" not in answer.body

@@ -2279,17 +2279,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/press",
+     "varname": "/playing/bow_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.3,
-       "parameter_mmax": 6.0,
+       "parameter_longname": "/playing/bow_length",
+       "parameter_shortname": "bow length",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f N"
+       "parameter_units": "%.3f m"
       }
      },
      "presentation": 1,
@@ -2313,7 +2313,7 @@
       90.0,
       18.0
      ],
-     "text": "0.3 to 6 N",
+     "text": "0 to 2 m",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2340,7 +2340,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/press"
+     "text": "prepend /yehu/playing/bow_length"
     }
    },
    {
@@ -2393,7 +2393,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/press"
+     "text": "route /yehu/playing/bow_length"
     }
    },
    {
@@ -2429,7 +2429,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1.5"
+     "text": "loadmess set 0.7"
     }
    },
    {
@@ -2448,17 +2448,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato",
+     "varname": "/playing/note_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato",
-       "parameter_shortname": "vibrato",
+       "parameter_longname": "/playing/note_length",
+       "parameter_shortname": "note length",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 100.0,
+       "parameter_mmax": 60.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f cents"
+       "parameter_units": "%.3f s"
       }
      },
      "presentation": 1,
@@ -2482,7 +2482,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 100 cents",
+     "text": "0 to 60 s",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2509,7 +2509,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato"
+     "text": "prepend /yehu/playing/note_length"
     }
    },
    {
@@ -2562,7 +2562,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato"
+     "text": "route /yehu/playing/note_length"
     }
    },
    {
@@ -2617,17 +2617,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_press",
+     "varname": "/playing/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_press",
-       "parameter_shortname": "vibrato press",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.3,
+       "parameter_mmax": 6.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f N"
       }
      },
      "presentation": 1,
@@ -2651,7 +2651,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "0.3 to 6 N",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2678,7 +2678,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_press"
+     "text": "prepend /yehu/playing/press"
     }
    },
    {
@@ -2731,7 +2731,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_press"
+     "text": "route /yehu/playing/press"
     }
    },
    {
@@ -2767,7 +2767,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1.5"
     }
    },
    {
@@ -2786,17 +2786,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_rate",
+     "varname": "/playing/vibrato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_rate",
-       "parameter_shortname": "vibrato rate",
-       "parameter_mmin": 2.0,
-       "parameter_mmax": 10.0,
+       "parameter_longname": "/playing/vibrato",
+       "parameter_shortname": "vibrato",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 100.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f Hz"
+       "parameter_units": "%.3f cents"
       }
      },
      "presentation": 1,
@@ -2820,7 +2820,7 @@
       90.0,
       18.0
      ],
-     "text": "2 to 10 Hz",
+     "text": "0 to 100 cents",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -2847,7 +2847,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_rate"
+     "text": "prepend /yehu/playing/vibrato"
     }
    },
    {
@@ -2900,7 +2900,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_rate"
+     "text": "route /yehu/playing/vibrato"
     }
    },
    {
@@ -2936,7 +2936,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2955,17 +2955,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/vibrato_delay",
+     "varname": "/playing/vibrato_press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_delay",
-       "parameter_shortname": "vibrato delay",
+       "parameter_longname": "/playing/vibrato_press",
+       "parameter_shortname": "vibrato press",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 3000.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -2989,7 +2989,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 3000 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3016,7 +3016,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_delay"
+     "text": "prepend /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3069,7 +3069,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_delay"
+     "text": "route /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3105,7 +3105,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 500"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3124,17 +3124,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/bend",
+     "varname": "/playing/vibrato_rate",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend",
-       "parameter_shortname": "bend",
-       "parameter_mmin": -48.0,
-       "parameter_mmax": 48.0,
+       "parameter_longname": "/playing/vibrato_rate",
+       "parameter_shortname": "vibrato rate",
+       "parameter_mmin": 2.0,
+       "parameter_mmax": 10.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f Hz"
       }
      },
      "presentation": 1,
@@ -3158,7 +3158,7 @@
       90.0,
       18.0
      ],
-     "text": "-48 to 48 semitones",
+     "text": "2 to 10 Hz",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3185,7 +3185,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend"
+     "text": "prepend /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3238,7 +3238,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend"
+     "text": "route /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3274,7 +3274,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 5.5"
     }
    },
    {
@@ -3293,17 +3293,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/bend_range",
+     "varname": "/playing/vibrato_delay",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend_range",
-       "parameter_shortname": "bend range",
+       "parameter_longname": "/playing/vibrato_delay",
+       "parameter_shortname": "vibrato delay",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 48.0,
+       "parameter_mmax": 3000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f ms"
       }
      },
      "presentation": 1,
@@ -3327,7 +3327,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 48 semitones",
+     "text": "0 to 3000 ms",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3354,7 +3354,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend_range"
+     "text": "prepend /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3407,7 +3407,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend_range"
+     "text": "route /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -3443,7 +3443,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 2"
+     "text": "loadmess set 500"
     }
    },
    {
@@ -3462,17 +3462,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/volume",
+     "varname": "/playing/bend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/volume",
-       "parameter_shortname": "volume",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/bend",
+       "parameter_shortname": "bend",
+       "parameter_mmin": -48.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      },
      "presentation": 1,
@@ -3496,7 +3496,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "-48 to 48 semitones",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3523,7 +3523,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/volume"
+     "text": "prepend /yehu/playing/bend"
     }
    },
    {
@@ -3576,7 +3576,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/volume"
+     "text": "route /yehu/playing/bend"
     }
    },
    {
@@ -3612,7 +3612,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3631,17 +3631,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/expression",
+     "varname": "/playing/bend_range",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/expression",
-       "parameter_shortname": "expression",
+       "parameter_longname": "/playing/bend_range",
+       "parameter_shortname": "bend range",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      },
      "presentation": 1,
@@ -3665,7 +3665,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "0 to 48 semitones",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -3692,7 +3692,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/expression"
+     "text": "prepend /yehu/playing/bend_range"
     }
    },
    {
@@ -3745,7 +3745,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/expression"
+     "text": "route /yehu/playing/bend_range"
     }
    },
    {
@@ -3781,7 +3781,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 2"
     }
    },
    {
@@ -3800,12 +3800,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/assist",
+     "varname": "/playing/volume",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/assist",
-       "parameter_shortname": "assist",
+       "parameter_longname": "/playing/volume",
+       "parameter_shortname": "volume",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -3861,7 +3861,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/assist"
+     "text": "prepend /yehu/playing/volume"
     }
    },
    {
@@ -3914,7 +3914,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/assist"
+     "text": "route /yehu/playing/volume"
     }
    },
    {
@@ -3969,12 +3969,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/variation",
+     "varname": "/playing/expression",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/variation",
-       "parameter_shortname": "variation",
+       "parameter_longname": "/playing/expression",
+       "parameter_shortname": "expression",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4030,7 +4030,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/variation"
+     "text": "prepend /yehu/playing/expression"
     }
    },
    {
@@ -4083,7 +4083,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/variation"
+     "text": "route /yehu/playing/expression"
     }
    },
    {
@@ -4119,7 +4119,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.25"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4138,12 +4138,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/listening",
+     "varname": "/playing/assist",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/listening",
-       "parameter_shortname": "listening",
+       "parameter_longname": "/playing/assist",
+       "parameter_shortname": "assist",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4199,7 +4199,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/listening"
+     "text": "prepend /yehu/playing/assist"
     }
    },
    {
@@ -4252,7 +4252,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/listening"
+     "text": "route /yehu/playing/assist"
     }
    },
    {
@@ -4307,17 +4307,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/variation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/variation",
+       "parameter_shortname": "variation",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -4341,7 +4341,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 500 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -4368,7 +4368,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/variation"
     }
    },
    {
@@ -4421,7 +4421,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/variation"
     }
    },
    {
@@ -4457,7 +4457,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 0.25"
     }
    },
    {
@@ -4476,17 +4476,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/listening",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/listening",
+       "parameter_shortname": "listening",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -4510,7 +4510,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -4537,7 +4537,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/listening"
     }
    },
    {
@@ -4590,7 +4590,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/listening"
     }
    },
    {
@@ -4626,7 +4626,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4645,12 +4645,12 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/phrasing",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
+       "parameter_longname": "/playing/phrasing",
+       "parameter_shortname": "phrasing",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4706,7 +4706,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/phrasing"
     }
    },
    {
@@ -4759,7 +4759,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/phrasing"
     }
    },
    {
@@ -4814,14 +4814,14 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
        "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
@@ -4848,7 +4848,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 2000 ms",
+     "text": "5 to 500 ms",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -4875,7 +4875,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -4928,7 +4928,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -4964,12 +4964,519 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 40"
     }
    },
    {
     "box": {
      "id": "obj-236",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1056,
+      1158,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/playing/release",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      554,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-237",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1056,
+      1208,
+      90.0,
+      18.0
+     ],
+     "text": "5 to 2000 ms",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      604,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-238",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      966,
+      1276,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/release"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-239",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      966,
+      1302,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-240",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      966,
+      1158,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-241",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      966,
+      1228,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/release"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-242",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      966,
+      1252,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-243",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      966,
+      1184,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 60"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-244",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1246,
+      1158,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/playing/portamento",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      554,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-245",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1246,
+      1208,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      604,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-246",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      1276,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-247",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1156,
+      1302,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-248",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      1158,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-249",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1156,
+      1228,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-250",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      1252,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-251",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      1184,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-252",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1436,
+      1158,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      554,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-253",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1436,
+      1208,
+      90.0,
+      18.0
+     ],
+     "text": "5 to 2000 ms",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      604,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-254",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1276,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-255",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1346,
+      1302,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-256",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1158,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-257",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1346,
+      1228,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-258",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1252,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-259",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1346,
+      1184,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-260",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -4992,7 +5499,7 @@
    },
    {
     "box": {
-     "id": "obj-237",
+     "id": "obj-261",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5030,7 +5537,7 @@
    },
    {
     "box": {
-     "id": "obj-238",
+     "id": "obj-262",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5054,7 +5561,7 @@
    },
    {
     "box": {
-     "id": "obj-239",
+     "id": "obj-263",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5072,7 +5579,7 @@
    },
    {
     "box": {
-     "id": "obj-240",
+     "id": "obj-264",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5088,7 +5595,7 @@
    },
    {
     "box": {
-     "id": "obj-241",
+     "id": "obj-265",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5106,7 +5613,7 @@
    },
    {
     "box": {
-     "id": "obj-242",
+     "id": "obj-266",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5125,7 +5632,7 @@
    },
    {
     "box": {
-     "id": "obj-243",
+     "id": "obj-267",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5143,7 +5650,7 @@
    },
    {
     "box": {
-     "id": "obj-244",
+     "id": "obj-268",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5161,7 +5668,7 @@
    },
    {
     "box": {
-     "id": "obj-245",
+     "id": "obj-269",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5199,7 +5706,7 @@
    },
    {
     "box": {
-     "id": "obj-246",
+     "id": "obj-270",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5223,7 +5730,7 @@
    },
    {
     "box": {
-     "id": "obj-247",
+     "id": "obj-271",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5241,7 +5748,7 @@
    },
    {
     "box": {
-     "id": "obj-248",
+     "id": "obj-272",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5257,7 +5764,7 @@
    },
    {
     "box": {
-     "id": "obj-249",
+     "id": "obj-273",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5275,7 +5782,7 @@
    },
    {
     "box": {
-     "id": "obj-250",
+     "id": "obj-274",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5294,7 +5801,7 @@
    },
    {
     "box": {
-     "id": "obj-251",
+     "id": "obj-275",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5312,7 +5819,7 @@
    },
    {
     "box": {
-     "id": "obj-252",
+     "id": "obj-276",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5330,7 +5837,7 @@
    },
    {
     "box": {
-     "id": "obj-253",
+     "id": "obj-277",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5368,7 +5875,7 @@
    },
    {
     "box": {
-     "id": "obj-254",
+     "id": "obj-278",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5392,7 +5899,7 @@
    },
    {
     "box": {
-     "id": "obj-255",
+     "id": "obj-279",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5410,7 +5917,7 @@
    },
    {
     "box": {
-     "id": "obj-256",
+     "id": "obj-280",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5426,7 +5933,7 @@
    },
    {
     "box": {
-     "id": "obj-257",
+     "id": "obj-281",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5444,7 +5951,7 @@
    },
    {
     "box": {
-     "id": "obj-258",
+     "id": "obj-282",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5463,7 +5970,7 @@
    },
    {
     "box": {
-     "id": "obj-259",
+     "id": "obj-283",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5481,7 +5988,7 @@
    },
    {
     "box": {
-     "id": "obj-260",
+     "id": "obj-284",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5499,7 +6006,7 @@
    },
    {
     "box": {
-     "id": "obj-261",
+     "id": "obj-285",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5537,7 +6044,7 @@
    },
    {
     "box": {
-     "id": "obj-262",
+     "id": "obj-286",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5561,7 +6068,7 @@
    },
    {
     "box": {
-     "id": "obj-263",
+     "id": "obj-287",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5579,7 +6086,7 @@
    },
    {
     "box": {
-     "id": "obj-264",
+     "id": "obj-288",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5595,7 +6102,7 @@
    },
    {
     "box": {
-     "id": "obj-265",
+     "id": "obj-289",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5613,7 +6120,7 @@
    },
    {
     "box": {
-     "id": "obj-266",
+     "id": "obj-290",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5632,7 +6139,7 @@
    },
    {
     "box": {
-     "id": "obj-267",
+     "id": "obj-291",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5650,7 +6157,7 @@
    },
    {
     "box": {
-     "id": "obj-268",
+     "id": "obj-292",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5668,7 +6175,7 @@
    },
    {
     "box": {
-     "id": "obj-269",
+     "id": "obj-293",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5706,7 +6213,7 @@
    },
    {
     "box": {
-     "id": "obj-270",
+     "id": "obj-294",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5730,7 +6237,7 @@
    },
    {
     "box": {
-     "id": "obj-271",
+     "id": "obj-295",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5748,7 +6255,7 @@
    },
    {
     "box": {
-     "id": "obj-272",
+     "id": "obj-296",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5764,7 +6271,7 @@
    },
    {
     "box": {
-     "id": "obj-273",
+     "id": "obj-297",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5782,7 +6289,7 @@
    },
    {
     "box": {
-     "id": "obj-274",
+     "id": "obj-298",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5801,7 +6308,7 @@
    },
    {
     "box": {
-     "id": "obj-275",
+     "id": "obj-299",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5819,7 +6326,7 @@
    },
    {
     "box": {
-     "id": "obj-276",
+     "id": "obj-300",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5837,7 +6344,7 @@
    },
    {
     "box": {
-     "id": "obj-277",
+     "id": "obj-301",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5875,7 +6382,7 @@
    },
    {
     "box": {
-     "id": "obj-278",
+     "id": "obj-302",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5899,7 +6406,7 @@
    },
    {
     "box": {
-     "id": "obj-279",
+     "id": "obj-303",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5917,7 +6424,7 @@
    },
    {
     "box": {
-     "id": "obj-280",
+     "id": "obj-304",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5933,7 +6440,7 @@
    },
    {
     "box": {
-     "id": "obj-281",
+     "id": "obj-305",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5951,7 +6458,7 @@
    },
    {
     "box": {
-     "id": "obj-282",
+     "id": "obj-306",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5970,7 +6477,7 @@
    },
    {
     "box": {
-     "id": "obj-283",
+     "id": "obj-307",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5988,7 +6495,7 @@
    },
    {
     "box": {
-     "id": "obj-284",
+     "id": "obj-308",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6006,7 +6513,7 @@
    },
    {
     "box": {
-     "id": "obj-285",
+     "id": "obj-309",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6044,7 +6551,7 @@
    },
    {
     "box": {
-     "id": "obj-286",
+     "id": "obj-310",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6068,7 +6575,7 @@
    },
    {
     "box": {
-     "id": "obj-287",
+     "id": "obj-311",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6086,7 +6593,7 @@
    },
    {
     "box": {
-     "id": "obj-288",
+     "id": "obj-312",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6102,7 +6609,7 @@
    },
    {
     "box": {
-     "id": "obj-289",
+     "id": "obj-313",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6120,7 +6627,7 @@
    },
    {
     "box": {
-     "id": "obj-290",
+     "id": "obj-314",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6139,7 +6646,7 @@
    },
    {
     "box": {
-     "id": "obj-291",
+     "id": "obj-315",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6157,7 +6664,7 @@
    },
    {
     "box": {
-     "id": "obj-292",
+     "id": "obj-316",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6175,7 +6682,7 @@
    },
    {
     "box": {
-     "id": "obj-293",
+     "id": "obj-317",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6213,7 +6720,7 @@
    },
    {
     "box": {
-     "id": "obj-294",
+     "id": "obj-318",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6237,7 +6744,7 @@
    },
    {
     "box": {
-     "id": "obj-295",
+     "id": "obj-319",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6255,7 +6762,7 @@
    },
    {
     "box": {
-     "id": "obj-296",
+     "id": "obj-320",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6271,7 +6778,7 @@
    },
    {
     "box": {
-     "id": "obj-297",
+     "id": "obj-321",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6289,7 +6796,7 @@
    },
    {
     "box": {
-     "id": "obj-298",
+     "id": "obj-322",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6308,7 +6815,7 @@
    },
    {
     "box": {
-     "id": "obj-299",
+     "id": "obj-323",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6326,7 +6833,7 @@
    },
    {
     "box": {
-     "id": "obj-300",
+     "id": "obj-324",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6339,12 +6846,12 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.025"
     }
    },
    {
     "box": {
-     "id": "obj-301",
+     "id": "obj-325",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6367,7 +6874,7 @@
    },
    {
     "box": {
-     "id": "obj-302",
+     "id": "obj-326",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6405,7 +6912,7 @@
    },
    {
     "box": {
-     "id": "obj-303",
+     "id": "obj-327",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6429,7 +6936,7 @@
    },
    {
     "box": {
-     "id": "obj-304",
+     "id": "obj-328",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6447,7 +6954,7 @@
    },
    {
     "box": {
-     "id": "obj-305",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6463,7 +6970,7 @@
    },
    {
     "box": {
-     "id": "obj-306",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6481,7 +6988,7 @@
    },
    {
     "box": {
-     "id": "obj-307",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6500,7 +7007,7 @@
    },
    {
     "box": {
-     "id": "obj-308",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6518,7 +7025,7 @@
    },
    {
     "box": {
-     "id": "obj-309",
+     "id": "obj-333",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6536,7 +7043,7 @@
    },
    {
     "box": {
-     "id": "obj-310",
+     "id": "obj-334",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6574,7 +7081,7 @@
    },
    {
     "box": {
-     "id": "obj-311",
+     "id": "obj-335",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6598,7 +7105,7 @@
    },
    {
     "box": {
-     "id": "obj-312",
+     "id": "obj-336",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6616,7 +7123,7 @@
    },
    {
     "box": {
-     "id": "obj-313",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6632,7 +7139,7 @@
    },
    {
     "box": {
-     "id": "obj-314",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6650,7 +7157,7 @@
    },
    {
     "box": {
-     "id": "obj-315",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6669,7 +7176,7 @@
    },
    {
     "box": {
-     "id": "obj-316",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6687,7 +7194,7 @@
    },
    {
     "box": {
-     "id": "obj-317",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6705,7 +7212,7 @@
    },
    {
     "box": {
-     "id": "obj-318",
+     "id": "obj-342",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6743,7 +7250,7 @@
    },
    {
     "box": {
-     "id": "obj-319",
+     "id": "obj-343",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6767,7 +7274,7 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-344",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6785,7 +7292,7 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-345",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6801,7 +7308,7 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-346",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6819,7 +7326,7 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-347",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6838,7 +7345,7 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-348",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6856,7 +7363,7 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-349",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6874,7 +7381,7 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-350",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6912,7 +7419,7 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-351",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6936,7 +7443,7 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-352",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6954,7 +7461,7 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-353",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6970,7 +7477,7 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-354",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6988,7 +7495,7 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-355",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7007,7 +7514,7 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-356",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7025,7 +7532,7 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-357",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7043,7 +7550,7 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-358",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7081,7 +7588,7 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-359",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7105,7 +7612,7 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-360",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7123,7 +7630,7 @@
    },
    {
     "box": {
-     "id": "obj-337",
+     "id": "obj-361",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7139,7 +7646,7 @@
    },
    {
     "box": {
-     "id": "obj-338",
+     "id": "obj-362",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7157,7 +7664,7 @@
    },
    {
     "box": {
-     "id": "obj-339",
+     "id": "obj-363",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7176,7 +7683,7 @@
    },
    {
     "box": {
-     "id": "obj-340",
+     "id": "obj-364",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7194,7 +7701,7 @@
    },
    {
     "box": {
-     "id": "obj-341",
+     "id": "obj-365",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7212,7 +7719,7 @@
    },
    {
     "box": {
-     "id": "obj-342",
+     "id": "obj-366",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7250,7 +7757,7 @@
    },
    {
     "box": {
-     "id": "obj-343",
+     "id": "obj-367",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7274,7 +7781,7 @@
    },
    {
     "box": {
-     "id": "obj-344",
+     "id": "obj-368",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7292,7 +7799,7 @@
    },
    {
     "box": {
-     "id": "obj-345",
+     "id": "obj-369",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7308,7 +7815,7 @@
    },
    {
     "box": {
-     "id": "obj-346",
+     "id": "obj-370",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7326,7 +7833,7 @@
    },
    {
     "box": {
-     "id": "obj-347",
+     "id": "obj-371",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7345,7 +7852,7 @@
    },
    {
     "box": {
-     "id": "obj-348",
+     "id": "obj-372",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7363,7 +7870,7 @@
    },
    {
     "box": {
-     "id": "obj-349",
+     "id": "obj-373",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7381,7 +7888,7 @@
    },
    {
     "box": {
-     "id": "obj-350",
+     "id": "obj-374",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7419,7 +7926,7 @@
    },
    {
     "box": {
-     "id": "obj-351",
+     "id": "obj-375",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7443,7 +7950,7 @@
    },
    {
     "box": {
-     "id": "obj-352",
+     "id": "obj-376",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7461,7 +7968,7 @@
    },
    {
     "box": {
-     "id": "obj-353",
+     "id": "obj-377",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7477,7 +7984,7 @@
    },
    {
     "box": {
-     "id": "obj-354",
+     "id": "obj-378",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7495,7 +8002,7 @@
    },
    {
     "box": {
-     "id": "obj-355",
+     "id": "obj-379",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7514,7 +8021,7 @@
    },
    {
     "box": {
-     "id": "obj-356",
+     "id": "obj-380",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7532,7 +8039,7 @@
    },
    {
     "box": {
-     "id": "obj-357",
+     "id": "obj-381",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7550,7 +8057,7 @@
    },
    {
     "box": {
-     "id": "obj-358",
+     "id": "obj-382",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7588,7 +8095,7 @@
    },
    {
     "box": {
-     "id": "obj-359",
+     "id": "obj-383",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7612,7 +8119,7 @@
    },
    {
     "box": {
-     "id": "obj-360",
+     "id": "obj-384",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7630,7 +8137,7 @@
    },
    {
     "box": {
-     "id": "obj-361",
+     "id": "obj-385",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7646,7 +8153,7 @@
    },
    {
     "box": {
-     "id": "obj-362",
+     "id": "obj-386",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7664,7 +8171,7 @@
    },
    {
     "box": {
-     "id": "obj-363",
+     "id": "obj-387",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7683,7 +8190,7 @@
    },
    {
     "box": {
-     "id": "obj-364",
+     "id": "obj-388",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7701,7 +8208,7 @@
    },
    {
     "box": {
-     "id": "obj-365",
+     "id": "obj-389",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7719,7 +8226,7 @@
    },
    {
     "box": {
-     "id": "obj-366",
+     "id": "obj-390",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7742,7 +8249,7 @@
    },
    {
     "box": {
-     "id": "obj-367",
+     "id": "obj-391",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7780,7 +8287,7 @@
    },
    {
     "box": {
-     "id": "obj-368",
+     "id": "obj-392",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7804,7 +8311,7 @@
    },
    {
     "box": {
-     "id": "obj-369",
+     "id": "obj-393",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7822,7 +8329,7 @@
    },
    {
     "box": {
-     "id": "obj-370",
+     "id": "obj-394",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7838,7 +8345,7 @@
    },
    {
     "box": {
-     "id": "obj-371",
+     "id": "obj-395",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7856,7 +8363,7 @@
    },
    {
     "box": {
-     "id": "obj-372",
+     "id": "obj-396",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7875,7 +8382,7 @@
    },
    {
     "box": {
-     "id": "obj-373",
+     "id": "obj-397",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7893,7 +8400,7 @@
    },
    {
     "box": {
-     "id": "obj-374",
+     "id": "obj-398",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7911,7 +8418,7 @@
    },
    {
     "box": {
-     "id": "obj-375",
+     "id": "obj-399",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7949,7 +8456,7 @@
    },
    {
     "box": {
-     "id": "obj-376",
+     "id": "obj-400",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7973,7 +8480,7 @@
    },
    {
     "box": {
-     "id": "obj-377",
+     "id": "obj-401",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7991,7 +8498,7 @@
    },
    {
     "box": {
-     "id": "obj-378",
+     "id": "obj-402",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8007,7 +8514,7 @@
    },
    {
     "box": {
-     "id": "obj-379",
+     "id": "obj-403",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8025,7 +8532,7 @@
    },
    {
     "box": {
-     "id": "obj-380",
+     "id": "obj-404",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8044,7 +8551,7 @@
    },
    {
     "box": {
-     "id": "obj-381",
+     "id": "obj-405",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8062,7 +8569,7 @@
    },
    {
     "box": {
-     "id": "obj-382",
+     "id": "obj-406",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8080,7 +8587,7 @@
    },
    {
     "box": {
-     "id": "obj-383",
+     "id": "obj-407",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8118,7 +8625,7 @@
    },
    {
     "box": {
-     "id": "obj-384",
+     "id": "obj-408",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8142,7 +8649,7 @@
    },
    {
     "box": {
-     "id": "obj-385",
+     "id": "obj-409",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8160,7 +8667,7 @@
    },
    {
     "box": {
-     "id": "obj-386",
+     "id": "obj-410",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8176,7 +8683,7 @@
    },
    {
     "box": {
-     "id": "obj-387",
+     "id": "obj-411",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8194,7 +8701,7 @@
    },
    {
     "box": {
-     "id": "obj-388",
+     "id": "obj-412",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8213,7 +8720,7 @@
    },
    {
     "box": {
-     "id": "obj-389",
+     "id": "obj-413",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8231,7 +8738,7 @@
    },
    {
     "box": {
-     "id": "obj-390",
+     "id": "obj-414",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8249,7 +8756,7 @@
    },
    {
     "box": {
-     "id": "obj-391",
+     "id": "obj-415",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8287,7 +8794,7 @@
    },
    {
     "box": {
-     "id": "obj-392",
+     "id": "obj-416",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8311,7 +8818,7 @@
    },
    {
     "box": {
-     "id": "obj-393",
+     "id": "obj-417",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8329,7 +8836,7 @@
    },
    {
     "box": {
-     "id": "obj-394",
+     "id": "obj-418",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8345,7 +8852,7 @@
    },
    {
     "box": {
-     "id": "obj-395",
+     "id": "obj-419",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8363,7 +8870,7 @@
    },
    {
     "box": {
-     "id": "obj-396",
+     "id": "obj-420",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8382,7 +8889,7 @@
    },
    {
     "box": {
-     "id": "obj-397",
+     "id": "obj-421",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8400,7 +8907,7 @@
    },
    {
     "box": {
-     "id": "obj-398",
+     "id": "obj-422",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8418,7 +8925,7 @@
    },
    {
     "box": {
-     "id": "obj-399",
+     "id": "obj-423",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8441,7 +8948,7 @@
    },
    {
     "box": {
-     "id": "obj-400",
+     "id": "obj-424",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8479,7 +8986,7 @@
    },
    {
     "box": {
-     "id": "obj-401",
+     "id": "obj-425",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8503,7 +9010,7 @@
    },
    {
     "box": {
-     "id": "obj-402",
+     "id": "obj-426",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8521,7 +9028,7 @@
    },
    {
     "box": {
-     "id": "obj-403",
+     "id": "obj-427",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8537,7 +9044,7 @@
    },
    {
     "box": {
-     "id": "obj-404",
+     "id": "obj-428",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8555,7 +9062,7 @@
    },
    {
     "box": {
-     "id": "obj-405",
+     "id": "obj-429",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8574,7 +9081,7 @@
    },
    {
     "box": {
-     "id": "obj-406",
+     "id": "obj-430",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8592,7 +9099,7 @@
    },
    {
     "box": {
-     "id": "obj-407",
+     "id": "obj-431",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8610,7 +9117,7 @@
    },
    {
     "box": {
-     "id": "obj-408",
+     "id": "obj-432",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8648,7 +9155,7 @@
    },
    {
     "box": {
-     "id": "obj-409",
+     "id": "obj-433",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8672,7 +9179,7 @@
    },
    {
     "box": {
-     "id": "obj-410",
+     "id": "obj-434",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8690,7 +9197,7 @@
    },
    {
     "box": {
-     "id": "obj-411",
+     "id": "obj-435",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8706,7 +9213,7 @@
    },
    {
     "box": {
-     "id": "obj-412",
+     "id": "obj-436",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8724,7 +9231,7 @@
    },
    {
     "box": {
-     "id": "obj-413",
+     "id": "obj-437",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8743,7 +9250,7 @@
    },
    {
     "box": {
-     "id": "obj-414",
+     "id": "obj-438",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8761,7 +9268,7 @@
    },
    {
     "box": {
-     "id": "obj-415",
+     "id": "obj-439",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8779,7 +9286,7 @@
    },
    {
     "box": {
-     "id": "obj-416",
+     "id": "obj-440",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8802,7 +9309,7 @@
    },
    {
     "box": {
-     "id": "obj-417",
+     "id": "obj-441",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8840,7 +9347,7 @@
    },
    {
     "box": {
-     "id": "obj-418",
+     "id": "obj-442",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8864,7 +9371,7 @@
    },
    {
     "box": {
-     "id": "obj-419",
+     "id": "obj-443",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8882,7 +9389,7 @@
    },
    {
     "box": {
-     "id": "obj-420",
+     "id": "obj-444",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8898,7 +9405,7 @@
    },
    {
     "box": {
-     "id": "obj-421",
+     "id": "obj-445",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8916,7 +9423,7 @@
    },
    {
     "box": {
-     "id": "obj-422",
+     "id": "obj-446",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8935,7 +9442,7 @@
    },
    {
     "box": {
-     "id": "obj-423",
+     "id": "obj-447",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8953,7 +9460,7 @@
    },
    {
     "box": {
-     "id": "obj-424",
+     "id": "obj-448",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8971,7 +9478,7 @@
    },
    {
     "box": {
-     "id": "obj-425",
+     "id": "obj-449",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9009,7 +9516,7 @@
    },
    {
     "box": {
-     "id": "obj-426",
+     "id": "obj-450",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9033,7 +9540,7 @@
    },
    {
     "box": {
-     "id": "obj-427",
+     "id": "obj-451",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9051,7 +9558,7 @@
    },
    {
     "box": {
-     "id": "obj-428",
+     "id": "obj-452",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9067,7 +9574,7 @@
    },
    {
     "box": {
-     "id": "obj-429",
+     "id": "obj-453",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9085,7 +9592,7 @@
    },
    {
     "box": {
-     "id": "obj-430",
+     "id": "obj-454",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9104,7 +9611,7 @@
    },
    {
     "box": {
-     "id": "obj-431",
+     "id": "obj-455",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9122,7 +9629,7 @@
    },
    {
     "box": {
-     "id": "obj-432",
+     "id": "obj-456",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9140,7 +9647,7 @@
    },
    {
     "box": {
-     "id": "obj-433",
+     "id": "obj-457",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9178,7 +9685,7 @@
    },
    {
     "box": {
-     "id": "obj-434",
+     "id": "obj-458",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9202,7 +9709,7 @@
    },
    {
     "box": {
-     "id": "obj-435",
+     "id": "obj-459",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9220,7 +9727,7 @@
    },
    {
     "box": {
-     "id": "obj-436",
+     "id": "obj-460",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9236,7 +9743,7 @@
    },
    {
     "box": {
-     "id": "obj-437",
+     "id": "obj-461",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9254,7 +9761,7 @@
    },
    {
     "box": {
-     "id": "obj-438",
+     "id": "obj-462",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9273,7 +9780,7 @@
    },
    {
     "box": {
-     "id": "obj-439",
+     "id": "obj-463",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9291,7 +9798,7 @@
    },
    {
     "box": {
-     "id": "obj-440",
+     "id": "obj-464",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9309,7 +9816,7 @@
    },
    {
     "box": {
-     "id": "obj-441",
+     "id": "obj-465",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9347,7 +9854,7 @@
    },
    {
     "box": {
-     "id": "obj-442",
+     "id": "obj-466",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9371,7 +9878,7 @@
    },
    {
     "box": {
-     "id": "obj-443",
+     "id": "obj-467",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9389,7 +9896,7 @@
    },
    {
     "box": {
-     "id": "obj-444",
+     "id": "obj-468",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9405,7 +9912,7 @@
    },
    {
     "box": {
-     "id": "obj-445",
+     "id": "obj-469",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9423,7 +9930,7 @@
    },
    {
     "box": {
-     "id": "obj-446",
+     "id": "obj-470",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9442,7 +9949,7 @@
    },
    {
     "box": {
-     "id": "obj-447",
+     "id": "obj-471",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9460,7 +9967,7 @@
    },
    {
     "box": {
-     "id": "obj-448",
+     "id": "obj-472",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9478,7 +9985,7 @@
    },
    {
     "box": {
-     "id": "obj-449",
+     "id": "obj-473",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9501,7 +10008,7 @@
    },
    {
     "box": {
-     "id": "obj-450",
+     "id": "obj-474",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9539,7 +10046,7 @@
    },
    {
     "box": {
-     "id": "obj-451",
+     "id": "obj-475",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9563,7 +10070,7 @@
    },
    {
     "box": {
-     "id": "obj-452",
+     "id": "obj-476",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9581,7 +10088,7 @@
    },
    {
     "box": {
-     "id": "obj-453",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9597,7 +10104,7 @@
    },
    {
     "box": {
-     "id": "obj-454",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9615,7 +10122,7 @@
    },
    {
     "box": {
-     "id": "obj-455",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9634,7 +10141,7 @@
    },
    {
     "box": {
-     "id": "obj-456",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9652,7 +10159,7 @@
    },
    {
     "box": {
-     "id": "obj-457",
+     "id": "obj-481",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9670,7 +10177,7 @@
    },
    {
     "box": {
-     "id": "obj-458",
+     "id": "obj-482",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9708,7 +10215,7 @@
    },
    {
     "box": {
-     "id": "obj-459",
+     "id": "obj-483",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9732,7 +10239,7 @@
    },
    {
     "box": {
-     "id": "obj-460",
+     "id": "obj-484",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9750,7 +10257,7 @@
    },
    {
     "box": {
-     "id": "obj-461",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9766,7 +10273,7 @@
    },
    {
     "box": {
-     "id": "obj-462",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9784,7 +10291,7 @@
    },
    {
     "box": {
-     "id": "obj-463",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9803,7 +10310,7 @@
    },
    {
     "box": {
-     "id": "obj-464",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9821,7 +10328,7 @@
    },
    {
     "box": {
-     "id": "obj-465",
+     "id": "obj-489",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9839,7 +10346,7 @@
    },
    {
     "box": {
-     "id": "obj-466",
+     "id": "obj-490",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9877,7 +10384,7 @@
    },
    {
     "box": {
-     "id": "obj-467",
+     "id": "obj-491",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9901,7 +10408,7 @@
    },
    {
     "box": {
-     "id": "obj-468",
+     "id": "obj-492",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9919,7 +10426,7 @@
    },
    {
     "box": {
-     "id": "obj-469",
+     "id": "obj-493",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9935,7 +10442,7 @@
    },
    {
     "box": {
-     "id": "obj-470",
+     "id": "obj-494",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9953,7 +10460,7 @@
    },
    {
     "box": {
-     "id": "obj-471",
+     "id": "obj-495",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9972,7 +10479,7 @@
    },
    {
     "box": {
-     "id": "obj-472",
+     "id": "obj-496",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9990,7 +10497,7 @@
    },
    {
     "box": {
-     "id": "obj-473",
+     "id": "obj-497",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10008,7 +10515,7 @@
    },
    {
     "box": {
-     "id": "obj-474",
+     "id": "obj-498",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10046,7 +10553,7 @@
    },
    {
     "box": {
-     "id": "obj-475",
+     "id": "obj-499",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10070,7 +10577,7 @@
    },
    {
     "box": {
-     "id": "obj-476",
+     "id": "obj-500",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10088,7 +10595,7 @@
    },
    {
     "box": {
-     "id": "obj-477",
+     "id": "obj-501",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10104,7 +10611,7 @@
    },
    {
     "box": {
-     "id": "obj-478",
+     "id": "obj-502",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10122,7 +10629,7 @@
    },
    {
     "box": {
-     "id": "obj-479",
+     "id": "obj-503",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10141,7 +10648,7 @@
    },
    {
     "box": {
-     "id": "obj-480",
+     "id": "obj-504",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10159,7 +10666,7 @@
    },
    {
     "box": {
-     "id": "obj-481",
+     "id": "obj-505",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10177,7 +10684,7 @@
    },
    {
     "box": {
-     "id": "obj-482",
+     "id": "obj-506",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10200,7 +10707,7 @@
    },
    {
     "box": {
-     "id": "obj-483",
+     "id": "obj-507",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10238,7 +10745,7 @@
    },
    {
     "box": {
-     "id": "obj-484",
+     "id": "obj-508",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10262,7 +10769,7 @@
    },
    {
     "box": {
-     "id": "obj-485",
+     "id": "obj-509",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10280,7 +10787,7 @@
    },
    {
     "box": {
-     "id": "obj-486",
+     "id": "obj-510",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10296,7 +10803,7 @@
    },
    {
     "box": {
-     "id": "obj-487",
+     "id": "obj-511",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10314,7 +10821,7 @@
    },
    {
     "box": {
-     "id": "obj-488",
+     "id": "obj-512",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10333,7 +10840,7 @@
    },
    {
     "box": {
-     "id": "obj-489",
+     "id": "obj-513",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10351,7 +10858,7 @@
    },
    {
     "box": {
-     "id": "obj-490",
+     "id": "obj-514",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10369,7 +10876,7 @@
    },
    {
     "box": {
-     "id": "obj-491",
+     "id": "obj-515",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10407,7 +10914,7 @@
    },
    {
     "box": {
-     "id": "obj-492",
+     "id": "obj-516",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10431,7 +10938,7 @@
    },
    {
     "box": {
-     "id": "obj-493",
+     "id": "obj-517",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10449,7 +10956,7 @@
    },
    {
     "box": {
-     "id": "obj-494",
+     "id": "obj-518",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10465,7 +10972,7 @@
    },
    {
     "box": {
-     "id": "obj-495",
+     "id": "obj-519",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10483,7 +10990,7 @@
    },
    {
     "box": {
-     "id": "obj-496",
+     "id": "obj-520",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10502,7 +11009,7 @@
    },
    {
     "box": {
-     "id": "obj-497",
+     "id": "obj-521",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10520,7 +11027,7 @@
    },
    {
     "box": {
-     "id": "obj-498",
+     "id": "obj-522",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10538,7 +11045,7 @@
    },
    {
     "box": {
-     "id": "obj-499",
+     "id": "obj-523",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10576,7 +11083,7 @@
    },
    {
     "box": {
-     "id": "obj-500",
+     "id": "obj-524",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10600,7 +11107,7 @@
    },
    {
     "box": {
-     "id": "obj-501",
+     "id": "obj-525",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10618,7 +11125,7 @@
    },
    {
     "box": {
-     "id": "obj-502",
+     "id": "obj-526",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10634,7 +11141,7 @@
    },
    {
     "box": {
-     "id": "obj-503",
+     "id": "obj-527",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10652,7 +11159,7 @@
    },
    {
     "box": {
-     "id": "obj-504",
+     "id": "obj-528",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10671,7 +11178,7 @@
    },
    {
     "box": {
-     "id": "obj-505",
+     "id": "obj-529",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10689,7 +11196,7 @@
    },
    {
     "box": {
-     "id": "obj-506",
+     "id": "obj-530",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10707,7 +11214,7 @@
    },
    {
     "box": {
-     "id": "obj-507",
+     "id": "obj-531",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10730,7 +11237,7 @@
    },
    {
     "box": {
-     "id": "obj-508",
+     "id": "obj-532",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10768,7 +11275,7 @@
    },
    {
     "box": {
-     "id": "obj-509",
+     "id": "obj-533",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10792,7 +11299,7 @@
    },
    {
     "box": {
-     "id": "obj-510",
+     "id": "obj-534",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10810,7 +11317,7 @@
    },
    {
     "box": {
-     "id": "obj-511",
+     "id": "obj-535",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10826,7 +11333,7 @@
    },
    {
     "box": {
-     "id": "obj-512",
+     "id": "obj-536",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10844,7 +11351,7 @@
    },
    {
     "box": {
-     "id": "obj-513",
+     "id": "obj-537",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10863,7 +11370,7 @@
    },
    {
     "box": {
-     "id": "obj-514",
+     "id": "obj-538",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10881,7 +11388,7 @@
    },
    {
     "box": {
-     "id": "obj-515",
+     "id": "obj-539",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10899,7 +11406,7 @@
    },
    {
     "box": {
-     "id": "obj-516",
+     "id": "obj-540",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10937,7 +11444,7 @@
    },
    {
     "box": {
-     "id": "obj-517",
+     "id": "obj-541",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10961,7 +11468,7 @@
    },
    {
     "box": {
-     "id": "obj-518",
+     "id": "obj-542",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10979,7 +11486,7 @@
    },
    {
     "box": {
-     "id": "obj-519",
+     "id": "obj-543",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10995,7 +11502,7 @@
    },
    {
     "box": {
-     "id": "obj-520",
+     "id": "obj-544",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -11013,7 +11520,7 @@
    },
    {
     "box": {
-     "id": "obj-521",
+     "id": "obj-545",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -11032,7 +11539,7 @@
    },
    {
     "box": {
-     "id": "obj-522",
+     "id": "obj-546",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -11050,7 +11557,7 @@
    },
    {
     "box": {
-     "id": "obj-523",
+     "id": "obj-547",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -13476,7 +13983,20 @@
    {
     "patchline": {
      "source": [
-      "obj-237",
+      "obj-236",
+      0
+     ],
+     "destination": [
+      "obj-238",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-238",
       0
      ],
      "destination": [
@@ -13489,11 +14009,11 @@
    {
     "patchline": {
      "source": [
-      "obj-239",
+      "obj-240",
       0
      ],
      "destination": [
-      "obj-240",
+      "obj-241",
       0
      ],
      "order": 0
@@ -13519,7 +14039,7 @@
       0
      ],
      "destination": [
-      "obj-243",
+      "obj-236",
       0
      ],
      "order": 0
@@ -13532,7 +14052,7 @@
       0
      ],
      "destination": [
-      "obj-237",
+      "obj-236",
       0
      ],
      "order": 0
@@ -13545,7 +14065,7 @@
       0
      ],
      "destination": [
-      "obj-237",
+      "obj-246",
       0
      ],
      "order": 0
@@ -13554,7 +14074,7 @@
    {
     "patchline": {
      "source": [
-      "obj-245",
+      "obj-246",
       0
      ],
      "destination": [
@@ -13567,11 +14087,11 @@
    {
     "patchline": {
      "source": [
-      "obj-247",
-      0
-     ],
-     "destination": [
       "obj-248",
+      0
+     ],
+     "destination": [
+      "obj-249",
       0
      ],
      "order": 0
@@ -13597,7 +14117,7 @@
       0
      ],
      "destination": [
-      "obj-251",
+      "obj-244",
       0
      ],
      "order": 0
@@ -13610,7 +14130,7 @@
       0
      ],
      "destination": [
-      "obj-245",
+      "obj-244",
       0
      ],
      "order": 0
@@ -13623,7 +14143,7 @@
       0
      ],
      "destination": [
-      "obj-245",
+      "obj-254",
       0
      ],
      "order": 0
@@ -13632,7 +14152,7 @@
    {
     "patchline": {
      "source": [
-      "obj-253",
+      "obj-254",
       0
      ],
      "destination": [
@@ -13645,11 +14165,11 @@
    {
     "patchline": {
      "source": [
-      "obj-255",
-      0
-     ],
-     "destination": [
       "obj-256",
+      0
+     ],
+     "destination": [
+      "obj-257",
       0
      ],
      "order": 0
@@ -13675,7 +14195,7 @@
       0
      ],
      "destination": [
-      "obj-259",
+      "obj-252",
       0
      ],
      "order": 0
@@ -13688,20 +14208,7 @@
       0
      ],
      "destination": [
-      "obj-253",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-260",
-      0
-     ],
-     "destination": [
-      "obj-253",
+      "obj-252",
       0
      ],
      "order": 0
@@ -14100,7 +14607,20 @@
    {
     "patchline": {
      "source": [
-      "obj-302",
+      "obj-301",
+      0
+     ],
+     "destination": [
+      "obj-303",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-303",
       0
      ],
      "destination": [
@@ -14113,11 +14633,11 @@
    {
     "patchline": {
      "source": [
-      "obj-304",
+      "obj-305",
       0
      ],
      "destination": [
-      "obj-305",
+      "obj-306",
       0
      ],
      "order": 0
@@ -14143,7 +14663,7 @@
       0
      ],
      "destination": [
-      "obj-308",
+      "obj-301",
       0
      ],
      "order": 0
@@ -14156,7 +14676,7 @@
       0
      ],
      "destination": [
-      "obj-302",
+      "obj-301",
       0
      ],
      "order": 0
@@ -14169,7 +14689,7 @@
       0
      ],
      "destination": [
-      "obj-302",
+      "obj-311",
       0
      ],
      "order": 0
@@ -14178,7 +14698,7 @@
    {
     "patchline": {
      "source": [
-      "obj-310",
+      "obj-311",
       0
      ],
      "destination": [
@@ -14191,11 +14711,11 @@
    {
     "patchline": {
      "source": [
-      "obj-312",
-      0
-     ],
-     "destination": [
       "obj-313",
+      0
+     ],
+     "destination": [
+      "obj-314",
       0
      ],
      "order": 0
@@ -14221,7 +14741,7 @@
       0
      ],
      "destination": [
-      "obj-316",
+      "obj-309",
       0
      ],
      "order": 0
@@ -14234,7 +14754,7 @@
       0
      ],
      "destination": [
-      "obj-310",
+      "obj-309",
       0
      ],
      "order": 0
@@ -14247,7 +14767,7 @@
       0
      ],
      "destination": [
-      "obj-310",
+      "obj-319",
       0
      ],
      "order": 0
@@ -14256,7 +14776,7 @@
    {
     "patchline": {
      "source": [
-      "obj-318",
+      "obj-319",
       0
      ],
      "destination": [
@@ -14269,11 +14789,11 @@
    {
     "patchline": {
      "source": [
-      "obj-320",
-      0
-     ],
-     "destination": [
       "obj-321",
+      0
+     ],
+     "destination": [
+      "obj-322",
       0
      ],
      "order": 0
@@ -14299,7 +14819,7 @@
       0
      ],
      "destination": [
-      "obj-324",
+      "obj-317",
       0
      ],
      "order": 0
@@ -14312,20 +14832,7 @@
       0
      ],
      "destination": [
-      "obj-318",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-325",
-      0
-     ],
-     "destination": [
-      "obj-318",
+      "obj-317",
       0
      ],
      "order": 0
@@ -14724,7 +15231,20 @@
    {
     "patchline": {
      "source": [
-      "obj-367",
+      "obj-366",
+      0
+     ],
+     "destination": [
+      "obj-368",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-368",
       0
      ],
      "destination": [
@@ -14737,11 +15257,11 @@
    {
     "patchline": {
      "source": [
-      "obj-369",
+      "obj-370",
       0
      ],
      "destination": [
-      "obj-370",
+      "obj-371",
       0
      ],
      "order": 0
@@ -14767,7 +15287,7 @@
       0
      ],
      "destination": [
-      "obj-373",
+      "obj-366",
       0
      ],
      "order": 0
@@ -14780,7 +15300,7 @@
       0
      ],
      "destination": [
-      "obj-367",
+      "obj-366",
       0
      ],
      "order": 0
@@ -14793,7 +15313,7 @@
       0
      ],
      "destination": [
-      "obj-367",
+      "obj-376",
       0
      ],
      "order": 0
@@ -14802,7 +15322,7 @@
    {
     "patchline": {
      "source": [
-      "obj-375",
+      "obj-376",
       0
      ],
      "destination": [
@@ -14815,11 +15335,11 @@
    {
     "patchline": {
      "source": [
-      "obj-377",
-      0
-     ],
-     "destination": [
       "obj-378",
+      0
+     ],
+     "destination": [
+      "obj-379",
       0
      ],
      "order": 0
@@ -14845,7 +15365,7 @@
       0
      ],
      "destination": [
-      "obj-381",
+      "obj-374",
       0
      ],
      "order": 0
@@ -14858,7 +15378,7 @@
       0
      ],
      "destination": [
-      "obj-375",
+      "obj-374",
       0
      ],
      "order": 0
@@ -14871,7 +15391,7 @@
       0
      ],
      "destination": [
-      "obj-375",
+      "obj-384",
       0
      ],
      "order": 0
@@ -14880,7 +15400,7 @@
    {
     "patchline": {
      "source": [
-      "obj-383",
+      "obj-384",
       0
      ],
      "destination": [
@@ -14893,11 +15413,11 @@
    {
     "patchline": {
      "source": [
-      "obj-385",
-      0
-     ],
-     "destination": [
       "obj-386",
+      0
+     ],
+     "destination": [
+      "obj-387",
       0
      ],
      "order": 0
@@ -14923,7 +15443,7 @@
       0
      ],
      "destination": [
-      "obj-389",
+      "obj-382",
       0
      ],
      "order": 0
@@ -14936,20 +15456,7 @@
       0
      ],
      "destination": [
-      "obj-383",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-390",
-      0
-     ],
-     "destination": [
-      "obj-383",
+      "obj-382",
       0
      ],
      "order": 0
@@ -15036,7 +15543,20 @@
    {
     "patchline": {
      "source": [
-      "obj-400",
+      "obj-399",
+      0
+     ],
+     "destination": [
+      "obj-401",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-401",
       0
      ],
      "destination": [
@@ -15049,11 +15569,11 @@
    {
     "patchline": {
      "source": [
-      "obj-402",
+      "obj-403",
       0
      ],
      "destination": [
-      "obj-403",
+      "obj-404",
       0
      ],
      "order": 0
@@ -15079,7 +15599,7 @@
       0
      ],
      "destination": [
-      "obj-406",
+      "obj-399",
       0
      ],
      "order": 0
@@ -15092,7 +15612,7 @@
       0
      ],
      "destination": [
-      "obj-400",
+      "obj-399",
       0
      ],
      "order": 0
@@ -15105,7 +15625,7 @@
       0
      ],
      "destination": [
-      "obj-400",
+      "obj-409",
       0
      ],
      "order": 0
@@ -15114,7 +15634,7 @@
    {
     "patchline": {
      "source": [
-      "obj-408",
+      "obj-409",
       0
      ],
      "destination": [
@@ -15127,11 +15647,11 @@
    {
     "patchline": {
      "source": [
-      "obj-410",
-      0
-     ],
-     "destination": [
       "obj-411",
+      0
+     ],
+     "destination": [
+      "obj-412",
       0
      ],
      "order": 0
@@ -15157,7 +15677,7 @@
       0
      ],
      "destination": [
-      "obj-414",
+      "obj-407",
       0
      ],
      "order": 0
@@ -15170,7 +15690,7 @@
       0
      ],
      "destination": [
-      "obj-408",
+      "obj-407",
       0
      ],
      "order": 0
@@ -15183,7 +15703,7 @@
       0
      ],
      "destination": [
-      "obj-408",
+      "obj-417",
       0
      ],
      "order": 0
@@ -15196,7 +15716,7 @@
       0
      ],
      "destination": [
-      "obj-419",
+      "obj-418",
       0
      ],
      "order": 0
@@ -15218,11 +15738,24 @@
    {
     "patchline": {
      "source": [
+      "obj-420",
+      0
+     ],
+     "destination": [
+      "obj-421",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-421",
       0
      ],
      "destination": [
-      "obj-422",
+      "obj-415",
       0
      ],
      "order": 0
@@ -15235,20 +15768,7 @@
       0
      ],
      "destination": [
-      "obj-423",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-423",
-      0
-     ],
-     "destination": [
-      "obj-417",
+      "obj-415",
       0
      ],
      "order": 0
@@ -15261,7 +15781,7 @@
       0
      ],
      "destination": [
-      "obj-417",
+      "obj-426",
       0
      ],
      "order": 0
@@ -15270,7 +15790,7 @@
    {
     "patchline": {
      "source": [
-      "obj-425",
+      "obj-426",
       0
      ],
      "destination": [
@@ -15283,11 +15803,11 @@
    {
     "patchline": {
      "source": [
-      "obj-427",
-      0
-     ],
-     "destination": [
       "obj-428",
+      0
+     ],
+     "destination": [
+      "obj-429",
       0
      ],
      "order": 0
@@ -15313,7 +15833,7 @@
       0
      ],
      "destination": [
-      "obj-431",
+      "obj-424",
       0
      ],
      "order": 0
@@ -15326,7 +15846,7 @@
       0
      ],
      "destination": [
-      "obj-425",
+      "obj-424",
       0
      ],
      "order": 0
@@ -15339,7 +15859,7 @@
       0
      ],
      "destination": [
-      "obj-425",
+      "obj-434",
       0
      ],
      "order": 0
@@ -15348,7 +15868,7 @@
    {
     "patchline": {
      "source": [
-      "obj-433",
+      "obj-434",
       0
      ],
      "destination": [
@@ -15361,11 +15881,11 @@
    {
     "patchline": {
      "source": [
-      "obj-435",
-      0
-     ],
-     "destination": [
       "obj-436",
+      0
+     ],
+     "destination": [
+      "obj-437",
       0
      ],
      "order": 0
@@ -15391,7 +15911,7 @@
       0
      ],
      "destination": [
-      "obj-439",
+      "obj-432",
       0
      ],
      "order": 0
@@ -15404,20 +15924,7 @@
       0
      ],
      "destination": [
-      "obj-433",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-440",
-      0
-     ],
-     "destination": [
-      "obj-433",
+      "obj-432",
       0
      ],
      "order": 0
@@ -15504,7 +16011,20 @@
    {
     "patchline": {
      "source": [
-      "obj-450",
+      "obj-449",
+      0
+     ],
+     "destination": [
+      "obj-451",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-451",
       0
      ],
      "destination": [
@@ -15517,11 +16037,11 @@
    {
     "patchline": {
      "source": [
-      "obj-452",
+      "obj-453",
       0
      ],
      "destination": [
-      "obj-453",
+      "obj-454",
       0
      ],
      "order": 0
@@ -15547,7 +16067,7 @@
       0
      ],
      "destination": [
-      "obj-456",
+      "obj-449",
       0
      ],
      "order": 0
@@ -15560,7 +16080,7 @@
       0
      ],
      "destination": [
-      "obj-450",
+      "obj-449",
       0
      ],
      "order": 0
@@ -15573,7 +16093,7 @@
       0
      ],
      "destination": [
-      "obj-450",
+      "obj-459",
       0
      ],
      "order": 0
@@ -15582,7 +16102,7 @@
    {
     "patchline": {
      "source": [
-      "obj-458",
+      "obj-459",
       0
      ],
      "destination": [
@@ -15595,11 +16115,11 @@
    {
     "patchline": {
      "source": [
-      "obj-460",
-      0
-     ],
-     "destination": [
       "obj-461",
+      0
+     ],
+     "destination": [
+      "obj-462",
       0
      ],
      "order": 0
@@ -15625,7 +16145,7 @@
       0
      ],
      "destination": [
-      "obj-464",
+      "obj-457",
       0
      ],
      "order": 0
@@ -15638,7 +16158,7 @@
       0
      ],
      "destination": [
-      "obj-458",
+      "obj-457",
       0
      ],
      "order": 0
@@ -15651,7 +16171,7 @@
       0
      ],
      "destination": [
-      "obj-458",
+      "obj-467",
       0
      ],
      "order": 0
@@ -15660,7 +16180,7 @@
    {
     "patchline": {
      "source": [
-      "obj-466",
+      "obj-467",
       0
      ],
      "destination": [
@@ -15673,11 +16193,11 @@
    {
     "patchline": {
      "source": [
-      "obj-468",
-      0
-     ],
-     "destination": [
       "obj-469",
+      0
+     ],
+     "destination": [
+      "obj-470",
       0
      ],
      "order": 0
@@ -15703,7 +16223,7 @@
       0
      ],
      "destination": [
-      "obj-472",
+      "obj-465",
       0
      ],
      "order": 0
@@ -15716,20 +16236,7 @@
       0
      ],
      "destination": [
-      "obj-466",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-473",
-      0
-     ],
-     "destination": [
-      "obj-466",
+      "obj-465",
       0
      ],
      "order": 0
@@ -15816,7 +16323,20 @@
    {
     "patchline": {
      "source": [
-      "obj-483",
+      "obj-482",
+      0
+     ],
+     "destination": [
+      "obj-484",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-484",
       0
      ],
      "destination": [
@@ -15829,11 +16349,11 @@
    {
     "patchline": {
      "source": [
-      "obj-485",
+      "obj-486",
       0
      ],
      "destination": [
-      "obj-486",
+      "obj-487",
       0
      ],
      "order": 0
@@ -15859,7 +16379,7 @@
       0
      ],
      "destination": [
-      "obj-489",
+      "obj-482",
       0
      ],
      "order": 0
@@ -15872,7 +16392,7 @@
       0
      ],
      "destination": [
-      "obj-483",
+      "obj-482",
       0
      ],
      "order": 0
@@ -15885,7 +16405,7 @@
       0
      ],
      "destination": [
-      "obj-483",
+      "obj-492",
       0
      ],
      "order": 0
@@ -15894,7 +16414,7 @@
    {
     "patchline": {
      "source": [
-      "obj-491",
+      "obj-492",
       0
      ],
      "destination": [
@@ -15907,11 +16427,11 @@
    {
     "patchline": {
      "source": [
-      "obj-493",
-      0
-     ],
-     "destination": [
       "obj-494",
+      0
+     ],
+     "destination": [
+      "obj-495",
       0
      ],
      "order": 0
@@ -15937,7 +16457,7 @@
       0
      ],
      "destination": [
-      "obj-497",
+      "obj-490",
       0
      ],
      "order": 0
@@ -15950,7 +16470,7 @@
       0
      ],
      "destination": [
-      "obj-491",
+      "obj-490",
       0
      ],
      "order": 0
@@ -15963,7 +16483,7 @@
       0
      ],
      "destination": [
-      "obj-491",
+      "obj-500",
       0
      ],
      "order": 0
@@ -15972,7 +16492,7 @@
    {
     "patchline": {
      "source": [
-      "obj-499",
+      "obj-500",
       0
      ],
      "destination": [
@@ -15985,11 +16505,11 @@
    {
     "patchline": {
      "source": [
-      "obj-501",
-      0
-     ],
-     "destination": [
       "obj-502",
+      0
+     ],
+     "destination": [
+      "obj-503",
       0
      ],
      "order": 0
@@ -16015,7 +16535,7 @@
       0
      ],
      "destination": [
-      "obj-505",
+      "obj-498",
       0
      ],
      "order": 0
@@ -16028,7 +16548,7 @@
       0
      ],
      "destination": [
-      "obj-499",
+      "obj-498",
       0
      ],
      "order": 0
@@ -16037,11 +16557,11 @@
    {
     "patchline": {
      "source": [
-      "obj-506",
+      "obj-507",
       0
      ],
      "destination": [
-      "obj-499",
+      "obj-509",
       0
      ],
      "order": 0
@@ -16050,7 +16570,7 @@
    {
     "patchline": {
      "source": [
-      "obj-508",
+      "obj-509",
       0
      ],
      "destination": [
@@ -16063,11 +16583,11 @@
    {
     "patchline": {
      "source": [
-      "obj-510",
-      0
-     ],
-     "destination": [
       "obj-511",
+      0
+     ],
+     "destination": [
+      "obj-512",
       0
      ],
      "order": 0
@@ -16093,7 +16613,7 @@
       0
      ],
      "destination": [
-      "obj-514",
+      "obj-507",
       0
      ],
      "order": 0
@@ -16106,7 +16626,7 @@
       0
      ],
      "destination": [
-      "obj-508",
+      "obj-507",
       0
      ],
      "order": 0
@@ -16119,7 +16639,7 @@
       0
      ],
      "destination": [
-      "obj-508",
+      "obj-517",
       0
      ],
      "order": 0
@@ -16128,7 +16648,7 @@
    {
     "patchline": {
      "source": [
-      "obj-516",
+      "obj-517",
       0
      ],
      "destination": [
@@ -16141,11 +16661,11 @@
    {
     "patchline": {
      "source": [
-      "obj-518",
-      0
-     ],
-     "destination": [
       "obj-519",
+      0
+     ],
+     "destination": [
+      "obj-520",
       0
      ],
      "order": 0
@@ -16171,7 +16691,7 @@
       0
      ],
      "destination": [
-      "obj-522",
+      "obj-515",
       0
      ],
      "order": 0
@@ -16184,7 +16704,7 @@
       0
      ],
      "destination": [
-      "obj-516",
+      "obj-515",
       0
      ],
      "order": 0
@@ -16197,7 +16717,228 @@
       0
      ],
      "destination": [
-      "obj-516",
+      "obj-525",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-525",
+      0
+     ],
+     "destination": [
+      "obj-526",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-527",
+      0
+     ],
+     "destination": [
+      "obj-528",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-528",
+      0
+     ],
+     "destination": [
+      "obj-529",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-529",
+      0
+     ],
+     "destination": [
+      "obj-523",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-530",
+      0
+     ],
+     "destination": [
+      "obj-523",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-532",
+      0
+     ],
+     "destination": [
+      "obj-534",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-534",
+      0
+     ],
+     "destination": [
+      "obj-535",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-536",
+      0
+     ],
+     "destination": [
+      "obj-537",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-537",
+      0
+     ],
+     "destination": [
+      "obj-538",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-538",
+      0
+     ],
+     "destination": [
+      "obj-532",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-539",
+      0
+     ],
+     "destination": [
+      "obj-532",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-540",
+      0
+     ],
+     "destination": [
+      "obj-542",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-542",
+      0
+     ],
+     "destination": [
+      "obj-543",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-544",
+      0
+     ],
+     "destination": [
+      "obj-545",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-545",
+      0
+     ],
+     "destination": [
+      "obj-546",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-546",
+      0
+     ],
+     "destination": [
+      "obj-540",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-547",
+      0
+     ],
+     "destination": [
+      "obj-540",
       0
      ],
      "order": 0

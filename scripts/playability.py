@@ -19,6 +19,8 @@ tunes      Three tunes in sixteenths of 125 and 87 ms, slurred and separate: wit
            strings 12) in the second half of each note.
 hunting    Held notes of 3 s, with listening and without: the largest periodic component of the
            pitch from 1 s on, 0.5 to 20 Hz; at most 1 cent.
+life       How much the steady part of held notes varies, at three velocities: pitch in windows of
+           20 ms, amplitude from period to period, harmonics to noise; within what people do.
 clicks     Largest step between two samples where notes meet, relative to the largest inside
            them: less than 2.
 evenness   Loudness (dB, A-weighted) of every note at several dynamics: within 2 dB of the median.
@@ -46,6 +48,7 @@ from pathlib import Path
 from measures.bends import bends
 from measures.grid import chromatic, grid, isolated
 from measures.hunting import hunting
+from measures.life import life
 from measures.loudness import evenness, velocity
 from measures.presets import presets
 from measures.shares import Share, whole
@@ -70,6 +73,7 @@ MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
         bends,
         tunes,
         hunting,
+        life,
         clicks,
         evenness,
         velocity,

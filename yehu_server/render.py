@@ -15,12 +15,15 @@ import numpy as np
 from yehu_server.audio.file import SoundWriter, check_format, sound_file
 from yehu_server.errors import OutputError
 from yehu_server.files import anything, why
+from yehu_server.params.spec import Place
+from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.calibration import Calibration
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.style import Style
-from yehu_server.score.smf import Score
+from yehu_server.score.score_notes import notes_of
+from yehu_server.score.smf import Score, ScoreEvent
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 
@@ -28,6 +31,7 @@ BLOCK = 4096  # frames; the sound does not depend on it
 QUIET = 1e-4  # 80 dB below full scale
 QUIET_S = 0.2  # the tail ends after this time of quiet
 LONGEST_TAIL_S = 5.0
+END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
 NORMALIZED_PEAK = 10.0 ** (-1.0 / 20.0)
 
 
@@ -42,6 +46,7 @@ class Options:
     tail_s: float | None = None  # None: until it is quiet
     gain_db: float | None = None  # None: that of the preset
     normalize: bool = False
+    phrasing: float = 0.0  # of the player; the score is shaped before (score.phrasing)
     style: Style = field(default_factory=Style)
     quantities: Quantities = field(default_factory=Quantities)
     calibration: Calibration | None = None  # None: looked up or measured
@@ -80,17 +85,19 @@ class Performance:
         self.instrument = style.instrument(float(options.rate), calibration, options.quantities)
         self.wishes = style.wishes(self.instrument)
         self.midi = style.midi(self.wishes, _set(options.channels))
-        if options.gain_db is not None:
-            self.wishes.write("/output/gain", options.gain_db, hold=True)
-            self.instrument.write("/output/gain", options.gain_db, ramp_ms=0.0)
-        for address, value in style.settings:
+        self.wishes.write("/playing/phrasing", options.phrasing)
+        gain = () if options.gain_db is None else (("/output/gain", options.gain_db),)
+        for address, value in (*gain, *style.settings):
             self.wishes.write(address, value, hold=True)
+            if find(address).place is Place.ENGINE:  # there from the first sample on
+                self.instrument.write(address, value, ramp_ms=0.0)
+        self._lengths_s = {note.begins: note.length_s for note in notes_of(score)}
         self.score_frames = self.instrument.frames(score.duration_s * 1e3)
 
     def blocks(self) -> Iterator[Samples]:
         """Yield the samples of score and tail, relative to full scale."""
-        events = iter(self._score.events)
-        event = next(events, None)
+        events = enumerate(self._score.events)
+        number, event = next(events, END)
         position = 0
         while position < self.score_frames:
             end = min(position + self._options.block, self.score_frames)
@@ -98,15 +105,20 @@ class Performance:
                 frame = self.instrument.frames(event.time_s * 1e3)
                 if frame >= end:
                     break
-                self.midi.receive(event.message, frame=frame)
-                event = next(events, None)
+                self._receive(number, event, frame)
+                number, event = next(events, END)
             yield self._process(end - position)
             position = end
         while event is not None:  # on the very last frame
-            self.midi.receive(event.message, frame=position)
-            event = next(events, None)
+            self._receive(number, event, position)
+            number, event = next(events, END)
         self.midi.end_all(frame=position)
         yield from self._tail()
+
+    def _receive(self, number: int, event: ScoreEvent, frame: int) -> None:
+        if number in self._lengths_s:
+            self.wishes.write("/playing/note_length", self._lengths_s[number], frame=frame)
+        self.midi.receive(event.message, frame=frame)
 
     def _tail(self) -> Iterator[Samples]:
         if self._options.tail_s is not None:

@@ -158,33 +158,6 @@ def test_tuning_again_and_again_pumps_no_energy_in():
     assert instrument.lost_states == 0
 
 
-def bow_forces(noise: float, rate: int = RATE, frames: int = 4000) -> np.ndarray:
-    instrument = Instrument(rate)
-    instrument.write("/bow/noise", noise, ramp_ms=0.0)
-    instrument.write("/bow/side", 1.0, ramp_ms=0.0)
-    instrument.write("/bow/assist", 0.0, ramp_ms=0.0)
-    instrument.write("/bow/force", 1.0, ramp_ms=0.0)
-    forces = []
-    for _ in range(frames):
-        instrument.process(np.zeros(1, np.float32))
-        forces.append(instrument._rig["output"]["controls"][0, 0, 0])
-    return np.array(forces)
-
-
-def test_noise_lets_the_bow_force_tremble_about_itself():
-    assert (bow_forces(0.0, frames=10) == 1.0).all()
-    half, whole = bow_forces(0.5), bow_forces(1.0)
-    assert half.mean() == pytest.approx(1.0, abs=0.05)
-    assert half.std() == pytest.approx(0.5 / 3.0, rel=0.15)
-    assert whole.std() == pytest.approx(1.0 / 3.0, rel=0.15)
-    assert whole.min() >= 0.0
-    assert np.abs(np.corrcoef(half[:-100], half[100:])[0, 1]) < 0.1
-
-
-def test_noise_is_as_large_at_any_rate():
-    assert bow_forces(0.5, 96000, 8000).std() == pytest.approx(0.5 / 3.0, rel=0.15)
-
-
 def test_noise_is_heard():
     def spread(noise: float) -> float:
         instrument = bow(1.0)
@@ -196,4 +169,4 @@ def test_noise_is_heard():
         band = spectrum[(hz > 1000.0) & (hz < 8000.0)]
         return float(np.median(band) / band.max())
 
-    assert spread(0.6) > 2.0 * spread(0.0)
+    assert spread(0.1) > 2.0 * spread(0.0)

@@ -89,8 +89,9 @@ class Instrument:
 
     def check_player(self) -> None:
         """All that the player decides by is a number."""
-        for record in (self._player, self._player["ear"]):
-            for name in set(record.dtype.names) - MAY_BE_NAN - {"ear"}:
+        inner = {name for name in self._player.dtype.names if self._player.dtype[name].names}
+        for record in (self._player, *(self._player[name] for name in inner)):
+            for name in set(record.dtype.names) - MAY_BE_NAN - inner:
                 assert np.isfinite(record[name]).all(), name
 
     def meters(self) -> dict[str, float]:

@@ -86,7 +86,8 @@ def kernel_state(model: Any, state: ref.RefState) -> Any:
 def control_row(controls: ref.RefControls) -> Any:
     """One row of the kernel's controls [shape=(1, columns)]."""
     fingers = np.stack([controls.x_f, controls.press], axis=1).ravel()
-    bow = [controls.F_N, controls.v_b, controls.x_b, controls.f_hammer]
+    even_hair = (0.0, 0.0)  # its place, and the depth of its texture
+    bow = [controls.F_N, controls.v_b, controls.x_b, *even_hair, controls.f_hammer]
     return np.array([[*bow, controls.f_pluck, controls.x_pluck, *fingers]])
 
 

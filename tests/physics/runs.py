@@ -15,6 +15,8 @@ COLUMNS = {
     "F_N": layout.F_N,
     "v_b": layout.V_B,
     "x_b": layout.X_B,
+    "y_b": layout.Y_B,
+    "texture": layout.TEXTURE,
     "hammer": layout.F_HAMMER,
     "pluck": layout.F_PLUCK,
     "x_pluck": layout.X_PLUCK,

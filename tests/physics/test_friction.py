@@ -75,7 +75,7 @@ def solved(request):
     quantities, rate = CASES[request.param]
     model = kernel.prepare(quantities, rate)[0]
     pairs = [
-        (problem, solve_friction(*problem[:5], model, problem[5]))
+        (problem, solve_friction(*problem[:4], BOW.mu_S, problem[4], model, problem[5]))
         for problem in problems(10_000, seed=13)
     ]
     return quantities.bow, 1.0 / rate, pairs
@@ -116,7 +116,7 @@ def test_what_a_last_step_leaves_is_as_small_as_the_docstring_says():
             # A string that sticks and slips, with noise for its corners.
             free = 1.2 * F_N * math.cos(0.02 * n) ** 3 + 0.02 * rng.normal()
             _, z_bar, v_r, tangent, _, converged = solve_friction(
-                free, 1.2, z, F_N, tangent, model, string
+                free, 1.2, z, F_N, BOW.mu_S, tangent, model, string
             )
             r = 2.0 * RATE * (z_bar - z)
             law = elastoplastic_law(v_r, z_bar, F_N, string, BOW)
@@ -133,7 +133,7 @@ def test_at_absurd_speeds_the_answer_stays_finite_and_within_coulombs_law():
     model = kernel.prepare(YEHU, RATE)[0]
     for free, mobility, z, F_N, tangent, string in problems(5000, seed=16, fastest=1000.0):
         within = min(abs(z), BOW.mu_S * F_N / BOW.epsilon_0)
-        answer = solve_friction(free, mobility, within, F_N, tangent, model, string)
+        answer = solve_friction(free, mobility, within, F_N, BOW.mu_S, tangent, model, string)
         f_b, _, v_r, _, iterations, _ = answer
         assert math.isfinite(f_b)
         assert math.isfinite(v_r)
@@ -158,8 +158,8 @@ def test_where_the_start_is_does_not_change_the_answer():
     limit = 1.0 / (1.34 * BOW.epsilon_0 / (2.0 * RATE))
     for free, mobility, z, F_N, tangent, string in problems(2000, seed=14):
         if mobility < limit:
-            one = solve_friction(free, mobility, z, F_N, tangent, model, string)
-            two = solve_friction(free, mobility, z, F_N, NO_TANGENT, model, string)
+            one = solve_friction(free, mobility, z, F_N, BOW.mu_S, tangent, model, string)
+            two = solve_friction(free, mobility, z, F_N, BOW.mu_S, NO_TANGENT, model, string)
             assert abs(one[0] - two[0]) <= 1e-11 * max(1.0, abs(one[0]))
 
 
@@ -170,7 +170,7 @@ def steady(velocity, F_N, string=0):
     for _ in range(3000):
         # A nearly rigid string: no force changes its velocity much.
         f_b, z_bar, v_r, tangent, *_ = solve_friction(
-            velocity, 1e-5, z, F_N, tangent, model, string
+            velocity, 1e-5, z, F_N, BOW.mu_S, tangent, model, string
         )
         z = 2.0 * z_bar - z
     return f_b, v_r
@@ -195,7 +195,9 @@ def test_below_breakaway_the_bristles_are_a_spring():
     breakaway = BOW.xi[0] * BOW.mu_C * F_N / BOW.epsilon_0
     for n in range(2000):
         velocity = 0.9 * breakaway / (100 * k) if n < 100 else 0.0
-        f_b, z_bar, v_r, tangent, *_ = solve_friction(velocity, 1e-5, z, F_N, tangent, model, 0)
+        f_b, z_bar, v_r, tangent, *_ = solve_friction(
+            velocity, 1e-5, z, F_N, BOW.mu_S, tangent, model, 0
+        )
         z = 2.0 * z_bar - z
         travelled += v_r * k
     assert 0.7 * breakaway < travelled < breakaway
@@ -224,7 +226,7 @@ def test_the_derivatives_of_the_law_are_its_slopes():
 
         def off(v, z_bar=z_bar, turn=turn, v_r=v_r, z_ba=z_ba, reach=reach):
             path = z_bar + turn * (v - v_r), turn
-            return bristle_residual(v, path, (0.3 + 2.0 * v, 2.0), z_ba, reach, model)
+            return bristle_residual(v, path, (0.3 + 2.0 * v, 2.0), z_ba, reach, BOW.mu_S, model)
 
         residual, slope, curve, by_z, room, room_slope = off(v_r)
         law = elastoplastic_law(v_r, z_bar, F_N, string, BOW)
@@ -266,7 +268,7 @@ def test_nothing_in_the_law_is_more_sudden_than_the_solver_takes_it_to_be():
 
         def off(v, z_bar=z_bar, turn=turn, v_r=v_r, z_ba=z_ba, reach=reach):
             return bristle_residual(
-                v, (z_bar + turn * (v - v_r), turn), (0.0, 0.0), z_ba, reach, model
+                v, (z_bar + turn * (v - v_r), turn), (0.0, 0.0), z_ba, reach, BOW.mu_S, model
             )
 
         dv = 1e-4 / model["chi_slope"][string] * mobility * F_N

@@ -305,5 +305,5 @@ def test_below_that_bound_friction_has_one_solution_and_the_solver_finds_it():
         law = ref.Friction(params=params, F_N=F_N, xi=float(params.xi[string]), z=z)
         expected = law.solve(free, compliance)  # raises where there are several
         tangent = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1e5, 0.0)
-        found = solve_friction(free, compliance, z, F_N, tangent, model, string)
+        found = solve_friction(free, compliance, z, F_N, YEHU.bow.mu_S, tangent, model, string)
         assert abs(found[0] - expected) <= 1e-11 * params.mu_S * F_N

@@ -83,6 +83,11 @@ def hours(text: str) -> float:
     return within(text, 0.0, 1000.0, "hours")
 
 
+def share(text: str) -> float:
+    """Convert a share, 0 to 1."""
+    return within(text, 0.0, 1.0, "")
+
+
 def decibels(text: str) -> float:
     """Convert decibels, -60 to 24."""
     return within(text, -60.0, 24.0, "dB")

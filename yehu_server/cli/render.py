@@ -17,13 +17,14 @@ from yehu_server.cli.arguments import (
     progress_bar,
     warn_of_compiling,
 )
-from yehu_server.cli.converters import channel, decibels, seconds, whole
+from yehu_server.cli.converters import channel, decibels, seconds, share, whole
 from yehu_server.cli.style_options import add_playing, style_of
 from yehu_server.cli.terminal import tell, warn
 
 if TYPE_CHECKING:
     from yehu_server.playing.style import Style
 
+PHRASING = 0.5  # of files, where nothing else is asked for
 EXAMPLES = """\
 examples:
   yehu-server render tune.mid -o tune.wav
@@ -84,6 +85,13 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--normalize", action="store_true", help="scale the result to a peak of -1 dBFS"
     )
+    parser.add_argument(
+        "--phrasing",
+        type=share,
+        metavar="SHARE",
+        help="how much plain notes are shaped, by phrases, accents, slurs, vibrato and slides; "
+        "what a file marks stays: 0 to 1 (default: 0.5; 0: exactly as written)",
+    )
     add_instrument(parser)
     add_playing(parser)
     add_reporting(parser)
@@ -99,10 +107,14 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.calibration import calibration_key
     from yehu_server.playing.calibrations import calibration_for
     from yehu_server.render import Options, render
+    from yehu_server.score.phrasing import is_fingered, phrased
     from yehu_server.score.smf import concatenate, read_score
 
     check_rate(arguments.rate)
     style = style_of(arguments)
+    phrasing = arguments.phrasing
+    if phrasing is None:
+        phrasing = dict(style.settings).get("/playing/phrasing", PHRASING)
     instrument = [] if arguments.instrument is None else [arguments.instrument]
     check_apart({"-o": arguments.output}, [*arguments.midi, *style.files, *instrument])
     may_replace = check_output(arguments)
@@ -119,7 +131,9 @@ def run(arguments: argparse.Namespace) -> int:
         style=style,
         quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
     )
-    score = concatenate([read_score(path) for path in arguments.midi])
+    scores = [read_score(path) for path in arguments.midi]
+    score = concatenate([phrased(score, phrasing) for score in scores])
+    options = replace(options, phrasing=0.0 if is_fingered(score) else phrasing)
     for warning in score.warnings:
         warn(warning)
     warn_of_compiling(arguments)

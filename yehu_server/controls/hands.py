@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from yehu_server.controls.noise import grip
+from yehu_server.controls import drift
 from yehu_server.controls.one_pole import one_pole
 from yehu_server.controls.ramps import take
 from yehu_server.controls.record import FORWARD
@@ -15,6 +15,7 @@ from yehu_server.controls.slots import (
     FINGER_POSITION,
     FINGER_PRESS,
     FORCE,
+    NOISE,
     ONSET,
     PLUCK,
     PLUCK_POSITION,
@@ -34,9 +35,11 @@ from yehu_server.physics.layout import (
     F_PLUCK,
     FINGER_CONTROLS,
     MAX_FINGERS,
+    TEXTURE,
     V_B,
     X_B,
     X_PLUCK,
+    Y_B,
 )
 
 Array = Any
@@ -66,9 +69,9 @@ def vibrate(c: Any) -> float:
     if c.value[DEPTH] == 0.0 and c.value[ROCK] == 0.0:
         c.vibrato = 0.0
         return 0.0
-    c.vibrato += c.value[RATE] / c.second
+    c.vibrato += c.vibrato_pace * c.value[RATE] / c.second
     c.vibrato -= math.floor(c.vibrato)
-    return vibrato_at(c, c.vibrato)
+    return float(c.vibrato_width * vibrato_at(c, c.vibrato))
 
 
 @compiled
@@ -111,6 +114,9 @@ def stop_strings(c: Any, control: Array) -> None:
             if rocking != 0.0:
                 x_f = c.bridge_x - (c.bridge_x - x_f) * stretch
                 press *= harder
+            if c.drifting != 0:
+                x_f = c.bridge_x - (c.bridge_x - x_f) * c.sounding_drift
+                press *= 1.0 + c.drift[drift.PRESS]
         else:
             c.finger_up[j] += 1
             if c.finger_up[j] >= c.park_after:
@@ -150,11 +156,19 @@ def write_controls(c: Any, control: Array) -> None:
     control : ndarray [shape=(columns,)]
         See ``physics.layout``.
     """
+    drift.advance(c)
     stop_strings(c, control)
-    speed, beta, side = c.value[SPEED] * turn_bow(c), c.value[POSITION], c.value[SIDE]
+    speed, side = c.value[SPEED] * turn_bow(c), c.value[SIDE]
+    beta, firmness = c.value[POSITION], 1.0
+    if c.drifting != 0:
+        speed *= 1.0 + c.drift[drift.SPEED]
+        beta *= c.place_drift
+        firmness += c.drift[drift.FORCE]
     string = 0 if side >= 0.0 else 1
     sounding = c.bridge_x - c.sounding_from
-    control[F_N] = side * bow_force(c, string, speed) * grip(c)
+    control[F_N] = side * bow_force(c, string, speed) * firmness
+    c.place += speed / c.second
+    control[Y_B], control[TEXTURE] = c.place, c.value[NOISE]
     control[V_B] = speed
     control[X_B] = c.bridge_x - beta * sounding
     control[F_HAMMER] = 0.0

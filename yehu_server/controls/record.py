@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.controls.drift import DRIFTS
 from yehu_server.controls.gains import DECIBELS
-from yehu_server.controls.one_pole import pole_of_cutoff, pole_of_time
+from yehu_server.controls.one_pole import pole_of_time
 from yehu_server.controls.slots import FINGER_POSITION, FINGER_PRESS, LOSS, PLUCK, SLOTS, TUNING
 from yehu_server.params.table import ENGINE
 from yehu_server.physics.layout import MAX_FINGERS, STRINGS
@@ -18,7 +19,6 @@ from yehu_server.physics.quantities import Quantities
 PARK_AFTER_S = 0.04  # a finger waits so long where it was lifted
 LET_GO_S = 0.3e-3  # time in which a plucked string slips off the fingertip
 FOLLOW_S = 0.01  # time constant with which the bow follows the sounding length
-GRAIN_HZ = 2000.0  # cutoff of the noise in the hair's grip. By ear.
 FADE_S = 0.005
 CHUNK = 64  # most frames whose controls are computed before the kernel computes them
 FORWARD = 0.25  # phase of the tremolo (turns) at which the bow has its own direction
@@ -39,13 +39,20 @@ CONTROLS = np.dtype(
         ("sigma_1", np.float64, STRINGS),
         ("tuning", np.float64, STRINGS),
         ("loss", np.float64, STRINGS),
-        ("grain", np.float64),  # noise of the grip: its value, one-pole coefficient, amplitude
-        ("grain_follow", np.float64),
-        ("grain_size", np.float64),
+        ("place", np.float64),  # on the hair, of the string at rest (m)
+        # The hands' drift, its change in a sample, whether there is any, and what follows of it:
+        # factors on the sounding length and on the bow's distance from the bridge.
+        ("drift", np.float64, DRIFTS),
+        ("drift_slope", np.float64, DRIFTS),
+        ("drifting", np.int64),
+        ("sounding_drift", np.float64),
+        ("place_drift", np.float64),
         ("sounding_from", np.float64),  # m; end of the sounding length, from the loop
         ("finger_up", np.int64, MAX_FINGERS),  # frames since each finger was lifted
         ("second", np.float64),  # in frames: the sample rate
         ("fade", np.int64),  # length of a fade to silence (frames)
+        ("vibrato_pace", np.float64),  # of this turn of the vibrato: factors on rate and depth
+        ("vibrato_width", np.float64),
         ("vibrato", np.float64),  # phases of vibrato and tremolo (turns)
         ("tremolo", np.float64),
         ("follow", np.float64),
@@ -83,6 +90,8 @@ def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, f
     controls["fade"] = max(1, round(FADE_S * rate))
     controls["let_go"] = max(1, round(LET_GO_S * rate))
     controls["tremolo"] = FORWARD
+    controls["vibrato_pace"] = controls["vibrato_width"] = 1.0
+    controls["sounding_drift"] = controls["place_drift"] = 1.0
     controls["bridge_x"] = quantities.bridge_x
     grip = quantities.bow.mu_S - quantities.bow.mu_C
     for i, string in enumerate(quantities.strings):
@@ -92,10 +101,6 @@ def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, f
         controls["sigma_0"][0, i], controls["sigma_1"][0, i] = string.sigma_0, string.sigma_1
     controls["tuning"] = controls["value"][:, TUNING]
     controls["loss"] = controls["value"][:, LOSS]
-    follow = 1.0 - pole_of_cutoff(GRAIN_HZ, rate)
-    controls["grain_follow"] = follow
-    # Uniform noise in -1..1 gets a standard deviation of 1/3 after the filter: it rarely exceeds 1.
-    controls["grain_size"] = math.sqrt((2.0 - follow) / (3.0 * follow))
     return controls
 
 

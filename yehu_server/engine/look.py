@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.controls import drift
 from yehu_server.controls.hands import bow_force, turned
 from yehu_server.controls.record import CONTROLS
 from yehu_server.controls.slots import FINGER_POSITION, FINGER_PRESS, POSITION, SIDE, SLOTS, SPEED
@@ -82,8 +83,9 @@ def look(rig: Any, into: Any) -> None:
     side = c.value[SIDE]
     string = 0 if side >= 0.0 else 1
     seen.string = string if side != 0.0 else NO_STRING
-    seen.speed, seen.beta = c.value[SPEED] * turned(c), c.value[POSITION]
-    seen.force = abs(side) * bow_force(c, string, seen.speed)
+    seen.speed = c.value[SPEED] * turned(c) * (1.0 + c.drift[drift.SPEED])
+    seen.force = abs(side) * bow_force(c, string, seen.speed) * (1.0 + c.drift[drift.FORCE])
+    seen.beta = c.value[POSITION] * c.place_drift
     seen.bow_x = c.bridge_x - seen.beta * (c.bridge_x - c.sounding_from)
     for j in range(MAX_FINGERS):
         seen.finger_x[j] = c.value[FINGER_POSITION[j]]

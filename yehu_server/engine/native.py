@@ -46,8 +46,8 @@ from yehu_server.jit import compiled, compiled_to_share, native
 from yehu_server.memory import carray
 from yehu_server.physics import kernel
 from yehu_server.physics.layout import MODEL, RELATIVE_VELOCITY, STATE, STRINGS
+from yehu_server.player.attention import attend
 from yehu_server.player.ear import HEARD, remember
-from yehu_server.player.listening import attend
 from yehu_server.player.notes import told_pitch
 from yehu_server.player.record import PLAYER
 from yehu_server.player.wishes import WISH, fulfil

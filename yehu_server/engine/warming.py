@@ -23,7 +23,7 @@ from yehu_server.engine.native import (
     taped,
 )
 from yehu_server.jit import IS_CACHED, IS_PLAIN, make_of_shipped
-from yehu_server.player.listening import attend
+from yehu_server.player.attention import attend
 from yehu_server.player.wishes import fulfil
 
 PLAYED_BY = (fulfil, attend, read_meters, frame_at, post, read_reports, taped, callback)

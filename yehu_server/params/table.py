@@ -80,9 +80,9 @@ TABLE: tuple[Param, ...] = (
         place=Place.ENGINE, owned=True,
     ),
     Param(
-        "/bow/noise", "", "1", 0.0, 1.0, 0.0,
-        "Random variation of the bow force, as a fraction of it: 0.1 is breathy, from 0.5 the tone "
-        "breaks.",
+        "/bow/noise", "", "1", 0.0, 1.0, 0.025,
+        "How much friction varies along the bow, by the rosin on its hair, as a fraction of it: "
+        "0.1 is breathy, from 0.2 the tone breaks.",
         place=Place.ENGINE, smooth_ms=20.0,
     ),
     *(row for number in FINGERS for row in _finger(number)),
@@ -192,6 +192,14 @@ TABLE: tuple[Param, ...] = (
         "Direction of new strokes: 0 alternating, 1 always down, -1 always up.", is_choice=True,
     ),
     Param(
+        "/playing/bow_length", "", "m", 0.0, 2.0, 0.7,
+        "Length of the bow's hair; strokes are planned for it, and turn at its ends. 0: endless.",
+    ),
+    Param(
+        "/playing/note_length", "", "s", 0.0, 60.0, 0.0,
+        "How long the notes that begin will last, for planning strokes; 0: not known.",
+    ),
+    Param(
         "/playing/press", "", "N", 0.3, 6.0, 1.5,
         "Force of the finger on the string (that of the bow: /playing/pressure).",
     ),
@@ -233,12 +241,18 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/playing/variation", "", "1", 0.0, 1.0, 0.25,
-        "Random differences between notes, in bow speed, bow force and intonation.",
+        "How much the hands vary: from note to note, in bow speed, bow force, intonation and how "
+        "fingers land; and within notes, by drift, tremor and an uneven vibrato.",
     ),
     Param(
         "/playing/listening", "", "1", 0.0, 1.0, 1.0,
         "How far the player corrects finger and bow by what the string does: 0 plays by measured "
         "tables alone.",
+    ),
+    Param(
+        "/playing/phrasing", "", "1", 0.0, 1.0, 0.0,
+        "How much the player shapes plain notes by itself: vibrato that comes late on long notes, "
+        "slides on leaps. Files get phrases, accents and slurs too (render --phrasing).",
     ),
     Param(
         "/playing/attack", "", "ms", 5.0, 500.0, 40.0,

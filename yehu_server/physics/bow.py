@@ -27,6 +27,7 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
     model["bristle_stiffness"], model["per_v_s"] = stiffness, 1.0 / bow.v_s
     presliding_range = bow.mu_C * (1.0 - np.array(bow.xi))  # from z_ba to kinetic friction
     model["chi_slope"] = np.pi / presliding_range
+    model["hair"], model["per_grain"] = bow.hair, 1.0 / bow.grain
     M_h, K_h, R_h = bow.M_h, bow.K_h, bow.R_h
     model["M_h"], model["K_h"], model["R_h"] = M_h, K_h, R_h
     Lambda = 4.0 * M_h + k**2 * K_h + 2.0 * k * R_h

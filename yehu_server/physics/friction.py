@@ -34,6 +34,7 @@ def bristle_residual(
     z_dot: tuple[float, float],
     z_ba: float,
     deflection_at_1: float,
+    mu_S: float,
     m: Model,
 ) -> tuple[float, float, float, float, float, float]:
     """Return how far the law's dz/dt is from another one, and how that changes with v_r.
@@ -47,8 +48,10 @@ def bristle_residual(
         is taken for constant.
     z_ba, deflection_at_1 : float, m
         Breakaway deflection, and F_N / epsilon_0: the deflection at a friction coefficient of one.
+    mu_S : float
+        Static friction coefficient, as hot as the contact is.
     m : record
-        The model, for mu_C, mu_S, v_s.
+        The model, for mu_C and v_s.
 
     Returns
     -------
@@ -68,7 +71,7 @@ def bristle_residual(
     side = math.copysign(1.0, z)  # and of v_r
     deflection, dz = abs(z), side * dz
     steepness = m.per_v_s * m.per_v_s
-    mu_range = m.mu_S - m.mu_C
+    mu_range = mu_S - m.mu_C
     stribeck = deflection_at_1 * mu_range * power_of_2(v_r * v_r * (-PER_LN_2 * steepness))
     z_ss = deflection_at_1 * m.mu_C + stribeck  # |z_ss|, eq. (17)
     dlog_stribeck = -2.0 * v_r * steepness
@@ -200,6 +203,7 @@ def solve_friction(
     mobility: float,
     z: float,
     F_N: float,
+    mu_S: float,
     tangent: Tangent,
     m: Model,
     string: int,
@@ -221,6 +225,8 @@ def solve_friction(
         Bristle deflection half a step ago.
     F_N : float, N
         Normal force, positive.
+    mu_S : float
+        Static friction coefficient now; at most the model's.
     tangent : (m/s, 1, 1/s)
         Where to start: the law r = t_0 + t_v v_r + t_z z_bar, linearised at the last solution.
     m, string
@@ -272,7 +278,7 @@ def solve_friction(
         z_bar = z + z_change
         r = two_per_k * z_change
         residual, slope, curve, by_z, below_z_ss, below_z_ss_slope = bristle_residual(
-            v_r, (z_bar, dz), (r, two_per_k * dz), z_ba, deflection_at_1, m
+            v_r, (z_bar, dz), (r, two_per_k * dz), z_ba, deflection_at_1, mu_S, m
         )
         f_b = (free - v_r) * per_mobility  # eq. (49)
         if abs(residual) <= TOLERANCE * max(1.0, abs(r)):

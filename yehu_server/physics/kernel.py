@@ -45,6 +45,8 @@ from yehu_server.physics.elimination import (
 from yehu_server.physics.energy import book
 from yehu_server.physics.finger import advance_fingers, limit_gradients, prepare_fingers
 from yehu_server.physics.friction import Tangent, solve_friction
+from yehu_server.physics.hair import grip
+from yehu_server.physics.heat import prepare_heat, static_coefficient, warm
 from yehu_server.physics.layout import (
     BOW,
     BRIDGE_FORCE,
@@ -104,6 +106,7 @@ def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
     prepare_tension(record, quantities)
     prepare_bridge(record, quantities)
     prepare_bow(record, quantities)
+    prepare_heat(record, quantities)
     prepare_fingers(record, quantities)
     prepare_radiation(record, quantities.body)
     return model
@@ -140,7 +143,8 @@ def retune(
 def come_to_rest(model: Model, state: State) -> None:
     """Put a state back to rest in place, keeping its counters. Real time: safe."""
     s, c, w = state.motion, state.contacts, state.work
-    s.u[:], s.q[:], s.zeta[:], s.z[:] = 0.0, 0.0, 0.0, 0.0
+    s.u[:], s.q[:], s.zeta[:], s.z[:], s.w[:] = 0.0, 0.0, 0.0, 0.0, 0.0
+    s.grain, s.rough[:] = 0, 0.0
     s.U[:], s.Psi[:] = model.rest_height, 0.0
     s.v_r, s.f_b, s.stored = 0.0, 0.0, 0.0
     s.s_1[:], s.s_2[:], s.history[:] = 0.0, 0.0, 0.0
@@ -217,7 +221,9 @@ def step(m: Model, state: State, control: Array, next_: int, now: int, prev: int
     mobility = 0.5 * m.rate * (compliance(m, c, w, BOW, BOW, bow_response) + m.C_h)
     for i in range(STRINGS):
         w.tau_per_newton[i], w.f_c_per_newton[i] = bow_response[i], bow_response[STRINGS + i]
-    solve_contacts(m, state, control, u_next, next_, near, Q, bow_response, bowed, free, mobility)
+    F_N_now = abs(control[F_N]) * grip(m, s, c, control, now)
+    solve_contacts(m, state, u_next, next_, near, Q, bow_response, bowed, F_N_now, free, mobility)
+    warm(m, s, w, string, bowed, F_N_now)
 
     # All that the forces move: eqs. (30), (59), (60).
     s.zeta[next_, string] -= m.C_h * s.f_b
@@ -231,13 +237,13 @@ def step(m: Model, state: State, control: Array, next_: int, now: int, prev: int
 def solve_contacts(
     m: Model,
     state: State,
-    control: Array,
     u_next: Array,
     next_: int,
     near: int,
     Q: Symmetric,
     bow_response: Response,
     bowed: bool,
+    F_N: float,
     free: float,
     mobility: float,
 ) -> None:
@@ -249,23 +255,26 @@ def solve_contacts(
         Number of fingers that may touch a string.
     Q, bow_response
         Of `factor_fingers`, and of `response` to the bow.
+    F_N : float, N
+        Bow force, with the hair's texture.
     free : float, m/s
         Velocity of string on hair without friction and without fingers.
     mobility : float, m/s/N
         How much a newton of friction slows it, without fingers.
     """
     s, c, w = state.motion, state.contacts, state.work
-    string, force = c.string[BOW], abs(control[F_N])
+    string = c.string[BOW]
+    mu_S = static_coefficient(m, s, string)
     tangent: Tangent = (s.tangent[0], s.tangent[1], s.tangent[2])
     f_b, z_bar, v_r, iterations, converged = 0.0, 0.0, free, 0, True
     if near > 0:
         # theta depends on the friction force, and that on the contacts. Mostly theta is 1 for
         # any friction; else it is found with the friction on a string that no finger touches.
-        f_b, margin = (s.f_b, abs(s.f_b) + friction_limit(m, force)) if bowed else (0.0, 0.0)
+        f_b, margin = (s.f_b, abs(s.f_b) + friction_limit(m, F_N)) if bowed else (0.0, 0.0)
         if find_travel(m, s, c, w, u_next, next_, near, bow_response, f_b, margin):
             if bowed:
                 f_b, _, _, tangent, iterations, _ = solve_friction(
-                    free, mobility, s.z[string], force, tangent, m, string
+                    free, mobility, s.z[string], F_N, mu_S, tangent, m, string
                 )
             limit_gradients(s, c, w, near, f_b)
             Q = factor_fingers(m, s, c, w, near)
@@ -275,7 +284,7 @@ def solve_contacts(
         f_b, v_r = 0.0, free
     if bowed:
         f_b, z_bar, v_r, tangent, again, converged = solve_friction(
-            free, mobility, s.z[string], force, tangent, m, string
+            free, mobility, s.z[string], F_N, mu_S, tangent, m, string
         )
         iterations += again
     for i in range(STRINGS):

@@ -34,6 +34,7 @@ MAX_FINGERS = 4
 STENCIL = 4  # nodes that one contact touches (cubic interpolation)
 MAX_CONTACTS = MAX_FINGERS * STRINGS + 1  # finger j on string i is contact 2 j + i
 BOW = MAX_CONTACTS - 1
+HEATS = 256  # of the table of friction over temperature
 LINE_BYTES = 64  # of the processor's cache: vectors within one are read and written at once
 
 
@@ -119,6 +120,14 @@ MODEL = lined_up(
         ("A_h", np.float64),
         ("B_h", np.float64),
         ("C_h", np.float64),
+        # the hair's texture
+        ("hair", np.int64),
+        ("per_grain", np.float64),
+        # the contact's temperature
+        ("is_thermal", np.uint8),
+        ("softened", np.float64, HEATS),
+        ("per_heat", np.float64),
+        ("cooled", np.float64),
         # finger, eqs. (33)-(36)
         ("M_f", np.float64),
         ("C_f", np.float64),
@@ -147,6 +156,9 @@ MOTION = lined_up(
         ("q", np.float64, (LEVELS, MAX_MODES)),
         ("zeta", np.float64, (LEVELS, STRINGS)),
         ("z", np.float64, STRINGS),
+        ("w", np.float64, STRINGS),
+        ("grain", np.int64),  # where `rough` is the texture at either end; one more than its number
+        ("rough", np.float64, 2),
         ("f_b", np.float64),
         ("v_r", np.float64),
         ("tangent", np.float64, 3),
@@ -240,7 +252,7 @@ STATE = lined_up(
 )
 
 # Columns of the controls, one row a sample. Fingers follow in pairs (x_f, press).
-F_N, V_B, X_B, F_HAMMER, F_PLUCK, X_PLUCK, FINGER_CONTROLS = range(7)
+F_N, V_B, X_B, Y_B, TEXTURE, F_HAMMER, F_PLUCK, X_PLUCK, FINGER_CONTROLS = range(9)
 CONTROLS_PER_FINGER = 2
 
 

@@ -27,8 +27,14 @@ def quantity(
     return field(default=default, metadata={"unit": unit, "lo": lo, "hi": hi, "source": source})
 
 
+def choice(default: str, *others: str, source: str) -> Any:
+    """A dataclass field for a choice between words; the first is the default."""
+    return field(default=default, metadata={"choices": (default, *others), "source": source})
+
+
 TABLE_1 = "[Yehu] table 1"
 DATA_SET = "[YehuData]"
+SMITH = "chosen: see heat.py; [Smith]"
 
 
 @dataclass(frozen=True)
@@ -76,6 +82,10 @@ class BowQuantities:
     lift_force: float = quantity(
         1e-3, "N", 1e-6, 1.0, "chosen: a bow force below this is a lifted bow"
     )
+    grain: float = quantity(3e-4, "m", 1e-6, 0.1, "by ear: see docs/physics.md")
+    hair: float = quantity(0.0, "1", 0.0, 65535.0, "chosen: which of many alike")
+    friction: str = choice("elasto-plastic", "thermal", source=SMITH)
+    cooling_time: float = quantity(1e-4, "s", 1e-6, 1.0, SMITH)
 
 
 @dataclass(frozen=True)
@@ -235,6 +245,8 @@ def _override_section(base: Any, changes: Mapping[str, Any], section: str, folde
             )
         if name == "body":
             values[name] = read_body(folder / str(value))
+        elif "choices" in item.metadata:
+            values[name] = _chosen(f"{section}.{name}", item, value)
         elif "unit" in item.metadata:
             values[name] = _checked(f"{section}.{name}", item, value)
         else:
@@ -249,6 +261,13 @@ def _checked(name: str, item: Any, value: Any) -> Any:
             raise ParameterError(f"{name}: expected {len(default)} numbers, got {value!r}")
         return tuple(_number(name, item, entry) for entry in value)
     return _number(name, item, value)
+
+
+def _chosen(name: str, item: Any, value: Any) -> str:
+    choices = item.metadata["choices"]
+    if value not in choices:
+        raise ParameterError(f"{name}: {value!r} is not one of {', '.join(choices)}")
+    return str(value)
 
 
 def _number(name: str, item: Any, value: Any) -> float:

@@ -71,6 +71,12 @@ class Model(Protocol):
     A_h: float
     B_h: float
     C_h: float
+    hair: int
+    per_grain: float
+    is_thermal: int
+    softened: Array
+    per_heat: float
+    cooled: float
     M_f: float
     C_f: float
     K_f: float
@@ -96,6 +102,9 @@ class Motion(Protocol):
     q: Array
     zeta: Array
     z: Array
+    w: Array
+    grain: int
+    rough: Array
     f_b: float
     v_r: float
     tangent: Array

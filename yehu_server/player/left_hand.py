@@ -11,20 +11,20 @@ from typing import Any
 from yehu_server.jit import compiled_exactly
 from yehu_server.player.fingering import OPEN
 from yehu_server.player.ownership import USUAL_MS, move, take_back
+from yehu_server.player.phrasing import vibrato_cents, vibrato_delay_ms
 from yehu_server.player.rows import (
     FINGER_COUNT,
     FINGER_POSITION,
     FINGER_PRESS,
     PRESS,
     ROCKING,
-    ROCKING_DELAY,
     ROCKING_RATE,
-    VIBRATO,
     VIBRATO_DEPTH,
     VIBRATO_ONSET,
     VIBRATO_PRESS,
     VIBRATO_RATE,
 )
+from yehu_server.player.variation import varied_landing
 
 # Ramps of finger force. Chosen by trying landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps
 # up and down both strings; half of these are within 10 cents of their pitch after 21 ms
@@ -85,7 +85,8 @@ def press(p: Any, c: Any, manner_press: float) -> None:
     if p.string >= 0 and p.position != OPEN:
         force = max(p.value[PRESS], manner_press)
     if force != p.pressing or force > 0.0:
-        move(p, c, FINGER_PRESS[p.finger], force, LANDING_MS if force > 0.0 else LIFTING_MS)
+        landing_ms = varied_landing(p, LANDING_MS) if p.pressing == 0.0 else LANDING_MS
+        move(p, c, FINGER_PRESS[p.finger], force, landing_ms if force > 0.0 else LIFTING_MS)
     p.pressing = force
 
 
@@ -101,15 +102,15 @@ def leave(p: Any, c: Any) -> None:
 @compiled_exactly
 def rock(p: Any, c: Any) -> None:
     """Set depth and rate of the vibrato as wished."""
-    move(p, c, VIBRATO_DEPTH, p.value[VIBRATO], USUAL_MS)
+    move(p, c, VIBRATO_DEPTH, vibrato_cents(p), USUAL_MS)
     move(p, c, VIBRATO_PRESS, p.value[ROCKING], USUAL_MS)
     move(p, c, VIBRATO_RATE, p.value[ROCKING_RATE], USUAL_MS)
 
 
 @compiled_exactly
 def begin_rocking(p: Any, c: Any) -> None:
-    """Fade in the vibrato of a new note, in ``/playing/vibrato_delay``."""
-    delay_ms = p.value[ROCKING_DELAY]
+    """Fade in the vibrato of a new note."""
+    delay_ms = vibrato_delay_ms(p)
     move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
     if delay_ms > 0.0:
         move(p, c, VIBRATO_ONSET, 1.0, delay_ms)

@@ -9,7 +9,7 @@ import math
 from typing import Any
 
 from yehu_server.controls.ramps import take
-from yehu_server.controls.slots import SILENCE
+from yehu_server.controls.slots import SILENCE, SPEED
 from yehu_server.jit import compiled_exactly
 from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
@@ -18,7 +18,7 @@ from yehu_server.player.bowing import LEAST_PRESS, manner
 from yehu_server.player.bowing_by_ear import begin_leaning
 from yehu_server.player.fingering import FIRST_OPEN, choose, stay
 from yehu_server.player.held import NOT_HELD, add_key, find_key, remove_key
-from yehu_server.player.left_hand import LIFTING_MS, STEP_MS, side_of
+from yehu_server.player.left_hand import LIFTING_MS, side_of
 from yehu_server.player.ownership import (
     USUAL_MS,
     move,
@@ -27,6 +27,7 @@ from yehu_server.player.ownership import (
     take_back,
     write_directly,
 )
+from yehu_server.player.phrasing import slide_of_leap_ms
 from yehu_server.player.record import SILENT
 from yehu_server.player.right_hand import SLURRED_MS, wished_speed
 from yehu_server.player.rows import (
@@ -45,8 +46,10 @@ from yehu_server.player.rows import (
     PORTAMENTO_TIME,
     POSITION,
     RELEASE,
+    TREMOLO,
     VOLUME,
 )
+from yehu_server.player.stroke import CHANGE_MS, is_at_its_end, plan_stroke
 from yehu_server.player.tuning_by_ear import begin_tuning
 from yehu_server.player.variation import varied_semitones, vary_next_note
 from yehu_server.player.velocity import struck_attack
@@ -122,17 +125,21 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     """Let the key sound that was pressed last."""
     p.sounding = p.held - 1
     vary_next_note(p)
-    slide_ms = STEP_MS
+    is_slur = is_legato and not at_once
+    p.pace = 1.0
+    turns = plan_stroke(p, c, wished_speed(p), is_legato)
     if at_once:
         slide_ms = 0.0
     elif is_on(p, PORTAMENTO):
         slide_ms = p.value[PORTAMENTO_TIME]
+    else:
+        slide_ms = slide_of_leap_ms(p, c, sounding_pitch(p) - p.finger_pitch)
+    p.note_began = c.frame
     pitch = p.finger_pitch = sounding_pitch(p)
     string, position = choose(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_leaning(p, pitch)
-    is_slur = is_legato and not at_once
     unsettle(p, c, max(slide_ms, SLURRED_MS if is_slur else p.value[ATTACK] * struck_attack(p)))
     left_hand.rock(p, c)
     left_hand.begin_rocking(p, c)
@@ -141,12 +148,22 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     even_out(p, c)
     lean(p, c)
     if not is_legato:
-        right_hand.turn(p)
         right_hand.bite(p, c)
     if is_on(p, PIZZICATO):
         right_hand.pluck(p, c, side_of(p))
     else:
-        draw(p, c, SLURRED_MS if is_slur else p.value[ATTACK])
+        ramp_ms = CHANGE_MS if turns else SLURRED_MS
+        draw(p, c, ramp_ms if is_slur else p.value[ATTACK])
+
+
+@compiled_exactly
+def mind_the_bow(p: Any, c: Any) -> None:
+    """Turn a bow that comes to its end."""
+    if p.sounding < 0 or p.value[TREMOLO] != 0.0:
+        return
+    if is_at_its_end(p, c, abs(c.value[SPEED])):
+        p.direction = -p.direction
+        draw(p, c, CHANGE_MS)
 
 
 @compiled_exactly

@@ -13,6 +13,7 @@ from yehu_server.physics.quantities import Quantities
 from yehu_server.player.bowing import MANNER, ORDINARY, PLACES, ordinary_table
 from yehu_server.player.bowing import NOTES as NOTES_BOWED
 from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, wave_speed
+from yehu_server.player.drift import UNSTEADY
 from yehu_server.player.ear import EAR, prepare_ear
 from yehu_server.player.fingering import OPEN, OpenStrings
 from yehu_server.player.rows import (
@@ -46,6 +47,7 @@ PLAYER = np.dtype(
         ("held_pitch", np.float64, MOST_HELD),  # fractional MIDI notes within range
         ("sounding", np.int64),  # number of the held key that sounds, SILENT or ENDING
         ("began", np.int64),  # the frame at which the stroke of the bow began
+        ("note_began", np.int64),  # the frame at which the note did
         ("by_hand", np.int64),  # whether the bow is drawn by hand
         ("speed", np.float64),  # of a bow drawn by hand (m/s)
         # The left hand.
@@ -74,6 +76,7 @@ PLAYER = np.dtype(
         ("learnt_leaning", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),
         # The right hand.
         ("direction", np.float64),  # of the stroke
+        ("pace", np.float64),  # factor on the bow's speed, so that its hair lasts
         ("side", np.float64),  # /bow/side; 0 where the bow is lifted
         ("manner", np.float64, MANNER),  # how the sounding pitch is bowed
         ("balance", np.float64),  # dB
@@ -83,6 +86,7 @@ PLAYER = np.dtype(
         ("detuned", np.float64),  # semitones, at full variation
         ("seed", np.int64),
         ("drawn", np.int64),
+        ("unsteady", UNSTEADY),  # drift and tremor
         # The instrument.
         ("bridge_x", np.float64),  # m
         ("a4", np.float64),  # Hz
@@ -141,7 +145,7 @@ def prepare_player(
     p["manner"] = ORDINARY
     p["first_error"], p["leaning"], p["helps_bow"] = np.nan, 1.0, 1
     prepare_ear(p["ear"], rate)
-    p["hurry"] = p["weight"] = 1.0
+    p["hurry"] = p["weight"] = p["pace"] = 1.0
     p["seed"] = seed
     p["bridge_x"] = quantities.bridge_x
     p["wave_speed"] = [wave_speed(quantities, string) for string in range(STRINGS)]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from yehu_server.jit import compiled_exactly
 from yehu_server.params.table import find
 from yehu_server.player.bowing import (
@@ -26,7 +24,6 @@ from yehu_server.player.rows import (
     BOW_SIDE,
     BOW_SPEED,
     BOW_TREMOLO,
-    DIRECTION,
     DYNAMICS,
     PLUCK_FORCE,
     POSITION,
@@ -53,7 +50,7 @@ HARDEST_PULL_N = find("/pluck/force").hi
 def wished_speed(p: Any) -> float:
     """Bow speed (m/s) that the player wishes for."""
     share = SOFTEST + (1.0 - SOFTEST) * p.value[DYNAMICS]
-    return float(p.value[SPEED] * share * struck_speed(p) * p.hurry)
+    return float(p.value[SPEED] * share * struck_speed(p) * p.hurry * p.pace)
 
 
 @compiled_exactly
@@ -75,13 +72,6 @@ def bows_alike(p: Any, pitch: float) -> bool:
         if manner_of(p, pitch, column) != p.manner[column]:
             return False
     return True
-
-
-@compiled_exactly
-def turn(p: Any) -> None:
-    """Turn the direction of the stroke, or take the one wished for."""
-    wish = np.rint(p.value[DIRECTION])
-    p.direction = wish if wish != 0.0 else -p.direction
 
 
 @compiled_exactly

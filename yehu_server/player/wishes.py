@@ -49,6 +49,7 @@ from yehu_server.player.rows import (
     IS_OWNED,
     LISTENING,
     LOWEST,
+    PHRASING,
     POSITION,
     PRESS,
     PRESSURE,
@@ -187,7 +188,7 @@ def follow(p: Any, c: Any, row: int) -> None:
         notes.lean(p, c)
     elif row == TREMOLO:
         notes.draw(p, c, USUAL_MS)
-    elif row in (VIBRATO, ROCKING, ROCKING_RATE):
+    elif row in (VIBRATO, ROCKING, ROCKING_RATE, PHRASING):
         left_hand.rock(p, c)
     elif row == ASSIST:
         notes.set_assist(p, c)

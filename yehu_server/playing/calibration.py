@@ -141,6 +141,7 @@ def _bow(
     flautando, light, firm, farther, fastest = (setup.manner(string, pitch, c) for c in columns)
     pressure = share(flautando, light, firm, 0.5 * (LIGHT + FIRM), string)
     beta = farther * DEFAULT_PLACE
+    instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # an even bow: the same at every try
     instrument.write("/bow/position", beta, ramp_ms=0.0)
     instrument.write("/bow/pressure", pressure, ramp_ms=0.0)
     instrument.write("/bow/side", 1.0 if string == 0 else -1.0)

@@ -277,6 +277,8 @@ class Practice:
         instrument.bow_by_tables()
         wishes = Wishes(instrument, tuning=lambda key: self._pitches[int(key)])
         wishes.write("/playing/variation", 0.0)
+        wishes.write("/playing/bow_length", 0.0)
+        instrument.write("/bow/noise", 0.0, ramp_ms=0.0)
         wishes.write("/playing/bow_position", PLACES[search.place])
         if search.is_high_on_f:
             wishes.write("/playing/string", 1.0)

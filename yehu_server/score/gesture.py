@@ -39,6 +39,7 @@ CONTROLS = {
     "bow_force": Control(layout.F_N, -50.0, 50.0, 0.0, "N"),
     "bow_velocity": Control(layout.V_B, -10.0, 10.0, 0.0, "m/s"),
     "bow_position": Control(layout.X_B, 0.0, 1.0, 0.255, "m"),
+    "bow_noise": Control(layout.TEXTURE, 0.0, 1.0, 0.0, "1"),
     "pluck_force": Control(layout.F_PLUCK, -50.0, 50.0, 0.0, "N"),
     "pluck_position": Control(layout.X_PLUCK, 0.0, 1.0, 0.2, "m"),
     "finger_position": Control(layout.FINGER_CONTROLS, 0.0, 1.0, 0.1, "m"),
@@ -81,6 +82,7 @@ class Gesture:
             curve = self.controls.get(name, ((0.0, control.default),))
             times, values = zip(*curve, strict=True)
             rows[:, control.column] = np.interp(time, times, values)
+        rows[:, layout.Y_B] = np.cumsum(rows[:, layout.V_B]) / self.sample_rate
         if self.hammer:
             times, forces = zip(*self.hammer, strict=True)
             rows[:, layout.F_HAMMER] = np.interp(time, times, forces, left=0.0, right=0.0)

@@ -8,6 +8,7 @@ only files with nothing to play.
 from __future__ import annotations
 
 import errno
+import math
 import os
 import re
 from bisect import bisect_right
@@ -35,17 +36,32 @@ DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
 TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop-frame video
 
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
-END_OF_TRACK, SET_TEMPO = 0x2F, 0x51
+END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE = 0x2F, 0x51, 0x58
 STATUS = re.compile(rb"[\x80-\xff]")
 SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
 
 
 @dataclass(frozen=True)
 class ScoreEvent:
-    """One channel-voice message at its time (s) from the start of the score."""
+    """One channel-voice message at its time (s) from the start of the score.
+
+    `beat` is its time in quarter notes; NaN where the file counts frames of a film.
+    """
 
     time_s: float
     message: mido.Message
+    beat: float = math.nan
+
+
+@dataclass(frozen=True)
+class Metre:
+    """A time signature: the beat (quarter notes) from which it holds, and its bars' length."""
+
+    beat: float
+    quarters: float
+
+
+COMMON_TIME = Metre(0.0, 4.0)
 
 
 @dataclass(frozen=True)
@@ -63,6 +79,8 @@ class Score:
         The file's name, without folder and extension.
     warnings : tuple of str
         One line for each kind of damage, with its count.
+    metres : tuple of Metre
+        The time signatures, in order.
 
     Raises
     ------
@@ -74,6 +92,16 @@ class Score:
     duration_s: float
     name: str = ""
     warnings: tuple[str, ...] = ()
+    metres: tuple[Metre, ...] = (COMMON_TIME,)
+
+    def bar_at(self, beat: float) -> tuple[float, float]:
+        """Return the beat from which the metre of a beat holds, and the quarters in its bars."""
+        metre = COMMON_TIME
+        for each in self.metres:
+            if each.beat > beat + 1e-9:
+                break
+            metre = each
+        return metre.beat, metre.quarters
 
     def __post_init__(self) -> None:
         if self.duration_s > MAX_DURATION_H * 3600:
@@ -87,7 +115,8 @@ def read_score(path: str | os.PathLike[str]) -> Score:
     Formats 0 and 1 play all tracks together under the tempo changes of all of them.
     Format 2 plays its tracks one after another, as `concatenate` would, each starting
     at 120 bpm with tempo changes of its own. Sysex, escapes and metas other than
-    tempo are dropped. A channel message with a data byte above 127 is dropped as a whole.
+    tempo and time signature are dropped. A channel message with a data byte above 127 is
+    dropped as a whole.
 
     Raises
     ------
@@ -113,7 +142,7 @@ def concatenate(scores: Sequence[Score]) -> Score:
     events: list[ScoreEvent] = []
     start = 0.0
     for number, score in enumerate(scores, start=1):
-        events += (ScoreEvent(start + event.time_s, event.message) for event in score.events)
+        events += (replace(event, time_s=start + event.time_s) for event in score.events)
         start += score.duration_s
         if number < len(scores):
             events.append(ScoreEvent(start, mido.Message("reset")))
@@ -209,6 +238,7 @@ def _chunks(
 class _Track:
     messages: list[tuple[int, mido.Message]] = field(default_factory=list)  # at ticks
     tempos: list[tuple[int, int]] = field(default_factory=list)  # at ticks, in us a quarter
+    metres: list[tuple[int, float]] = field(default_factory=list)  # at ticks, quarters a bar
     end: int = 0  # ticks
     events: int = 0  # of any kind, dropped ones too
 
@@ -283,6 +313,8 @@ def _decode(data: bytes, room: int, found: Counter[str]) -> _Track:
                         track.tempos.append((tick, tempo))
                     else:
                         found["a tempo of zero or cut short ignored"] += 1
+                elif kind == TIME_SIGNATURE and len(body) >= 2 and body[0] > 0 and body[1] < 8:
+                    track.metres.append((tick, 4.0 * body[0] / 2.0 ** body[1]))
             elif status in (SYSEX, ESCAPE):
                 cursor.take(cursor.number())
             elif status > SYSEX:
@@ -345,9 +377,14 @@ def _play_together(tracks: Sequence[_Track], division: int, found: Counter[str])
     tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
     messages = sorted((pair for track in tracks for pair in track.messages), key=itemgetter(0))
     clock = _Clock(division, tempos)
-    events = tuple(ScoreEvent(clock.seconds(tick), message) for tick, message in messages)
+    per_beat = division if division < 0x8000 else math.nan
+    events = tuple(
+        ScoreEvent(clock.seconds(tick), message, tick / per_beat) for tick, message in messages
+    )
     end_s = clock.seconds(max(track.end for track in tracks))
     latest_s = (events[-1].time_s if events else 0.0) + MAX_REST_S
     if end_s > latest_s:
         found[f"silence at the end cut to {MAX_REST_S} s"] += 1
-    return Score(events, min(end_s, latest_s))
+    signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
+    metres = (Metre(tick / per_beat, quarters) for tick, quarters in signatures)
+    return Score(events, min(end_s, latest_s), metres=(COMMON_TIME, *metres))

@@ -23,6 +23,8 @@ def figures(thing: Any) -> list[float]:
         return [n for item in dataclasses.fields(thing) for n in figures(getattr(thing, item.name))]
     if isinstance(thing, tuple):
         return [number for part in thing for number in figures(part)]
+    if isinstance(thing, str):  # a choice between words
+        return []
     return [thing]
 
 

@@ -1,0 +1,128 @@
+"""The hands drift and tremble, as far as the variation says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from held_notes import HOP, RATE, Playing
+
+from yehu_server.controls.drift import CENTS, FORCE, PLACE, PRESS, SPEED
+from yehu_server.controls.slots import SLOT
+from yehu_server.player.drift import DRIFT, TOGETHER, TREMOR, TREMOR_HZ
+
+LONG_S = 60.0
+
+
+@pytest.fixture(scope="module")
+def drifts() -> np.ndarray:
+    """What the hands of a note do for a minute, at full variation [shape=(hops, 5)]."""
+    playing = Playing(variation=1.0, bow_length=0.0)
+    playing.on(74)
+    (found,) = playing.play(LONG_S, "drift")
+    return found
+
+
+def power(track: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies (Hz) and mean power of a track in windows of 8 s."""
+    size = round(8.0 * RATE / HOP)
+    parts = [track[at : at + size] for at in range(0, len(track) - size, size // 2)]
+    window = np.hanning(size)
+    spectra = [np.abs(np.fft.rfft(window * (part - part.mean()))) ** 2 for part in parts]
+    return np.fft.rfftfreq(size, HOP / RATE), np.mean(spectra, axis=0)
+
+
+def test_they_drift_as_far_as_they_are_said_to(drifts):
+    wanted = np.hypot(DRIFT, TREMOR)
+    assert drifts.std(axis=0) == pytest.approx(wanted, rel=0.35)
+    assert np.abs(drifts.mean(axis=0)) == pytest.approx(np.zeros(5), abs=0.4 * wanted.max())
+
+
+def test_the_drift_is_the_stronger_the_slower_and_the_tremor_is_about_ten_hertz(drifts):
+    for which in (SPEED, FORCE, CENTS, PRESS):
+        hz, found = power(drifts[:, which])
+        slow, medium = (found[(hz > lo) & (hz < hi)].mean() for lo, hi in ((0.2, 0.6), (1.5, 4.0)))
+        # About 1/f: power falls as the frequency rises, by its first power more or less.
+        assert 2.0 < slow / medium < 60.0
+        tremor = found[(hz > TREMOR_HZ - 2.0) & (hz < TREMOR_HZ + 2.0)].mean()
+        assert tremor > 4.0 * found[(hz > 20.0) & (hz < 40.0)].mean()
+        assert tremor > found[(hz > 5.0) & (hz < 7.0)].mean()
+
+
+def test_what_one_hand_does_goes_together(drifts):
+    together = np.corrcoef(drifts.T)
+    assert together[SPEED, FORCE] > TOGETHER - 0.25
+    assert together[SPEED, PLACE] > TOGETHER - 0.35
+    assert together[CENTS, PRESS] > TOGETHER - 0.25
+    assert abs(together[SPEED, CENTS]) < 0.35
+
+
+def test_without_variation_they_are_still():
+    playing = Playing(variation=0.0)
+    playing.on(74)
+    drift, length, width = playing.play(1.0, "drift", "sounding_drift", "vibrato_width")
+    assert (drift == 0.0).all()
+    assert (length == 1.0).all()
+    assert (width == 1.0).all()
+
+
+def test_the_sound_is_the_same_for_a_seed_in_any_block_and_another_for_another():
+    def heard(seed: int, block: int) -> bytes:
+        playing = Playing(seed=seed, variation=1.0, vibrato=20.0)
+        playing.on(74)
+        return playing.sound(0.6, block).tobytes()
+
+    assert heard(5, 64) == heard(5, 1000)
+    assert heard(5, 64) != heard(6, 64)
+
+
+def test_hands_that_rest_come_to_rest():
+    playing = Playing(variation=1.0)
+    playing.on(74)
+    playing.play(0.5)
+    assert np.abs(playing.controls["drift"]).min() > 0.0
+    playing.off(74)
+    steps = np.abs(np.diff(playing.play(0.5, "drift")[0][:, CENTS]))
+    assert steps.max() < 2.5  # cents in 5 ms: no leap
+    assert (playing.controls["drift"] == 0.0).all()
+
+
+@pytest.mark.parametrize(
+    ("address", "which"), [("/bow/speed", SPEED), ("/bow/force", FORCE), ("/bow/position", PLACE)]
+)
+def test_what_somebody_else_moves_is_steady(address, which):
+    playing = Playing(variation=1.0)
+    playing.on(74)
+    playing.wishes.write(address, 0.2)
+    drift = playing.play(0.5, "drift")[0][40:]
+    assert (drift[:, which] == 0.0).all()
+    assert np.abs(drift[:, CENTS]).max() > 0.0
+
+
+def test_turns_of_the_vibrato_differ_in_width_and_length():
+    playing = Playing(variation=0.25, vibrato=20.0, vibrato_delay=0.0, bow_length=0.0)
+    playing.on(74)
+    playing.play(0.3)
+    phase, width = playing.play(20.0, "vibrato", "vibrato_width")
+    begins = np.flatnonzero(np.diff(phase) < 0.0)
+    lengths = np.diff(begins)
+    assert 0.01 < lengths.std() / lengths.mean() < 0.08
+    assert 0.02 < width.std() < 0.15
+    assert width.mean() == pytest.approx(1.0, abs=0.05)
+
+
+def test_fingers_land_at_different_speeds():
+    def landing_s(variation: float) -> set[int]:
+        playing = Playing(variation=variation)
+        found = set()
+        for note in (74, 76, 77, 79, 81):
+            playing.on(note)
+            playing.instrument.process(np.zeros(1, np.float32))
+            presses = [SLOT[f"/finger/{finger}/press"] for finger in (1, 2, 3, 4)]
+            remaining = playing.controls["remaining"][presses]
+            target = playing.controls["target"][presses]
+            found |= {int(left) for left, to in zip(remaining, target, strict=True) if to > 0.0}
+            playing.play(0.2)
+        return found
+
+    assert len(landing_s(0.0)) == 1
+    assert len(landing_s(0.5)) > 2

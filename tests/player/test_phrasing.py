@@ -1,0 +1,60 @@
+"""What the player does to plain notes by itself."""
+
+from __future__ import annotations
+
+import numpy as np
+from held_notes import Playing
+
+from yehu_server.controls.slots import DEPTH, FINGER_POSITION, ONSET
+
+
+def vibrato(playing: Playing, seconds: float) -> tuple[np.ndarray, np.ndarray]:
+    """Depth (cents) and onset of the vibrato, every 5 ms."""
+    (values,) = playing.play(seconds, "value")
+    return values[:, DEPTH], values[:, ONSET]
+
+
+def test_a_long_note_gets_a_vibrato_that_comes_late():
+    playing = Playing(phrasing=0.5)
+    playing.on(74)
+    depth, onset = vibrato(playing, 2.0)
+    assert depth[-1] == 18.0
+    assert onset[60] < 0.4 < onset[120]  # none after 0.3 s, some after 0.6 s
+    assert onset[-1] == 1.0
+
+
+def test_without_phrasing_there_is_none():
+    playing = Playing()
+    playing.on(74)
+    assert (vibrato(playing, 1.0)[0] == 0.0).all()
+
+
+def test_a_vibrato_that_is_wished_for_stays_as_it_is():
+    playing = Playing(phrasing=1.0, vibrato=10.0, vibrato_delay=0.0)
+    playing.on(74)
+    depth, onset = vibrato(playing, 0.5)
+    assert depth[-1] == 10.0
+    assert onset[-1] == 1.0
+
+
+def slide_s(phrasing: float, first: int, second: int, held_s: float = 0.5) -> float:
+    """How long (s) the finger moves from one note to the next."""
+    playing = Playing(phrasing=phrasing, variation=0.0, listening=0.0)
+    playing.on(first)
+    playing.play(held_s)
+    playing.on(second)
+    (values,) = playing.play(0.3, "value")
+    places = values[:, FINGER_POSITION]
+    moves = (np.abs(np.diff(places, axis=0)) > 0.0).sum(axis=0)
+    return float(moves.max()) * 0.005
+
+
+def test_a_leap_from_a_long_note_slides():
+    assert 0.06 < slide_s(0.5, 74, 79) < 0.12
+    assert slide_s(1.0, 74, 79) > slide_s(0.5, 74, 79)
+
+
+def test_steps_short_notes_and_plain_playing_do_not_slide():
+    assert slide_s(0.0, 74, 79) < 0.02
+    assert slide_s(1.0, 74, 76) < 0.02
+    assert slide_s(1.0, 74, 79, held_s=0.1) < 0.02

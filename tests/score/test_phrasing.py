@@ -1,0 +1,160 @@
+"""Files with bare notes are shaped; what they mark stays, and so do pitches and onsets."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import mido
+import pytest
+
+from yehu_server.score.phrasing import (
+    LEAST_FOR_BOWS,
+    accent,
+    is_fingered,
+    phrased,
+    phrases_of,
+)
+from yehu_server.score.score_notes import notes_of
+from yehu_server.score.smf import COMMON_TIME, Metre, Score, ScoreEvent
+
+BEAT_S = 0.5
+
+
+def bare(*notes, velocity=80, extra=(), metres=(COMMON_TIME,)) -> Score:
+    """A score of (start, length in beats, key), and messages at beats."""
+    events = []
+    for start, length, key in notes:
+        on = mido.Message("note_on", note=key, velocity=velocity)
+        events.append((start, 1, on))
+        events.append((start + length, 0, mido.Message("note_off", note=key)))
+    events += [(beat, 2, message) for beat, message in extra]
+    events.sort(key=lambda each: each[:2])
+    score = [ScoreEvent(beat * BEAT_S, message, beat) for beat, _, message in events]
+    return Score(tuple(score), score[-1].time_s, metres=metres)
+
+
+SCALE = [(n * 0.5, 0.5, 67 + 2 * (n % 4)) for n in range(16)]
+CONTROLLER = mido.Message("control_change", control=11, value=90)
+
+
+def sounding(score: Score) -> list[tuple[float, int]]:
+    return [(note.start_s, note.key) for note in notes_of(score)]
+
+
+def velocities(score: Score) -> list[int]:
+    return [note.velocity for note in notes_of(score)]
+
+
+def slurs(score: Score) -> int:
+    return sum(after.start_s < note.end_s for note, after in pairwise(notes_of(score)))
+
+
+def test_at_nothing_a_score_is_the_same():
+    score = bare(*SCALE)
+    assert phrased(score, 0.0) is score
+
+
+@pytest.mark.parametrize("amount", [0.1, 0.5, 1.0])
+def test_pitches_and_onsets_stay(amount):
+    score = bare(*SCALE, (9.0, 2.0, 72), (12.0, 0.25, 74), (12.25, 0.25, 76))
+    assert sounding(phrased(score, amount)) == sounding(score)
+    assert phrased(score, amount).duration_s == score.duration_s
+
+
+def test_a_phrase_is_an_arch_with_accents_about_what_was_written():
+    shaped = velocities(phrased(bare(*SCALE), 1.0))
+    assert sum(shaped) / len(shaped) == pytest.approx(80.0, abs=4.0)
+    # Notes at like places of the bar: the middle is louder than the ends.
+    assert max(shaped[3], shaped[11]) < max(shaped[7], shaped[9]) + 22
+    assert shaped[7] > shaped[1]
+    assert shaped[7] > shaped[15]
+    assert shaped[8] > shaped[7]  # the first beat of the second bar
+
+
+def test_more_phrasing_shapes_more():
+    spans = [
+        max(v) - min(v) for v in (velocities(phrased(bare(*SCALE), a)) for a in (0.3, 0.6, 1.0))
+    ]
+    assert spans[0] < spans[1] < spans[2]
+
+
+def test_the_metre_is_that_of_the_file():
+    score = bare(*SCALE, metres=(Metre(0.0, 4.0), Metre(4.0, 3.0)))
+    assert accent(0.0, score) > accent(2.0, score) > accent(1.0, score) > accent(0.5, score)
+    assert accent(7.0, score) == accent(0.0, score)
+    assert accent(8.0, score) < accent(7.0, score)
+    assert accent(float("nan"), score) == 0.0
+
+
+def test_marked_loudness_stays():
+    score = bare(*SCALE, extra=[(0.0, CONTROLLER)])
+    assert velocities(phrased(score, 1.0)) == velocities(score)
+    louder = bare(*SCALE)
+    events = [
+        ScoreEvent(event.time_s, event.message.copy(velocity=60 + n), event.beat)
+        if event.message.type == "note_on"
+        else event
+        for n, event in enumerate(louder.events)
+    ]
+    played = Score(tuple(events), louder.duration_s)
+    assert velocities(phrased(played, 1.0)) == velocities(played)
+
+
+def test_short_notes_of_a_beat_share_a_bow():
+    sixteenths = [(n * 0.25, 0.25, 67 + n % 5) for n in range(16)]
+    shaped = phrased(bare(*sixteenths), 0.5)
+    assert slurs(shaped) >= 8
+    for note, after in pairwise(notes_of(shaped)):
+        overlaps = after.start_s < note.end_s
+        assert not (overlaps and int(note.beat) != int(after.beat))
+        assert note.end_s - after.start_s < 0.02
+
+
+def test_long_notes_leaps_and_repeated_notes_have_bows_of_their_own():
+    assert slurs(phrased(bare(*[(n, 1.0, 67 + n % 3) for n in range(8)]), 1.0)) == 0
+    assert slurs(phrased(bare(*[(n * 0.25, 0.25, 67 + 7 * (n % 2)) for n in range(8)]), 1.0)) == 0
+    assert slurs(phrased(bare(*[(n * 0.25, 0.25, 67) for n in range(8)]), 1.0)) == 0
+
+
+def test_marked_bows_stay():
+    score = bare((0.0, 0.3, 67), (0.25, 0.25, 69), (0.5, 0.25, 71), (0.75, 0.25, 72))
+    assert slurs(phrased(score, 1.0)) == slurs(score) == 1
+    pedal = mido.Message("control_change", control=64, value=127)
+    score = bare(*[(n * 0.25, 0.25, 67 + n % 5) for n in range(8)], extra=[(0.0, pedal)])
+    assert slurs(phrased(score, 1.0)) == 0
+
+
+def test_little_phrasing_makes_no_slurs():
+    sixteenths = bare(*[(n * 0.25, 0.25, 67 + n % 5) for n in range(16)])
+    assert slurs(phrased(sixteenths, LEAST_FOR_BOWS - 0.01)) == 0
+
+
+def test_phrases_end_with_rests_long_notes_and_after_four_bars():
+    rest = bare((0.0, 1.0, 67), (1.0, 1.0, 69), (3.0, 1.0, 71))
+    assert [len(phrase) for phrase in phrases_of(notes_of(rest))] == [2, 1]
+    held = bare(*[(n * 0.5, 0.5, 67) for n in range(6)], (3.0, 3.0, 72), (6.0, 0.5, 67))
+    assert [len(phrase) for phrase in phrases_of(notes_of(held))] == [7, 1]
+    even = bare(*[(float(n), 1.0, 67) for n in range(20)])
+    assert [len(phrase) for phrase in phrases_of(notes_of(even))] == [16, 4]
+
+
+def test_bends_and_vibrato_controllers_are_marks_of_the_left_hand():
+    assert not is_fingered(bare(*SCALE, extra=[(0.0, CONTROLLER)]))
+    for message in (
+        mido.Message("pitchwheel", pitch=100),
+        mido.Message("aftertouch", value=3),
+        mido.Message("control_change", control=1, value=3),
+    ):
+        assert is_fingered(bare(*SCALE, extra=[(0.0, message)]))
+
+
+def test_a_key_that_nothing_ends_lasts_to_the_end():
+    score = Score((ScoreEvent(0.5, mido.Message("note_on", note=70, velocity=9), 1.0),), 3.0)
+    (note,) = notes_of(score)
+    assert (note.ends, note.length_s, note.beat) == (-1, 2.5, 1.0)
+
+
+def test_a_key_struck_again_ends_its_note():
+    on = mido.Message("note_on", note=70, velocity=9)
+    score = Score((ScoreEvent(0.0, on), ScoreEvent(1.0, on)), 3.0)
+    assert [note.length_s for note in notes_of(score)] == [1.0, 2.0]

@@ -1,7 +1,7 @@
 """The hands are not quite steady: slow drift and tremor of bow and finger. Compiled.
 
-The drift of a hand has a spectrum of about 1/f ([Gilden]), from four random sequences whose times are
-two octaves apart; tremor is a resonance about 10 Hz, where that of hands is ([Elble]). What one
+The drift of a hand has a spectrum of about 1/f ([Gilden]), from four random sequences whose times
+are two octaves apart; tremor is a resonance about 10 Hz, where that of hands is ([Elble]). What one
 hand does goes together: a bow that is drawn faster is pressed harder. `/playing/variation` says how
 much, and `/engine/seed` which; a parameter that somebody else moves is steady.
 """

@@ -528,3 +528,38 @@ def test_mpe_bends_a_note_by_48_semitones(play, midi):
     summary, sound = play(score, "--mpe", "--set", "/playing/variation=0", "--tail", 0.1)
     assert summary["notes_played"] == 1
     assert abs(cents(pitch_of(sound[13000:35000], 44100.0), 554.37)) < 15.0
+
+
+PLAIN = [(0.2 * n, 0.2, 67 + n % 4, 80) for n in range(12)] + [(2.4, 1.2, 74, 80)]
+
+
+def test_plain_notes_are_shaped_and_may_be_left_as_they_are(midi, play):
+    tune = midi(*notes(*PLAIN))
+    still = ("--set", "/playing/variation=0", "--set", "/bow/noise=0")
+    shaped, alive = play(tune, *still)
+    exact, plain = play(tune, *still, "--phrasing", 0, target="plain.wav")
+    full, strong = play(tune, *still, "--phrasing", 1, target="strong.wav")
+    assert [told["phrasing"] for told in (shaped, exact, full)] == [0.5, 0.0, 1.0]
+    assert shaped["notes_played"] == exact["notes_played"] == len(PLAIN)
+
+    def spread(sound: np.ndarray) -> float:
+        levels = [rms(sound[int(44100 * (t + 0.1)) : int(44100 * (t + 0.18))]) for t, *_ in PLAIN]
+        return float(np.std(20.0 * np.log10(levels)))
+
+    assert spread(strong) > spread(alive) > spread(plain)
+
+    def vibrato(sound: np.ndarray) -> float:
+        starts = [int(44100 * (3.2 + 0.02 * n)) for n in range(18)]
+        pitches = [cents(pitch_of(sound[at : at + 3000], 44100), hertz(74)) for at in starts]
+        return float(np.ptp(pitches))
+
+    assert vibrato(plain) < 5.0
+    assert vibrato(alive) > 15.0
+
+
+def test_the_phrasing_of_a_setting_counts_and_one_out_of_range_is_refused(midi, play, command):
+    tune = midi(*notes(*PLAIN))
+    assert play(tune, "--set", "/playing/phrasing=0.2")[0]["phrasing"] == 0.2
+    code, _, err = command("render", tune, "-o", tune.with_suffix(".wav"), "--phrasing", "1.5")
+    assert code == 2
+    assert "1.5 is not within 0 to 1" in err

@@ -151,6 +151,7 @@ def run(arguments: argparse.Namespace) -> int:
         by_channel = fields.pop("notes_by_channel")
         fields["policy"] = summary.policy.value
         fields["mapping"] = {"name": style.mapping.name, "files": [*map(str, style.mapping.files)]}
+        fields["phrasing"] = phrasing
         fields["preset"] = None if style.preset is None else str(style.preset)
         fields["calibration"] = calibration_key(rate, options.quantities, style.a4)
         fields["practice"] = "shipped" if style.practice is None else str(style.practice)

@@ -14,7 +14,7 @@ from yehu_server.player.calibration import OPEN_NOTES, frequency_hz
 Array = Any
 
 VELOCITIES = (40, 80, 120)
-FROM_S, END_S = 0.7, 3.0  # of the steady part; before the bow turns
+FROM_S, END_S = 0.7, 3.0  # of the steady part; on an endless bow
 WINDOW_S, HOP_S, APART_S = 0.02, 0.005, 0.002
 MOST_HZ, MOST_HARMONICS = 6000.0, 12
 BAND_HZ = (100.0, 10_000.0)
@@ -78,7 +78,7 @@ def harmonics_to_noise(sound: Array, rate: float, frequency: float) -> float:
 
 def held(setup: Setup, note: int, velocity: int) -> tuple[float, float, float]:
     """Return pitch deviation (cents), shimmer (per cent) and harmonics to noise (dB) of a note."""
-    take = Take(setup)
+    take = Take(setup, settings={"/playing/bow_length": 0.0})
     take.on(0.0, note, velocity)
     sound = take.play(END_S)[round(FROM_S * setup.rate) :].astype(float)
     frequency = mean_frequency(sound, setup.rate, frequency_hz(note, 440.0))

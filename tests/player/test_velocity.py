@@ -26,6 +26,7 @@ def struck(note: int, velocity: int) -> np.ndarray:
     instrument = style.instrument(RATE, calibration_for(float(RATE)))
     wishes = style.wishes(instrument)
     wishes.write("/playing/variation", 0.0)
+    instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # A4 at the body's mode minds it by a decibel
     wishes.write("/body/evenness", 1.0)
     style.midi(wishes).receive(mido.Message("note_on", note=note, velocity=velocity))
     sound = np.zeros(round(1.2 * RATE), np.float32)

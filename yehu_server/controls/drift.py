@@ -16,7 +16,7 @@ SPEED, FORCE, PLACE, CENTS, PRESS = range(5)
 DRIFTS = 5
 # A contact that moves costs more than one that stands, so places follow every so many samples, by
 # steps of some thousandths of a cent.
-EVERY = 8
+EVERY = 16
 PER_CENT = math.log(2.0) / 1200.0
 
 

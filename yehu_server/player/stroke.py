@@ -17,7 +17,7 @@ from yehu_server.player.rows import BOW_LENGTH, BOW_SPEED, DIRECTION, NOTE_LENGT
 USUAL_S = 0.4  # a note lasts, where nobody has told
 SLOWEST = 0.6  # factor on the speed of a bow that has to last
 END = 0.04  # part of the bow at either end that strokes don't begin or end on
-START = 0.25  # part of the bow behind a stroke that begins after a rest: hair to go back on
+START = 0.15  # part of the bow behind a stroke that begins after a rest: hair to go back on
 CHANGE_MS = 28.0  # time in which a bow changes its direction within a note
 
 

@@ -28,8 +28,8 @@ from yehu_server.player.rows import (
 )
 
 # Standard deviations at full variation, of SPEED, FORCE, PLACE, CENTS, PRESS. By ear.
-DRIFT = np.array((0.06, 0.06, 0.04, 4.0, 0.06))
-TREMOR = np.array((0.04, 0.05, 0.02, 2.2, 0.04))
+DRIFT = np.array((0.06, 0.06, 0.04, 4.8, 0.06))
+TREMOR = np.array((0.04, 0.05, 0.02, 2.5, 0.04))
 RIGHT, LEFT = 0, 1
 HAND = np.array((RIGHT, RIGHT, RIGHT, LEFT, LEFT))
 LEADER = np.array((SPEED, SPEED, SPEED, CENTS, CENTS))  # what the rest of each hand goes with

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from yehu_server.controls.slots import FINGER_POSITION, PLUCK, SHARE
+from yehu_server.controls.slots import FINGER_POSITION, PLUCK, SHARE, SPEED
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import SLOT
 from yehu_server.player.rows import LISTENING
@@ -66,11 +66,13 @@ class Moves:
     def are_those_of_the_audio_side(self) -> bool:
         """Whether the instrument's parameters move to where these do, after `seen`.
 
-        What the player moves by ear is left out while it listens: a copy hears nothing.
+        What the player moves by ear is left out while it listens: a copy hears nothing. So is the
+        direction of the bow: a copy draws none, so it does not know how much hair is left.
         """
         targets = self._instrument._rig["controls"]["target"][0]
         is_alike = targets == self.targets
         is_alike[PLUCK] |= targets[PLUCK] == 0.0  # the string slips off the fingertip by itself
+        is_alike[SPEED] |= abs(targets[SPEED]) == abs(self.targets[SPEED])
         if self._instrument._rig["player"]["value"][0, LISTENING] > 0.0:
             is_alike[BY_EAR] = True
         return bool(is_alike.all())

@@ -89,9 +89,7 @@ def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, f
     controls["second"] = rate
     controls["fade"] = max(1, round(FADE_S * rate))
     controls["let_go"] = max(1, round(LET_GO_S * rate))
-    controls["tremolo"] = FORWARD
-    controls["vibrato_pace"] = controls["vibrato_width"] = 1.0
-    controls["sounding_drift"] = controls["place_drift"] = 1.0
+    steady(controls)
     controls["bridge_x"] = quantities.bridge_x
     grip = quantities.bow.mu_S - quantities.bow.mu_C
     for i, string in enumerate(quantities.strings):
@@ -114,4 +112,13 @@ def settle(controls: Any) -> None:
     is_down = controls["value"][FINGER_PRESS] > 0.0
     controls["finger_up"] = np.where(is_down, 0, controls["park_after"])
     controls["sounding_from"] = controls["value"][FINGER_POSITION][is_down].max(initial=0.0)
+    steady(controls)
+
+
+def steady(controls: Any) -> None:
+    """Let nothing drift or swing any more in a record of dtype CONTROLS, in place."""
     controls["tremolo"] = FORWARD
+    controls["vibrato"], controls["place"] = 0.0, 0.0
+    controls["vibrato_pace"] = controls["vibrato_width"] = 1.0
+    controls["drift"], controls["drift_slope"], controls["drifting"] = 0.0, 0.0, 0
+    controls["sounding_drift"] = controls["place_drift"] = 1.0

@@ -45,7 +45,14 @@ def prepare_ear(ear: Any, rate: float) -> None:
     """Set up a record of dtype EAR for a rate (Hz), in place."""
     ear["hop"] = round(HOP_S * rate)
     ear["span"] = round(SPAN_S * rate)
-    ear["next"] = ear["hop"] + BEHIND
+    begin_hearing(ear, 0)
+
+
+def begin_hearing(ear: Any, frame: int) -> None:
+    """Let the next hearing be the first due from a frame on; nothing is certain yet."""
+    hop = int(ear["hop"])
+    ear["next"] = BEHIND + hop * max(1, -((BEHIND - frame) // hop))
+    ear["certainty"] = 0.0
 
 
 @compiled

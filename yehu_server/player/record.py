@@ -14,7 +14,7 @@ from yehu_server.player.bowing import MANNER, ORDINARY, PLACES, ordinary_table
 from yehu_server.player.bowing import NOTES as NOTES_BOWED
 from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, wave_speed
 from yehu_server.player.drift import UNSTEADY
-from yehu_server.player.ear import EAR, prepare_ear
+from yehu_server.player.ear import EAR, begin_hearing, prepare_ear
 from yehu_server.player.fingering import OPEN, OpenStrings
 from yehu_server.player.rows import (
     BOW_SIDE,
@@ -99,6 +99,7 @@ PLAYER = np.dtype(
     align=True,
 )
 
+UP = -1.0  # the direction before the first stroke, which is a down-bow, v_b > 0
 SILENT, ENDING = -1, -2  # ENDING: the key is released, and more of them follow
 
 
@@ -141,7 +142,7 @@ def prepare_player(
     p["finger_pitch"] = OPEN_NOTES[0]
     p["finger"] = FINGER_COUNT - 1  # so that the first finger comes first
     p["string"], p["position"] = -1, OPEN
-    p["direction"] = -1.0  # so that the first stroke is a down-bow, v_b > 0
+    p["direction"] = UP
     p["manner"] = ORDINARY
     p["first_error"], p["leaning"], p["helps_bow"] = np.nan, 1.0, 1
     prepare_ear(p["ear"], rate)
@@ -171,5 +172,9 @@ def end_all(player: Any, controls: Any) -> None:
     player["side"], player["pressing"] = 0.0, 0.0
     player["string"], player["position"] = -1, OPEN
     player["taken"], player["sent"] = 0, np.nan
+    begin_hearing(player["ear"], int(controls["frame"]))  # a hop may be half done
+    player["direction"], player["pace"] = UP, 1.0
+    for name in UNSTEADY.names or ():
+        player["unsteady"][name] = 0
     for row in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):
         controls["target"][SLOT_OF[row]] = 0.0

@@ -542,11 +542,13 @@ def test_plain_notes_are_shaped_and_may_be_left_as_they_are(midi, play):
     assert [told["phrasing"] for told in (shaped, exact, full)] == [0.5, 0.0, 1.0]
     assert shaped["notes_played"] == exact["notes_played"] == len(PLAIN)
 
-    def spread(sound: np.ndarray) -> float:
-        levels = [rms(sound[int(44100 * (t + 0.1)) : int(44100 * (t + 0.18))]) for t, *_ in PLAIN]
-        return float(np.std(20.0 * np.log10(levels)))
+    def levels_db(sound: np.ndarray) -> np.ndarray:
+        parts = [sound[int(44100 * (t + 0.1)) : int(44100 * (t + 0.18))] for t, *_ in PLAIN]
+        return 20.0 * np.log10([rms(part) for part in parts])
 
-    assert spread(strong) > spread(alive) > spread(plain)
+    # Against the same notes as they are written.
+    a_little, much = (np.std(levels_db(each) - levels_db(plain)) for each in (alive, strong))
+    assert 0.3 < a_little < 0.8 * much
 
     def vibrato(sound: np.ndarray) -> float:
         starts = [int(44100 * (3.2 + 0.02 * n)) for n in range(18)]

@@ -59,6 +59,22 @@ def test_other_hair_has_another_texture():
     assert abs(np.corrcoef(the_texture(places), the_texture(places, 2))[0, 1]) < 0.05
 
 
+def test_the_string_stays_on_the_same_hair_while_it_sticks():
+    # A heavy bow carries the string along for 4 ms, 0.4 mm: four grains of the bow, none of which
+    # passes the string.
+    fine = replace(YEHU, bow=replace(YEHU.bow, grain=1e-4))
+
+    def grain(force):
+        curves = {"F_N": force, "v_b": 0.1, "texture": 0.02}
+        run = play(lambda time: {**curves, "y_b": 5e-5 + 0.1 * time}, 0.004, quantities=fine)
+        return int(run.state[0]["motion"]["grain"]) - 1, run
+
+    stuck, run = grain(4.0)
+    assert abs(run["v_r"].mean()) < 0.01  # of 0.1 m/s: it sticks
+    assert abs(stuck) <= 1
+    assert grain(0.01)[0] == 4  # a light one slips
+
+
 def test_the_same_hair_makes_the_same_noise():
     np.testing.assert_array_equal(bowed()["f_b"], bowed()["f_b"])
     assert np.abs(bowed()["f_b"] - bowed(start=0.1)["f_b"]).max() > 1e-3

@@ -67,16 +67,14 @@ def test_the_ledger_closes(rate):
     assert run["loss_friction"].min() > -1e-12 * run.power
 
 
-def test_the_heat_is_what_friction_dissipated():
-    # Over a long time w is on average the power dissipated per newton of bow force.
-    run = bowed(seconds=1.0)
-    means = []
-    for seconds in (0.5, 1.0):
-        part = bowed(seconds=seconds)
-        means.append(part["loss_friction"].sum() / part.rate)
-    heating = (means[1] - means[0]) / 0.5 / 0.5  # W/N in the second half
-    assert 0.3 * 0.2 * YEHU.bow.mu_C < heating < 1.2 * 0.2 * YEHU.bow.mu_S
-    assert run["iterations"].max() < 100
+@pytest.mark.parametrize("v_b", [0.5, 1.0])
+def test_a_bow_that_always_slips_is_as_hot_as_the_power_per_newton_that_it_loses(v_b):
+    # Too light to catch the string: the friction is that of the Stribeck curve.
+    bow = THERMAL.bow
+    mu = bow.mu_C + (bow.mu_S - bow.mu_C) * np.exp(-((v_b / bow.v_s) ** 2))
+    run = play({"F_N": 0.01, "v_b": v_b}, 0.05, quantities=THERMAL)
+    assert run.state[0]["motion"]["w"][0] == pytest.approx(mu * v_b, rel=0.02)
+    assert np.abs(run["f_b"][-100:]).mean() == pytest.approx(0.01 * mu, rel=0.02)
 
 
 def test_it_converges_with_the_rate():

@@ -33,7 +33,6 @@ LANDING_MS, LIFTING_MS = 3.0, 5.0
 # A position nearer than this is reached by a slide, as no second finger fits beside the first.
 NEAREST_STEP = 2e-3  # m
 SETTLING_MS = 8.0
-STEP_MS = -1.0  # in place of the time of a slide
 
 
 @compiled_exactly
@@ -57,7 +56,7 @@ def stop(
     manner_press : float
         Least finger force (N) that the sounding pitch needs.
     slide_ms : float
-        Time in which the finger that is down slides there; STEP_MS for a step.
+        Time in which the finger that is down slides there; `phrasing.STEP_MS` for a step.
     """
     before = OPEN if p.string < 0 else p.position
     p.string, p.position = string, position

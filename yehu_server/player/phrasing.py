@@ -15,6 +15,7 @@ from yehu_server.player.rows import NOTE_LENGTH, PHRASING, ROCKING_DELAY, VIBRAT
 # At full phrasing; by ear.
 VIBRATO_CENTS, LATE_MS = 36.0, 1100.0
 SLIDE_MS, SHORTEST_SLIDE_MS = 130.0, 45.0
+STEP_MS = -1.0  # in place of the time of a slide
 # A leap asks for a slide where it is so wide (semitones), from a note and to a note so long.
 LEAST_LEAP, WIDEST_LEAP, LONG_S = 4.5, 9.5, 0.3
 
@@ -37,12 +38,12 @@ def vibrato_delay_ms(p: Any) -> float:
 
 @compiled_exactly
 def slide_of_leap_ms(p: Any, c: Any, leap: float) -> float:
-    """Time of a slide over a leap (semitones); below 0 where the finger steps."""
+    """Time of a slide over a leap (semitones); STEP_MS where the finger steps."""
     if p.value[PHRASING] == 0.0 or c.value[SIDE] == 0.0:
-        return -1.0
+        return STEP_MS
     is_wide = LEAST_LEAP < abs(leap) < WIDEST_LEAP
     is_long = c.frame - p.note_began > LONG_S * p.rate
     length = p.value[NOTE_LENGTH]
     if not is_wide or not is_long or 0.0 < length < LONG_S:
-        return -1.0
+        return STEP_MS
     return float(SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * p.value[PHRASING])

@@ -2,6 +2,7 @@
 
     .venv/bin/python bench/endurance.py [--seconds N] [--save bench/results/NAME.json]
     .venv/bin/python bench/endurance.py --page --seconds 60 --turns 3
+    .venv/bin/python bench/endurance.py --parts 8
 
 `yehu-server serve` plays with --record and --capture. Another process sends dense OSC and MIDI, and
 OSCQuery clients listen to every address. An idle stream on the same device shows which deadlines
@@ -9,6 +10,7 @@ the machine itself misses. Memory is sampled every few seconds. In the end the c
 and compared with the recording, sample by sample. Without --audio-device the benchmark starts a
 JACK server with the dummy driver, which has no real-time rights.
 
+With --parts several players are on the stage, each with an input of its own and some of the OSC.
 With --page it plays in turns, each time anew: without a page, and with one that looks, plays and
 listens.
 """
@@ -40,6 +42,7 @@ from rich.table import Table
 from visitors import visit
 
 from yehu_server.audio.output import NULL, Output, OutputOptions
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.warming import warm_up
 
@@ -64,10 +67,11 @@ COMPARED_FRAMES = 1 << 20
 def play_idle(device: str, blocksize: int, answer: Any) -> None:
     """Play silence with the same callback; answer each request with the callback's counters."""
     output = Output(OutputOptions(device=device, blocksize=blocksize), lambda _line: None)
-    instrument = Instrument(output.find(), memory=output.memory.buffer)
-    output.begin(instrument)
+    rate = output.find()
+    ensemble = Ensemble([lambda place: Instrument(rate, memory=place)], memory=output.memory.buffer)
+    output.begin(ensemble)
     while True:
-        answer.send({what: int(instrument.meters()[what]) for what in CALLBACKS})
+        answer.send({what: int(ensemble.meters()[what]) for what in CALLBACKS})
         if not answer.recv():
             break
     output.end()
@@ -148,8 +152,10 @@ def visited(url: str | None) -> Iterator[None]:
 class Playing:
     """``yehu-server serve`` as a command, its messages and metrics."""
 
-    def __init__(self, device: str, blocksize: int, folder: Path, *, page: bool) -> None:
-        words = ["--audio-device", device, "--blocksize", str(blocksize)]
+    def __init__(
+        self, device: str, blocksize: int, folder: Path, *, page: bool, parts: int
+    ) -> None:
+        words = ["--audio-device", device, "--blocksize", str(blocksize), "--parts", str(parts)]
         words += ["--osc", "127.0.0.1:0", "--http", "127.0.0.1:0"]
         words += ["--record", str(folder / "take.wav"), "--capture", str(folder / "take.jsonl")]
         words += ["--panel-port", "0"] if page else ["--no-panel"]
@@ -218,7 +224,7 @@ def replayed_equal(folder: Path) -> tuple[int, int]:
         frames, differing = take.frames, abs(take.frames - other.frames)
         while len(samples := take.read(COMPARED_FRAMES, dtype="float32")):
             same = other.read(len(samples), dtype="float32")
-            differing += int(np.count_nonzero(samples[: len(same)] != same))
+            differing += int((samples[: len(same)] != same).any(axis=1).sum())
     return frames, differing
 
 
@@ -226,14 +232,20 @@ def replayed_equal(folder: Path) -> tuple[int, int]:
 
 
 def play(
-    device: str, blocksize: int, seconds: float, folder: Path, *, page: bool = False
+    device: str,
+    blocksize: int,
+    seconds: float,
+    folder: Path,
+    *,
+    page: bool = False,
+    parts: int = 1,
 ) -> dict[str, Any]:
     """Play under load, replay the take, and return all counts."""
     with helper(play_idle, device, blocksize) as idle:
         idle.recv()
-        playing = Playing(device, blocksize, folder, page=page)
+        playing = Playing(device, blocksize, folder, page=page, parts=parts)
         with helper(listen, playing.http) as pages, visited(playing.page):
-            sender = SPAWN.Process(target=send_load, args=(playing.osc,), daemon=True)
+            sender = SPAWN.Process(target=send_load, args=(playing.osc, parts), daemon=True)
             sender.start()
             time.sleep(SETTLED_S)
             idle.send(True)
@@ -317,6 +329,7 @@ def main() -> None:
     parser.add_argument("--turns", type=int, default=1, help="of each kind (default: 1)")
     parser.add_argument("--seconds", type=float, default=3600.0, help="default: 3600")
     parser.add_argument("--blocksize", type=int, default=64)
+    parser.add_argument("--parts", type=int, default=1, help="number of players (default: 1)")
     parser.add_argument("--audio-device", help="see yehu-server devices (default: a dummy)")
     arguments = parser.parse_args()
     device = arguments.audio_device or CARD
@@ -327,7 +340,14 @@ def main() -> None:
     with sound_card(arguments.audio_device, arguments.blocksize):
         for page in (False, True)[: 1 + arguments.page] * arguments.turns:
             with tempfile.TemporaryDirectory() as f:
-                figures = play(device, arguments.blocksize, arguments.seconds, Path(f), page=page)
+                figures = play(
+                    device,
+                    arguments.blocksize,
+                    arguments.seconds,
+                    Path(f),
+                    page=page,
+                    parts=arguments.parts,
+                )
             rows.append({"page": page, **figures})
             print_report(figures)
     if arguments.page:
@@ -338,6 +358,7 @@ def main() -> None:
         device=arguments.audio_device or report.NO_CARD,
         seconds=arguments.seconds,
         blocksize=arguments.blocksize,
+        parts=arguments.parts,
     )
 
 

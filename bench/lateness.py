@@ -1,7 +1,8 @@
 """How many events come after their frame, with Python idle and busy, by the delay's handling part.
 
     .venv/bin/python bench/lateness.py [--seconds N] [--handling MS ...] [--blocks N ...]
-                                       [--steady] [--audio-device NAME] [--save FILE.json]
+                                       [--steady] [--parts N] [--listeners]
+                                       [--audio-device NAME] [--save FILE.json]
 
 A server plays in a process of its own. Another process sends it 2,000 OSC and 600 MIDI messages a
 second (`load.py`). A busy server also has a thread that computes in Python without a pause. An
@@ -11,31 +12,36 @@ An event that is late though it was handled within the delay's handling part is 
 its sound server called out of turn. Callbacks begun late, and under-runs, show how well it keeps
 time. Without --audio-device a JACK server with the dummy driver is started, which has no real-time
 rights; so the delay grows by itself. With --steady it stays at what it is by default on a device
-that keeps time: a block and the handling part.
+that keeps time: a block and the handling part. With --parts several players share the load, and
+with --listeners eight OSCQuery clients are told of every change of any value.
 """
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import threading
 import time
 from array import array
 from collections import defaultdict, deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 import report
+from endurance import PAGES, helper, listen
 from load import CARD, SPAWN, send_load, sound_card
 from rich.console import Console
 from rich.table import Table
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control.ports import MidiOptions
+from yehu_server.control.web import WebOptions
 from yehu_server.engine.warming import warm_up
 from yehu_server.playing import delay as delays
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server import PartOptions, ServeOptions, Server
 
 RATE = 48000
 BLOCKS = (64, 128)
@@ -44,9 +50,10 @@ SETTLED_S = 3.0  # until ports are found and the delay has settled
 TAKEN_EVERY_S = 5.0  # before the ring of reports is full
 FULFILLED_S = 0.3  # after which the last event of a run must have been fulfilled
 SOURCES = ("OSC", "MIDI")
-# Of an event that was posted: what identifies it, its frame, the handling, the source, the delay.
-POSTED = 8
-COUNTERS = ("late_events", "applied", "late_callbacks", "underruns", "callbacks")
+# Of an event that was posted: what identifies it, its frame, the handling, the source, the delay,
+# the part.
+POSTED = 9
+OF_PARTS, OF_ALL = ("late_events", "applied"), ("late_callbacks", "underruns", "callbacks")
 
 Array = Any
 
@@ -63,6 +70,8 @@ class Setting:
     handling_ms: float
     is_steady: bool
     is_busy: bool
+    parts: int = 1
+    has_listeners: bool = False
 
     @property
     def jitter_ms(self) -> float | None:
@@ -76,39 +85,42 @@ class Witness:
     def __init__(self, server: Server) -> None:
         self._server = server
         self._arrived = threading.local()
-        self._post = server.instrument.post
-        self._frame_of = server.player.frame_of
         self._log = array("d")  # not objects: a collection of garbage takes time
-        server.instrument.report_wishes()
-        vars(server.player)["frame_of"] = self._hear
-        vars(server.instrument)["post"] = self._note
+        for number, part in enumerate(server.parts):
+            instrument = part.instruments[0]
+            instrument.report_wishes()
+            vars(part.player)["frame_of"] = partial(self._hear, part.player.frame_of)
+            vars(instrument)["post"] = partial(self._note, number, instrument.post)
 
-    def _hear(self, arrived_ns: int | None = None) -> int:
+    def _hear(self, frame_of: Callable[..., int], arrived_ns: int | None = None) -> int:
         self._arrived.ns = time.monotonic_ns() if arrived_ns is None else arrived_ns
-        return self._frame_of(arrived_ns)
+        return frame_of(arrived_ns)
 
-    def _note(self, kind: int, **fields: Any) -> bool:
-        took = self._post(kind, **fields)
+    def _note(self, part: int, post: Callable[..., bool], kind: int, **fields: Any) -> bool:
+        took = post(kind, **fields)
         since_ns = time.monotonic_ns() - getattr(self._arrived, "ns", 0)
         is_osc = threading.current_thread().name == "OSC"
         what = (fields.get("index", 0), fields.get("value", 0.0), fields.get("other", 0.0))
         source = SOURCES.index("OSC" if is_osc else "MIDI")
         frame = fields.get("frame")
         frame = -1 if frame is None else frame
-        self._log.extend((kind, *what, frame, since_ns, source, self._server.player.delay))
+        delay = self._server.player.delay
+        self._log.extend((kind, *what, frame, since_ns, source, delay, part))
         return took
 
-    def take(self) -> tuple[bytes, Array]:
-        """The events posted since the last call, and those fulfilled."""
-        fulfilled = self._server.instrument.applied_wishes()
+    def take(self) -> tuple[bytes, list[Array]]:
+        """The events posted since the last call, and those fulfilled, by part."""
+        fulfilled = [part.instruments[0].applied_wishes() for part in self._server.parts]
         log, self._log = self._log, array("d")
         return log.tobytes(), fulfilled
 
     def counts(self) -> dict[str, int]:
         """The counters of the audio side."""
-        meters = self._server.instrument.meters()
-        counts = {what: int(meters[what]) for what in COUNTERS}
-        counts["dropped"] = self._server.instrument.dropped_events
+        instruments = self._server.ensemble.instruments
+        meters = [instrument.meters() for instrument in instruments]
+        counts = {what: sum(int(each[what]) for each in meters) for what in OF_PARTS}
+        counts |= {what: int(meters[0][what]) for what in OF_ALL}
+        counts["dropped"] = sum(instrument.dropped_events for instrument in instruments)
         counts["osc"] = self._server.osc.traffic.packets
         counts["osc_dropped"] = self._server.osc.traffic.kernel_drops
         counts["midi"] = 0 if self._server.midi is None else self._server.midi.received
@@ -122,6 +134,8 @@ def serve(setting: Setting, pipe: Any) -> None:
         output=OutputOptions(device=setting.device, blocksize=setting.block, rate=RATE),
         midi=MidiOptions(),
         osc=("127.0.0.1", 0),
+        http=WebOptions(("127.0.0.1", 0)) if setting.has_listeners else None,
+        parts=[PartOptions()] * setting.parts,
         jitter_ms=setting.jitter_ms,
     )
     server = Server(options, lambda _line: None)
@@ -129,7 +143,7 @@ def serve(setting: Setting, pipe: Any) -> None:
     server.start()
     if setting.is_busy:
         threading.Thread(target=compute, daemon=True).start()
-    pipe.send(server.osc.port)
+    pipe.send((server.osc.port, None if server.web is None else server.web.port))
     while pipe.recv():
         pipe.send((witness.counts(), *witness.take()))
     server.stop()
@@ -150,48 +164,62 @@ def run(setting: Setting, seconds: float) -> dict[str, Any]:
     server = SPAWN.Process(target=serve, args=(setting, there))
     server.start()
     there.close()
-    port = pipe.recv()
-    load = SPAWN.Process(target=send_load, args=(port,), daemon=True)
+    port, http = pipe.recv()
+    load = SPAWN.Process(target=send_load, args=(port, setting.parts), daemon=True)
     load.start()
+    listeners = contextlib.nullcontext() if http is None else helper(listen, http)
 
     def ask() -> Any:
         pipe.send(True)
         return pipe.recv()
 
-    logs, fulfilled = [], []
+    logs, fulfilled, told = [], [], [0]
     try:
-        time.sleep(SETTLED_S)
-        before, *_ = ask()
-        started = time.monotonic()
-        while (left := started + seconds - time.monotonic()) > 0.0:
-            time.sleep(min(left, TAKEN_EVERY_S))
-            after, log, wishes = ask()
-            logs.append(np.frombuffer(log).reshape(-1, POSTED))
-            fulfilled.append(wishes)
-        lasted = time.monotonic() - started
-        load.kill()
-        load.join()
-        time.sleep(FULFILLED_S)
-        fulfilled.append(ask()[2])
+        with listeners as pages:
+            time.sleep(SETTLED_S)
+            before, *_ = ask()
+            started = time.monotonic()
+            while (left := started + seconds - time.monotonic()) > 0.0:
+                time.sleep(min(left, TAKEN_EVERY_S))
+                after, log, wishes = ask()
+                logs.append(np.frombuffer(log).reshape(-1, POSTED))
+                fulfilled.append(wishes)
+            lasted = time.monotonic() - started
+            load.kill()
+            load.join()
+            time.sleep(FULFILLED_S)
+            fulfilled.append(ask()[2])
+            if pages is not None:
+                pages.send(None)
+                told = pages.recv()
     finally:
         load.kill()
         pipe.send(False)
         server.join(10.0)
         server.kill()
     counts = {what: after[what] - before[what] for what in after}
-    return figures(setting, counts, lasted, np.concatenate(logs), np.concatenate(fulfilled))
+    by_part = [np.concatenate(wishes) for wishes in zip(*fulfilled, strict=True)]
+    return {
+        **figures(setting, counts, lasted, np.concatenate(logs), by_part),
+        "told_to_listeners": sum(told),
+    }
 
 
 def figures(
-    setting: Setting, counts: dict[str, int], lasted: float, log: Array, fulfilled: Array
+    setting: Setting, counts: dict[str, int], lasted: float, log: Array, fulfilled: list[Array]
 ) -> dict[str, Any]:
-    """The figures of a row, from the events posted and those fulfilled."""
-    late, handling = (np.array(row) for row in zip(*matched(log, fulfilled), strict=True))
+    """The figures of a row, from the events posted and those fulfilled, by part."""
+    pairs = itertools.chain.from_iterable(
+        matched(log[log[:, 8] == part], wishes) for part, wishes in enumerate(fulfilled)
+    )
+    late, handling = (np.array(row) for row in zip(*pairs, strict=True))
     per_ms = 1e-3 * RATE
     in_time = handling <= setting.handling_ms
     return {
         "block": setting.block,
         "busy": setting.is_busy,
+        "parts": setting.parts,
+        "listeners": PAGES if setting.has_listeners else 0,
         "handling_ms": setting.handling_ms,
         "delay_ms": float(np.median(log[:, 7])) / per_ms,
         "per_second": {what: counts[what] / lasted for what in ("osc", "midi", "applied")},
@@ -266,6 +294,8 @@ def main() -> None:
     parser.add_argument("--handling", type=float, nargs="+", default=HANDLING_MS, metavar="MS")
     parser.add_argument("--blocks", type=int, nargs="+", default=BLOCKS, metavar="FRAMES")
     parser.add_argument("--steady", action="store_true", help="keep the delay as short as it gets")
+    parser.add_argument("--parts", type=int, default=1, help="number of players (default: 1)")
+    parser.add_argument("--listeners", action="store_true", help="eight OSCQuery clients listen")
     parser.add_argument("--audio-device", help="see yehu-server devices (default: a dummy)")
     arguments = parser.parse_args()
     warm_up()  # compile before processes wait for each other
@@ -274,7 +304,15 @@ def main() -> None:
     for block in arguments.blocks:
         with sound_card(arguments.audio_device, block):
             for handling_ms, is_busy in itertools.product(arguments.handling, (False, True)):
-                setting = Setting(device, block, handling_ms, arguments.steady, is_busy)
+                setting = Setting(
+                    device,
+                    block,
+                    handling_ms,
+                    arguments.steady,
+                    is_busy,
+                    arguments.parts,
+                    arguments.listeners,
+                )
                 rows.append(run(setting, arguments.seconds))
     print_report(rows)
     report.save(
@@ -283,6 +321,7 @@ def main() -> None:
         device=arguments.audio_device or report.NO_CARD,
         seconds=arguments.seconds,
         steady=arguments.steady,
+        parts=arguments.parts,
     )
 
 

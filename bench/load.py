@@ -81,24 +81,30 @@ def midi_out(name: str) -> Any:
     sys.exit("there is no MIDI system")
 
 
-def send_load(port: int) -> None:
-    """Send notes, wheels and touch over MIDI, 600 messages a second; over OSC 2,000."""
+def send_load(port: int, parts: int = 1) -> None:
+    """Send notes, wheels and touch over MIDI, 600 messages a second; over OSC 2,000.
+
+    Each part has an output of its own, and they are sent to in turn.
+    """
     osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     osc.connect(("127.0.0.1", port))
-    midi = midi_out("load")
+    outs = [midi_out("load" if parts == 1 else f"load {part + 1}") for part in range(parts)]
+    prefixes = [f"/yehu/part/{part + 1}" for part in range(parts)] if parts > 1 else ["/yehu"]
     chance = random.Random(1)  # noqa: S311
-    note, due = 65, time.monotonic()
+    notes, due = [65] * parts, time.monotonic()
     while True:
-        midi.send_message([0x80, note, 64])
-        note = chance.randrange(65, 90)
-        midi.send_message([0x90, note, chance.randrange(20, 127)])
-        for _ in range(50):
+        for part, midi in enumerate(outs):
+            midi.send_message([0x80, notes[part], 64])
+            notes[part] = chance.randrange(65, 90)
+            midi.send_message([0x90, notes[part], chance.randrange(20, 127)])
+        for step in range(50):
+            midi, prefix = outs[step % parts], prefixes[step % parts]
             for message in ([0xE0, chance.randrange(128)], [0xD0], [0xB0, 1]):
                 midi.send_message([*message, chance.randrange(128)])
             with contextlib.suppress(ConnectionRefusedError):
                 for _ in range(5):
-                    osc.send(pack("/yehu/bow/position", chance.uniform(0.05, 0.2)))
-                    osc.send(pack("/yehu/playing/pressure", chance.uniform(0.2, 0.6)))
+                    osc.send(pack(f"{prefix}/bow/position", chance.uniform(0.05, 0.2)))
+                    osc.send(pack(f"{prefix}/playing/pressure", chance.uniform(0.2, 0.6)))
             due += 0.005
             time.sleep(max(0.0, due - time.monotonic()))
 

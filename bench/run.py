@@ -26,8 +26,8 @@ from rich.table import Table
 from yehu_server.engine.instrument import Instrument
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities
-from yehu_server.render import Options, Performance
-from yehu_server.score.smf import read_score
+from yehu_server.rendering import Options, Performance
+from yehu_server.score.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = 9

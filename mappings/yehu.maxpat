@@ -4814,17 +4814,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/section",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/section",
+       "parameter_shortname": "section",
+       "parameter_mmin": 1.0,
+       "parameter_mmax": 16.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -4848,7 +4848,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 500 ms",
+     "text": "1 to 16",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -4875,7 +4875,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/section"
     }
    },
    {
@@ -4928,7 +4928,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/section"
     }
    },
    {
@@ -4964,7 +4964,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4983,14 +4983,14 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
        "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
@@ -5017,7 +5017,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 2000 ms",
+     "text": "5 to 500 ms",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -5044,7 +5044,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -5097,7 +5097,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -5133,7 +5133,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 40"
     }
    },
    {
@@ -5152,17 +5152,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/release",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f ms"
       }
      },
      "presentation": 1,
@@ -5186,7 +5186,7 @@
       90.0,
       18.0
      ],
-     "text": "0 to 1",
+     "text": "5 to 2000 ms",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -5213,7 +5213,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/release"
     }
    },
    {
@@ -5266,7 +5266,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/release"
     }
    },
    {
@@ -5302,7 +5302,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 60"
     }
    },
    {
@@ -5321,17 +5321,17 @@
       "int/float",
       "int/float"
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/portamento",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      },
      "presentation": 1,
@@ -5355,7 +5355,7 @@
       90.0,
       18.0
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "textjustification": 1,
      "fontsize": 9.0,
      "presentation": 1,
@@ -5382,7 +5382,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/portamento"
     }
    },
    {
@@ -5435,7 +5435,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/portamento"
     }
    },
    {
@@ -5471,12 +5471,181 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 0"
     }
    },
    {
     "box": {
      "id": "obj-260",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1626,
+      1158,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      554,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-261",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1626,
+      1208,
+      90.0,
+      18.0
+     ],
+     "text": "5 to 2000 ms",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      604,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-262",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      1276,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-263",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1536,
+      1302,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-264",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      1158,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-265",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1536,
+      1228,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-266",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      1252,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-267",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1536,
+      1184,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-268",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5499,7 +5668,7 @@
    },
    {
     "box": {
-     "id": "obj-261",
+     "id": "obj-269",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5537,7 +5706,7 @@
    },
    {
     "box": {
-     "id": "obj-262",
+     "id": "obj-270",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5561,7 +5730,7 @@
    },
    {
     "box": {
-     "id": "obj-263",
+     "id": "obj-271",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5579,7 +5748,7 @@
    },
    {
     "box": {
-     "id": "obj-264",
+     "id": "obj-272",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5595,7 +5764,7 @@
    },
    {
     "box": {
-     "id": "obj-265",
+     "id": "obj-273",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5613,7 +5782,7 @@
    },
    {
     "box": {
-     "id": "obj-266",
+     "id": "obj-274",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5632,7 +5801,7 @@
    },
    {
     "box": {
-     "id": "obj-267",
+     "id": "obj-275",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5650,7 +5819,7 @@
    },
    {
     "box": {
-     "id": "obj-268",
+     "id": "obj-276",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5668,7 +5837,7 @@
    },
    {
     "box": {
-     "id": "obj-269",
+     "id": "obj-277",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5706,7 +5875,7 @@
    },
    {
     "box": {
-     "id": "obj-270",
+     "id": "obj-278",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5730,7 +5899,7 @@
    },
    {
     "box": {
-     "id": "obj-271",
+     "id": "obj-279",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5748,7 +5917,7 @@
    },
    {
     "box": {
-     "id": "obj-272",
+     "id": "obj-280",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5764,7 +5933,7 @@
    },
    {
     "box": {
-     "id": "obj-273",
+     "id": "obj-281",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5782,7 +5951,7 @@
    },
    {
     "box": {
-     "id": "obj-274",
+     "id": "obj-282",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5801,7 +5970,7 @@
    },
    {
     "box": {
-     "id": "obj-275",
+     "id": "obj-283",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5819,7 +5988,7 @@
    },
    {
     "box": {
-     "id": "obj-276",
+     "id": "obj-284",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5837,7 +6006,7 @@
    },
    {
     "box": {
-     "id": "obj-277",
+     "id": "obj-285",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -5875,7 +6044,7 @@
    },
    {
     "box": {
-     "id": "obj-278",
+     "id": "obj-286",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5899,7 +6068,7 @@
    },
    {
     "box": {
-     "id": "obj-279",
+     "id": "obj-287",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5917,7 +6086,7 @@
    },
    {
     "box": {
-     "id": "obj-280",
+     "id": "obj-288",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -5933,7 +6102,7 @@
    },
    {
     "box": {
-     "id": "obj-281",
+     "id": "obj-289",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5951,7 +6120,7 @@
    },
    {
     "box": {
-     "id": "obj-282",
+     "id": "obj-290",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -5970,7 +6139,7 @@
    },
    {
     "box": {
-     "id": "obj-283",
+     "id": "obj-291",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -5988,7 +6157,7 @@
    },
    {
     "box": {
-     "id": "obj-284",
+     "id": "obj-292",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6006,7 +6175,7 @@
    },
    {
     "box": {
-     "id": "obj-285",
+     "id": "obj-293",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6044,7 +6213,7 @@
    },
    {
     "box": {
-     "id": "obj-286",
+     "id": "obj-294",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6068,7 +6237,7 @@
    },
    {
     "box": {
-     "id": "obj-287",
+     "id": "obj-295",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6086,7 +6255,7 @@
    },
    {
     "box": {
-     "id": "obj-288",
+     "id": "obj-296",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6102,7 +6271,7 @@
    },
    {
     "box": {
-     "id": "obj-289",
+     "id": "obj-297",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6120,7 +6289,7 @@
    },
    {
     "box": {
-     "id": "obj-290",
+     "id": "obj-298",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6139,7 +6308,7 @@
    },
    {
     "box": {
-     "id": "obj-291",
+     "id": "obj-299",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6157,7 +6326,7 @@
    },
    {
     "box": {
-     "id": "obj-292",
+     "id": "obj-300",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6175,7 +6344,7 @@
    },
    {
     "box": {
-     "id": "obj-293",
+     "id": "obj-301",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6213,7 +6382,7 @@
    },
    {
     "box": {
-     "id": "obj-294",
+     "id": "obj-302",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6237,7 +6406,7 @@
    },
    {
     "box": {
-     "id": "obj-295",
+     "id": "obj-303",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6255,7 +6424,7 @@
    },
    {
     "box": {
-     "id": "obj-296",
+     "id": "obj-304",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6271,7 +6440,7 @@
    },
    {
     "box": {
-     "id": "obj-297",
+     "id": "obj-305",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6289,7 +6458,7 @@
    },
    {
     "box": {
-     "id": "obj-298",
+     "id": "obj-306",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6308,7 +6477,7 @@
    },
    {
     "box": {
-     "id": "obj-299",
+     "id": "obj-307",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6326,7 +6495,7 @@
    },
    {
     "box": {
-     "id": "obj-300",
+     "id": "obj-308",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6344,7 +6513,7 @@
    },
    {
     "box": {
-     "id": "obj-301",
+     "id": "obj-309",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6382,7 +6551,7 @@
    },
    {
     "box": {
-     "id": "obj-302",
+     "id": "obj-310",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6406,7 +6575,7 @@
    },
    {
     "box": {
-     "id": "obj-303",
+     "id": "obj-311",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6424,7 +6593,7 @@
    },
    {
     "box": {
-     "id": "obj-304",
+     "id": "obj-312",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6440,7 +6609,7 @@
    },
    {
     "box": {
-     "id": "obj-305",
+     "id": "obj-313",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6458,7 +6627,7 @@
    },
    {
     "box": {
-     "id": "obj-306",
+     "id": "obj-314",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6477,7 +6646,7 @@
    },
    {
     "box": {
-     "id": "obj-307",
+     "id": "obj-315",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6495,7 +6664,7 @@
    },
    {
     "box": {
-     "id": "obj-308",
+     "id": "obj-316",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6513,7 +6682,7 @@
    },
    {
     "box": {
-     "id": "obj-309",
+     "id": "obj-317",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6551,7 +6720,7 @@
    },
    {
     "box": {
-     "id": "obj-310",
+     "id": "obj-318",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6575,7 +6744,7 @@
    },
    {
     "box": {
-     "id": "obj-311",
+     "id": "obj-319",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6593,7 +6762,7 @@
    },
    {
     "box": {
-     "id": "obj-312",
+     "id": "obj-320",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6609,7 +6778,7 @@
    },
    {
     "box": {
-     "id": "obj-313",
+     "id": "obj-321",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6627,7 +6796,7 @@
    },
    {
     "box": {
-     "id": "obj-314",
+     "id": "obj-322",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6646,7 +6815,7 @@
    },
    {
     "box": {
-     "id": "obj-315",
+     "id": "obj-323",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6664,7 +6833,7 @@
    },
    {
     "box": {
-     "id": "obj-316",
+     "id": "obj-324",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6682,7 +6851,7 @@
    },
    {
     "box": {
-     "id": "obj-317",
+     "id": "obj-325",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6720,7 +6889,7 @@
    },
    {
     "box": {
-     "id": "obj-318",
+     "id": "obj-326",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6744,7 +6913,7 @@
    },
    {
     "box": {
-     "id": "obj-319",
+     "id": "obj-327",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6762,7 +6931,7 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-328",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6778,7 +6947,7 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6796,7 +6965,7 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -6815,7 +6984,7 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6833,7 +7002,7 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6851,7 +7020,7 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-333",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6874,7 +7043,7 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-334",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6912,7 +7081,7 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-335",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6936,7 +7105,7 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-336",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6954,7 +7123,7 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6970,7 +7139,7 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -6988,7 +7157,7 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7007,7 +7176,7 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7025,7 +7194,7 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7043,7 +7212,7 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-342",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7081,7 +7250,7 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-343",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7105,7 +7274,7 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-344",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7123,7 +7292,7 @@
    },
    {
     "box": {
-     "id": "obj-337",
+     "id": "obj-345",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7139,7 +7308,7 @@
    },
    {
     "box": {
-     "id": "obj-338",
+     "id": "obj-346",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7157,7 +7326,7 @@
    },
    {
     "box": {
-     "id": "obj-339",
+     "id": "obj-347",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7176,7 +7345,7 @@
    },
    {
     "box": {
-     "id": "obj-340",
+     "id": "obj-348",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7194,7 +7363,7 @@
    },
    {
     "box": {
-     "id": "obj-341",
+     "id": "obj-349",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7212,7 +7381,7 @@
    },
    {
     "box": {
-     "id": "obj-342",
+     "id": "obj-350",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7250,7 +7419,7 @@
    },
    {
     "box": {
-     "id": "obj-343",
+     "id": "obj-351",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7274,7 +7443,7 @@
    },
    {
     "box": {
-     "id": "obj-344",
+     "id": "obj-352",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7292,7 +7461,7 @@
    },
    {
     "box": {
-     "id": "obj-345",
+     "id": "obj-353",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7308,7 +7477,7 @@
    },
    {
     "box": {
-     "id": "obj-346",
+     "id": "obj-354",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7326,7 +7495,7 @@
    },
    {
     "box": {
-     "id": "obj-347",
+     "id": "obj-355",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7345,7 +7514,7 @@
    },
    {
     "box": {
-     "id": "obj-348",
+     "id": "obj-356",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7363,7 +7532,7 @@
    },
    {
     "box": {
-     "id": "obj-349",
+     "id": "obj-357",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7381,7 +7550,7 @@
    },
    {
     "box": {
-     "id": "obj-350",
+     "id": "obj-358",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7419,7 +7588,7 @@
    },
    {
     "box": {
-     "id": "obj-351",
+     "id": "obj-359",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7443,7 +7612,7 @@
    },
    {
     "box": {
-     "id": "obj-352",
+     "id": "obj-360",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7461,7 +7630,7 @@
    },
    {
     "box": {
-     "id": "obj-353",
+     "id": "obj-361",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7477,7 +7646,7 @@
    },
    {
     "box": {
-     "id": "obj-354",
+     "id": "obj-362",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7495,7 +7664,7 @@
    },
    {
     "box": {
-     "id": "obj-355",
+     "id": "obj-363",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7514,7 +7683,7 @@
    },
    {
     "box": {
-     "id": "obj-356",
+     "id": "obj-364",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7532,7 +7701,7 @@
    },
    {
     "box": {
-     "id": "obj-357",
+     "id": "obj-365",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7550,7 +7719,7 @@
    },
    {
     "box": {
-     "id": "obj-358",
+     "id": "obj-366",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7588,7 +7757,7 @@
    },
    {
     "box": {
-     "id": "obj-359",
+     "id": "obj-367",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7612,7 +7781,7 @@
    },
    {
     "box": {
-     "id": "obj-360",
+     "id": "obj-368",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7630,7 +7799,7 @@
    },
    {
     "box": {
-     "id": "obj-361",
+     "id": "obj-369",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7646,7 +7815,7 @@
    },
    {
     "box": {
-     "id": "obj-362",
+     "id": "obj-370",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7664,7 +7833,7 @@
    },
    {
     "box": {
-     "id": "obj-363",
+     "id": "obj-371",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7683,7 +7852,7 @@
    },
    {
     "box": {
-     "id": "obj-364",
+     "id": "obj-372",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7701,7 +7870,7 @@
    },
    {
     "box": {
-     "id": "obj-365",
+     "id": "obj-373",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7719,7 +7888,7 @@
    },
    {
     "box": {
-     "id": "obj-366",
+     "id": "obj-374",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7757,7 +7926,7 @@
    },
    {
     "box": {
-     "id": "obj-367",
+     "id": "obj-375",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7781,7 +7950,7 @@
    },
    {
     "box": {
-     "id": "obj-368",
+     "id": "obj-376",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7799,7 +7968,7 @@
    },
    {
     "box": {
-     "id": "obj-369",
+     "id": "obj-377",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7815,7 +7984,7 @@
    },
    {
     "box": {
-     "id": "obj-370",
+     "id": "obj-378",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7833,7 +8002,7 @@
    },
    {
     "box": {
-     "id": "obj-371",
+     "id": "obj-379",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -7852,7 +8021,7 @@
    },
    {
     "box": {
-     "id": "obj-372",
+     "id": "obj-380",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7870,7 +8039,7 @@
    },
    {
     "box": {
-     "id": "obj-373",
+     "id": "obj-381",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7888,7 +8057,7 @@
    },
    {
     "box": {
-     "id": "obj-374",
+     "id": "obj-382",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7926,7 +8095,7 @@
    },
    {
     "box": {
-     "id": "obj-375",
+     "id": "obj-383",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7950,7 +8119,7 @@
    },
    {
     "box": {
-     "id": "obj-376",
+     "id": "obj-384",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -7968,7 +8137,7 @@
    },
    {
     "box": {
-     "id": "obj-377",
+     "id": "obj-385",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7984,7 +8153,7 @@
    },
    {
     "box": {
-     "id": "obj-378",
+     "id": "obj-386",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8002,7 +8171,7 @@
    },
    {
     "box": {
-     "id": "obj-379",
+     "id": "obj-387",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8021,7 +8190,7 @@
    },
    {
     "box": {
-     "id": "obj-380",
+     "id": "obj-388",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8039,7 +8208,7 @@
    },
    {
     "box": {
-     "id": "obj-381",
+     "id": "obj-389",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8057,7 +8226,7 @@
    },
    {
     "box": {
-     "id": "obj-382",
+     "id": "obj-390",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8095,7 +8264,7 @@
    },
    {
     "box": {
-     "id": "obj-383",
+     "id": "obj-391",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8119,7 +8288,7 @@
    },
    {
     "box": {
-     "id": "obj-384",
+     "id": "obj-392",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8137,7 +8306,7 @@
    },
    {
     "box": {
-     "id": "obj-385",
+     "id": "obj-393",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8153,7 +8322,7 @@
    },
    {
     "box": {
-     "id": "obj-386",
+     "id": "obj-394",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8171,7 +8340,7 @@
    },
    {
     "box": {
-     "id": "obj-387",
+     "id": "obj-395",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8190,7 +8359,7 @@
    },
    {
     "box": {
-     "id": "obj-388",
+     "id": "obj-396",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8208,7 +8377,7 @@
    },
    {
     "box": {
-     "id": "obj-389",
+     "id": "obj-397",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8226,7 +8395,7 @@
    },
    {
     "box": {
-     "id": "obj-390",
+     "id": "obj-398",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8249,7 +8418,7 @@
    },
    {
     "box": {
-     "id": "obj-391",
+     "id": "obj-399",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8287,7 +8456,7 @@
    },
    {
     "box": {
-     "id": "obj-392",
+     "id": "obj-400",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8311,7 +8480,7 @@
    },
    {
     "box": {
-     "id": "obj-393",
+     "id": "obj-401",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8329,7 +8498,7 @@
    },
    {
     "box": {
-     "id": "obj-394",
+     "id": "obj-402",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8345,7 +8514,7 @@
    },
    {
     "box": {
-     "id": "obj-395",
+     "id": "obj-403",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8363,7 +8532,7 @@
    },
    {
     "box": {
-     "id": "obj-396",
+     "id": "obj-404",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8382,7 +8551,7 @@
    },
    {
     "box": {
-     "id": "obj-397",
+     "id": "obj-405",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8400,7 +8569,7 @@
    },
    {
     "box": {
-     "id": "obj-398",
+     "id": "obj-406",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8418,7 +8587,7 @@
    },
    {
     "box": {
-     "id": "obj-399",
+     "id": "obj-407",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8456,7 +8625,7 @@
    },
    {
     "box": {
-     "id": "obj-400",
+     "id": "obj-408",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8480,7 +8649,7 @@
    },
    {
     "box": {
-     "id": "obj-401",
+     "id": "obj-409",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8498,7 +8667,7 @@
    },
    {
     "box": {
-     "id": "obj-402",
+     "id": "obj-410",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8514,7 +8683,7 @@
    },
    {
     "box": {
-     "id": "obj-403",
+     "id": "obj-411",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8532,7 +8701,7 @@
    },
    {
     "box": {
-     "id": "obj-404",
+     "id": "obj-412",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8551,7 +8720,7 @@
    },
    {
     "box": {
-     "id": "obj-405",
+     "id": "obj-413",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8569,7 +8738,7 @@
    },
    {
     "box": {
-     "id": "obj-406",
+     "id": "obj-414",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8587,7 +8756,7 @@
    },
    {
     "box": {
-     "id": "obj-407",
+     "id": "obj-415",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8625,7 +8794,7 @@
    },
    {
     "box": {
-     "id": "obj-408",
+     "id": "obj-416",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8649,7 +8818,7 @@
    },
    {
     "box": {
-     "id": "obj-409",
+     "id": "obj-417",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8667,7 +8836,7 @@
    },
    {
     "box": {
-     "id": "obj-410",
+     "id": "obj-418",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8683,7 +8852,7 @@
    },
    {
     "box": {
-     "id": "obj-411",
+     "id": "obj-419",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8701,7 +8870,7 @@
    },
    {
     "box": {
-     "id": "obj-412",
+     "id": "obj-420",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8720,7 +8889,7 @@
    },
    {
     "box": {
-     "id": "obj-413",
+     "id": "obj-421",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8738,7 +8907,7 @@
    },
    {
     "box": {
-     "id": "obj-414",
+     "id": "obj-422",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8756,7 +8925,7 @@
    },
    {
     "box": {
-     "id": "obj-415",
+     "id": "obj-423",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8794,7 +8963,7 @@
    },
    {
     "box": {
-     "id": "obj-416",
+     "id": "obj-424",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8818,7 +8987,7 @@
    },
    {
     "box": {
-     "id": "obj-417",
+     "id": "obj-425",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8836,7 +9005,7 @@
    },
    {
     "box": {
-     "id": "obj-418",
+     "id": "obj-426",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8852,7 +9021,7 @@
    },
    {
     "box": {
-     "id": "obj-419",
+     "id": "obj-427",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8870,7 +9039,7 @@
    },
    {
     "box": {
-     "id": "obj-420",
+     "id": "obj-428",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -8889,7 +9058,7 @@
    },
    {
     "box": {
-     "id": "obj-421",
+     "id": "obj-429",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8907,7 +9076,7 @@
    },
    {
     "box": {
-     "id": "obj-422",
+     "id": "obj-430",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -8925,7 +9094,7 @@
    },
    {
     "box": {
-     "id": "obj-423",
+     "id": "obj-431",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8948,7 +9117,7 @@
    },
    {
     "box": {
-     "id": "obj-424",
+     "id": "obj-432",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8986,7 +9155,7 @@
    },
    {
     "box": {
-     "id": "obj-425",
+     "id": "obj-433",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9010,7 +9179,7 @@
    },
    {
     "box": {
-     "id": "obj-426",
+     "id": "obj-434",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9028,7 +9197,7 @@
    },
    {
     "box": {
-     "id": "obj-427",
+     "id": "obj-435",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9044,7 +9213,7 @@
    },
    {
     "box": {
-     "id": "obj-428",
+     "id": "obj-436",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9062,7 +9231,7 @@
    },
    {
     "box": {
-     "id": "obj-429",
+     "id": "obj-437",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9081,7 +9250,7 @@
    },
    {
     "box": {
-     "id": "obj-430",
+     "id": "obj-438",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9099,7 +9268,7 @@
    },
    {
     "box": {
-     "id": "obj-431",
+     "id": "obj-439",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9117,7 +9286,7 @@
    },
    {
     "box": {
-     "id": "obj-432",
+     "id": "obj-440",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9155,7 +9324,7 @@
    },
    {
     "box": {
-     "id": "obj-433",
+     "id": "obj-441",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9179,7 +9348,7 @@
    },
    {
     "box": {
-     "id": "obj-434",
+     "id": "obj-442",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9197,7 +9366,7 @@
    },
    {
     "box": {
-     "id": "obj-435",
+     "id": "obj-443",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9213,7 +9382,7 @@
    },
    {
     "box": {
-     "id": "obj-436",
+     "id": "obj-444",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9231,7 +9400,7 @@
    },
    {
     "box": {
-     "id": "obj-437",
+     "id": "obj-445",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9250,7 +9419,7 @@
    },
    {
     "box": {
-     "id": "obj-438",
+     "id": "obj-446",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9268,7 +9437,7 @@
    },
    {
     "box": {
-     "id": "obj-439",
+     "id": "obj-447",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9286,7 +9455,7 @@
    },
    {
     "box": {
-     "id": "obj-440",
+     "id": "obj-448",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9309,7 +9478,7 @@
    },
    {
     "box": {
-     "id": "obj-441",
+     "id": "obj-449",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9347,7 +9516,7 @@
    },
    {
     "box": {
-     "id": "obj-442",
+     "id": "obj-450",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9371,7 +9540,7 @@
    },
    {
     "box": {
-     "id": "obj-443",
+     "id": "obj-451",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9389,7 +9558,7 @@
    },
    {
     "box": {
-     "id": "obj-444",
+     "id": "obj-452",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9405,7 +9574,7 @@
    },
    {
     "box": {
-     "id": "obj-445",
+     "id": "obj-453",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9423,7 +9592,7 @@
    },
    {
     "box": {
-     "id": "obj-446",
+     "id": "obj-454",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9442,7 +9611,7 @@
    },
    {
     "box": {
-     "id": "obj-447",
+     "id": "obj-455",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9460,7 +9629,7 @@
    },
    {
     "box": {
-     "id": "obj-448",
+     "id": "obj-456",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9478,7 +9647,7 @@
    },
    {
     "box": {
-     "id": "obj-449",
+     "id": "obj-457",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9516,7 +9685,7 @@
    },
    {
     "box": {
-     "id": "obj-450",
+     "id": "obj-458",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9540,7 +9709,7 @@
    },
    {
     "box": {
-     "id": "obj-451",
+     "id": "obj-459",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9558,7 +9727,7 @@
    },
    {
     "box": {
-     "id": "obj-452",
+     "id": "obj-460",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9574,7 +9743,7 @@
    },
    {
     "box": {
-     "id": "obj-453",
+     "id": "obj-461",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9592,7 +9761,7 @@
    },
    {
     "box": {
-     "id": "obj-454",
+     "id": "obj-462",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9611,7 +9780,7 @@
    },
    {
     "box": {
-     "id": "obj-455",
+     "id": "obj-463",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9629,7 +9798,7 @@
    },
    {
     "box": {
-     "id": "obj-456",
+     "id": "obj-464",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9647,7 +9816,7 @@
    },
    {
     "box": {
-     "id": "obj-457",
+     "id": "obj-465",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9685,7 +9854,7 @@
    },
    {
     "box": {
-     "id": "obj-458",
+     "id": "obj-466",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9709,7 +9878,7 @@
    },
    {
     "box": {
-     "id": "obj-459",
+     "id": "obj-467",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9727,7 +9896,7 @@
    },
    {
     "box": {
-     "id": "obj-460",
+     "id": "obj-468",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9743,7 +9912,7 @@
    },
    {
     "box": {
-     "id": "obj-461",
+     "id": "obj-469",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9761,7 +9930,7 @@
    },
    {
     "box": {
-     "id": "obj-462",
+     "id": "obj-470",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9780,7 +9949,7 @@
    },
    {
     "box": {
-     "id": "obj-463",
+     "id": "obj-471",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9798,7 +9967,7 @@
    },
    {
     "box": {
-     "id": "obj-464",
+     "id": "obj-472",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9816,7 +9985,7 @@
    },
    {
     "box": {
-     "id": "obj-465",
+     "id": "obj-473",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9854,7 +10023,7 @@
    },
    {
     "box": {
-     "id": "obj-466",
+     "id": "obj-474",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9878,7 +10047,7 @@
    },
    {
     "box": {
-     "id": "obj-467",
+     "id": "obj-475",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9896,7 +10065,7 @@
    },
    {
     "box": {
-     "id": "obj-468",
+     "id": "obj-476",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9912,7 +10081,7 @@
    },
    {
     "box": {
-     "id": "obj-469",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9930,7 +10099,7 @@
    },
    {
     "box": {
-     "id": "obj-470",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -9949,7 +10118,7 @@
    },
    {
     "box": {
-     "id": "obj-471",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9967,7 +10136,7 @@
    },
    {
     "box": {
-     "id": "obj-472",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -9985,7 +10154,7 @@
    },
    {
     "box": {
-     "id": "obj-473",
+     "id": "obj-481",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10008,7 +10177,7 @@
    },
    {
     "box": {
-     "id": "obj-474",
+     "id": "obj-482",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10046,7 +10215,7 @@
    },
    {
     "box": {
-     "id": "obj-475",
+     "id": "obj-483",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10070,7 +10239,7 @@
    },
    {
     "box": {
-     "id": "obj-476",
+     "id": "obj-484",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10088,7 +10257,7 @@
    },
    {
     "box": {
-     "id": "obj-477",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10104,7 +10273,7 @@
    },
    {
     "box": {
-     "id": "obj-478",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10122,7 +10291,7 @@
    },
    {
     "box": {
-     "id": "obj-479",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10141,7 +10310,7 @@
    },
    {
     "box": {
-     "id": "obj-480",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10159,7 +10328,7 @@
    },
    {
     "box": {
-     "id": "obj-481",
+     "id": "obj-489",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10177,7 +10346,7 @@
    },
    {
     "box": {
-     "id": "obj-482",
+     "id": "obj-490",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10215,7 +10384,7 @@
    },
    {
     "box": {
-     "id": "obj-483",
+     "id": "obj-491",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10239,7 +10408,7 @@
    },
    {
     "box": {
-     "id": "obj-484",
+     "id": "obj-492",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10257,7 +10426,7 @@
    },
    {
     "box": {
-     "id": "obj-485",
+     "id": "obj-493",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10273,7 +10442,7 @@
    },
    {
     "box": {
-     "id": "obj-486",
+     "id": "obj-494",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10291,7 +10460,7 @@
    },
    {
     "box": {
-     "id": "obj-487",
+     "id": "obj-495",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10310,7 +10479,7 @@
    },
    {
     "box": {
-     "id": "obj-488",
+     "id": "obj-496",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10328,7 +10497,7 @@
    },
    {
     "box": {
-     "id": "obj-489",
+     "id": "obj-497",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10346,7 +10515,7 @@
    },
    {
     "box": {
-     "id": "obj-490",
+     "id": "obj-498",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10384,7 +10553,7 @@
    },
    {
     "box": {
-     "id": "obj-491",
+     "id": "obj-499",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10408,7 +10577,7 @@
    },
    {
     "box": {
-     "id": "obj-492",
+     "id": "obj-500",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10426,7 +10595,7 @@
    },
    {
     "box": {
-     "id": "obj-493",
+     "id": "obj-501",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10442,7 +10611,7 @@
    },
    {
     "box": {
-     "id": "obj-494",
+     "id": "obj-502",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10460,7 +10629,7 @@
    },
    {
     "box": {
-     "id": "obj-495",
+     "id": "obj-503",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10479,7 +10648,7 @@
    },
    {
     "box": {
-     "id": "obj-496",
+     "id": "obj-504",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10497,7 +10666,7 @@
    },
    {
     "box": {
-     "id": "obj-497",
+     "id": "obj-505",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10515,7 +10684,7 @@
    },
    {
     "box": {
-     "id": "obj-498",
+     "id": "obj-506",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10553,7 +10722,7 @@
    },
    {
     "box": {
-     "id": "obj-499",
+     "id": "obj-507",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10577,7 +10746,7 @@
    },
    {
     "box": {
-     "id": "obj-500",
+     "id": "obj-508",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10595,7 +10764,7 @@
    },
    {
     "box": {
-     "id": "obj-501",
+     "id": "obj-509",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10611,7 +10780,7 @@
    },
    {
     "box": {
-     "id": "obj-502",
+     "id": "obj-510",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10629,7 +10798,7 @@
    },
    {
     "box": {
-     "id": "obj-503",
+     "id": "obj-511",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10648,7 +10817,7 @@
    },
    {
     "box": {
-     "id": "obj-504",
+     "id": "obj-512",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10666,7 +10835,7 @@
    },
    {
     "box": {
-     "id": "obj-505",
+     "id": "obj-513",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10684,7 +10853,7 @@
    },
    {
     "box": {
-     "id": "obj-506",
+     "id": "obj-514",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10707,7 +10876,7 @@
    },
    {
     "box": {
-     "id": "obj-507",
+     "id": "obj-515",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10745,7 +10914,7 @@
    },
    {
     "box": {
-     "id": "obj-508",
+     "id": "obj-516",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10769,7 +10938,7 @@
    },
    {
     "box": {
-     "id": "obj-509",
+     "id": "obj-517",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10787,7 +10956,7 @@
    },
    {
     "box": {
-     "id": "obj-510",
+     "id": "obj-518",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10803,7 +10972,7 @@
    },
    {
     "box": {
-     "id": "obj-511",
+     "id": "obj-519",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10821,7 +10990,7 @@
    },
    {
     "box": {
-     "id": "obj-512",
+     "id": "obj-520",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -10840,7 +11009,7 @@
    },
    {
     "box": {
-     "id": "obj-513",
+     "id": "obj-521",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10858,7 +11027,7 @@
    },
    {
     "box": {
-     "id": "obj-514",
+     "id": "obj-522",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10876,7 +11045,7 @@
    },
    {
     "box": {
-     "id": "obj-515",
+     "id": "obj-523",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10914,7 +11083,7 @@
    },
    {
     "box": {
-     "id": "obj-516",
+     "id": "obj-524",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10938,7 +11107,7 @@
    },
    {
     "box": {
-     "id": "obj-517",
+     "id": "obj-525",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10956,7 +11125,7 @@
    },
    {
     "box": {
-     "id": "obj-518",
+     "id": "obj-526",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10972,7 +11141,7 @@
    },
    {
     "box": {
-     "id": "obj-519",
+     "id": "obj-527",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -10990,7 +11159,7 @@
    },
    {
     "box": {
-     "id": "obj-520",
+     "id": "obj-528",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
@@ -11009,7 +11178,7 @@
    },
    {
     "box": {
-     "id": "obj-521",
+     "id": "obj-529",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -11027,7 +11196,7 @@
    },
    {
     "box": {
-     "id": "obj-522",
+     "id": "obj-530",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
@@ -11045,12 +11214,181 @@
    },
    {
     "box": {
-     "id": "obj-523",
+     "id": "obj-531",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
       1246,
+      2014,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/body/width",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/width",
+       "parameter_shortname": "width",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      946,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-532",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1246,
+      2064,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      996,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-533",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      2132,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-534",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1156,
+      2158,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-535",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      2014,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-536",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      1156,
+      2084,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-537",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      2108,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-538",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      1156,
+      2040,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.3"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-539",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1436,
       2014,
       90.0,
       48.0
@@ -11074,7 +11412,7 @@
      },
      "presentation": 1,
      "presentation_rect": [
-      688,
+      800,
       946,
       104,
       48
@@ -11083,12 +11421,12 @@
    },
    {
     "box": {
-     "id": "obj-524",
+     "id": "obj-540",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1246,
+      1436,
       2064,
       90.0,
       18.0
@@ -11098,7 +11436,7 @@
      "fontsize": 9.0,
      "presentation": 1,
      "presentation_rect": [
-      688,
+      800,
       996,
       104,
       22
@@ -11107,12 +11445,12 @@
    },
    {
     "box": {
-     "id": "obj-525",
+     "id": "obj-541",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
+      1346,
       2132,
       170.0,
       22
@@ -11125,12 +11463,12 @@
    },
    {
     "box": {
-     "id": "obj-526",
+     "id": "obj-542",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
+      1346,
       2158,
       84.0,
       22
@@ -11141,12 +11479,12 @@
    },
    {
     "box": {
-     "id": "obj-527",
+     "id": "obj-543",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
+      1346,
       2014,
       63.0,
       22
@@ -11159,12 +11497,12 @@
    },
    {
     "box": {
-     "id": "obj-528",
+     "id": "obj-544",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
+      1346,
       2084,
       170.0,
       22
@@ -11178,12 +11516,12 @@
    },
    {
     "box": {
-     "id": "obj-529",
+     "id": "obj-545",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
+      1346,
       2108,
       77.0,
       22
@@ -11196,12 +11534,12 @@
    },
    {
     "box": {
-     "id": "obj-530",
+     "id": "obj-546",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
+      1346,
       2040,
       86.0,
       22
@@ -11214,22 +11552,22 @@
    },
    {
     "box": {
-     "id": "obj-531",
+     "id": "obj-547",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      1984,
-      98.0,
+      16,
+      2198,
+      84.0,
       22
      ],
-     "text": "engine",
+     "text": "room",
      "fontface": 1,
      "presentation": 1,
      "presentation_rect": [
-      800,
-      924,
+      16,
+      1022,
       224,
       22
      ]
@@ -11237,13 +11575,1050 @@
    },
    {
     "box": {
-     "id": "obj-532",
+     "id": "obj-548",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      2014,
+      106,
+      2228,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/room/size",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/size",
+       "parameter_shortname": "size",
+       "parameter_mmin": 2.0,
+       "parameter_mmax": 40.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f m"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      1044,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-549",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      106,
+      2278,
+      90.0,
+      18.0
+     ],
+     "text": "2 to 40 m",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      1094,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-550",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16,
+      2346,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/size"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-551",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      2372,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-552",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16,
+      2228,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-553",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      16,
+      2298,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/size"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-554",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16,
+      2322,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-555",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16,
+      2254,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 5"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-556",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      296,
+      2228,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/room/decay",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/decay",
+       "parameter_shortname": "decay",
+       "parameter_mmin": 0.1,
+       "parameter_mmax": 10.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f s"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      1044,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-557",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      296,
+      2278,
+      90.0,
+      18.0
+     ],
+     "text": "0.1 to 10 s",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      1094,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-558",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      206,
+      2346,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/decay"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-559",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      206,
+      2372,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-560",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      206,
+      2228,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-561",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      206,
+      2298,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/decay"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-562",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      206,
+      2322,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-563",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      206,
+      2254,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.4"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-564",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      486,
+      2228,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/room/damping",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/damping",
+       "parameter_shortname": "damping",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1044,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-565",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      486,
+      2278,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1094,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-566",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      396,
+      2346,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-567",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      396,
+      2372,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-568",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      396,
+      2228,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-569",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      396,
+      2298,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-570",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      396,
+      2322,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-571",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      396,
+      2254,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.4"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-572",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      676,
+      2228,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/room/level",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/level",
+       "parameter_shortname": "level",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1044,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-573",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      676,
+      2278,
+      90.0,
+      18.0
+     ],
+     "text": "0 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1094,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-574",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      2346,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-575",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      586,
+      2372,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-576",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      2228,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-577",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      586,
+      2298,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-578",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      2322,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-579",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      586,
+      2254,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.15"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-580",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      866,
+      2228,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/room/distance",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/distance",
+       "parameter_shortname": "distance",
+       "parameter_mmin": 1.0,
+       "parameter_mmax": 20.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f m"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      1044,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-581",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      866,
+      2278,
+      90.0,
+      18.0
+     ],
+     "text": "1 to 20 m",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      1094,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-582",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      2346,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/distance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-583",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      776,
+      2372,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-584",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      2228,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-585",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      776,
+      2298,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/distance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-586",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      2322,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-587",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      776,
+      2254,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 2"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-588",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1056,
+      2228,
+      90.0,
+      48.0
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "varname": "/room/pan",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/pan",
+       "parameter_shortname": "pan",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     },
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1044,
+      104,
+      48
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-589",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1056,
+      2278,
+      90.0,
+      18.0
+     ],
+     "text": "-1 to 1",
+     "textjustification": 1,
+     "fontsize": 9.0,
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1094,
+      104,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-590",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      966,
+      2346,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/pan"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-591",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      966,
+      2372,
+      84.0,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-592",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      966,
+      2228,
+      63.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-593",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      966,
+      2298,
+      170.0,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/pan"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-594",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      966,
+      2322,
+      77.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-595",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      966,
+      2254,
+      86.0,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-596",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      1156,
+      2198,
+      98.0,
+      22
+     ],
+     "text": "engine",
+     "fontface": 1,
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      1022,
+      224,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-597",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      1246,
+      2228,
       90.0,
       48.0
      ],
@@ -11266,8 +12641,8 @@
      },
      "presentation": 1,
      "presentation_rect": [
-      800,
-      946,
+      688,
+      1044,
       104,
       48
      ]
@@ -11275,13 +12650,13 @@
    },
    {
     "box": {
-     "id": "obj-533",
+     "id": "obj-598",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1436,
-      2064,
+      1246,
+      2278,
       90.0,
       18.0
      ],
@@ -11290,8 +12665,8 @@
      "fontsize": 9.0,
      "presentation": 1,
      "presentation_rect": [
-      800,
-      996,
+      688,
+      1094,
       104,
       22
      ]
@@ -11299,13 +12674,13 @@
    },
    {
     "box": {
-     "id": "obj-534",
+     "id": "obj-599",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2132,
+      1156,
+      2346,
       170.0,
       22
      ],
@@ -11317,13 +12692,13 @@
    },
    {
     "box": {
-     "id": "obj-535",
+     "id": "obj-600",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      2158,
+      1156,
+      2372,
       84.0,
       22
      ],
@@ -11333,13 +12708,13 @@
    },
    {
     "box": {
-     "id": "obj-536",
+     "id": "obj-601",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2014,
+      1156,
+      2228,
       63.0,
       22
      ],
@@ -11351,13 +12726,13 @@
    },
    {
     "box": {
-     "id": "obj-537",
+     "id": "obj-602",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      2084,
+      1156,
+      2298,
       170.0,
       22
      ],
@@ -11370,13 +12745,13 @@
    },
    {
     "box": {
-     "id": "obj-538",
+     "id": "obj-603",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2108,
+      1156,
+      2322,
       77.0,
       22
      ],
@@ -11388,13 +12763,13 @@
    },
    {
     "box": {
-     "id": "obj-539",
+     "id": "obj-604",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2040,
+      1156,
+      2254,
       86.0,
       22
      ],
@@ -11406,13 +12781,13 @@
    },
    {
     "box": {
-     "id": "obj-540",
+     "id": "obj-605",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1626,
-      2014,
+      1436,
+      2228,
       90.0,
       48.0
      ],
@@ -11435,8 +12810,8 @@
      },
      "presentation": 1,
      "presentation_rect": [
-      912,
-      946,
+      800,
+      1044,
       104,
       48
      ]
@@ -11444,13 +12819,13 @@
    },
    {
     "box": {
-     "id": "obj-541",
+     "id": "obj-606",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1626,
-      2064,
+      1436,
+      2278,
       90.0,
       18.0
      ],
@@ -11459,8 +12834,8 @@
      "fontsize": 9.0,
      "presentation": 1,
      "presentation_rect": [
-      912,
-      996,
+      800,
+      1094,
       104,
       22
      ]
@@ -11468,13 +12843,13 @@
    },
    {
     "box": {
-     "id": "obj-542",
+     "id": "obj-607",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      2132,
+      1346,
+      2346,
       170.0,
       22
      ],
@@ -11486,13 +12861,13 @@
    },
    {
     "box": {
-     "id": "obj-543",
+     "id": "obj-608",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1536,
-      2158,
+      1346,
+      2372,
       84.0,
       22
      ],
@@ -11502,13 +12877,13 @@
    },
    {
     "box": {
-     "id": "obj-544",
+     "id": "obj-609",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      2014,
+      1346,
+      2228,
       63.0,
       22
      ],
@@ -11520,13 +12895,13 @@
    },
    {
     "box": {
-     "id": "obj-545",
+     "id": "obj-610",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1536,
-      2084,
+      1346,
+      2298,
       170.0,
       22
      ],
@@ -11539,13 +12914,13 @@
    },
    {
     "box": {
-     "id": "obj-546",
+     "id": "obj-611",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      2108,
+      1346,
+      2322,
       77.0,
       22
      ],
@@ -11557,13 +12932,13 @@
    },
    {
     "box": {
-     "id": "obj-547",
+     "id": "obj-612",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      2040,
+      1346,
+      2254,
       86.0,
       22
      ],
@@ -14217,7 +15592,20 @@
    {
     "patchline": {
      "source": [
-      "obj-261",
+      "obj-260",
+      0
+     ],
+     "destination": [
+      "obj-262",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-262",
       0
      ],
      "destination": [
@@ -14230,11 +15618,11 @@
    {
     "patchline": {
      "source": [
-      "obj-263",
+      "obj-264",
       0
      ],
      "destination": [
-      "obj-264",
+      "obj-265",
       0
      ],
      "order": 0
@@ -14260,7 +15648,7 @@
       0
      ],
      "destination": [
-      "obj-267",
+      "obj-260",
       0
      ],
      "order": 0
@@ -14273,20 +15661,7 @@
       0
      ],
      "destination": [
-      "obj-261",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-268",
-      0
-     ],
-     "destination": [
-      "obj-261",
+      "obj-260",
       0
      ],
      "order": 0
@@ -14841,7 +16216,20 @@
    {
     "patchline": {
      "source": [
-      "obj-326",
+      "obj-325",
+      0
+     ],
+     "destination": [
+      "obj-327",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-327",
       0
      ],
      "destination": [
@@ -14854,11 +16242,11 @@
    {
     "patchline": {
      "source": [
-      "obj-328",
+      "obj-329",
       0
      ],
      "destination": [
-      "obj-329",
+      "obj-330",
       0
      ],
      "order": 0
@@ -14884,7 +16272,7 @@
       0
      ],
      "destination": [
-      "obj-332",
+      "obj-325",
       0
      ],
      "order": 0
@@ -14897,20 +16285,7 @@
       0
      ],
      "destination": [
-      "obj-326",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-333",
-      0
-     ],
-     "destination": [
-      "obj-326",
+      "obj-325",
       0
      ],
      "order": 0
@@ -15465,7 +16840,20 @@
    {
     "patchline": {
      "source": [
-      "obj-391",
+      "obj-390",
+      0
+     ],
+     "destination": [
+      "obj-392",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-392",
       0
      ],
      "destination": [
@@ -15478,11 +16866,11 @@
    {
     "patchline": {
      "source": [
-      "obj-393",
+      "obj-394",
       0
      ],
      "destination": [
-      "obj-394",
+      "obj-395",
       0
      ],
      "order": 0
@@ -15508,7 +16896,7 @@
       0
      ],
      "destination": [
-      "obj-397",
+      "obj-390",
       0
      ],
      "order": 0
@@ -15521,20 +16909,7 @@
       0
      ],
      "destination": [
-      "obj-391",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-398",
-      0
-     ],
-     "destination": [
-      "obj-391",
+      "obj-390",
       0
      ],
      "order": 0
@@ -15777,7 +17152,20 @@
    {
     "patchline": {
      "source": [
-      "obj-424",
+      "obj-423",
+      0
+     ],
+     "destination": [
+      "obj-425",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-425",
       0
      ],
      "destination": [
@@ -15790,11 +17178,11 @@
    {
     "patchline": {
      "source": [
-      "obj-426",
+      "obj-427",
       0
      ],
      "destination": [
-      "obj-427",
+      "obj-428",
       0
      ],
      "order": 0
@@ -15820,7 +17208,7 @@
       0
      ],
      "destination": [
-      "obj-430",
+      "obj-423",
       0
      ],
      "order": 0
@@ -15833,20 +17221,7 @@
       0
      ],
      "destination": [
-      "obj-424",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-431",
-      0
-     ],
-     "destination": [
-      "obj-424",
+      "obj-423",
       0
      ],
      "order": 0
@@ -15933,7 +17308,20 @@
    {
     "patchline": {
      "source": [
-      "obj-441",
+      "obj-440",
+      0
+     ],
+     "destination": [
+      "obj-442",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-442",
       0
      ],
      "destination": [
@@ -15946,11 +17334,11 @@
    {
     "patchline": {
      "source": [
-      "obj-443",
+      "obj-444",
       0
      ],
      "destination": [
-      "obj-444",
+      "obj-445",
       0
      ],
      "order": 0
@@ -15976,7 +17364,7 @@
       0
      ],
      "destination": [
-      "obj-447",
+      "obj-440",
       0
      ],
      "order": 0
@@ -15989,20 +17377,7 @@
       0
      ],
      "destination": [
-      "obj-441",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-448",
-      0
-     ],
-     "destination": [
-      "obj-441",
+      "obj-440",
       0
      ],
      "order": 0
@@ -16245,7 +17620,20 @@
    {
     "patchline": {
      "source": [
-      "obj-474",
+      "obj-473",
+      0
+     ],
+     "destination": [
+      "obj-475",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-475",
       0
      ],
      "destination": [
@@ -16258,11 +17646,11 @@
    {
     "patchline": {
      "source": [
-      "obj-476",
+      "obj-477",
       0
      ],
      "destination": [
-      "obj-477",
+      "obj-478",
       0
      ],
      "order": 0
@@ -16288,7 +17676,7 @@
       0
      ],
      "destination": [
-      "obj-480",
+      "obj-473",
       0
      ],
      "order": 0
@@ -16301,20 +17689,7 @@
       0
      ],
      "destination": [
-      "obj-474",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-481",
-      0
-     ],
-     "destination": [
-      "obj-474",
+      "obj-473",
       0
      ],
      "order": 0
@@ -16557,7 +17932,20 @@
    {
     "patchline": {
      "source": [
-      "obj-507",
+      "obj-506",
+      0
+     ],
+     "destination": [
+      "obj-508",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-508",
       0
      ],
      "destination": [
@@ -16570,11 +17958,11 @@
    {
     "patchline": {
      "source": [
-      "obj-509",
+      "obj-510",
       0
      ],
      "destination": [
-      "obj-510",
+      "obj-511",
       0
      ],
      "order": 0
@@ -16600,7 +17988,7 @@
       0
      ],
      "destination": [
-      "obj-513",
+      "obj-506",
       0
      ],
      "order": 0
@@ -16613,20 +18001,7 @@
       0
      ],
      "destination": [
-      "obj-507",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-514",
-      0
-     ],
-     "destination": [
-      "obj-507",
+      "obj-506",
       0
      ],
      "order": 0
@@ -16791,7 +18166,20 @@
    {
     "patchline": {
      "source": [
-      "obj-532",
+      "obj-531",
+      0
+     ],
+     "destination": [
+      "obj-533",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-533",
       0
      ],
      "destination": [
@@ -16804,11 +18192,11 @@
    {
     "patchline": {
      "source": [
-      "obj-534",
+      "obj-535",
       0
      ],
      "destination": [
-      "obj-535",
+      "obj-536",
       0
      ],
      "order": 0
@@ -16834,7 +18222,7 @@
       0
      ],
      "destination": [
-      "obj-538",
+      "obj-531",
       0
      ],
      "order": 0
@@ -16847,7 +18235,7 @@
       0
      ],
      "destination": [
-      "obj-532",
+      "obj-531",
       0
      ],
      "order": 0
@@ -16860,7 +18248,7 @@
       0
      ],
      "destination": [
-      "obj-532",
+      "obj-541",
       0
      ],
      "order": 0
@@ -16869,7 +18257,7 @@
    {
     "patchline": {
      "source": [
-      "obj-540",
+      "obj-541",
       0
      ],
      "destination": [
@@ -16882,11 +18270,11 @@
    {
     "patchline": {
      "source": [
-      "obj-542",
-      0
-     ],
-     "destination": [
       "obj-543",
+      0
+     ],
+     "destination": [
+      "obj-544",
       0
      ],
      "order": 0
@@ -16912,7 +18300,7 @@
       0
      ],
      "destination": [
-      "obj-546",
+      "obj-539",
       0
      ],
      "order": 0
@@ -16925,7 +18313,7 @@
       0
      ],
      "destination": [
-      "obj-540",
+      "obj-539",
       0
      ],
      "order": 0
@@ -16934,11 +18322,622 @@
    {
     "patchline": {
      "source": [
-      "obj-547",
+      "obj-548",
       0
      ],
      "destination": [
-      "obj-540",
+      "obj-550",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-550",
+      0
+     ],
+     "destination": [
+      "obj-551",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-552",
+      0
+     ],
+     "destination": [
+      "obj-553",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-553",
+      0
+     ],
+     "destination": [
+      "obj-554",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-554",
+      0
+     ],
+     "destination": [
+      "obj-548",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-555",
+      0
+     ],
+     "destination": [
+      "obj-548",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-556",
+      0
+     ],
+     "destination": [
+      "obj-558",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-558",
+      0
+     ],
+     "destination": [
+      "obj-559",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-560",
+      0
+     ],
+     "destination": [
+      "obj-561",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-561",
+      0
+     ],
+     "destination": [
+      "obj-562",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-562",
+      0
+     ],
+     "destination": [
+      "obj-556",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-563",
+      0
+     ],
+     "destination": [
+      "obj-556",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-564",
+      0
+     ],
+     "destination": [
+      "obj-566",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-566",
+      0
+     ],
+     "destination": [
+      "obj-567",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-568",
+      0
+     ],
+     "destination": [
+      "obj-569",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-569",
+      0
+     ],
+     "destination": [
+      "obj-570",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-570",
+      0
+     ],
+     "destination": [
+      "obj-564",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-571",
+      0
+     ],
+     "destination": [
+      "obj-564",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-572",
+      0
+     ],
+     "destination": [
+      "obj-574",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-574",
+      0
+     ],
+     "destination": [
+      "obj-575",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-576",
+      0
+     ],
+     "destination": [
+      "obj-577",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-577",
+      0
+     ],
+     "destination": [
+      "obj-578",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-578",
+      0
+     ],
+     "destination": [
+      "obj-572",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-579",
+      0
+     ],
+     "destination": [
+      "obj-572",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-580",
+      0
+     ],
+     "destination": [
+      "obj-582",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-582",
+      0
+     ],
+     "destination": [
+      "obj-583",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-584",
+      0
+     ],
+     "destination": [
+      "obj-585",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-585",
+      0
+     ],
+     "destination": [
+      "obj-586",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-586",
+      0
+     ],
+     "destination": [
+      "obj-580",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-587",
+      0
+     ],
+     "destination": [
+      "obj-580",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-588",
+      0
+     ],
+     "destination": [
+      "obj-590",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-590",
+      0
+     ],
+     "destination": [
+      "obj-591",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-592",
+      0
+     ],
+     "destination": [
+      "obj-593",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-593",
+      0
+     ],
+     "destination": [
+      "obj-594",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-594",
+      0
+     ],
+     "destination": [
+      "obj-588",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-595",
+      0
+     ],
+     "destination": [
+      "obj-588",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-597",
+      0
+     ],
+     "destination": [
+      "obj-599",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-599",
+      0
+     ],
+     "destination": [
+      "obj-600",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-601",
+      0
+     ],
+     "destination": [
+      "obj-602",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-602",
+      0
+     ],
+     "destination": [
+      "obj-603",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-603",
+      0
+     ],
+     "destination": [
+      "obj-597",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-604",
+      0
+     ],
+     "destination": [
+      "obj-597",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-605",
+      0
+     ],
+     "destination": [
+      "obj-607",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-607",
+      0
+     ],
+     "destination": [
+      "obj-608",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-609",
+      0
+     ],
+     "destination": [
+      "obj-610",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-610",
+      0
+     ],
+     "destination": [
+      "obj-611",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-611",
+      0
+     ],
+     "destination": [
+      "obj-605",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-612",
+      0
+     ],
+     "destination": [
+      "obj-605",
       0
      ],
      "order": 0

@@ -22,10 +22,10 @@ import numpy as np
 from yehu_server.physics import kernel
 from yehu_server.physics.bridge import advance_bridge
 from yehu_server.physics.quantities import Quantities
-from yehu_server.render import Options, Performance
+from yehu_server.rendering import Options, Performance
 from yehu_server.score.gesture import Gesture, gesture_from
-from yehu_server.score.smf import read_score
-from yehu_server.simulate import simulate
+from yehu_server.score.smf.reader import read_score
+from yehu_server.simulation import simulate
 
 ROOT = Path(__file__).resolve().parent.parent
 BLUE, RED, GREY = "#1f5fa8", "#c03a2b", "0.6"
@@ -244,7 +244,8 @@ def picture(folder: Path) -> None:
     top.annotate("bridge", (0.303, -0.35), fontsize=9)
     top.set(xlim=(0, 0.38), ylim=(-0.9, 0.9), ylabel="mm", yticks=(-0.5, 0, 0.5))
     score = read_score(ROOT / "examples" / "shi_bei_jiu.mid")
-    played = np.concatenate(list(Performance(score, Options()).blocks()))
+    options = Options(is_dry=True, is_mono=True)
+    played = np.concatenate(list(Performance(score, options).blocks()))
     draw_spectrogram(bottom, played[: 12 * 44100], 44100.0)
     bottom.set(xlabel="s")
     save(figure, folder / "yehu.png")

@@ -22,10 +22,11 @@ from measures.life import HOP_S, WINDOW_S, pitch_track
 
 from yehu_server.player.calibration import frequency_hz
 from yehu_server.playing.style import Style
-from yehu_server.render import Options, Performance
+from yehu_server.rendering import Options, Performance
 from yehu_server.score.phrasing import phrased
+from yehu_server.score.score import Score, ScoreEvent
 from yehu_server.score.score_notes import notes_of
-from yehu_server.score.smf import Score, ScoreEvent, read_score
+from yehu_server.score.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parent.parent
 RATE = 44100
@@ -61,7 +62,7 @@ def sound_of(score: Score, *, alive: bool) -> Any:
     """Return the sound of a score, as plain as can be or at the defaults of `render`."""
     style = Style() if alive else Style(settings=STILL)
     amount = PHRASING if alive else 0.0
-    options = Options(rate=RATE, style=style, phrasing=amount)
+    options = Options(rate=RATE, style=style, phrasing=amount, is_dry=True, is_mono=True)
     performance = Performance(phrased(score, amount), options)
     return np.concatenate(list(performance.blocks())).astype(float)
 

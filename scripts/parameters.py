@@ -18,7 +18,8 @@ def page() -> str:
     lines = [
         "# Parameters",
         "",
-        "Written by `scripts/parameters.py` from `yehu_server/params/table.py`.",
+        "Every parameter of the instrument: its address, range and default, and what it does.",
+        "`scripts/parameters.py` writes this page from `yehu_server/params/table.py`.",
         "",
         (
             "`--set ADDRESS=VALUE` of `render` and `serve` holds any of them; "

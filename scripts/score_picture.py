@@ -29,8 +29,9 @@ from yehu_server.player.calibration import frequency_hz
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.messages import PERCUSSION
 from yehu_server.playing.style import Style
-from yehu_server.render import Options, Performance
-from yehu_server.score.smf import Score, read_score
+from yehu_server.rendering import Options, Performance
+from yehu_server.score.score import Score
+from yehu_server.score.smf.reader import read_score
 
 Array = Any
 
@@ -320,7 +321,11 @@ def share(some: Sequence[Any], of_all: Sequence[Any]) -> str:
 def score_picture(arguments: argparse.Namespace) -> None:
     """Play the score, print the summary and write the picture."""
     options = Options(
-        rate=arguments.rate, style=Style(mapping=load(arguments.mapping)), block=BLOCK
+        rate=arguments.rate,
+        style=Style(mapping=load(arguments.mapping)),
+        block=BLOCK,
+        is_dry=True,
+        is_mono=True,
     )
     score = read_score(arguments.midi)
     if not arguments.begin < arguments.end:

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
+
+
+def alone(rate: float, *, memory: object = None, channels: int = 1, **how: object) -> Ensemble:
+    """An ensemble of one instrument, without a room."""
+
+    def make(place: object) -> Instrument:
+        return Instrument(rate, memory=place, **how)
+
+    return Ensemble([make], channels=channels, has_room=False, memory=memory)
 
 
 def bow(instrument: Instrument, press: float = 0.0, frame: int = 0) -> None:
@@ -16,7 +26,7 @@ def bow(instrument: Instrument, press: float = 0.0, frame: int = 0) -> None:
     instrument.write("/bow/speed", 0.2, frame=frame, ramp_ms=40.0)
 
 
-def run(instrument: Instrument, frames: int, block: int = 0) -> np.ndarray:
+def run(instrument: Instrument | Ensemble, frames: int, block: int = 0) -> np.ndarray:
     """The next frames of an instrument, in blocks of one size, or in one."""
     out = np.zeros(frames, np.float32)
     for start in range(0, frames, block or frames):
@@ -24,7 +34,7 @@ def run(instrument: Instrument, frames: int, block: int = 0) -> np.ndarray:
     return out
 
 
-def run_for(instrument: Instrument, seconds: float, block: int = 0) -> np.ndarray:
+def run_for(instrument: Instrument | Ensemble, seconds: float, block: int = 0) -> np.ndarray:
     return run(instrument, round(seconds * instrument.rate), block)
 
 

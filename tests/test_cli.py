@@ -23,6 +23,7 @@ import yehu_server
 from yehu_server.audio.file import sound_file
 
 ROOT = Path(__file__).resolve().parents[1]
+FULL = Path("/dev/full")
 EXAMPLE = {
     "duration": 0.05,
     "controls": {"bow_force": 0.5, "bow_velocity": [[0, 0.0], [0.03, 0.2]]},
@@ -101,9 +102,9 @@ def test_each_command_has_help_with_examples(command, name, expected):
 
 
 COMMANDS = (
-    *("serve", "build", "devices", "learn", "mappings", "page", "practise", "presets"),
-    *("render", "replay", "simulate", "surfaces", "sweep"),
-    *("mappings show", "mappings convert", "presets check"),
+    *("serve", "body", "build", "dataset", "devices", "learn", "mappings", "page", "practise"),
+    *("presets", "render", "replay", "score", "simulate", "surfaces", "sweep"),
+    *("body fit", "mappings show", "mappings convert", "presets check"),
 )
 
 
@@ -452,7 +453,7 @@ def test_an_output_that_cannot_be_written_is_found_before_anything_is_compiled(
 @pytest.mark.parametrize(
     "words",
     [
-        ("render", "tune.mid", "-o"),
+        ("render", "tune.mid", "-o", "x.wav", "--plot"),
         ("replay", "take.jsonl", "-o"),
         ("simulate", "gesture.json", "-o"),
         ("sweep", "gesture.json", "--vary", "bow_force=1", "-o"),
@@ -539,7 +540,7 @@ def test_a_simulation_without_memory_says_so(refused, gesture, out, monkeypatch)
     def no_memory(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("yehu_server.simulate.simulate", no_memory)
+    monkeypatch.setattr("yehu_server.simulation.simulate", no_memory)
     refused("simulate", gesture, "-o", out / "x.npz")
     assert not list(out.iterdir())
 
@@ -551,3 +552,13 @@ def test_a_whole_run_in_a_process_of_its_own(tune, out):
     sound, rate = soundfile.read(out / "x.wav")
     assert json.loads(stdout)["duration_s"] == len(sound) / rate
     assert np.abs(sound).max() > 0.01
+
+
+@pytest.mark.skipif(not FULL.exists(), reason="Linux has a file that is full")
+@pytest.mark.parametrize("words", [("presets", "list"), ("--help",)])
+def test_a_full_standard_output_is_told_in_one_line(words):
+    with FULL.open("w") as full, start(*words, stdout=full) as process:
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert is_one_line(said)
+    assert "standard output: No space left on device" in said

@@ -19,12 +19,13 @@ from pages import PACKAGE, PAGES, ROOT, Page, page
 
 from yehu_server.cli import _parser, main
 from yehu_server.control.calls import CALLS, PREFIX
+from yehu_server.control.part_status import PART_STATUS
 from yehu_server.control.status import STATUS
 from yehu_server.params.table import TABLE, UNIT
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 OURS = ("yehu-server", "scripts/yehu")
-FOREIGN = (".venv/bin/pytest", "open-stage-control")
+FOREIGN = (".venv/bin/pytest", ".venv/bin/mkdocs", "open-stage-control")
 # What the table of parameters will know once the example of CONTRIBUTING.md is followed.
 EXAMPLE = "/bow/turn"
 
@@ -226,7 +227,7 @@ def test_what_the_example_changes_stands_in_the_code(block):
 def addresses() -> set[str]:
     """Every address there is, and what is above it."""
     found = {EXAMPLE, *(param.address for param in TABLE), *(call.address for call in CALLS)}
-    found |= {f"/status/{row.name}" for row in STATUS} | {"/status/NAME"}
+    found |= {f"/status/{row.name}" for row in (*STATUS, *PART_STATUS)} | {"/status/NAME"}
     for file in (PACKAGE / "control").glob("*.py"):  # what is answered
         found |= set(re.findall(r'["}](/[a-z/]+)"', file.read_text(encoding="utf-8")))
     groups = {"/" + "/".join(address.split("/")[1:depth]) for address in found for depth in (2, 3)}
@@ -236,7 +237,10 @@ def addresses() -> set[str]:
 def is_known(address: str) -> bool:
     """Whether there is an address, as it is written with ``/yehu`` or without."""
     plain = address.removeprefix(PREFIX).removesuffix(".moved").removesuffix(UNIT)
-    return plain.removesuffix("/...") in addresses() | {""}
+    known = addresses() | {""}
+    if below := re.fullmatch(r"/part/(?:N|\d+|\*)(/.*)?", plain):
+        plain, known = (below[1] or "").removesuffix("/"), known | {"/fader1", "/NAME"}
+    return plain.removesuffix("/...") in known
 
 
 @each_page

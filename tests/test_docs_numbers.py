@@ -15,19 +15,21 @@ from yehu_server.audio import recorder, wav
 from yehu_server.cli import _parser
 from yehu_server.control import (
     backlog,
+    calls,
     clients,
     learn_calls,
     listening,
-    osc,
     packets,
+    part_calls,
     peers,
     preset_calls,
     schedule,
     sockets,
+    telling,
     web,
     web_sockets,
 )
-from yehu_server.engine import mailbox, native, output, telemetry
+from yehu_server.engine import mailbox, output, telemetry
 from yehu_server.files import MAX_LINE_BYTES
 from yehu_server.params.table import find
 from yehu_server.physics import grid, layout
@@ -43,6 +45,7 @@ from yehu_server.playing import (
 )
 from yehu_server.playing.calibrations import SHIPPED
 from yehu_server.score import capture, capture_format, gesture
+from yehu_server.stage.record import TAPE
 from yehu_server.surfaces import layout as panel
 from yehu_server.surfaces import max as max_patch
 from yehu_server.surfaces import stage
@@ -66,7 +69,7 @@ def heard_after_ms(frames: int) -> float:
     return frames / 48.0 + delay.HANDLING_MS
 
 
-TAPE_S = words(native.TAPE // 48000)
+TAPE_S = words(TAPE // 48000)
 WINDOW_S = telemetry.AHEAD_WINDOW_S
 FINGER = FingerQuantities()
 
@@ -104,9 +107,9 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
     "docs/osc.md": {
         "listens at {}, by UDP": (SERVED.osc,),
         "every change, at most {:g} times a second": (1.0 / clients.FLUSH_S,),
-        "Lasts {:g} s by default": (osc.SUBSCRIBED_S,),
-        "by default and {} at most": (TIMES[osc.LONGEST_SUBSCRIPTION_S],),
-        "VALUE`, at most {:g} times a second": (1.0 / clients.STATUS_S,),
+        "Lasts {:g} s by default": (part_calls.SUBSCRIBED_S,),
+        "by default and {} at most": (TIMES[calls.LONGEST_SUBSCRIPTION_S],),
+        "VALUE`, at most {:g} times a second": (1.0 / telling.STATUS_S,),
         "Listens for {}": (TIMES[learn_calls.PATIENCE_S],),
         "REASON`, at most {:g} times": (clients.ERRORS_A_SECOND,),
         "{} presets can be saved at once and then {} a second": (
@@ -125,7 +128,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
             peers.ANSWERED_BYTES_A_SECOND // KB,
         ),
         "does not read | {} kB": (peers.MOST_UNSENT_BYTES // KB,),
-        "{} messages at a time, {:g} times": (clients.MOST_TOLD, 1.0 / clients.FLUSH_S),
+        "{} messages at a time, {:g} times": (telling.MOST_TOLD, 1.0 / clients.FLUSH_S),
         "| subscribers | {}, {} of one host |": (
             clients.MOST_SUBSCRIBERS,
             clients.MOST_OF_A_HOST,
@@ -143,7 +146,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
         "answers at http://{} by": (SERVED.http,),
         "at most {:g} times a second, status values {:g} times": (
             1.0 / clients.FLUSH_S,
-            1.0 / clients.STATUS_S,
+            1.0 / telling.STATUS_S,
         ),
         "not fit in {} kB": (peers.MOST_UNSENT_BYTES // KB,),
         "At most {} WebSockets are open": (web.MOST_WEB_SOCKETS,),
@@ -161,7 +164,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
         "WAV has 32-bit {}s, FLAC {} bits": (recorder.SUBTYPES["wav"], recorder.SUBTYPES["flac"]),
         "({:.0f} GiB: {:.0f} hours at 48 kHz)": (
             wav.WAV_LIMIT / GB,
-            wav.WAV_LIMIT / (4 * 48000 * 3600),
+            wav.WAV_LIMIT / (recorder.CHANNELS * 4 * 48000 * 3600),
         ),
         "no room for {} second of sound": (words(recorder.ROOM_S),),
         "the last {} seconds are kept": (TAPE_S,),

@@ -16,7 +16,8 @@ from yehu_server.playing.presets import read_preset
 from yehu_server.playing.tuning import read_tuning
 from yehu_server.score.capture import read_capture
 from yehu_server.score.gesture import read_gesture
-from yehu_server.score.smf import read_score
+from yehu_server.score.musicxml.reader import read_musicxml
+from yehu_server.score.smf.reader import read_score
 
 SERVE = _parser().parse_args(["serve"]).command
 READERS = {
@@ -30,6 +31,7 @@ READERS = {
     "s.scl": lambda path: read_tuning(path, None),
     "c.jsonl": read_capture,
     "s.mid": read_score,
+    "s.musicxml": read_musicxml,
 }
 CONTENTS = {
     "nothing": b"\0",
@@ -102,6 +104,7 @@ def test_what_is_refused_by_the_reader_is_one_line_of_the_command(tmp_path, caps
         "c.jsonl": ["replay", "FILE", "-o", str(tmp_path / "x.wav")],
         "g.json": ["simulate", "FILE", "-o", str(tmp_path / "x.npz")],
         "s.mid": ["render", "FILE", "-o", str(tmp_path / "x.wav")],
+        "s.musicxml": ["score", "show", "FILE"],
     }.items():
         for path in (tmp_path / name, Path("/dev/zero"), tmp_path):
             (tmp_path / name).write_bytes(b"[" * 100_000)

@@ -14,18 +14,35 @@ from yehu_server.audio.output import OutputOptions
 from yehu_server.cli import main
 from yehu_server.control.packets import pack
 from yehu_server.playing.mapping import load
-from yehu_server.server import ServeOptions, Server
+from yehu_server.playing.style import Style
+from yehu_server.server import PartOptions, ServeOptions, Server
+
+PLAIN, WIND = (PartOptions(Style(mapping=load(name))) for name in ("keyboard", "wind"))
+
+
+@contextlib.contextmanager
+def served(folder, parts):
+    output = OutputOptions(device="null", blocksize=128)
+    how = {"osc": ("127.0.0.1", 0), "midi": None, "recordings": folder, "parts": parts}
+    server = Server(ServeOptions(output=output, **how), lambda _line: None)
+    server.start()
+    yield server
+    server.stop()
 
 
 @pytest.fixture
 def server(config_home, tmp_path):
     del config_home
-    output = OutputOptions(device="null", blocksize=128)
-    options = ServeOptions(output=output, osc=("127.0.0.1", 0), midi=None, recordings=tmp_path)
-    server = Server(options, lambda _line: None)
-    server.start()
-    yield server
-    server.stop()
+    with served(tmp_path, [PLAIN]) as server:
+        yield server
+
+
+@pytest.fixture
+def duo(config_home, tmp_path):
+    """A server of two players, each with a mapping of their own."""
+    del config_home
+    with served(tmp_path, [PLAIN, WIND]) as server:
+        yield server
 
 
 @pytest.fixture
@@ -71,6 +88,31 @@ def test_what_was_learned_is_forgotten(server, at, capsys):
     assert main(["learn", "--forget", "/playing/vibrato", *at]) == 0
     assert "/playing/vibrato: 1 forgotten" in capsys.readouterr().out
     assert not load("mine/keyboard").of("/my/fader")
+
+
+def test_what_a_part_moves_is_learned_by_its_mapping_alone(duo, capsys):
+    at = ("--server", f"127.0.0.1:{duo.osc.port}")
+    with a_fader_that_moves(duo):
+        assert main(["learn", "--part", "2", "/playing/vibrato", *at]) == 0
+    assert "/my/fader moves /yehu/part/2/playing/vibrato" in capsys.readouterr().out
+    first, second = (player.mapping for player in duo.players)
+    assert [bind.target for bind in second.of("/my/fader")] == ["/playing/vibrato"]
+    assert not first.of("/my/fader")
+    assert load("mine/wind") == second
+    assert main(["learn", "--part", "2", "--forget", "/playing/vibrato", *at]) == 0
+    assert "/playing/vibrato: 1 forgotten" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--part", "3", "/playing/vibrato"], "no part 3: there are parts 1 to 2"),
+        (["--part", "2", "/room/size"], "/room/size is one for all parts"),
+        (["--part", "0", "/playing/vibrato"], "0 is not 1 or more"),
+    ],
+)
+def test_a_part_that_is_not_there_or_a_parameter_of_all_is_told(duo, refused, words, reason):
+    assert reason in refused("learn", *words, "--server", f"127.0.0.1:{duo.osc.port}")
 
 
 @pytest.mark.parametrize(

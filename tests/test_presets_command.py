@@ -140,5 +140,5 @@ def test_the_gain_asked_for_wins_over_a_presets(rendered, tmp_path):
 
 def test_a_preset_that_there_is_not_is_named(refused, tmp_path):
     words = ("render", tmp_path / "in.mid", "-o", tmp_path / "out.wav", "--preset")
-    assert "no preset 'nothing' (there are: flautando" in refused(*words, "nothing")
+    assert "no preset 'nothing' (there are: courtyard" in refused(*words, "nothing")
     assert "none.toml: No such file" in refused(*words, tmp_path / "none.toml")

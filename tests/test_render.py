@@ -1,4 +1,7 @@
-"""``yehu-server render``: MIDI files to sound files, read back."""
+"""``yehu-server render``: MIDI files to sound files, read back.
+
+Here the instrument is alone: one channel, no room. The stage is in test_render_stage.py.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +19,9 @@ from scores import midi_file, notes
 from sound import rms
 
 from yehu_server.playing.style import Style
-from yehu_server.render import Options, Performance, render
-from yehu_server.score.smf import concatenate, read_score
+from yehu_server.rendering import Options, Performance, render
+from yehu_server.score.score import Score, concatenate
+from yehu_server.score.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parents[1]
 TUNE = ROOT / "examples" / "shi_bei_jiu.mid"
@@ -50,11 +54,11 @@ def phrase(midi) -> Path:
 
 @pytest.fixture
 def play(command, tmp_path):
-    """Render with `--json`; return the summary and the samples of the file."""
+    """Render with `--json`, dry and mono; return the summary and the samples of the file."""
 
     def run(*words: object, target: str = "out.wav") -> tuple[dict, np.ndarray]:
         path = tmp_path / target
-        code, out, err = command("render", *words, "-o", path, "--json")
+        code, out, err = command("render", *words, "-o", path, "--dry", "--mono", "--json")
         assert code == 0, err
         return json.loads(out), soundfile.read(path)[0]
 
@@ -64,8 +68,11 @@ def play(command, tmp_path):
 def samples(path: Path, **options) -> np.ndarray:
     """The sound of a score, before it is written to a file."""
     style = Style(**{name: options.pop(name) for name in ("seed", "settings") if name in options})
-    blocks = Performance(read_score(path), Options(style=style, **options)).blocks()
-    return np.concatenate(list(blocks))
+    return played(read_score(path), Options(style=style, is_dry=True, is_mono=True, **options))
+
+
+def played(score: Score, options: Options) -> np.ndarray:
+    return np.concatenate(list(Performance(score, options).blocks()))
 
 
 # ---------------------------------------------------------------- the tune that ships
@@ -424,7 +431,7 @@ def test_a_pedal_or_fade_at_the_end_of_one_file_does_not_reach_the_next(midi):
 
     def second_half(path: Path) -> np.ndarray:
         score = concatenate([read_score(path), read_score(plain)])
-        sound = np.concatenate(list(Performance(score, Options()).blocks()))
+        sound = played(score, Options(is_dry=True, is_mono=True))
         return sound[round(0.6 * 44100) : round(0.75 * 44100)]
 
     expected, heard = second_half(plain), second_half(moved)

@@ -14,7 +14,7 @@ from scipy.signal import lfilter
 from yehu_server.cli import main
 from yehu_server.errors import OutputError, ParameterError, ScoreError
 from yehu_server.score.gesture import gesture_from, read_gesture
-from yehu_server.simulate import simulate
+from yehu_server.simulation import simulate
 
 BODY = Path(__file__).resolve().parents[1] / "yehu_server" / "physics" / "body.json"
 GESTURE = {

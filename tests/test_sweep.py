@@ -1,4 +1,4 @@
-"""``yehu-server sweep``: variations of a gesture, simulated on all cores."""
+"""``yehu-server sweep``: studies and varied gestures, on all cores, and their pictures."""
 
 from __future__ import annotations
 
@@ -7,15 +7,12 @@ import json
 import numpy as np
 import pytest
 
-from yehu_server import sweep as sweeping
 from yehu_server.cli import main
-from yehu_server.errors import ParameterError
-from yehu_server.score.gesture import gesture_from
-from yehu_server.simulate import simulate
-from yehu_server.sweep import axis_of, sweep, variations
+from yehu_server.simulation import simulate
+from yehu_server.sweeps.result import Result
 
 GESTURE = {
-    "duration": 0.15,
+    "duration": 0.1,
     "controls": {
         "bow_force": [[0, 0.0], [0.02, 0.7]],
         "bow_velocity": [[0, 0.0], [0.03, 0.2]],
@@ -23,174 +20,176 @@ GESTURE = {
         "press_force": 1.5,
     },
 }
+STUDY = """
+about = "Light and heavy"
+duration = 0.1
+[stroke]
+note = 72
+acceleration = 20.0
+[vary]
+force = { from = 0.1, to = 1.0, steps = 3, spread = "log" }
+position = [0.1, 0.16]
+"""
 
 
 @pytest.fixture
 def gesture(tmp_path):
     file = tmp_path / "gesture.json"
     file.write_text(json.dumps(GESTURE))
-    return file
-
-
-@pytest.mark.parametrize(
-    ("text", "path", "values"),
-    [
-        ("bow_force=0.1,2", ("controls", "bow_force"), (0.1, 2.0)),
-        ("controls.bow_force=-1e-1", ("controls", "bow_force"), (-0.1,)),
-        ("instrument.bow.epsilon_0=1e4:3e4:3", ("instrument", "bow", "epsilon_0"), (1e4, 2e4, 3e4)),
-        ("duration=0.1", ("duration",), (0.1,)),
-    ],
-)
-def test_an_axis_is_a_name_and_values(text, path, values):
-    axis = axis_of(text)
-    assert axis.path == path
-    assert axis.values == pytest.approx(values)
-
-
-@pytest.mark.parametrize(
-    "text",
-    ["bow_force", "=1", "bow_force=", "bow_force=1:2", "bow_force=1:2:1", "a..b=1", "x=1:2:z"],
-)
-def test_what_is_no_axis_is_refused(text):
-    with pytest.raises(ParameterError):
-        axis_of(text)
-
-
-def test_every_combination_is_run_the_last_axis_changing_fastest():
-    axes = [axis_of("bow_force=0.4,0.7"), axis_of("finger_position=0.08,0.1,0.12")]
-    varied = [values for values, _ in variations(GESTURE, axes)]
-    assert [tuple(values.values()) for values in varied] == [
-        (force, place) for force in (0.4, 0.7) for place in (0.08, 0.1, 0.12)
-    ]
-
-
-def test_a_curve_keeps_its_shape_and_another_entry_is_set():
-    (run,) = variations(GESTURE, [axis_of("bow_force=-1.4"), axis_of("press_force=2")])
-    _, gesture = run
-    assert gesture.controls["bow_force"] == ((0.0, 0.0), (0.02, pytest.approx(-1.4)))
-    assert gesture.controls["press_force"] == ((0.0, 2.0),)
-    assert GESTURE["controls"]["bow_force"] == [[0, 0.0], [0.02, 0.7]]
-
-
-def test_a_run_of_a_sweep_is_the_same_as_alone_to_the_bit(tmp_path):
-    runs = variations(GESTURE, [axis_of("bow_force=0.3:1:5"), axis_of("bow_velocity=0.1,0.2")])
-    rows = sweep(runs, tmp_path / "runs", workers=4)
-    assert [row["varied"] for row in rows] == [varied for varied, _ in runs]
-    assert json.loads((tmp_path / "runs" / "index.json").read_text()) == rows
-    for row, (_, gesture) in zip(rows, runs, strict=True):
-        alone = simulate(gesture)
-        with np.load(tmp_path / "runs" / row["file"]) as file:
-            assert (file["pressure"] == alone.arrays["pressure"]).all()
-
-
-def test_an_index_tells_pitch_and_level(tmp_path):
-    long = GESTURE | {"duration": 0.5}
-    rows = sweep(variations(long, [axis_of("finger_position=0.1,0.13")]), tmp_path, keep=False)
-    low, high = rows
-    assert {path.name for path in tmp_path.iterdir()} == {"index.json"}
-    assert 500.0 < low["pitch_hz"] < high["pitch_hz"] < 640.0
-    assert low["pressure_rms"] > 0.01
-    assert low["lost_states"] == low["unconverged_solves"] == 0
-
-
-def test_a_silent_run_has_no_pitch(tmp_path):
-    (row,) = sweep([({}, gesture_from({}))], tmp_path, keep=False)
-    assert row["pitch_hz"] is None
-    assert row["pressure_rms"] == 0.0
-
-
-def test_the_command_writes_arrays_and_index(gesture, tmp_path, capsys):
-    words = ["sweep", str(gesture), "-o", str(tmp_path / "runs"), "--vary", "bow_force=0.4,0.7"]
-    assert main([*words, "--energy", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["runs"] == 2
-    assert {path.name for path in (tmp_path / "runs").iterdir()} == {"0.npz", "1.npz", "index.json"}
-    with np.load(tmp_path / "runs" / "1.npz") as file:
-        assert np.abs(file["energy_error"]).max() < 1e-9
-
-
-@pytest.mark.parametrize(
-    ("vary", "wrong"),
-    [
-        ("bow_force=99", "bow_force: 99.0 is not within"),
-        ("bow_farce=1", "unknown name 'bow_farce'"),
-        ("instrument.bow.nothing=1", "unknown quantity 'nothing'"),
-        ("duration.x=1", "no such entry"),
-        ("bow_force=1:2:50000", "runs are more than"),
-    ],
-)
-def test_what_cannot_be_varied_is_told_before_anything_runs(gesture, tmp_path, capsys, vary, wrong,
-                                                             monkeypatch):  # fmt: skip
-    monkeypatch.setattr(sweeping, "MOST_RUNS", 40_000)
-    monkeypatch.setattr(sweeping, "_steps", int)
-    assert main(["sweep", str(gesture), "-o", str(tmp_path / "runs"), "--vary", vary]) == 2
-    assert wrong in capsys.readouterr().err
-    assert not (tmp_path / "runs").exists()
+    return str(file)
 
 
 @pytest.fixture
-def swept(gesture, tmp_path):
-    """Sweep into a folder; return the names of the files in it."""
-
-    def run(values: str, *words: str, code: int = 0) -> set[str]:
-        vary = ("--vary", f"bow_force={values}", "--quiet")
-        assert main(["sweep", str(gesture), "-o", str(tmp_path / "runs"), *vary, *words]) == code
-        return {path.name for path in (tmp_path / "runs").iterdir()}
-
-    return run
+def study(tmp_path):
+    file = tmp_path / "study.toml"
+    file.write_text(STUDY)
+    return str(file)
 
 
-def test_a_sweep_before_is_kept_unless_it_may_be_overwritten(swept, tmp_path, capsys):
-    first = swept("0.4,0.5,0.6")
-    (tmp_path / "runs" / "mine.npz").write_text("mine")
-    (tmp_path / "runs" / "notes.txt").write_text("mine")
-    index = (tmp_path / "runs" / "index.json").read_text()
-    assert swept("0.7", code=2) == first | {"mine.npz", "notes.txt"}
-    assert "--overwrite" in capsys.readouterr().err
-    assert (tmp_path / "runs" / "index.json").read_text() == index
-    assert swept("0.7", "--overwrite") == {"0.npz", "index.json", "mine.npz", "notes.txt"}
-    assert swept("0.7", "--overwrite", "--index-only") == {"index.json", "mine.npz", "notes.txt"}
+def test_a_study_makes_one_file(study, tmp_path, capsys):
+    target = tmp_path / "found.npz"
+    assert main(["sweep", study, "-o", str(target), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    result = Result.load(target)
+    assert told["strokes"] == len(result) == 6
+    assert sum(told["regimes"].values()) == 6
+    assert list(result.axes) == ["force", "position"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["found.npz", "study.toml"]
 
 
-def test_what_no_index_tells_of_is_never_removed(swept, tmp_path, capsys):
-    (tmp_path / "runs").mkdir()
-    (tmp_path / "runs" / "07.npz").write_text("of a sweep that was killed")
-    assert swept("0.7", "--overwrite", code=2) == {"07.npz"}
-    assert "07.npz: is in no index" in capsys.readouterr().err
-    (tmp_path / "runs" / "07.npz").unlink()
-    (tmp_path / "runs" / "index.json").write_text("<html>")
-    assert swept("0.7", "--overwrite", code=2) == {"index.json"}
-    assert "is not the index of a sweep" in capsys.readouterr().err
+def test_more_may_be_varied_than_the_study_does(study, tmp_path):
+    words = ["--vary", "speed=0.1,0.3", "--vary", "force=0.5", "--quiet"]
+    assert main(["sweep", study, "-o", str(tmp_path / "found.npz"), *words]) == 0
+    result = Result.load(tmp_path / "found.npz")
+    assert {name: len(values) for name, values in result.axes.items()} == {
+        "force": 1,
+        "position": 2,
+        "speed": 2,
+    }
 
 
-@pytest.mark.parametrize("rows", [[3], [{"file": "../mine.npz"}], [{"file": 3}], []])
-def test_an_index_removes_nothing_but_results(swept, tmp_path, rows):
-    (tmp_path / "runs").mkdir()
-    (tmp_path / "mine.npz").write_text("mine")
-    (tmp_path / "runs" / "index.json").write_text(json.dumps(rows))
-    assert swept("0.7", "--overwrite") == {"0.npz", "index.json"}
-    assert (tmp_path / "mine.npz").exists()
+def test_a_gesture_is_varied_and_its_signals_kept(gesture, tmp_path):
+    target, folder = tmp_path / "found.npz", tmp_path / "runs"
+    words = ["--vary", "bow_force=0.3:1:2", "--vary", "bow_velocity=0.1,0.2", "--quiet"]
+    keep = ["--signals", str(folder), "--energy", "--strings", "100"]
+    assert main(["sweep", gesture, "-o", str(target), *words, *keep]) == 0
+    assert {path.name for path in folder.glob("*.npz")} == {f"{i}.npz" for i in range(4)}
+    study = Result.load(target).study()
+    alone = simulate(study.bow.gesture(study.axes, [1, 0])).arrays
+    with np.load(folder / "2.npz") as file:
+        assert (file["pressure"] == alone["pressure"]).all()
+        assert np.abs(file["energy_error"]).max() < 1e-9
+        assert len(file["strings_time"]) == 45  # 4410 samples, from 0
 
 
-def test_what_is_done_when_a_sweep_is_interrupted_stays_and_is_indexed(gesture, tmp_path):
-    source = json.loads(gesture.read_text())
-    runs = variations(source, [axis_of("bow_force=0.4,0.5,0.6,0.7")])
+def test_signals_of_another_sweep_are_kept_unless_they_may_be_overwritten(
+    gesture, tmp_path, capsys
+):
+    folder = tmp_path / "runs"
 
-    def interrupt(done: float, _total: float) -> None:
-        if done == 2:
-            raise KeyboardInterrupt
+    def run(values, *more):
+        words = ["--vary", f"bow_force={values}", "--signals", str(folder), "--quiet", *more]
+        return main(["sweep", gesture, "-o", str(tmp_path / f"{values}.npz"), *words])
 
-    with pytest.raises(KeyboardInterrupt, match="of 4 runs are in"):
-        sweep(runs, tmp_path / "runs", workers=1, progress=interrupt)
-    rows = json.loads((tmp_path / "runs" / "index.json").read_text())
-    files = {path.name for path in (tmp_path / "runs").glob("*.npz")}
-    assert {row["file"] for row in rows} == files
-    assert len(rows) >= 2
-    assert len(sweep(runs[:1], tmp_path / "runs", overwrite=True)) == 1
-    assert {path.name for path in (tmp_path / "runs").glob("*.npz")} == {"0.npz"}
+    assert run("0.4,0.5") == 0
+    (folder / "mine.npz").write_text("mine")
+    before = (folder / "0.npz").read_bytes()
+    assert run("0.7") == 2
+    assert "signals of another sweep" in capsys.readouterr().err
+    assert (folder / "0.npz").read_bytes() == before
+    assert run("0.7", "--overwrite") == 0
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"0.npz", "mine.npz", "study.json"}
 
 
-def test_a_folder_that_cannot_be_made_is_told(gesture, tmp_path, capsys):
-    (tmp_path / "file").write_text("")
-    words = ["sweep", str(gesture), "-o", str(tmp_path / "file"), "--vary", "bow_force=1"]
-    assert main(words) == 2
+def test_an_earlier_result_is_replaced_only_when_asked(study, tmp_path, capsys):
+    target = tmp_path / "found.npz"
+    target.write_text("mine")
+    assert main(["sweep", study, "-o", str(target)]) == 2
+    assert "--overwrite replaces it" in capsys.readouterr().err
+    assert main(["sweep", study, "-o", str(target), "--overwrite", "--quiet"]) == 0
+    assert len(Result.load(target)) == 6
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong"),
+    [
+        (["--vary", "bow_force=99"], "bow_force: 99.0 is not within"),
+        (["--vary", "bow_farce=1"], "unknown name 'bow_farce'"),
+        (["--vary", "bow_force=1:2"], "expected numbers"),
+        ([], "nothing is varied"),
+    ],
+)
+def test_a_wrong_call_is_told_in_a_line_before_anything_runs(
+    gesture, tmp_path, capsys, words, wrong
+):
+    target = tmp_path / "found.npz"
+    assert main(["sweep", gesture, "-o", str(target), *words]) == 2
+    error = capsys.readouterr().err
+    assert wrong in error
+    assert error.count("\n") == 1
+    assert not target.exists()
+
+
+def test_what_is_wrong_of_signals_is_told_before_anything_runs(study, tmp_path, capsys):
+    refined = tmp_path / "refined.toml"
+    refined.write_text(STUDY + '[refine]\naxes = ["force"]\nlevels = 1\n')
+    words = ["-o", str(tmp_path / "found.npz"), "--signals"]
+    assert main(["sweep", str(refined), *words, str(tmp_path / "runs")]) == 2
+    assert "a study that is refined keeps none" in capsys.readouterr().err
+    assert main(["sweep", study, *words, study]) == 2
     assert "File exists" in capsys.readouterr().err
+
+
+@pytest.fixture
+def found(study, tmp_path):
+    target = tmp_path / "found.npz"
+    assert main(["sweep", study, "-o", str(target), "--quiet"]) == 0
+    return target
+
+
+@pytest.mark.parametrize("column", ["regime", "helmholtz_s", "pitch_hz"])
+def test_a_result_is_drawn(found, tmp_path, column):
+    pytest.importorskip("matplotlib")
+    assert main(["sweep", "show", str(found), "--column", column, "--quiet"]) == 0
+    picture = (tmp_path / "found.png").read_bytes()
+    assert picture.startswith(b"\x89PNG")
+    assert len(picture) > 10_000
+
+
+def test_a_page_is_one_file_that_asks_for_no_other(found, tmp_path, capsys):
+    page = tmp_path / "found.html"
+    assert main(["sweep", "show", str(found), "-o", str(page), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["strokes"] == 6
+    text = page.read_text(encoding="utf-8")
+    assert "<title>Light and heavy</title>" in text
+    assert "http" not in text.replace("http-equiv", "")
+    assert "__" not in text
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong"),
+    [
+        (["show", "none.npz"], "none.npz: No such file"),
+        (["show", "FOUND", "-o", "out.gif"], "name a picture .png, or a page .html"),
+        (["show", "FOUND", "--column", "pitch"], "unknown column 'pitch'"),
+        (["show", "FOUND", "-o", "FOUND"], "name a picture"),
+    ],
+)
+def test_what_cannot_be_drawn_is_told(found, tmp_path, monkeypatch, capsys, words, wrong):
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    words = [str(found) if word == "FOUND" else word for word in words]
+    assert main(["sweep", *words]) == 2
+    error = capsys.readouterr().err
+    assert wrong in error
+    assert error.count("\n") == 1
+    assert found.exists()
+
+
+def test_a_picture_is_not_replaced_unasked(found, tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    (tmp_path / "found.png").write_text("mine")
+    assert main(["sweep", "show", str(found)]) == 2
+    assert "exists" in capsys.readouterr().err
+    assert (tmp_path / "found.png").read_text() == "mine"

@@ -57,6 +57,9 @@ export class Instrument extends EventTarget {
       get frame() {
         return instrument.frame;
       },
+      get people() {
+        return instrument.sound?.people;
+      },
       get rate() {
         return instrument.sound?.status.rate ?? 0;
       },

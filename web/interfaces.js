@@ -16,6 +16,10 @@
  * @property {number} beta distance from the bridge, as a share of the sounding length
  * @property {number} x m from the loop
  *
+ * @typedef {object} Hair
+ * @property {number} place of the string on it, m from the frog
+ * @property {number} length m; 0: it has no ends
+ *
  * @typedef {object} Finger
  * @property {number} x m from the loop
  * @property {number} press N
@@ -29,6 +33,7 @@
  * @property {number} level dBFS
  * @property {[Float32Array, Float32Array]} shape displacement of each string from loop to bridge, m
  * @property {Bow} bow
+ * @property {Hair} hair of the bow
  * @property {Finger[]} fingers those that press
  * @property {number} period s
  * @property {{length: number}} string m, from the loop to the bridge
@@ -55,6 +60,7 @@
  *   fingers moves to
  * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
  *   others set them too
+ * @property {number} [people] most that may play the part; by default one
  * @property {number} [frame] that sounds now, about; else that of the state
  *
  * @typedef {object} Kept

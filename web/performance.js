@@ -9,7 +9,8 @@ import { TABLE, find } from "./playing/table.js";
 import { WISH } from "./sound/kernel.js";
 
 const FORMAT = "yehu-server capture";
-const VERSION = 2;
+const VERSIONS = [2, 3]; // the former has one player, and no numbers of players
+const OWN = 1; // the player of this page, and of a file the one that is played
 const MOST_BYTES = 64 << 20;
 const EVERY = 60; // ms
 const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW } = facts.kinds;
@@ -46,7 +47,7 @@ export class Keeper {
     const answer = await fetch(new URL(`captures/${sound.status.rate}.json`, import.meta.url));
     if (!answer.ok) throw new Error(`${answer.status} ${answer.statusText}`);
     const head = await answer.json();
-    Object.assign(head.values, this.values);
+    Object.assign(head.players[OWN - 1].values, this.values);
     const lines = [head, ...linesOf(kept), { end: kept.to - kept.from }];
     const text = lines.map((line) => `${JSON.stringify(line)}\n`);
     return new Blob(text, { type: "application/jsonl" });
@@ -71,7 +72,7 @@ function linesOf({ from, wishes }) {
  * @param {number} other
  */
 function lineOf(frame, kind, index, value, other) {
-  const line = [frame, NAMES[kind]];
+  const line = [frame, OWN, NAMES[kind]];
   if (kind === RAMP) return [...line, OF_SLOT[index] ?? SILENCE, value, other];
   if (kind === WRITE || kind === HOLD) return [...line, TABLE[index].address, value, other];
   if (kind === EXPRESS) return [...line, TABLE[index].address, value];
@@ -84,7 +85,8 @@ function lineOf(frame, kind, index, value, other) {
  * @typedef {object} Performance
  * @property {number} rate Hz
  * @property {Record<string, number>} values of parameters, at its beginning
- * @property {Wish[]} wishes by frame
+ * @property {Wish[]} wishes of the first player, by frame
+ * @property {number} players how many there are
  */
 
 /**
@@ -95,20 +97,25 @@ function lineOf(frame, kind, index, value, other) {
 export async function readPerformance(file) {
   if (file.size > MOST_BYTES) throw new RangeError("too large");
   const [head, ...lines] = (await file.text()).split("\n").filter((line) => line !== "");
-  const { format, version, rate, values } = JSON.parse(head);
-  if (format !== FORMAT || version !== VERSION || !(rate >= 8000 && rate <= 384000)) {
+  const { format, version, rate, ...begun } = JSON.parse(head);
+  if (format !== FORMAT || !VERSIONS.includes(version) || !(rate >= 8000 && rate <= 384000)) {
     throw new TypeError("another format");
   }
+  const isOld = version === VERSIONS[0];
+  const players = isOld ? [begun] : begun.players;
+  const { values } = players[OWN - 1];
   for (const [address, value] of Object.entries(values)) {
     find(address);
     finite(value);
   }
   const told = lines.map((line) => JSON.parse(line)).filter(Array.isArray); // others are no wishes
-  const wishes = told.map(wishOf);
+  const own = isOld ? told : told.filter(([, player]) => player === OWN);
+  const wishes = own.map(([frame, ...wish]) => wishOf([frame, ...wish.slice(isOld ? 0 : 1)]));
   return {
     rate,
     values: Object.fromEntries(Object.entries(values).filter(([address]) => !find(address).owned)),
     wishes: wishes.sort((one, other) => one.frame - other.frame),
+    players: players.length,
   };
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 _PROSE = re.compile(
@@ -27,6 +28,13 @@ def key_of(sources: Iterable[Path], *more: str) -> str:
     for text in more:
         digest.update(text.encode() + b"\0")
     for path in sources:
-        text = without_prose(path.read_text(encoding="utf-8"))
-        digest.update(path.name.encode() + b"\0" + text.encode() + b"\0")
+        status = path.stat()
+        code = _code(path, status.st_mtime_ns, status.st_size)
+        digest.update(path.name.encode() + b"\0" + code + b"\0")
     return digest.hexdigest()[:16]
+
+
+@cache
+def _code(path: Path, _mtime_ns: int, _size: int) -> bytes:
+    """A file without prose; read once, as long as it does not change."""
+    return without_prose(path.read_text(encoding="utf-8")).encode()

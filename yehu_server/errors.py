@@ -31,6 +31,10 @@ class PresetError(SettingsError):
     """A preset that is missing, wrong, or cannot be read or written."""
 
 
+class EnsembleError(SettingsError):
+    """An ensemble file that cannot be read, is wrong, or does not fit its score."""
+
+
 class RefusedError(YehuError):
     """A message to a server that cannot be done as it is: raised there, and where it was sent."""
 
@@ -45,3 +49,7 @@ class DeviceError(YehuError):
 
 class OutputError(YehuError):
     """A result that cannot be written."""
+
+
+class MeasurementError(YehuError):
+    """A measurement of a body that cannot be read, or cannot be what it is said to be."""

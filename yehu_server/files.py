@@ -95,6 +95,20 @@ def why(error: OSError) -> str:
     return error.strerror or str(error)
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those it is in.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be made: {why(error)}") from error
+
+
 def inside(folder: Path, name: str, ending: str = "") -> Path:
     """The path in a folder for a name that came over the network.
 

@@ -38,17 +38,24 @@ R = TypeVar("R")
 # Sums may be reordered and multiply-adds fused, which lets loops vectorise. NaN and
 # infinity keep their meaning: a lost state has to be seen.
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
+# Of all source that is compiled, or that compiled code reads constants of.
+FOLDERS = (
+    "physics",
+    "params",
+    "controls",
+    "player",
+    "regimes",
+    "stage",
+    "engine",
+    "bitcode",
+)
 
 
 @cache
 def source_hash() -> str:
     """Key of all source that compiled code comes from or reads constants of (16 hex digits)."""
     package = Path(__file__).parent
-    sources = [
-        source
-        for folder in ("physics", "params", "controls", "player", "engine", "bitcode")
-        for source in sorted((package / folder).glob("*.py"))
-    ]
+    sources = [source for folder in FOLDERS for source in sorted((package / folder).glob("*.py"))]
     return key_of(
         [*sources, *(package / f"{name}.py" for name in ("jit", "code_cache", "memory"))],
         numba.__version__,

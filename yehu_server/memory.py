@@ -26,7 +26,7 @@ def _kind(kind: Any) -> Any:
 
 def _plain_carray(address: int, shape: tuple[int, ...], kind: Any) -> Any:
     kind = _kind(kind)
-    room = (ctypes.c_char * (math.prod(shape) * kind.itemsize)).from_address(address)
+    room = (ctypes.c_char * (math.prod(shape) * kind.itemsize)).from_address(int(address))
     return np.frombuffer(room, kind).reshape(shape)
 
 

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from yehu_server.audio.file import sound_file
-from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.errors import ScoreError
 from yehu_server.files import anything
 from yehu_server.score.capture import Capture
+from yehu_server.stage.geometry import EARS
 
 BLOCK = 1024  # frames; the ring holds all wishes that can be fulfilled in one block
 
@@ -35,21 +36,23 @@ class Replayed:
     warnings: list[str]
 
 
-def blocks(capture: Capture, instrument: Instrument) -> Iterator[Any]:
-    """Yield the samples of a capture in blocks [shape=(frames,), float32]."""
+def blocks(capture: Capture, ensemble: Ensemble) -> Iterator[Any]:
+    """Yield the samples of a capture in blocks [shape=(frames, 2), float32]."""
     frames = capture.wishes["frame"]
     borders = merge(range(0, capture.frames, BLOCK), sorted(capture.rests), [capture.frames])
     for start, stop in pairwise(border for border, _ in groupby(borders)):
         if start in capture.rests:
             if capture.version == 1:  # whose notes went on
-                instrument.come_to_rest()
+                ensemble.come_to_rest()
             else:
-                instrument.end_all()
+                ensemble.end_all()
         due = slice(np.searchsorted(frames, start), np.searchsorted(frames, stop))
-        for frame, kind, index, value, other in capture.wishes[due].tolist():
+        wishes, players = capture.wishes[due].tolist(), capture.players[due].tolist()
+        for (frame, kind, index, value, other), player in zip(wishes, players, strict=True):
+            instrument = ensemble.instruments[player]
             instrument.post(kind, frame=frame, index=index, value=value, other=other)
-        samples = np.zeros(stop - start, np.float32)
-        instrument.process(samples)
+        samples = np.zeros((stop - start, EARS), np.float32)
+        ensemble.process(samples)
         for rest, since in capture.rests.items():
             if since < stop and rest > start:
                 samples[max(since - start, 0) : max(rest - start, 0)] = 0.0
@@ -78,11 +81,11 @@ def replay(
         raise ScoreError(
             f"the capture lasts {hours:.3g} hours, more than {max_duration_h:g}: see --max-duration"
         )
-    instrument = capture.beginning.instrument()
+    ensemble = capture.beginning.ensemble()
     start = time.perf_counter()
     rate = round(capture.rate)
-    with sound_file(target, rate, format_name, subtype, may_replace) as file:
-        for samples in blocks(capture, instrument):
+    with sound_file(target, rate, format_name, subtype, may_replace, channels=EARS) as file:
+        for samples in blocks(capture, ensemble):
             file.write(samples)
             if progress is not None:
                 progress(file.frames / capture.rate, capture.frames / capture.rate)
@@ -93,6 +96,6 @@ def replay(
         peak=file.peak,
         rms=file.rms,
         events=len(capture.wishes),
-        lost_states=instrument.lost_states,
+        lost_states=ensemble.lost_states,
         warnings=capture.warnings,
     )

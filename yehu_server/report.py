@@ -17,9 +17,9 @@ from yehu_server.lines import one_line
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.range_policy import RangePolicy
-from yehu_server.render import Summary
+from yehu_server.rendering import PartSummary, Summary
 from yehu_server.replay import Replayed
-from yehu_server.simulate import Simulation
+from yehu_server.simulation import Simulation
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -50,7 +50,10 @@ def render_report(target: Path, summary: Summary) -> str:
         f"{channel + 1} ({counted(notes, 'note')})"
         for channel, notes in summary.notes_by_channel.items()
     )
-    lines.append(f"channels: {heard}" if heard else "no notes to play")
+    if len(summary.parts) > 1 or summary.parts[0].people > 1:
+        lines += map(_part_line, summary.parts)
+    else:
+        lines.append(f"channels: {heard}" if heard else "no notes to play")
     if summary.percussion_notes:
         notes = counted(summary.percussion_notes, "note")
         lines.append(f"channel 10 is percussion: {notes} not played; --channel 10 plays them")
@@ -69,6 +72,14 @@ def render_report(target: Path, summary: Summary) -> str:
             "note: at this sample rate the bow sticks less reliably; a higher --rate is better"
         )
     return "\n".join(lines)
+
+
+def _part_line(part: PartSummary) -> str:
+    side = "middle" if abs(part.pan) < 0.005 else f"{100.0 * abs(part.pan):.0f} % "
+    side += "" if side == "middle" else ("left" if part.pan < 0.0 else "right")
+    place = f"{side}, {part.distance_m:.1f} m"
+    name = one_line(part.name) + (f", {part.people} players" if part.people > 1 else "")
+    return f"{name}: {counted(part.notes_played, 'note')}, {place}"
 
 
 def simulate_report(target: Path, result: Simulation) -> str:

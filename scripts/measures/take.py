@@ -6,7 +6,6 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from ctypes import c_char
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
@@ -14,8 +13,8 @@ from typing import Any
 import mido
 import numpy as np
 
-from yehu_server.engine.instrument import RIG_BYTES, Instrument
-from yehu_server.engine.native import RIG
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.rig import RIG
 from yehu_server.params.table import FINGERS, find
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.calibration import Calibration, wave_speed
@@ -69,8 +68,7 @@ def calibrated(rate: float) -> Calibration:
 
 def _believe(instrument: Instrument, quantities: Quantities) -> None:
     """Let the player of an instrument take its strings for those of other quantities."""
-    memory = memoryview((c_char * RIG_BYTES).from_address(instrument.address)).cast("B")
-    player = np.frombuffer(memory, RIG)["player"]
+    player = np.frombuffer(instrument.memory, RIG, count=1)["player"]
     player["wave_speed"] = [wave_speed(quantities, i) for i in range(len(quantities.strings))]
 
 

@@ -15,12 +15,12 @@ int main(int count, char **words) {
     if (count != 3) return 2;
     long frames = atol(words[1]), kinds = atol(words[2]), counted = allocations();
     void *yehu = aligned_alloc(64, (yehu_size() + 63) / 64 * 64);
-    float out[BLOCK];
+    float out[2 * BLOCK];
     long own = allocations() - counted; /* it does count */
     struct yehu_look seen;
     if (!yehu) return 3;
     counted = allocations();
-    if (!yehu_prepare(yehu, 48000.0, 1)) return 4;
+    if (!yehu_prepare(yehu, 48000.0, 2)) return 4;
     long preparing = allocations() - counted;
     counted = allocations();
     for (long done = 0; done < frames; done += BLOCK) {

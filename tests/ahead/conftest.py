@@ -34,7 +34,7 @@ def library(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def here() -> dict[str, np.ndarray]:
-    """The samples of each phrase, by this process."""
+    """The samples of each phrase [shape=(frames, 2)], by this process."""
     return {name: played(wishes)[0] for name, wishes in PHRASES.items()}
 
 
@@ -50,4 +50,5 @@ def by_any_processor(tmp_path_factory) -> dict[str, np.ndarray]:
     }
     command = [sys.executable, str(HERE / "phrases.py"), str(folder)]
     subprocess.run(command, env=environment, check=True, capture_output=True)
-    return {name: np.fromfile(folder / f"{name}.f32", np.float32) for name in PHRASES}
+    read = {name: np.fromfile(folder / f"{name}.f32", np.float32) for name in PHRASES}
+    return {name: samples.reshape(-1, 2) for name, samples in read.items()}

@@ -20,7 +20,11 @@ def begins_alike(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def apart(one: np.ndarray, other: np.ndarray) -> tuple[float, float]:
-    """How far pitch (cents) and level (dB) are apart at most, over parts of a sound."""
+    """How far pitch (cents) and level (dB) are apart at most, over parts of a sound.
+
+    Both have the shape (frames, channels); the mean of the channels is compared.
+    """
+    one, other = one.mean(axis=1), other.mean(axis=1)
     pitches, levels = [0.0], []
     for start in range(PART, len(one) - PART + 1, PART):
         parts = [sound[start : start + PART] for sound in (one, other)]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import BEGIN, END, HOLD
 from yehu_server.playing.calibrations import calibration_for
@@ -38,16 +38,25 @@ PHRASES = {
 }
 
 
-def played(wishes, frames=FRAMES, block=BLOCK) -> tuple[np.ndarray, Instrument]:
-    """Play wishes in this process; return the samples, and the instrument at the end."""
-    style, memory = Style(), bytearray(RIG_BYTES)
-    instrument = style.instrument(RATE, calibration_for(RATE), memory=memory)
+def played(wishes, frames=FRAMES, block=BLOCK, channels=2) -> tuple[np.ndarray, Ensemble]:
+    """Play wishes in this process, in the usual room.
+
+    Returns
+    -------
+    samples : ndarray [shape=(frames, channels), float32]
+    ensemble : Ensemble
+        Of the one instrument, at the end.
+    """
+    calibration = calibration_for(RATE)
+    ensemble = Ensemble(
+        [lambda memory: Style().instrument(RATE, calibration, memory=memory)], channels=channels
+    )
     for frame, kind, index, value, other in wishes:
-        assert instrument.post(kind, frame=frame, index=index, value=value, other=other)
-    out = np.zeros(frames, np.float32)
+        assert ensemble.first.post(kind, frame=frame, index=index, value=value, other=other)
+    out = np.zeros((frames, channels), np.float32)
     for start in range(0, frames, block):
-        instrument.process(out[start : start + block])
-    return out, instrument
+        ensemble.process(out[start : start + block])
+    return out, ensemble
 
 
 if __name__ == "__main__":  # as another processor: writes the samples of each phrase

@@ -1,7 +1,7 @@
 /* Plays wishes by the library, for the tests: reads "frame kind index value other" lines, and writes
- * samples (float32).
+ * samples (float32), those of all channels of a frame after one another.
  *
- *     play RATE FRAMES BLOCK WISHES SAMPLES
+ *     play RATE CHANNELS FRAMES BLOCK WISHES SAMPLES
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,15 +10,15 @@
 #include "yehu.h"
 
 int main(int count, char **words) {
-    if (count != 6) return 2;
+    if (count != 7) return 2;
     double rate = atof(words[1]);
-    long frames = atol(words[2]), block = atol(words[3]);
+    long channels = atol(words[2]), frames = atol(words[3]), block = atol(words[4]);
     void *yehu = aligned_alloc(64, (yehu_size() + 63) / 64 * 64);
-    float *out = malloc(block * sizeof *out);
-    FILE *wishes = fopen(words[4], "r"), *samples = fopen(words[5], "wb");
+    float *out = malloc(block * channels * sizeof *out);
+    FILE *wishes = fopen(words[5], "r"), *samples = fopen(words[6], "wb");
     if (!yehu || !out || !wishes || !samples) return 3;
     memset(yehu, 255, yehu_size()); /* preparing relies on nothing */
-    if (!yehu_prepare(yehu, rate, 1)) {
+    if (!yehu_prepare(yehu, rate, channels)) {
         fprintf(stderr, "no instrument at %g Hz\n", rate);
         return 4;
     }
@@ -29,7 +29,7 @@ int main(int count, char **words) {
     for (long done = 0; done < frames; done += block) {
         long now = frames - done < block ? frames - done : block;
         yehu_process(yehu, out, now);
-        fwrite(out, sizeof *out, now, samples);
+        fwrite(out, channels * sizeof *out, now, samples);
     }
     struct yehu_look seen;
     yehu_look(yehu, &seen);

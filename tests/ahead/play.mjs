@@ -1,5 +1,5 @@
 // Plays wishes by the WebAssembly module, for the tests: reads a job as JSON from a file, and
-// writes samples (float32) and a report.
+// writes samples (float32, left and right in turn) and a report.
 //
 //   node play.mjs JOB.json
 //
@@ -7,20 +7,20 @@
 // samples (file to write).
 
 import { readFileSync, writeFileSync } from "node:fs";
-import { Kernel } from "../../web/sound/kernel.js";
+import { CHANNELS, Kernel } from "../../web/sound/kernel.js";
 
 const job = JSON.parse(readFileSync(process.argv[2], "utf8"));
 const module = new WebAssembly.Module(readFileSync(job.wasm));
 const kernel = new Kernel(module, job.rate, job.block, job.lookLength);
 for (const wish of job.wishes) kernel.post(...wish);
-const samples = new Float32Array(job.frames);
+const samples = new Float32Array(CHANNELS * job.frames);
 const times = [];
 for (let done = 0; done < job.frames; done += job.block) {
   const frames = Math.min(job.block, job.frames - done);
   const start = process.hrtime.bigint();
   kernel.compute(frames);
   times.push(Number(process.hrtime.bigint() - start) / 1e3);
-  samples.set(kernel.out.subarray(0, frames), done);
+  samples.set(kernel.out.subarray(0, CHANNELS * frames), CHANNELS * done);
 }
 writeFileSync(job.samples, Buffer.from(samples.buffer));
 const sorted = [...times].sort((a, b) => a - b);

@@ -39,12 +39,13 @@ def program(library, tmp_path_factory) -> Path:
 
 @pytest.fixture
 def by_c(program, tmp_path):
-    def play(wishes, frames=FRAMES, rate=RATE, block=BLOCK):
+    def play(wishes, frames=FRAMES, rate=RATE, block=BLOCK, channels=2):
         lines, samples = tmp_path / "wishes", tmp_path / "samples"
         lines.write_text("".join(" ".join(map(repr, wish)) + "\n" for wish in wishes))
-        command = [program, repr(rate), str(frames), str(block), lines, samples]
+        numbers = map(str, (channels, frames, block))
+        command = [program, repr(rate), *numbers, lines, samples]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
-        return np.fromfile(samples, np.float32), done
+        return np.fromfile(samples, np.float32).reshape(-1, channels), done
 
     return play
 
@@ -64,6 +65,12 @@ def test_a_phrase_begins_as_here_and_stays_as_near_as_processors_are(
 
 def test_it_plays_the_very_samples_of_numbas_code_for_any_processor(by_c, by_any_processor):
     assert np.array_equal(by_c(STOPPED)[0], by_any_processor["stopped"])
+
+
+def test_one_channel_has_the_mean_of_left_and_right(by_c):
+    both, one = (by_c(STOPPED, frames=4800, channels=channels)[0] for channels in (2, 1))
+    assert np.abs(both[:, 0] - both[:, 1]).max() > 0.01 * np.abs(both).max()
+    np.testing.assert_allclose(one[:, 0], both.mean(axis=1), atol=1e-7)
 
 
 def test_it_tells_sources_frame_losses_rate_and_values(by_c):

@@ -42,7 +42,7 @@ def by_node(node, tmp_path):
     def play(wishes, frames=FRAMES, rate=RATE, block=BLOCK):
         job = {"rate": rate, "frames": frames, "block": block, "wishes": wishes}
         report = node("play.mjs", **job, rows=len(TABLE), samples=str(tmp_path / "samples"))
-        return np.fromfile(tmp_path / "samples", np.float32), report
+        return np.fromfile(tmp_path / "samples", np.float32).reshape(-1, 2), report
 
     return play
 
@@ -71,14 +71,14 @@ def test_blocks_of_any_size_give_the_same_samples(by_node):
 def test_it_tells_values_and_looks_as_here(by_node):
     frames = 4 * BLOCK  # so early that rounding has not grown
     report = by_node(STOPPED, frames=frames)[1]
-    _, instrument = played(STOPPED, frames=frames)
+    _, ensemble = played(STOPPED, frames=frames)
     seen = np.zeros(1, LOOK)
-    look.call(instrument.address, seen.ctypes.data)
+    look.call(ensemble.address, seen.ctypes.data)
     expected = np.frombuffer(seen.tobytes(), np.float64)
     found = np.array([np.nan if number is None else number for number in report["look"]])
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)
     values = [
-        instrument.target(param.address) if param.address in SLOT else param.default
+        ensemble.first.target(param.address) if param.address in SLOT else param.default
         for param in TABLE
     ]
     assert report["values"] == pytest.approx(values)

@@ -2,51 +2,45 @@
 
 from __future__ import annotations
 
-import resource
-
 import numpy as np
 import pytest
 import soundfile
+from sound_files import MATRIX, STEP, few_and_many, matrix, noise
 
 from yehu_server.audio import wav
 from yehu_server.audio.file import check_format, is_rendered, sound_file
 from yehu_server.errors import OutputError
 
-STEP = {"16": 2.0**-15, "24": 2.0**-23, "float": 2.0**-23}
-MATRIX = [("wav", "16"), ("wav", "24"), ("wav", "float"), ("flac", "16"), ("flac", "24")]
-
-matrix = pytest.mark.parametrize(("kind", "subtype"), MATRIX)
-
-
-def noise(frames: int) -> np.ndarray:
-    return np.random.default_rng(1).uniform(-1.0, 1.0, frames).astype(np.float32)
-
 
 def write(target, samples, kind="wav", subtype="24", rate=44100):
-    with sound_file(target, rate, kind, subtype) as file:
+    channels = 1 if samples.ndim == 1 else samples.shape[1]
+    with sound_file(target, rate, kind, subtype, channels=channels) as file:
         for part in np.array_split(samples, 7):
             file.write(part)
     return file
 
 
+@few_and_many
 @matrix
-def test_a_file_holds_what_was_written(tmp_path, kind, subtype):
+def test_a_file_holds_what_was_written(tmp_path, kind, subtype, channels):
     target = tmp_path / "sound"
-    samples = noise(10_000)
+    samples = noise(10_000, channels)
     write(target, samples, kind, subtype, rate=48000)
     info = soundfile.info(target)
-    assert info.format == kind.upper()
+    assert info.format == ("WAVEX" if (kind, channels) == ("wav", 6) else kind.upper())
     assert info.subtype == {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}[subtype]
-    assert (info.channels, info.samplerate, info.frames) == (1, 48000, 10_000)
+    assert (info.channels, info.samplerate, info.frames) == (channels, 48000, 10_000)
     read, _ = soundfile.read(target)
     np.testing.assert_allclose(read, samples, rtol=0, atol=STEP[subtype])
     assert list(tmp_path.iterdir()) == [target]
 
 
+@few_and_many
 @matrix
-def test_peak_and_rms_are_those_of_the_file(tmp_path, kind, subtype):
+def test_peak_and_rms_are_those_of_the_file(tmp_path, kind, subtype, channels):
     target = tmp_path / "sound"
-    file = write(target, 0.5 * noise(10_000), kind, subtype)
+    loud_at_the_end = np.linspace(0.1, 0.5, channels, dtype=np.float32)
+    file = write(target, loud_at_the_end * noise(10_000, channels), kind, subtype)
     read, _ = soundfile.read(target)
     assert file.peak == pytest.approx(np.abs(read).max(), abs=STEP[subtype])
     assert file.rms == pytest.approx(np.sqrt(np.mean(read**2)), abs=STEP[subtype])
@@ -103,33 +97,72 @@ def test_the_target_appears_only_when_it_is_whole(tmp_path):
     assert list(tmp_path.iterdir()) == [target]
 
 
+@few_and_many
 @pytest.mark.parametrize(("subtype", "bytes_each"), [("16", 2), ("24", 3), ("float", 4)])
 def test_a_wav_file_longer_than_its_sizes_can_say_is_refused(
-    tmp_path, monkeypatch, subtype, bytes_each
+    tmp_path, monkeypatch, subtype, bytes_each, channels
 ):
     assert wav.WAV_LIMIT <= 2**32
-    monkeypatch.setattr(wav, "WAV_LIMIT", 1000 * bytes_each)
-    write(tmp_path / "just.wav", noise(1000), subtype=subtype)
+    monkeypatch.setattr(wav, "WAV_LIMIT", 1000 * channels * bytes_each)
+    write(tmp_path / "just.wav", noise(1000, channels), subtype=subtype)
     with pytest.raises(OutputError, match=r"long\.wav.*FLAC"):
-        write(tmp_path / "long.wav", noise(1001), subtype=subtype)
-    write(tmp_path / "long.flac", noise(1001), "flac")
+        write(tmp_path / "long.wav", noise(1001, channels), subtype=subtype)
+    write(tmp_path / "long.flac", noise(1001, channels), "flac")
     assert {path.name for path in tmp_path.iterdir()} == {"just.wav", "long.flac"}
 
 
-@pytest.mark.parametrize(("kind", "subtype"), MATRIX)
-def test_a_disk_that_is_full_only_for_the_last_samples_is_told(tmp_path, kind, subtype):
+def test_flac_is_not_advised_for_more_channels_than_it_holds(tmp_path, monkeypatch):
+    monkeypatch.setattr(wav, "WAV_LIMIT", 1000)
+    with pytest.raises(OutputError, match=r"too long for a WAV file \(4 GiB\)$"):
+        write(tmp_path / "long.wav", noise(1001, 9))
+
+
+@pytest.mark.parametrize(("kind", "most"), [("wav", 64), ("flac", 8)])
+def test_as_many_channels_as_a_format_holds_are_written_and_others_refused(tmp_path, kind, most):
     target = tmp_path / "sound"
-    samples = noise(9999)
+    samples = noise(1000, most)
+    write(target, samples, kind)
+    read, _ = soundfile.read(target)
+    np.testing.assert_allclose(read, samples, rtol=0, atol=STEP["24"])
+    target.unlink()
+    for channels in (0, most + 1):
+        wrong = f"a {kind} file holds 1 to {most} channels, not {channels}"
+        with pytest.raises(OutputError, match=wrong):
+            check_format(kind, "24", channels)
+        with (
+            pytest.raises(OutputError, match=wrong),
+            sound_file(target, 44100, kind, "24", channels=channels),
+        ):
+            pass
+    assert list(tmp_path.iterdir()) == []
+
+
+@matrix
+def test_one_channel_may_be_a_column_and_channels_may_lie_one_after_another(
+    tmp_path, kind, subtype
+):
+    target = tmp_path / "sound"
+    column = noise(10_000)[:, None]
+    planes = np.asfortranarray(noise(10_000, 2))
+    for samples in (column, planes, noise(20_000, 4)[::2, 1:3]):
+        write(target, samples, kind, subtype)
+        read, _ = soundfile.read(target, always_2d=True)
+        np.testing.assert_allclose(read, samples, rtol=0, atol=STEP[subtype])
+
+
+@few_and_many
+@matrix
+def test_a_disk_that_is_full_only_for_the_last_samples_is_told(
+    tmp_path, kind, subtype, channels, limited
+):
+    target = tmp_path / "sound"
+    samples = noise(9999, channels)
     write(target, samples, kind, subtype)
     short = target.stat().st_size - 10
     target.write_bytes(b"older")
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (short, hard))
-    try:
-        with pytest.raises(OutputError, match="cannot write: File too large"):
-            write(target, samples, kind, subtype)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    limited(short)
+    with pytest.raises(OutputError, match="cannot write: File too large"):
+        write(target, samples, kind, subtype)
     assert target.read_bytes() == b"older"
     assert list(tmp_path.iterdir()) == [target]
 
@@ -155,9 +188,10 @@ def test_a_device_is_not_replaced_by_a_file(tmp_path):
 
 def test_only_what_was_rendered_is_known_to_be_a_rendering(tmp_path):
     for kind, subtype in MATRIX:
-        target = tmp_path / f"{subtype}.{kind}"
-        write(target, noise(1000), kind, subtype)
-        assert is_rendered(target)
+        for channels in (1, 2, 6):
+            target = tmp_path / f"{subtype}.{channels}.{kind}"
+            write(target, noise(1000, channels), kind, subtype)
+            assert is_rendered(target)
     for kind in ("wav", "flac"):
         soundfile.write(tmp_path / f"other.{kind}", noise(1000), 44100)
         assert not is_rendered(tmp_path / f"other.{kind}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import struct
+import uuid
 
 import numpy as np
 import pytest
@@ -15,10 +16,14 @@ from yehu_server.audio.wav import WavStream, encoded
 EDGES = [1.0, -1.0, 0.0, -0.0, 1.5, -1.5, 2**-24, -(2**-24), 2**-31, -(2**-31), 3 * 2**-32]
 
 
-def samples() -> np.ndarray:
+def samples(channels: int = 1) -> np.ndarray:
+    """Samples [shape=(frames,) of one channel, else (frames, channels)]."""
     random = np.random.default_rng(1)
     small = random.uniform(-1.0, 1.0, 5000) * 10.0 ** random.uniform(-12.0, 0.0, 5000)
-    return np.concatenate([random.uniform(-1.2, 1.2, 5000), small, EDGES]).astype(np.float32)
+    mono = np.concatenate([random.uniform(-1.2, 1.2, 5000), small, EDGES]).astype(np.float32)
+    if channels == 1:
+        return mono
+    return np.stack([random.permutation(mono) for _ in range(channels)], axis=1)
 
 
 def chunks(data: bytes) -> dict[bytes, bytes]:
@@ -34,31 +39,60 @@ def chunks(data: bytes) -> dict[bytes, bytes]:
     return found
 
 
-def written(path, subtype: str, software: str = "") -> bytes:
+def written(path, subtype: str, software: str = "", channels: int = 1) -> bytes:
     with io.FileIO(path, "w") as file:
-        stream = WavStream(file, 48000, subtype, software)
-        for part in np.array_split(samples(), 3):
+        stream = WavStream(file, 48000, subtype, software, channels=channels)
+        for part in np.array_split(samples(channels), 3):
             stream.write(part)
         stream.close()
     return path.read_bytes()
 
 
+@pytest.mark.parametrize("channels", [1, 2, 6])
 @pytest.mark.parametrize("subtype", ["16", "24", "float"])
-def test_samples_are_the_bytes_that_libsndfile_makes_of_them(tmp_path, subtype):
+def test_samples_are_the_bytes_that_libsndfile_makes_of_them(tmp_path, subtype, channels):
     reference = tmp_path / "reference.wav"
-    soundfile.write(reference, samples(), 48000, subtype=SUBTYPES[subtype])
+    form = "WAV" if channels <= 2 else "WAVEX"
+    sound = samples(channels)
+    soundfile.write(reference, sound, 48000, subtype=SUBTYPES[subtype], format=form)
     theirs = chunks(reference.read_bytes())
-    assert encoded(samples(), subtype) == theirs[b"data"]
-    ours = chunks(written(tmp_path / "ours.wav", subtype))
+    assert encoded(sound, subtype) == theirs[b"data"]
+    ours = chunks(written(tmp_path / "ours.wav", subtype, channels=channels))
     assert ours[b"data"] == theirs[b"data"]
-    assert ours[b"fmt "][:16] == theirs[b"fmt "]
+    fmt, speakers = ours[b"fmt "], slice(20, 24)
+    assert not any(fmt[speakers])  # theirs are those of a cinema
+    expected = theirs[b"fmt "]
+    assert fmt[: speakers.start][: len(expected)] == expected[: speakers.start]
+    assert fmt[speakers.stop :] == expected[speakers.stop :]
 
 
-def test_floats_have_the_header_that_the_format_asks_for(tmp_path):
-    ours = chunks(written(tmp_path / "ours.wav", "float"))
+@pytest.mark.parametrize(("subtype", "form", "each"), [("16", 1, 2), ("24", 1, 3), ("float", 3, 4)])
+def test_the_header_has_the_bytes_of_a_frame_and_of_a_second(tmp_path, subtype, form, each):
+    for channels, tag in ((1, form), (2, form), (3, 0xFFFE), (64, 0xFFFE)):
+        fmt = chunks(written(tmp_path / "x.wav", subtype, channels=channels))[b"fmt "]
+        frame = channels * each
+        assert struct.unpack("<HHIIHH", fmt[:16]) == (
+            tag,
+            channels,
+            48000,
+            48000 * frame,
+            frame,
+            8 * each,
+        )
+        if tag == 0xFFFE:
+            assert struct.unpack("<HHIH", fmt[16:26]) == (22, 8 * each, 0, form)
+            assert uuid.UUID(bytes_le=fmt[24:40]) == uuid.UUID(
+                f"{form:08x}-0000-0010-8000-00aa00389b71"
+            )
+
+
+@pytest.mark.parametrize("channels", [1, 2])
+def test_floats_have_the_header_that_the_format_asks_for(tmp_path, channels):
+    ours = chunks(written(tmp_path / "ours.wav", "float", channels=channels))
     assert list(ours) == [b"fmt ", b"fact", b"data"]
-    assert ours[b"fmt "] == struct.pack("<HHIIHHH", 3, 1, 48000, 192000, 4, 32, 0)
-    assert ours[b"fact"] == struct.pack("<I", len(samples()))
+    sizes = (192000 * channels, 4 * channels)
+    assert ours[b"fmt "] == struct.pack("<HHIIHHH", 3, channels, 48000, *sizes, 32, 0)
+    assert ours[b"fact"] == struct.pack("<I", len(samples()))  # frames
 
 
 @pytest.mark.parametrize("subtype", ["16", "24", "float"])

@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -21,16 +22,17 @@ from wire import Ear, Heard, StillTime, Wire
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control import clients, osc, schedule
+from yehu_server.control.part_status import PART_STATUS
 from yehu_server.control.status import STATUS
 from yehu_server.control.web import WebOptions
-from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.params.table import SLOT
 from yehu_server.player.record import SILENT
 from yehu_server.playing import live
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server import PartOptions, ServeOptions, Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0  # for other threads, on a busy machine
@@ -93,6 +95,9 @@ class Desk:
         told = dict.fromkeys((value.name for value in STATUS), 0.0)
         return told | {"load": 0.5, "recording": "".join(self.names[-1:])}
 
+    def part_status(self, part: int) -> dict[str, float]:
+        return dict.fromkeys((value.name for value in PART_STATUS), float(part))
+
     def soon(self, action: Callable[[], None]) -> None:
         action()
 
@@ -122,7 +127,7 @@ class Stage:
         self.block = block
         style = Style()
         calibration = calibration_for(float(self.RATE))
-        self.instrument = style.instrument(self.RATE, calibration, memory=bytearray(RIG_BYTES))
+        self.instrument = style.instrument(self.RATE, calibration)
         self._moves = Moves(self.instrument)
         self.instrument.frame_at = self._frame_at
         self.pace = 1.0  # of the device, relative to its nominal rate
@@ -132,7 +137,7 @@ class Stage:
         )
         self.player.write("/playing/variation", 0.0, frame=0)
         self.desk = Desk()
-        self.handler = osc.OscHandler(self.player, self.desk)
+        self.handler = osc.OscHandler([self.player], self.desk)
         self.ear = Ear()
         self.events: list[tuple[int, str, float]] = []
 
@@ -326,10 +331,10 @@ class Hall:
         self.said: list[str] = []
         output = OutputOptions(device="null", blocksize=options.pop("blocksize", 128))
         osc = options.pop("osc", (HOST, 0))
-        self.server = Server(
-            ServeOptions(output=output, osc=osc, midi=None, recordings=folder, **options),
-            self.said.append,
-        )
+        own = {name: options.pop(name) for name in ("style", "reread") if name in options}
+        parts = [PartOptions(**own)] * options.pop("parts", 1)
+        serve = ServeOptions(output=output, osc=osc, midi=None, parts=parts, recordings=folder)
+        self.server = Server(replace(serve, **options), self.said.append)
         self.ports = self.server.osc
         self.handler = self.server.handler
         self.instrument = self.server.instrument
@@ -373,7 +378,7 @@ class Hall:
         """RMS of the sound from now on for some seconds."""
         start = self.instrument.frame
         self.wait_frames(round(seconds * self.instrument.rate))
-        _, sound = self.instrument.taped(start)
+        _, sound = self.server.ensemble.taped(start)
         return float(np.sqrt(np.mean(np.square(sound, dtype=np.float64))))
 
     def is_at_rest(self) -> bool:

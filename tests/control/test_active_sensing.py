@@ -28,7 +28,7 @@ class Desk:
         self.told: list[str] = []
         monkeypatch.setattr(midi_process.time, "monotonic", lambda: 1e-9 * self.now_ns)
         monkeypatch.setattr(midi_process.time, "monotonic_ns", lambda: self.now_ns)
-        self.inputs = Inputs(self, {"patterns": [], "virtual": None, "api": None})
+        self.inputs = Inputs(self, {"patterns": [], "others": True, "virtual": None, "api": None})
         self.port = Port()
         self.inputs._open["keystep"] = Input(self.port, "keystep", None, self)
 

@@ -7,13 +7,16 @@ from collections import Counter
 import pytest
 from wire import Ear
 
+from yehu_server.control import clients as clients_module
+from yehu_server.control import listener as listener_module
 from yehu_server.control.clients import (
     MOST_KNOWN,
     MOST_OF_A_HOST,
     MOST_SUBSCRIBERS,
-    MOST_TOLD,
+    SLICE_S,
     Clients,
 )
+from yehu_server.control.telling import MOST_TOLD
 
 
 class Values:
@@ -22,7 +25,7 @@ class Values:
     def __init__(self) -> None:
         self.now = {"/a": 0.0, "/b": 0.0, "/c": 0.0}
 
-    def __call__(self) -> dict[str, float]:
+    def __call__(self, _group: str = "") -> dict[str, float]:
         return dict(self.now)
 
 
@@ -148,6 +151,15 @@ def test_who_takes_no_more_is_told_the_last_value_later(clients, values, play, e
     ear.takes_more = True
     play(20)
     assert told(ear) == [("/yehu/a", [49.0])]
+
+
+def test_who_takes_no_more_for_long_is_not_forgotten(clients, play, ear):
+    ear.takes_more = False
+    clients.echo(ear, ["/a"])
+    play(5000)
+    ear.takes_more = True
+    play(20)
+    assert told(ear) == [("/yehu/a", [0.0])]
 
 
 def test_only_so_many_are_remembered(clients):
@@ -308,6 +320,75 @@ def test_errors_are_told_rarely_to_who_makes_many(clients, play, ear):
     assert len(ear.packets) == 1
 
 
+# ---------------------------------------------------------------- in slices
+
+
+class Slow(Ear):
+    """A peer that it takes a quarter of a slice to send to."""
+
+    def __init__(self, clock, port: int = 2) -> None:
+        super().__init__(port)
+        self._clock = clock
+
+    def send(self, packet: bytes) -> None:
+        self._clock.now += 0.25 * SLICE_S
+        super().send(packet)
+
+
+def test_who_is_told_much_is_told_in_slices_between_which_others_are_served(
+    clients, values, still_time
+):
+    slow = Slow(still_time)
+    values.now = {f"/{number}": float(number) for number in range(100)}
+    clients.subscribe(slow, 60.0)
+    still_time.now += 1.0
+    flushes = 0
+    while clients.wait_s() == 0.0:
+        before = len(slow.packets)
+        clients.flush()
+        flushes += 1
+        assert len(slow.packets) - before <= 5
+    assert told(slow) == [(f"/yehu/{number}", [float(number)]) for number in range(100)]
+    assert flushes >= 20
+    assert clients.wait_s() > 0.0  # until the next round
+
+
+def test_what_is_set_while_others_are_told_is_told_as_it_then_is(clients, values, still_time, ear):
+    values.now = {f"/{number}": 0.0 for number in range(100)}
+    clients.subscribe(Slow(still_time), 60.0)
+    clients.listen(ear, "/0")
+    still_time.now += 1.0
+    clients.flush()
+    values.now["/99"] = 7.0
+    clients.echo(ear, ["/99"])
+    for _ in range(100):
+        still_time.now += 0.001
+        clients.flush()
+    assert told(ear) == [("/yehu/0", [0.0]), ("/yehu/99", [7.0])]
+
+
+@pytest.mark.parametrize("end", ["ignore", "forget"])
+def test_what_is_ended_between_slices_is_told_no_more(clients, values, still_time, end):
+    slow = Slow(still_time)
+    values.now = {f"/{number}": 0.0 for number in range(100)}
+    for address in values.now:
+        clients.listen(slow, address)
+    still_time.now += 1.0
+    clients.flush()
+    assert 0 < len(slow.packets) < 10
+    slow.packets.clear()
+    if end == "forget":
+        clients.forget(slow)
+        clients.listen(slow, "/99")
+    else:
+        for number in range(99):
+            clients.ignore(slow, f"/{number}")
+    for _ in range(100):
+        still_time.now += 0.001
+        clients.flush()
+    assert told(slow) == [("/yehu/99", [0.0])]
+
+
 # ---------------------------------------------------------------- listeners
 
 
@@ -338,7 +419,7 @@ def test_who_listens_and_sets_is_told_once(clients, values, play, ear):
 def test_the_status_is_looked_at_only_for_listeners_and_seldom(still_time, values, ear):
     looks = []
 
-    def status() -> dict[str, float | str]:
+    def status(_group: str) -> dict[str, float | str]:
         looks.append(still_time.now)
         return {"load": float(len(looks)), "device": "null"}
 
@@ -367,6 +448,23 @@ def test_an_address_ignored_before_it_was_told_is_not_told(clients, play, ear):
     clients.ignore(ear, "/status/none")
     play(50)
     assert told(ear) == []
+
+
+def test_a_flush_takes_no_longer_for_addresses_that_do_not_change(
+    clients, values, play, ear, monkeypatch
+):
+    for address in ("/a", "/b", "/c", *(f"/part/{part}/a" for part in range(1, 9))):
+        clients.listen(ear, address)
+    play(100)
+    ear.heard()
+    parsed = []
+    for module in (clients_module, listener_module):
+        monkeypatch.setattr(module, "divided", parsed.append)
+    play(100)
+    values.now["/b"] = 1.0
+    play(100)
+    assert ("/yehu/b", [1.0]) in told(ear)
+    assert not parsed  # an address is taken apart as somebody asks for it, and never again
 
 
 def test_who_has_nothing_to_hear_is_forgotten(clients, play, ear):

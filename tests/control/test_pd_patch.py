@@ -78,6 +78,8 @@ def desk(hall, patience, tmp_path):
 
 def test_every_slider_of_the_patch_moves_its_parameter(hall, patience, desk):
     for param in TABLE:
+        if param.address == "/playing/section":  # at most as many as there are
+            continue
         value = param.from_unit(0.3)
         desk.move(f"/yehu{param.address}", f"{value:.9g}")
         patience(

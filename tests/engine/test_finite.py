@@ -1,16 +1,22 @@
 """Every sample is finite and within full scale, whatever the instrument's state is."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 from sound import bow, run
 
-from yehu_server.engine import native
+from yehu_server.controls.record import CHUNK
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.rig import RIG
 from yehu_server.params.table import ENGINE, SLOT
 from yehu_server.player.rows import ROWS
 from yehu_server.player.wishes import BEGIN, KINDS, RAMP
+from yehu_server.stage.directivity import SIDES
+from yehu_server.stage.room import ROOM
+from yehu_server.stage.seat import SEAT
 
 BAD = (math.nan, math.inf, -math.inf, 1e308, -1e308)
 STAGES = ("state", "controls", "player", "output")
@@ -18,7 +24,10 @@ STAGES = ("state", "controls", "player", "output")
 
 def fields(stage: str) -> list[str]:
     """The names of a record's floating-point fields."""
-    kind = native.RIG[stage]
+    return of_floats(RIG[stage])
+
+
+def of_floats(kind: np.dtype) -> list[str]:
     return [name for name in kind.names if kind[name].base == np.float64]
 
 
@@ -44,8 +53,68 @@ def test_whatever_a_stage_holds_every_sample_is_finite(instrument, playing, stag
         out = np.full(256, np.nan, np.float32)
         instrument.process(out)
         assert (np.abs(out) <= 1.0).all()  # also refuses NaN
-        tape = instrument._rig["tape"][0]
-        assert np.isfinite(tape).all()
+        assert np.isfinite(instrument._stage["tape"]).all()
+
+
+# ---------------------------------------------------------------- on a stage with a room
+
+
+@pytest.fixture(scope="module")
+def duet() -> tuple[Ensemble, np.ndarray]:
+    """Two who bow in a room, and their memory in the middle of a note."""
+    ensemble = Ensemble([partial(bowing, body=body) for body in range(2)])
+    ensemble.process(np.zeros((4410, 2), np.float32))
+    return ensemble, ensemble.memory.copy()
+
+
+def bowing(memory: object, body: int) -> Instrument:
+    instrument = Instrument(44100, memory=memory, body=body)
+    bow(instrument, press=1.5)
+    return instrument
+
+
+@pytest.mark.parametrize("field", of_floats(SEAT))
+def test_whatever_a_seat_holds_the_mix_is_finite_and_comes_back(duet, field):
+    ensemble, memory = duet
+    for bad in BAD:
+        ensemble.memory[:] = memory
+        ensemble.instruments[1]._rig["seat"][field] = bad
+        check_it_comes_back(ensemble, is_prepared=field in {"rate", "move_step"})
+
+
+@pytest.mark.parametrize("field", of_floats(SIDES))
+def test_whatever_the_sides_of_a_body_hold_the_mix_is_finite_and_comes_back(duet, field):
+    ensemble, memory = duet
+    for bad in BAD:
+        ensemble.memory[:] = memory
+        ensemble.instruments[0]._rig["seat"]["sides"][field] = bad
+        is_prepared = field in {"c_1", "c_2", "pass_a", "pass_b"}
+        check_it_comes_back(ensemble, is_prepared=is_prepared)
+
+
+@pytest.mark.parametrize("field", of_floats(ROOM))
+def test_whatever_a_room_holds_the_mix_is_finite_and_comes_back(duet, field):
+    ensemble, memory = duet
+    for bad in BAD:
+        ensemble.memory[:] = memory
+        ensemble._stage["room"][field] = bad
+        is_prepared = field in {"rate", "move_step", "open_step", "close_step"}
+        check_it_comes_back(ensemble, is_prepared=is_prepared)
+
+
+def check_it_comes_back(ensemble: Ensemble, *, is_prepared: bool) -> None:
+    """The mix is finite; and sounds again, unless what was lost is only prepared at the start."""
+    out = np.full((44100, 2), np.nan, np.float32)
+    before = int(ensemble._stage["unsound"])
+    for start in range(0, len(out), 4410):
+        ensemble.process(out[start : start + 4410])
+    assert (np.abs(out) <= 1.0).all()  # also refuses NaN
+    if not is_prepared:
+        assert np.abs(out[-4410:]).max() > 0.05
+        room = ensemble._stage["room"]
+        assert np.isfinite([room["left"], room["right"]]).all()
+        # All begins anew at once, wherever a block begins: what was computed ahead is lost too.
+        assert ensemble._stage["unsound"] - before <= 2 * CHUNK
 
 
 def test_what_was_no_number_is_counted_and_the_sound_comes_back(instrument, playing):

@@ -89,3 +89,31 @@ def test_after_the_note_the_bow_is_lifted():
     instrument.post(END, frame=8000, value=76.0)
     play(instrument, 44100)
     assert seen(instrument)["string"] == NO_STRING
+
+
+@pytest.mark.parametrize("length", [0.7, 0.3])
+def test_the_string_is_at_its_place_on_the_hair_and_goes_as_the_bow_is_drawn(length):
+    """To the tip and back, within a bow that turns before its ends."""
+    instrument = Instrument(RATE)
+    instrument.post(HOLD, index=ROW["/playing/bow_length"], value=length)
+    instrument.post(BEGIN, value=69.0, other=69.0)
+    looks = []
+    for _ in range(200):
+        play(instrument, 1102)
+        looks.append(seen(instrument).copy())
+    places = np.array([look["hair_place"] for look in looks])
+    speeds = np.array([look["speed"] for look in looks])
+    assert {float(look["hair_length"]) for look in looks} == {length}
+    assert 0.0 < places.min() < 0.25 * length
+    assert 0.75 * length < places.max() < length
+    way = np.diff(places)
+    steady = np.abs(speeds[1:] - speeds[:-1]) < 0.01
+    expected = speeds[1:] * 1102 / RATE
+    assert way[steady] == pytest.approx(expected[steady], abs=5e-4)
+
+
+def test_a_bow_without_ends_has_no_length():
+    instrument = Instrument(RATE)
+    instrument.post(HOLD, index=ROW["/playing/bow_length"], value=0.0)
+    play(instrument, 64)
+    assert seen(instrument)["hair_length"] == 0.0

@@ -22,7 +22,9 @@ from hypothesis import strategies as st
 
 from yehu_server.controls.slots import SILENCE
 from yehu_server.engine import native
-from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.engine import rig as memory
+from yehu_server.engine.ensemble import Ensemble
+from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
 from yehu_server.params.table import ENGINE, SLOT
 from yehu_server.player.record import PLAYER
@@ -71,8 +73,8 @@ def numbers(wishes: np.ndarray) -> np.ndarray:
 
 
 def live(rate: float = RATE) -> Instrument:
-    """An instrument in given memory."""
-    return Instrument(rate, memory=mmap.mmap(-1, RIG_BYTES))
+    """An instrument whose blocks take a limited number of wishes."""
+    return Instrument(rate, is_live=True)
 
 
 # ---------------------------------------------------------------- the ring between threads
@@ -198,9 +200,10 @@ class Shared:
 
     def __init__(self, code: str, *arguments: int) -> None:
         descriptor = os.memfd_create("rig")
-        os.ftruncate(descriptor, RIG_BYTES)
-        self.instrument = Instrument(RATE, memory=mmap.mmap(descriptor, RIG_BYTES))
-        self.instrument.report_wishes()
+        os.ftruncate(descriptor, memory.memory_bytes(1))
+        shared = mmap.mmap(descriptor, memory.memory_bytes(1))
+        self.ensemble = sound.alone(RATE, memory=shared, is_live=True)
+        self.ensemble.first.report_wishes()
         self._process = subprocess.Popen(
             [sys.executable, "-c", code, str(descriptor), *map(str, arguments)],
             pass_fds=[descriptor],
@@ -208,8 +211,8 @@ class Shared:
         )
         os.close(descriptor)
 
-    def __enter__(self) -> Instrument:
-        return self.instrument
+    def __enter__(self) -> Ensemble:
+        return self.ensemble
 
     def __exit__(self, *_: object) -> None:
         try:
@@ -224,7 +227,8 @@ class Shared:
 @needs_memfd
 def test_wishes_come_whole_and_in_order_to_another_process_and_its_reports_back():
     count = 80_000
-    with Shared(CALLBACKS) as instrument:
+    with Shared(CALLBACKS) as ensemble:
+        instrument = ensemble.first
         posted = 0
 
         def post_some() -> None:
@@ -244,10 +248,11 @@ def test_wishes_come_whole_and_in_order_to_another_process_and_its_reports_back(
 @needs_memfd
 def test_wishes_come_whole_and_in_order_from_another_process():
     count = 80_000
-    with Shared(POSTER, count, *UNHEARD[0], *UNHEARD[1]) as instrument:
+    with Shared(POSTER, count, *UNHEARD[0], *UNHEARD[1]) as ensemble:
+        instrument = ensemble.first
         out = np.zeros(64, np.float32)
-        wishes = collect(instrument, count, lambda: instrument.process(out))
-    run(instrument, 64)
+        wishes = collect(instrument, count, lambda: ensemble.process(out))
+    run(ensemble, 64)
     assert not len(instrument.applied_wishes())
     np.testing.assert_array_equal(numbers(wishes), np.arange(count))
 
@@ -312,9 +317,9 @@ def test_nothing_is_reported_unless_it_is_asked_for():
 
 
 def test_cursors_are_words_of_their_own_in_cache_lines_of_their_own():
-    posted, read = native.POSTED_AT, native.READ_AT
-    drained, reported = native.DRAINED_AT, native.REPORTED_AT
-    for at in (posted, read, drained, reported, native.VERSION_AT, native.TAPED_AT):
+    posted, read = memory.POSTED_AT, memory.READ_AT
+    drained, reported = memory.DRAINED_AT, memory.REPORTED_AT
+    for at in (posted, read, drained, reported, memory.VERSION_AT, memory.TAPED_AT):
         assert at % 8 == 0  # an atomic word may not lie across two
     for one, other in combinations([(posted,), (read,), (drained, reported)], 2):
         for mine, its in product(one, other):
@@ -530,31 +535,33 @@ def test_a_reset_leaves_nothing_to_tell_of():
 MANY = 200
 
 
-def waiting_wishes() -> tuple[Instrument, list[int]]:
+def waiting_wishes() -> tuple[Ensemble, list[int]]:
     """An instrument that many wishes in any order wait in, and their numbers as they will come."""
     chance = random.Random(5)
-    instrument = Instrument(RATE)
+    ensemble = sound.alone(RATE)
+    instrument = ensemble.first
     instrument.report_wishes()
     frames = [chance.randrange(500, 600) for _ in range(MANY)]
     for number, frame in enumerate(frames):
         post_numbered(instrument, number, frame)
-    run(instrument, 64)
+    run(ensemble, 64)
     assert instrument.meters()["waiting"] == MANY
-    return instrument, sorted(range(MANY), key=lambda number: (frames[number], number))
+    return ensemble, sorted(range(MANY), key=lambda number: (frames[number], number))
 
 
-def died(instrument: Instrument) -> None:
+def died(ensemble: Ensemble) -> None:
     """A process died while it computed a block, and another takes over."""
-    instrument._rig["meters"]["running"] = 1
-    instrument.recover()
+    ensemble.first._rig["meters"]["running"] = 1
+    ensemble.recover()
 
 
 def test_a_heap_that_is_out_of_order_is_put_in_order_again():
-    instrument, expected = waiting_wishes()
+    ensemble, expected = waiting_wishes()
+    instrument = ensemble.first
     heap = instrument._rig["heap"][0]
     heap[:MANY] = heap[np.random.default_rng(1).permutation(MANY)]
-    died(instrument)
-    run(instrument, 1000)
+    died(ensemble)
+    run(ensemble, 1000)
     np.testing.assert_array_equal(numbers(instrument.applied_wishes()), expected)
 
 
@@ -562,36 +569,39 @@ def test_a_heap_that_is_out_of_order_is_put_in_order_again():
 def test_a_wish_that_came_while_the_process_died_comes_once_and_no_other_is_lost(lost):
     # While an entry comes or leaves, others move up or down by copies: one of them is there twice,
     # and the one that moves may be nowhere. It is still counted, or no longer.
-    instrument, expected = waiting_wishes()
+    ensemble, expected = waiting_wishes()
+    instrument = ensemble.first
     heap = instrument._rig["heap"][0]
     number = int(heap["order"][lost])
     heap[lost] = heap[MANY // 2]
-    died(instrument)
+    died(ensemble)
     assert instrument._rig["mail"]["waiting"][0] == MANY - 1
-    run(instrument, 1000)
+    run(ensemble, 1000)
     expected.remove(number)
     np.testing.assert_array_equal(numbers(instrument.applied_wishes()), expected)
 
 
 def test_wishes_that_come_after_a_heap_was_mended_find_their_place():
-    instrument, expected = waiting_wishes()
+    ensemble, expected = waiting_wishes()
+    instrument = ensemble.first
     heap = instrument._rig["heap"][0]
     heap[:MANY] = heap[:MANY][::-1].copy()
-    died(instrument)
+    died(ensemble)
     post_numbered(instrument, MANY, 300)
     post_numbered(instrument, MANY + 1, 700)
-    run(instrument, 1000)
+    run(ensemble, 1000)
     found = numbers(instrument.applied_wishes())
     np.testing.assert_array_equal(found, [MANY, *expected, MANY + 1])
 
 
 def test_an_empty_heap_and_one_that_is_in_order_need_no_mending():
-    instrument, expected = waiting_wishes()
-    died(instrument)
-    run(instrument, 1000)
-    died(instrument)
+    ensemble, expected = waiting_wishes()
+    instrument = ensemble.first
+    died(ensemble)
+    run(ensemble, 1000)
+    died(ensemble)
     post_numbered(instrument, 0, 0)
-    run(instrument, 100)
+    run(ensemble, 100)
     np.testing.assert_array_equal(numbers(instrument.applied_wishes()), [*expected, 0])
 
 

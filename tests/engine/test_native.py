@@ -13,11 +13,13 @@ import llvmlite.binding as llvm
 import numba
 import numpy as np
 import pytest
-from sound import bow
+from sound import alone, bow
 
 from yehu_server import jit
 from yehu_server.engine import native
-from yehu_server.engine.instrument import RIG_BYTES, TAPE_FRAMES, Instrument
+from yehu_server.engine import rig as memory
+from yehu_server.engine.ensemble import TAPE_FRAMES, Ensemble
+from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.warming import PLAYED_BY
 from yehu_server.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
 from yehu_server.player.record import SILENT
@@ -25,18 +27,23 @@ from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
 
 RATE = 22050
-CALLS = ["fulfil", "attend", "callback", "post", "read_meters", "frame_at", "read_reports", "taped"]
+CALLS = {call.function.__name__: call for call in PLAYED_BY}
 
 # Everything that the audio thread may call: none of these waits or allocates.
 REAL_TIME_SAFE = {
     *("clock_gettime", "memcpy", "memset", "memmove"),
-    *("exp", "log", "log2", "pow", "sin", "cos", "sincos", "tanh", "sqrt", "fabs", "floor"),
+    *("exp", "log", "log2", "pow", "sin", "cos", "sincos", "tan", "tanh", "sqrt", "fabs", "floor"),
     *("exp2", "ldexp"),
     "rint",  # where the processor has no instruction that rounds: x86-64 before SSE4.1
 }
 
 # What each may call that is compiled apart, and is itself one of the calls.
-APART = {"callback": {"yehu_fulfil", "yehu_attend"}}
+APART = {
+    "callback": {"yehu_sound", "yehu_mix", "yehu_publish"},
+    "sound": {"yehu_fulfil", "yehu_attend"},
+    "sound_block": {"yehu_sound"},
+    "mix_block": {"yehu_mix"},
+}
 
 # Some x86-64 processors, by what LLVM calls them: of 2003, of 2013 and with AVX-512.
 PROCESSORS = ["generic", "haswell", "skylake-avx512"]
@@ -50,7 +57,7 @@ on_x86 = pytest.mark.skipif(platform.machine() != "x86_64", reason="reads x86-64
 @cache
 def machine(name: str) -> numba.core.codegen.CPUCodeLibrary:
     """Compile a call anew: numba has no code to show for one from its cache."""
-    call = getattr(native, name)
+    call = CALLS[name]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(jit, "IS_CACHED", False)
         return jit.Native(call.signature, call.function, call.calls).compiled._library
@@ -70,7 +77,7 @@ def parts(name: str) -> dict[str, str]:
 
 def body(name: str) -> str:
     """The name of the call's own function, inside numba's wrapper."""
-    function = getattr(native, name).function
+    function = CALLS[name].function
     path = [*function.__module__.split("."), name]
     is_mine = re.compile("_ZN" + "".join(f"{len(word)}{word}" for word in path) + "B")
     (mine,) = [part for part in parts(name) if is_mine.match(part)]
@@ -101,14 +108,14 @@ def lines(name: str) -> list[str]:
 
 def offsets(name: str) -> dict[str, int]:
     """The offset in the rig of each pointer of the call's own function."""
-    step = re.compile(r"(%\S+) = getelementptr (?:inbounds |nuw )*i8, ptr %arg\.rig, i64 (\d+)$")
+    step = re.compile(r"(%\S+) = getelementptr (?:inbounds |nuw )*i8, ptr %arg\.rigs?, i64 (\d+)$")
     found = (step.match(line.strip()) for line in lines(name))
     return {match[1]: int(match[2]) for match in found if match}
 
 
 def atomics(name: str) -> list[list[str]]:
     """Loads, stores and fences between threads, and copies of whole records, by basic blocks."""
-    at = {getattr(native, f"{word}_AT"): word.lower() for word in WORDS}
+    at = {getattr(memory, f"{word}_AT"): word.lower() for word in WORDS}
     where = offsets(name)
     blocks = [[]]
     for line in lines(name):
@@ -130,11 +137,10 @@ WORDS = ["POSTED", "DRAINED", "REPORTED", "READ", "VERSION", "TAPED"]
 
 
 def test_these_are_all_calls_and_those_compiled_apart_are_of_them():
-    assert {getattr(native, name) for name in CALLS} == set(PLAYED_BY)
-    for name in CALLS:
-        apart = {f"yehu_{other.function.__name__}" for other in getattr(native, name).calls}
+    for name, call in CALLS.items():
+        apart = {f"yehu_{other.function.__name__}" for other in call.calls}
         assert apart == APART.get(name, set())
-        assert set(getattr(native, name).calls) <= set(PLAYED_BY)
+        assert set(call.calls) <= set(PLAYED_BY)
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -221,8 +227,8 @@ def test_nor_does_it_on_other_processors(name, processor):
 @on_x86
 def test_the_assembly_is_that_of_the_processor_asked_for():
     """Otherwise the test before would prove little."""
-    old, middle, new = (assembly("callback", processor) for processor in PROCESSORS)
-    assert "rint" in names(old, "callback") - names(middle, "callback")
+    old, middle, new = (assembly("sound", processor) for processor in PROCESSORS)
+    assert "rint" in names(old, "sound") - names(middle, "sound")
     assert ("vfmadd" in old, "vfmadd" in middle) == (False, True)  # multiply and add in one
     has_32_registers = re.compile(r"mm(1[6-9]|2\d|3[01])\b").search
     assert (has_32_registers(middle), bool(has_32_registers(new))) == (None, True)
@@ -232,20 +238,21 @@ def test_the_assembly_is_that_of_the_processor_asked_for():
 
 
 def test_the_callback_reads_and_writes_the_cursors_atomically_and_in_order():
-    publish = [
-        "load version acquire",
-        "store version release",
-        "fence release",
-        "copy",
-        "store version release",
+    assert atomics("publish") == [
+        [
+            "load version acquire",
+            "store version release",
+            "fence release",
+            "copy",
+            "store version release",
+        ]
     ]
-    assert {tuple(block) for block in atomics("callback")} == {
-        tuple(publish),
+    assert atomics("callback") == [["store taped release"]]
+    assert {tuple(block) for block in atomics("sound")} == {
         ("load posted acquire",),
         ("store drained release",),
         ("load read acquire",),
         ("store reported release",),
-        ("store taped release", *publish),
     }
 
 
@@ -280,7 +287,7 @@ def test_the_other_calls_do_so_too(name, expected):
 def test_a_frame_is_told_from_what_was_read_between_two_looks_at_the_version():
     found = lines("frame_at")
     where = offsets("frame_at")
-    published = range(native.PUBLISHED_AT, native.TAPED_AT)
+    published = range(memory.PUBLISHED_AT, memory.TAPED_AT)
     fences = [i for i, line in enumerate(found) if re.match(r"\s*fence acquire", line)]
     first = next(i for i, line in enumerate(found) if "load atomic" in line)
     reads = [
@@ -297,7 +304,7 @@ def test_a_frame_is_told_from_what_was_read_between_two_looks_at_the_version():
 @pytest.mark.parametrize("name", CALLS)
 def test_nobody_writes_a_cursor_but_atomically(name):
     where = offsets(name)
-    cursors = {getattr(native, f"{word}_AT") for word in WORDS}
+    cursors = {getattr(memory, f"{word}_AT") for word in WORDS}
     for line in lines(name):
         store = re.search(r"store (?!atomic).*, ptr (%[^\s,]+)", line)
         assert not store or where.get(store[1]) not in cursors
@@ -324,15 +331,15 @@ def test_on_arm_they_are_loads_that_acquire_and_stores_that_release(name, words)
 # ---------------------------------------------------------------- blocks of odd kinds
 
 
-def bowed(**how: object) -> Instrument:
-    instrument = Instrument(RATE, **how)
-    bow(instrument)
-    return instrument
+def bowed(**how: object) -> Ensemble:
+    ensemble = alone(RATE, **how)
+    bow(ensemble.first)
+    return ensemble
 
 
 def test_in_given_memory_it_sounds_the_same():
     out, expected = np.zeros((2, 4096), np.float32)
-    bowed(memory=mmap.mmap(-1, RIG_BYTES)).process(out)
+    bowed(memory=mmap.mmap(-1, memory.memory_bytes(1))).process(out)
     bowed().process(expected)
     assert np.abs(out).max() > 0.001
     np.testing.assert_array_equal(out, expected)
@@ -360,23 +367,24 @@ def test_what_a_callback_answers_is_to_go_on():
 
 
 def test_what_a_process_left_that_died_while_it_played_is_mended():
-    instrument, out = bowed(), np.zeros(4096, np.float32)
-    instrument.process(out)
+    ensemble, out = bowed(), np.zeros(4096, np.float32)
+    ensemble.process(out)
+    instrument = ensemble.first
     rig = instrument._rig
     rig["version"][0, 0] += 1  # it died as it wrote the meters,
     rig["meters"]["running"] = 1  # or somewhere within a block: its frames are on no tape,
     rig["controls"]["frame"] += 64
     rig["state"]["motion"]["u"] = np.nan  # and the state is half a step ahead
-    instrument.recover()
+    ensemble.recover()
     assert instrument.frame == 4160
-    begin, samples = instrument.taped(0)
+    begin, samples = ensemble.taped(0)
     assert begin == 0
-    np.testing.assert_array_equal(samples[:4096], out)
+    np.testing.assert_array_equal(samples[:4096], np.stack([out, out], 1))
     assert len(samples) == 4160
     assert not samples[4096:].any()
-    instrument.process(out)
+    ensemble.process(out)
     assert np.isfinite(out).all()
-    assert instrument.lost_states == 0
+    assert ensemble.lost_states == 0
     assert instrument.meters()["callbacks"] == 2
     assert instrument.meters()["running"] == 0
     assert instrument.meters()["frame"] == 4160
@@ -412,20 +420,21 @@ def touched(instrument: Instrument) -> bool:
 
 @pytest.mark.parametrize("how", [bow, play, pluck, drawn_by_hand, kept_while_notes_sound])
 def test_a_process_that_died_within_a_note_leaves_no_string_touched_and_no_key_held(how):
-    instrument = Instrument(RATE)
+    ensemble = alone(RATE)
+    instrument = ensemble.first
     how(instrument)
     out = np.zeros(64, np.float32)
     was_touched = False
     for _ in range(100):
-        instrument.process(out[:1])
+        ensemble.process(out[:1])
         was_touched |= touched(instrument)
     assert was_touched
     instrument._rig["meters"]["running"] = 1
-    instrument.recover()
+    ensemble.recover()
     player = instrument._rig["player"][0]
     assert (player["held"], player["sounding"], player["by_hand"]) == (0, SILENT, 0)
     for _ in range(RATE // 10):
-        instrument.process(out[:1])
+        ensemble.process(out[:1])
         assert not touched(instrument)
         assert not out[0]
     assert np.isnan(instrument.meters()["pitch"])
@@ -433,17 +442,18 @@ def test_a_process_that_died_within_a_note_leaves_no_string_touched_and_no_key_h
 
 def test_after_a_process_died_within_a_note_the_next_one_is_the_first():
     """All that is held is forgotten, so the end of another key does not make it sound again."""
-    instrument, out = Instrument(RATE), np.zeros(RATE // 2, np.float32)
+    ensemble, out = alone(RATE), np.zeros(RATE // 2, np.float32)
+    instrument = ensemble.first
     play(instrument, 69.0, 74.0)
-    instrument.process(out[:4000])
+    ensemble.process(out[:4000])
     instrument._rig["meters"]["running"] = 1
-    instrument.recover()
+    ensemble.recover()
     play(instrument, 77.0)
-    instrument.process(out)
+    ensemble.process(out)
     assert instrument.meters()["pitch"] == pytest.approx(77.0, abs=0.2)  # it varies
     assert np.abs(out[-RATE // 8 :]).max() > 0.01
     instrument.post(END, value=77.0)
-    instrument.process(out)
+    ensemble.process(out)
     assert np.isnan(instrument.meters()["pitch"])
     assert instrument.target("/bow/side") == 0.0
 
@@ -452,15 +462,15 @@ def test_after_a_process_died_within_a_note_the_next_one_is_the_first():
 
 
 def test_the_tape_holds_what_was_played_to_the_bit_across_its_end():
-    instrument = bowed(channels=2)
+    ensemble = bowed(channels=2)
     chance = random.Random(1)
     played, taped = [], []
     frame = 0
     while frame < TAPE_FRAMES + TAPE_FRAMES // 4:
         out = np.zeros((chance.choice([1, 64, 500, 20_000]), 2), np.float32)
-        instrument.process(out)
-        played.append(out[:, 0])
-        begin, samples = instrument.taped(frame)
+        ensemble.process(out)
+        played.append(out)
+        begin, samples = ensemble.taped(frame)
         assert begin == frame
         assert samples.dtype == np.float32
         taped.append(samples)
@@ -469,56 +479,57 @@ def test_the_tape_holds_what_was_played_to_the_bit_across_its_end():
     assert np.abs(played[-RATE:]).max() > 0.01
     np.testing.assert_array_equal(np.concatenate(taped), played)
     # Who asks for frames in the middle gets these.
-    begin, samples = instrument.taped(frame - 70_000)
+    begin, samples = ensemble.taped(frame - 70_000)
     assert begin == frame - 70_000
     np.testing.assert_array_equal(samples, played[-70_000:])
 
 
 def test_who_comes_too_late_for_the_tape_gets_a_later_beginning():
-    instrument = bowed()
+    ensemble = bowed()
     played = np.zeros(TAPE_FRAMES + 100_000, np.float32)
     for start in range(0, len(played), 4096):
-        instrument.process(played[start : start + 4096])
+        ensemble.process(played[start : start + 4096])
+    both = np.stack([played, played], 1)
     for late in (-1, 0, 50_000):
-        begin, samples = instrument.taped(late)
+        begin, samples = ensemble.taped(late)
         assert begin > late
         assert begin + len(samples) == len(played)
         assert len(samples) > TAPE_FRAMES // 2
-        np.testing.assert_array_equal(samples, played[begin:])
+        np.testing.assert_array_equal(samples, both[begin:])
         # The oldest are left out, since they may be written over as they are read.
         assert len(samples) < TAPE_FRAMES - 4096
 
 
 def test_who_comes_too_early_for_the_tape_gets_nothing():
-    instrument = bowed()
-    assert len(instrument.taped(0)[1]) == 0
-    instrument.process(np.zeros(100, np.float32))
+    ensemble = bowed()
+    assert len(ensemble.taped(0)[1]) == 0
+    ensemble.process(np.zeros(100, np.float32))
     for early in (100, 1000):
-        begin, samples = instrument.taped(early)
+        begin, samples = ensemble.taped(early)
         assert begin == early
         assert len(samples) == 0
-    instrument.reset()
-    assert len(instrument.taped(0)[1]) == 0
+    ensemble.reset()
+    assert len(ensemble.taped(0)[1]) == 0
 
 
 def test_another_thread_reads_only_what_has_been_played():
-    instrument = bowed()
+    ensemble = bowed()
     played = np.zeros(200_000, np.float32)  # less than the tape, so that none can be lost
     over = threading.Event()
 
     def play() -> None:
         for start in range(0, len(played), 400):
-            instrument.process(played[start : start + 400])
+            ensemble.process(played[start : start + 400])
         over.set()
 
     player = threading.Thread(target=play)
     player.start()
     taped, read = [], 0
-    while not over.is_set() or read < instrument.frame:
-        begin, samples = instrument.taped(read)
+    while not over.is_set() or read < ensemble.frame:
+        begin, samples = ensemble.taped(read)
         assert begin == read
         taped.append(samples)
         read += len(samples)
     player.join()
     assert len(taped) > 3
-    np.testing.assert_array_equal(np.concatenate(taped), played)
+    np.testing.assert_array_equal(np.concatenate(taped), np.stack([played, played], 1))

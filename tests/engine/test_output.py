@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from sound import bow, run
 
 from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.output import limit
+from yehu_server.stage.limiter import limit
 
 RATE = 44100
 KNEE = 10.0 ** (-3.0 / 20.0)

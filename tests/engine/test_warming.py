@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from yehu_server.engine import warming
-from yehu_server.engine.native import callback
+from yehu_server.engine.sounding import sound
 from yehu_server.jit import Native
 
 
@@ -41,11 +41,11 @@ def test_no_process_is_started_when_all_is_kept(monkeypatch):
 
 
 @pytest.mark.parametrize("processors", [2, 1])
-def test_the_callback_is_compiled_beside_where_there_is_a_second_processor(monkeypatch, processors):
+def test_the_model_is_compiled_beside_where_there_is_a_second_processor(monkeypatch, processors):
     warming.warm_up()
     begun = beginnings(monkeypatch)
     monkeypatch.setattr(warming.os, "cpu_count", lambda: processors)
-    monkeypatch.setattr(Native, "is_kept", property(lambda self: self is not callback))
+    monkeypatch.setattr(Native, "is_kept", property(lambda self: self is not sound))
     assert not warming.is_warm()
     warming.warm_up()
     expected = [[sys.executable, "-m", "yehu_server.engine.warming"]]

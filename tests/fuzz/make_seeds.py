@@ -46,7 +46,31 @@ MIDI_FILES = {
     + midi_file(NOTE + END),
     "cut-short": midi_file(NOTE + NOTE)[:-3],
     "velocity-above-127": midi_file(b"\x00\x90\x43\xff" + NOTE + END),
+    "division-0": midi_file(NOTE + END, division=0),
+    "junk-before": b"From: a friend\n\n" + midi_file(NOTE + END),
+    "joined": midi_file(NOTE + END) * 2,
+    "a-length-of-0": midi_file(NOTE + END).replace(b"MTrk\0\0\0\x0c", b"MTrk\0\0\0\0"),
     "a-very-long-rest": midi_file(b"\xff\xff\xff\x7f\x90\x43\x5a" + NOTE + END, division=1),
+}
+
+# Programs for the target: a wrapper, the header's numbers and whether its length is true; then
+# parts. In a track, each event begins with its kind and its delay.
+TRUE = b"\1"
+PLAIN = b"\0\1\0\x60" + TRUE
+NOTE_EVENTS = b"\6\x90\x43\x5a" + b"\x66\x80\x43\0" + b"\0"
+MIDI_STRUCTURES = {
+    "one-track": b"\0" + PLAIN + b"\3" + NOTE_EVENTS + TRUE,
+    "two-tracks-in-riff": b"\1\1\2\0\x60" + TRUE + (b"\3" + NOTE_EVENTS + TRUE) * 2,
+    "songs-in-macbinary": b"\2\2\2\0\x60" + TRUE + (b"\3" + NOTE_EVENTS + TRUE) * 2,
+    "junk-before": b"\x0b" + PLAIN + b"\3" + NOTE_EVENTS + TRUE,
+    "joined": (b"\0" + PLAIN + b"\3" + NOTE_EVENTS + TRUE) * 2,
+    "wrong-lengths": b"\0" + PLAIN + b"\3" + NOTE_EVENTS + b"\x88" + b"\3" + NOTE_EVENTS + b"\0",
+    "running-status": b"\0" + PLAIN + b"\3\6\x90\x43\x5a\x65\x43\0\x65\x45\x40\x65\x45\0\0" + TRUE,
+    "no-end-and-a-tempo": b"\0" + PLAIN + b"\3\2\3\0\0" + NOTE_EVENTS[:-1] + b"\x08\0" + TRUE,
+    "sysex-text-and-damage": b"\0" + PLAIN + b"\3\3\2\x7e\xf7\0\4\2la\1\1\3\xff\1\2" + NOTE_EVENTS,
+    "division-0": b"\0\0\1\0\0" + TRUE + b"\3" + NOTE_EVENTS + TRUE,
+    "frames": b"\0\0\1\xe7\x28" + TRUE + b"\3" + NOTE_EVENTS + TRUE,
+    "a-long-rest": b"\0" + PLAIN + b"\3\6\x90\x43\x5a\xfe\x14\x80\x43\0\0" + TRUE,
 }
 
 
@@ -220,6 +244,7 @@ REQUESTS = {
 
 MADE = {
     "midi-file": MIDI_FILES,
+    "midi-structure": MIDI_STRUCTURES,
     "midi-messages": MIDI_MESSAGES,
     "osc-packet": OSC_PACKETS,
     "osc-prefixed": OSC_PREFIXED,

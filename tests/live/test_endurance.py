@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from sound import alone
 
 from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.control.packets import unpack
@@ -56,9 +57,9 @@ def idle_stream(blocksize: int) -> Iterator[Instrument]:
     """The same callback without an event."""
     output = Output(OutputOptions(device=DEVICE, blocksize=blocksize), lambda _line: None)
     try:
-        instrument = Instrument(output.find(), memory=output.memory.buffer)
-        output.begin(instrument)
-        yield instrument
+        stage = alone(output.find(), memory=output.memory.buffer, channels=2)
+        output.begin(stage)
+        yield stage.first
     finally:
         output.end()
 

@@ -10,11 +10,13 @@ import threading
 import time
 
 import numpy as np
+from sound import alone
 
 from yehu_server.audio.output import Output, OutputOptions
 from yehu_server.engine.instrument import Instrument
 from yehu_server.replay import blocks
 from yehu_server.score.capture import read_capture
+from yehu_server.score.capture_beginning import beginning_of
 from yehu_server.score.capture_writer import CaptureWriter
 
 RATE, BLOCK = 48000, 128
@@ -53,10 +55,12 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     jackd.start(BLOCK)
     output = Output(OutputOptions(device="system, JACK", blocksize=BLOCK), lambda _line: None)
     try:
-        instrument = Instrument(output.find(), memory=output.memory.buffer)
+        stage = alone(output.find(), memory=output.memory.buffer, channels=2)
+        instrument = stage.first
         instrument.report_wishes()
-        capture = CaptureWriter(tmp_path / "take.jsonl", instrument=instrument)
-        output.begin(instrument)
+        beginning = beginning_of([instrument], has_room=False)
+        capture = CaptureWriter(tmp_path / "take.jsonl", beginning=beginning)
+        output.begin(stage)
         listener = recorder(1).connected()
         bow(instrument)
         time.sleep(0.1)
@@ -69,7 +73,7 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
         after = instrument.meters()
         recording = listener.recording()
         end = instrument.frame
-        tape = instrument.taped(0)[1]
+        tape = stage.taped(0)[1]
     finally:
         output.end()
     capture.close(end)
@@ -77,10 +81,10 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
     assert after["callbacks"] - before["callbacks"] > 0.7 * RATE / BLOCK
 
     captured = read_capture(tmp_path / "take.jsonl")
-    replayed = np.concatenate(list(blocks(captured, captured.beginning.instrument())))
+    replayed = np.concatenate(list(blocks(captured, captured.beginning.ensemble())))
     np.testing.assert_array_equal(replayed, tape[:end])
 
-    found = places(recording.samples[0], tape)
+    found = places(recording.samples[0], tape[:, 0])
     half = len(found) // 2
     undisturbed, held = breaks(found[:half]), breaks(found[half:])
     assert held <= undisturbed + recording.xruns + 2
@@ -96,14 +100,18 @@ import ctypes, json, mmap, os
 from yehu_server.audio.devices import choose, load_portaudio, outputs
 from yehu_server.audio.output import SharedMemory
 from yehu_server.audio.stream import Stream
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 
 memory = SharedMemory()
-instrument = Instrument({RATE:.1f}, memory=memory.buffer)
+stage = Ensemble(
+    [lambda place: Instrument({RATE:.1f}, memory=place)], channels=1, memory=memory.buffer
+)
+instrument = stage.first
 sounddevice = load_portaudio()
 device = choose(outputs(sounddevice), "system, JACK")
-order = {{"memory": memory.descriptor, "rate": {RATE:.1f}, "blocksize": {BLOCK}, "channels": 1,
-         "latency": "low"}}
+order = {{"memory": memory.descriptor, "size": memory.size, "rate": {RATE:.1f},
+         "blocksize": {BLOCK}, "channels": 1, "latency": "low"}}
 stream = Stream(sounddevice, device, order)
 stream.start()
 hold_the_gil = ctypes.PyDLL(None).usleep

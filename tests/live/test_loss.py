@@ -15,19 +15,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 import soundfile
+from sound import alone
 
 from yehu_server.audio import output
 from yehu_server.audio.output import Output, OutputOptions, SharedMemory
 from yehu_server.child import Child
 from yehu_server.cli import main
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes
 from yehu_server.replay import blocks
 from yehu_server.score.capture import read_capture
+from yehu_server.score.capture_beginning import beginning_of
 from yehu_server.score.capture_writer import CaptureWriter
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server import PartOptions, ServeOptions, Server
 
 DEVICE = "system, JACK Audio Connection Kit"
 SOUNDS = 1e-3
@@ -248,7 +251,7 @@ def stopped(jackd, until) -> Iterator[Callable[..., Stopped]]:
                 output=OutputOptions(device="system, JACK"),
                 midi=None,
                 osc=("127.0.0.1", 0),
-                style=Style(settings=(("/playing/variation", 0.0),)),
+                parts=[PartOptions(Style(settings=(("/playing/variation", 0.0),)))],
             )
             server = Server(options, lambda _line: None)
             ending.callback(server.stop)
@@ -262,18 +265,18 @@ def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stop
     it = stopped(in_block=True)
     assert it.keys == (1, 1)
     it.kill()
-    (gap,) = it.instrument.rests
+    (gap,) = it.server.ensemble.rests
     assert it.keys == (0, 0)
     assert it.player.pitch is None
     assert it.player.value("/bow/speed") == it.player.value("/bow/side") == 0.0
-    assert not it.instrument.taped(gap[0])[1].any()
+    assert not it.server.ensemble.taped(gap[0])[1].any()
     it.player.note_off(67.0, frame=it.player.frame_of())  # let go later
     it.wait(4800)
-    assert not it.instrument.taped(gap[0])[1].any()
+    assert not it.server.ensemble.taped(gap[0])[1].any()
     it.player.note_on(69.0, 90.0, frame=it.player.frame_of())
     until(lambda: it.player.pitch == 69.0, 5.0, "a new note")
     it.wait(9600)
-    assert peak(it.instrument.taped(it.instrument.frame - 4800)[1]) > SOUNDS
+    assert peak(it.server.ensemble.taped(it.instrument.frame - 4800)[1]) > SOUNDS
     assert it.keys == (1, 1)
     it.player.note_off(69.0, frame=it.player.frame_of())
     until(lambda: it.player.pitch is None, 5.0, "its end")
@@ -283,10 +286,10 @@ def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stop
 def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped, until):
     it = stopped(in_block=False)
     it.kill()
-    assert it.instrument.rests == []
+    assert it.server.ensemble.rests == []
     assert it.player.pitch == 67.0
     assert it.keys == (1, 1)
-    assert peak(it.instrument.taped(it.instrument.frame - 1000)[1]) > SOUNDS
+    assert peak(it.server.ensemble.taped(it.instrument.frame - 1000)[1]) > SOUNDS
     it.player.note_off(67.0, frame=it.player.frame_of())
     until(lambda: it.player.pitch is None, 5.0, "its end")
     assert it.keys == (0, 0)
@@ -308,9 +311,10 @@ import mmap, sys
 import numpy as np
 from yehu_server.engine import native
 from yehu_server.engine.warming import warm_up
-memory = mmap.mmap(int(sys.argv[1]), native.RIG.itemsize)
+from yehu_server.engine.rig import memory_bytes
+memory = mmap.mmap(int(sys.argv[1]), memory_bytes(1))
 rig = np.frombuffer(memory, np.uint8).ctypes.data
-out = np.zeros(8192, np.float32)
+out = np.zeros((8192, 2), np.float32)
 warm_up()
 print("plays", flush=True)
 while True:
@@ -340,11 +344,15 @@ def finger(instrument: Instrument, wishes: Wishes) -> None:
 def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path, play):
     memory = SharedMemory()
     style = Style(seed=3)
-    live = style.instrument(48000.0, calibration_for(48000.0), memory=memory.buffer)
+    calibration = calibration_for(48000.0)
+    stage = Ensemble(
+        [lambda place: style.instrument(48000.0, calibration, memory=place)], memory=memory.buffer
+    )
+    live = stage.first
     wishes = style.wishes(live)
     live.report_wishes()
-    capture = CaptureWriter(tmp_path / "take.jsonl", instrument=live)
-    recorded = np.zeros(0, np.float32)
+    capture = CaptureWriter(tmp_path / "take.jsonl", beginning=beginning_of([live], has_room=True))
+    recorded = np.zeros((0, 2), np.float32)
     for _ in range(3):
         play(live, wishes)
         audio = subprocess.Popen(
@@ -356,21 +364,21 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
         time.sleep(0.1)
         audio.kill()
         audio.communicate()
-        live.recover()
+        stage.recover()
         capture.wishes(live.applied_wishes())
-        begin, samples = live.taped(len(recorded))
+        begin, samples = stage.taped(len(recorded))
         assert begin == len(recorded)
         recorded = np.concatenate([recorded, samples])
     play(live, wishes)
-    live.process(np.zeros(9600, np.float32))
+    stage.process(np.zeros((9600, 2), np.float32))
     capture.wishes(live.applied_wishes())
-    for since, frame in live.rests:
+    for since, frame in stage.rests:
         capture.note("rest", frame, since=since)
     capture.close(live.frame)
-    recorded = np.concatenate([recorded, live.taped(len(recorded))[1]])
+    recorded = np.concatenate([recorded, stage.taped(len(recorded))[1]])
     assert peak(recorded) > SOUNDS
     captured = read_capture(tmp_path / "take.jsonl")
-    again = list(blocks(captured, captured.beginning.instrument()))
+    again = list(blocks(captured, captured.beginning.ensemble()))
     np.testing.assert_array_equal(np.concatenate(again), recorded)
 
 
@@ -398,9 +406,10 @@ class Refusing:
 def test_while_a_device_does_not_start_time_goes_on(monkeypatch):
     monkeypatch.setattr(output, "Child", Refusing)
     way_out = Output(OutputOptions(), lambda _line: None)
-    instrument = Instrument(way_out.find(), memory=way_out.memory.buffer)
+    stage = alone(way_out.find(), memory=way_out.memory.buffer, channels=2)
+    instrument = stage.first
     try:
-        way_out.begin(instrument)  # waits once
+        way_out.begin(stage)  # waits once
         longest, last, since = 0.0, instrument.frame, time.monotonic()
         start = since
         while (now := time.monotonic()) < start + 2.5:

@@ -20,7 +20,7 @@ from yehu_server.control.midi_process import Inputs
 from yehu_server.control.ports import MidiOptions, MidiPorts
 from yehu_server.player.bowing import ordinary_table
 from yehu_server.playing.style import Style
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server import PartOptions, ServeOptions, Server
 
 RATE, PERIOD = 48000, 1024
 LISTENS_AFTER_S = 0.2  # see test_a_port_is_listened_to_before_it_is_open
@@ -107,7 +107,9 @@ class Witness:
             output=OutputOptions(device="null", rate=RATE),
             midi=MidiOptions(**{"api": "jack", **midi}),
             osc=("127.0.0.1", 0),
-            style=Style(settings=(("/playing/variation", 0.0),), bowing=ordinary_table()),
+            parts=[
+                PartOptions(Style(settings=(("/playing/variation", 0.0),), bowing=ordinary_table()))
+            ],
         )
         self.server = Server(options, lambda line: self.said.append((time.monotonic(), line)))
         self._moves = Moves(self.server.instrument)
@@ -558,7 +560,7 @@ def test_a_name_that_no_port_has_is_told_once_and_heard_when_it_comes():
 
 def test_a_missing_name_is_said_once_however_often_the_midi_system_begins_anew():
     said = []
-    ports = MidiPorts(SimpleNamespace(), MidiOptions(), said.append)
+    ports = MidiPorts([SimpleNamespace()], MidiOptions(), said.append)
     for _ in range(2):
         ports._heard({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]

@@ -15,6 +15,9 @@ export const FLAGS = [
   "--disable-sync",
 ];
 
+/** What a browser calls requests that it drops itself, such as an icon's when the page is left. */
+const ABORTED = "net::ERR_ABORTED";
+
 export const SIZES = {
   phone: { width: 360, height: 740 },
   tablet: { width: 1180, height: 820 },
@@ -59,7 +62,10 @@ export async function open(browser, url) {
     if (["error", "warning"].includes(message.type())) errors.push(message.text());
   });
   page.on("pageerror", (error) => errors.push(String(error)));
-  page.on("requestfailed", (request) => errors.push(`failed: ${request.url()}`));
+  page.on("requestfailed", (request) => {
+    const text = request.failure()?.errorText;
+    if (text !== ABORTED) errors.push(`failed: ${request.url()} (${text})`);
+  });
   await page.goto(url);
   await page.waitForSelector("#ways input");
   return { page, errors };

@@ -138,6 +138,7 @@ export class Sound extends EventTarget {
         beta,
         x: LENGTH - beta * (LENGTH - stop),
       },
+      hair: { place: 0.35 + 0.3 * Math.cos(time * 3), length: 0.7 },
       fingers: stop > 0.01 ? [{ x: stop, press: 1.5, string }] : [],
       period,
       string: { length: LENGTH },

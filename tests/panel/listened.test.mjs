@@ -16,26 +16,30 @@ function randoms() {
 }
 
 /**
- * Listen for a while to a tone of 1 kHz.
+ * Listen for a while to a tone of 1 kHz at the left, and its inverse at the right, half as loud.
  * @param {{ppm: number, seconds: number, lateS: number, ownRate?: number}} options
  */
 function listen({ ppm, seconds, lateS, ownRate = RATE }) {
   const sound = new Listened(ownRate, RATE);
   const random = randoms();
-  const out = new Float32Array(BLOCK);
+  const [out, right] = [new Float32Array(BLOCK), new Float32Array(BLOCK)];
+  let unlike = 0; // most that right is not minus half of left
   const fills = [];
   let [sent, sendAt, crossings, before] = [0, 0, 0, 0];
   for (let block = 0; block * BLOCK < seconds * ownRate; block++) {
     const now = (block * BLOCK) / ownRate;
     for (; sendAt <= now; sendAt += 0.0025 + lateS * random()) {
       const made = Math.floor((sendAt * RATE * (1 + ppm * 1e-6)) / BLOCK) * BLOCK;
-      const samples = Float32Array.from({ length: made - sent }, (_, i) =>
-        Math.sin((2 * Math.PI * 1000 * (sent + i)) / RATE),
+      const samples = Float32Array.from(
+        { length: 2 * (made - sent) },
+        (_, i) =>
+          (i % 2 ? -0.5 : 1) * Math.sin((2 * Math.PI * 1000 * (sent + Math.floor(i / 2))) / RATE),
       );
       if (made > sent) sound.write(sent, samples);
       sent = made;
     }
-    sound.fillIn(out);
+    sound.fillIn(out, right);
+    for (let i = 0; i < BLOCK; i++) unlike = Math.max(unlike, Math.abs(right[i] + 0.5 * out[i]));
     if (now < SETTLED_S) continue;
     fills.push(sound.fill);
     for (const sample of out) {
@@ -45,7 +49,7 @@ function listen({ ppm, seconds, lateS, ownRate = RATE }) {
   }
   const frequency = crossings / (seconds - SETTLED_S);
   fills.sort((one, other) => one - other);
-  return { gaps: sound.gaps, aim: sound.aim, most: fills.at(-1), frequency };
+  return { gaps: sound.gaps, aim: sound.aim, most: fills.at(-1), frequency, unlike };
 }
 
 console.log(

@@ -143,8 +143,9 @@ await run(async (browser, url) => {
 
   // A tune that waits for its notes.
   await page.click("#tab-tunes");
-  await page.locator("#panel-tunes button").nth(1).click();
-  const bar = page.locator("#panel-tunes progress").first();
+  const tune = page.locator("#panel-tunes .tune", { hasText: "Shi Bei Jiu" });
+  await tune.locator("button").nth(1).click();
+  const bar = tune.locator("progress");
   found.along = [await bar.evaluate((element) => element.value)];
   const first = await page.evaluate(async () => {
     const { default: examples } = await import("/examples.js");

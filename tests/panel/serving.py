@@ -13,7 +13,7 @@ from panel.browser import CHROMIUM, HERE, NODE
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.panel.pages import PageOptions
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server import PartOptions, ServeOptions, Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 30.0
@@ -29,14 +29,15 @@ def until(condition: Callable[[], Any]) -> bool:
     return True
 
 
-def start(port: int) -> Server:
-    """A server without a device, with its page at a port."""
+def start(port: int, parts: int = 1) -> Server:
+    """A server of some parts, without a device, with its page at a port."""
     server = Server(
         ServeOptions(
             output=OutputOptions(device="null"),
             midi=None,
             osc=(HOST, 0),
             page=PageOptions((HOST, port), is_wished=True),
+            parts=[PartOptions() for _ in range(parts)],
         )
     )
     server.start()

@@ -368,7 +368,7 @@ def test_twenty_listeners_get_what_is_played_without_a_gap(server) -> None:
             while heard < seconds * server.instrument.rate:
                 message = await asyncio.wait_for(socket.receive(), PATIENCE_S)
                 (frame,) = np.frombuffer(message.data[:8], "<f8")
-                samples = np.frombuffer(message.data[8:], "<f4")
+                samples = np.frombuffer(message.data[8:], "<f4").reshape(-1, 2)
                 first = int(frame) if first is None else first
                 assert frame == first + heard
                 heard += len(samples)
@@ -382,7 +382,7 @@ def test_twenty_listeners_get_what_is_played_without_a_gap(server) -> None:
     found = asyncio.run(all_listen())
     assert len(found) == 20
     for first, samples in found:
-        begin, taped = server.instrument.taped(first)
+        begin, taped = server.ensemble.taped(first)
         assert begin == first
         assert (samples == taped[: len(samples)]).all()
         assert np.abs(samples).max() > 1e-3

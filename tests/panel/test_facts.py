@@ -23,9 +23,10 @@ from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.tuning import read_tuning
-from yehu_server.score.smf import read_score
+from yehu_server.score.smf.reader import read_score
 
 ROOT = Path(__file__).parents[2]
+FOR_SEVERAL = {"mo_li_hua"}
 
 
 @pytest.fixture(scope="module")
@@ -142,8 +143,23 @@ def test_each_example_has_its_events():
     found = examples.examples()
     assert set(found) == {file.stem for file in (ROOT / "examples").glob("*.mid")}
     for name, example in found.items():
+        if name in FOR_SEVERAL:
+            continue
         events = read_score(ROOT / "examples" / f"{name}.mid").events
         assert example["mapping"] in shipped_mappings()
         for (seconds, data), event in zip(example["events"], events, strict=True):
             assert seconds == pytest.approx(event.time_s, abs=1e-6)
             assert mido.Message.from_bytes(data) == event.message
+
+
+def test_of_a_score_for_several_the_page_plays_the_first_player():
+    score = examples.example(ROOT / "examples" / "mo_li_hua.mid")
+    channels = {data[0] & 15 for _, data in score["events"] if data[0] < 0xF0}
+    assert channels == {0}
+    notes = [data for _, data in score["events"] if data[0] >> 4 == 9 and data[2]]
+    assert len(notes) > 20
+
+
+def test_an_mpe_score_keeps_the_channels_of_its_zone():
+    score = examples.example(ROOT / "examples" / "mpe_phrase.mid")
+    assert len({data[0] & 15 for _, data in score["events"] if data[0] < 0xF0}) > 1

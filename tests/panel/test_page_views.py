@@ -123,7 +123,8 @@ def test_what_was_kept_is_played_again(found) -> None:
     assert notes(found["replayed"]) == notes(found["played"])
     *kept, end = (json.loads(line) for line in found["kept"])
     assert end["end"] > 0
-    assert [line[1] for line in kept if line[1] in ("begin", "end")] == ["begin", "end"] * 2
+    assert [line[2] for line in kept if line[2] in ("begin", "end")] == ["begin", "end"] * 2
+    assert {line[1] for line in kept} == {1}  # the one player
 
 
 def test_a_file_that_is_no_performance_is_refused_in_words(found) -> None:

@@ -49,7 +49,8 @@ def found(url, folder):
 
 
 def off_by(sound: np.ndarray, rate: int, note: float = B4) -> float:
-    """How far (cents) the loudest part of a sound is from a note."""
+    """How far (cents) the loudest part of a sound, of left and right, is from a note."""
+    sound = sound.mean(axis=1)
     loudest = int(np.argmax(np.convolve(sound**2, np.ones(rate // 4), "valid")))
     return cents(pitch_hz(sound[loudest : loudest + rate // 4], rate), frequency_hz(note, 440.0))
 
@@ -67,6 +68,15 @@ def test_what_is_recorded_is_the_note_that_was_played(found, folder, name):
     assert np.isfinite(sound).all()
     assert np.abs(sound).max() > 0.03
     assert abs(off_by(sound, rate)) < 10.0
+
+
+@pytest.mark.parametrize("name", ["recorded.wav", "script.wav"])
+def test_left_and_right_are_those_of_a_room(found, folder, name):
+    """They differ by the room and the body's sides, and are about as loud."""
+    assert found
+    left, right = soundfile.read(folder / name, dtype="float64", always_2d=True)[0].T
+    assert 0.3 < np.corrcoef(left, right)[0, 1] < 0.999
+    assert np.mean(left**2) == pytest.approx(np.mean(right**2), rel=0.5)
 
 
 def test_without_a_worklet_the_script_processor_sounds(found):
@@ -97,7 +107,8 @@ def test_what_sounds_goes_on_behind_another_tab(behind, folder):
     assert behind["noteEnded"]
     sound, rate = soundfile.read(folder / "behind.wav", dtype="float32")
     assert len(sound) / rate > behind["away"] + 1.0
-    moments = sound[: len(sound) // (rate // 20) * (rate // 20)].reshape(-1, rate // 20)
+    mixed = sound.mean(axis=1)
+    moments = mixed[: len(mixed) // (rate // 20) * (rate // 20)].reshape(-1, rate // 20)
     assert np.abs(moments).max(axis=1).min() > 0.01
     assert abs(off_by(sound, rate, E5)) < 10.0
 

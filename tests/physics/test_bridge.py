@@ -13,7 +13,7 @@ from yehu_server.physics import kernel, layout
 from yehu_server.physics.bridge import advance_bridge
 from yehu_server.physics.quantities import Quantities, StringQuantities
 from yehu_server.score.gesture import Gesture
-from yehu_server.simulate import simulate
+from yehu_server.simulation import simulate
 
 YEHU = Quantities()
 MODES = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())["bridge_modes"]

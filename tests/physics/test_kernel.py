@@ -11,7 +11,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities, override
 from yehu_server.score.gesture import Gesture
-from yehu_server.simulate import simulate
+from yehu_server.simulation import simulate
 
 YEHU = Quantities()
 RATE = 44100.0

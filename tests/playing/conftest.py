@@ -63,6 +63,7 @@ def mapping() -> Mapping:
         Bind("cc 1", "/playing/speed", (0.08, 0.35), Curve.EXP),
         Bind("velocity", "/playing/pressure", (0.3, 0.55)),
         Bind("cc 7", "/playing/volume"),
+        Bind("cc 10", "/room/pan"),
         Bind("cc 11", "/playing/expression"),
     )
     return Mapping("test", binds)

@@ -203,13 +203,14 @@ def test_volume_and_expression_set_the_level(midi, listener):
 # ---------------------------------------------------------------- reset all controllers
 
 
-def test_reset_all_controllers_puts_back_all_but_the_volume(midi, player, listener):
+def test_reset_all_controllers_puts_back_all_but_volume_and_pan(midi, player, listener):
     midi.rpn(0, 0, (6, 12))
     midi.cc(7, 64)
     midi.cc(11, 64)
     midi.cc(1, 127)
     midi.cc(64, 127)
     midi.on(77)
+    midi.cc(10, 127)
     midi.bend(8191)
     midi.touch(127)
     midi.cc(121, 0)
@@ -217,6 +218,7 @@ def test_reset_all_controllers_puts_back_all_but_the_volume(midi, player, listen
     assert listener.press == PRESS
     assert listener["/bow/speed"] == 0.2
     assert listener["/output/level"] == pytest.approx((64 / 127) ** 2)
+    assert listener["/room/pan"] == 1.0
     midi.off(77)
     assert player.sounding is None  # the pedal is up
     midi.on(77)

@@ -47,6 +47,7 @@ def test_every_shipped_mapping_loads_by_its_name(path):
         ("cc 1", ["/playing/speed"]),
         ("velocity", ["/playing/velocity", "/playing/pressure"]),
         ("cc 7", ["/playing/volume"]),
+        ("cc 10", ["/room/pan"]),
         ("cc 11", ["/playing/expression"]),
     ],
 )
@@ -56,6 +57,13 @@ def test_the_keyboard_mapping_gives_each_controller_its_role(source, targets):
     for bind in binds:
         if source != "bend":
             assert bind.from_unit(0.0) < bind.from_unit(0.5) < bind.from_unit(1.0)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "mappings").glob("*.toml")), ids=lambda p: p.stem)
+def test_the_middle_of_the_pan_is_the_middle_of_the_stage_with_each_mapping(path):
+    (bind,) = load(path.stem).of("cc 10")
+    pans = [bind.from_unit(value / 127.0) for value in (0, 1, 64, 127)]
+    assert pans == pytest.approx([-1.0, -1.0, 0.0, 1.0], abs=1e-12)
 
 
 # ---------------------------------------------------------------- how far and along which curve

@@ -19,7 +19,7 @@ from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.wishes import Key
 
 CHANNELS = (0, 1, 9)
-ours = settings(max_examples=300, deadline=None, derandomize=True, database=None)
+ours = settings(max_examples=150, deadline=None, derandomize=True, database=None)
 
 channels = st.sampled_from(CHANNELS)
 data = st.integers(0, 127)

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from yehu_server.engine.instrument import RIG_BYTES
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE
 from yehu_server.player.rows import ROW
@@ -35,7 +34,7 @@ PRESSURE, VELOCITY = "/playing/pressure", "/playing/velocity"
 @pytest.fixture(scope="module")
 def instrument():
     style = Style()
-    instrument = style.instrument(48000.0, calibration_for(48000.0), memory=bytearray(RIG_BYTES))
+    instrument = style.instrument(48000.0, calibration_for(48000.0))
     instrument.report_wishes()
     return instrument
 

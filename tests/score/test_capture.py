@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import json
-import mmap
 import os
 import random
 import resource
+from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
-from sound import bow, rms, run
+from sound import alone, bow, rms, run
 
 from yehu_server.controls.slots import SILENCE
-from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.engine.ensemble import Ensemble
+from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.physics.quantities import Quantities, override
@@ -40,6 +42,7 @@ from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 from yehu_server.replay import blocks, replay
 from yehu_server.score.capture import read_capture
+from yehu_server.score.capture_beginning import Beginning, beginning_of
 from yehu_server.score.capture_format import build
 from yehu_server.score.capture_writer import CaptureWriter
 from yehu_server.score.live_capture import LiveCapture
@@ -51,15 +54,15 @@ SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 
 
 @pytest.fixture(scope="module")
-def plain():
-    """An instrument without calibration, at its beginning."""
-    return Instrument(RATE, TUNED, seed=3)
+def plain() -> Beginning:
+    """An instrument without calibration, without a room."""
+    return beginning_of([Instrument(RATE, TUNED, seed=3)], has_room=False)
 
 
 @pytest.fixture
 def write(plain):
     def write(path, wishes=(), end=None, rests=(), lost=0):
-        writer = CaptureWriter(path, instrument=plain)
+        writer = CaptureWriter(path, beginning=plain)
         writer.wishes(np.array(list(wishes), WISH))
         for frame in rests:
             writer.note("rest", frame, since=frame)
@@ -87,7 +90,10 @@ def first_version(path, ramps=(), values=None, end=None, rests=()):
 
 def replayed(path) -> np.ndarray:
     capture = read_capture(path)
-    return np.concatenate(list(blocks(capture, capture.beginning.instrument())))
+    samples = np.concatenate(list(blocks(capture, capture.beginning.ensemble())))
+    if not capture.beginning.has_room:
+        assert (samples[:, 0] == samples[:, 1]).all()
+    return samples[:, 0]
 
 
 RAMPS = [
@@ -100,7 +106,7 @@ RAMPS = [
 def test_what_is_written_is_read_to_the_bit(tmp_path, write):
     capture = read_capture(write(tmp_path / "c", RAMPS, end=12345))
     assert capture.rate == RATE
-    assert capture.version == 2
+    assert capture.version == 3
     assert capture.wishes.tolist() == RAMPS
     assert capture.frames == 12345
     assert capture.warnings == []
@@ -134,7 +140,7 @@ EACH_KIND = {
 def test_each_kind_of_wish_is_read_to_the_bit(tmp_path, write, kind):
     wishes = EACH_KIND[kind]
     path = write(tmp_path / "c", wishes, end=9)
-    assert {json.loads(line)[1] for line in path.read_text().splitlines()[1:-1]} == {kind}
+    assert {json.loads(line)[2] for line in path.read_text().splitlines()[1:-1]} == {kind}
     found = read_capture(path).wishes
     assert found.dtype == WISH
     assert found.tolist() == wishes
@@ -142,10 +148,13 @@ def test_each_kind_of_wish_is_read_to_the_bit(tmp_path, write, kind):
 
 def test_the_first_line_tells_the_whole_beginning(tmp_path, write):
     header = json.loads(write(tmp_path / "c").read_text().splitlines()[0])
-    assert (header["rate"], header["seed"], header["tensions"]) == (RATE, 3, list(TENSIONS))
+    (player,) = header["players"]
+    assert (header["rate"], header["room"], player["seed"]) == (RATE, False, 3)
+    tuned = {f"string_{i}": {"T": tension} for i, tension in enumerate(TENSIONS, start=1)}
+    assert player["quantities"] == tuned
     assert header["build"] == build()
     defaults = {param.address: param.default for param in TABLE}
-    assert header["values"] == {**defaults, "/engine/seed": 3.0}
+    assert player["values"] == {**defaults, "/engine/seed": 3.0}
 
 
 def measured(seed: int = 1) -> Calibration:
@@ -177,8 +186,9 @@ def test_an_instrument_is_read_as_it_began(tmp_path):
     run(began, 100)
     began.post(BEGIN, value=69.0, other=69.0)  # what happens afterwards is no beginning
     run(began, 100)
-    CaptureWriter(tmp_path / "c", instrument=began).close(0)
-    again = read_capture(tmp_path / "c").beginning.instrument()
+    beginning = beginning_of([began], has_room=False)
+    CaptureWriter(tmp_path / "c", beginning=beginning).close(0)
+    again = read_capture(tmp_path / "c").beginning.ensemble().first
     for part in ("model", "state", "controls", "player"):
         for name in expected[part].dtype.names:
             np.testing.assert_array_equal(again._rig[part][name], expected[part][name], name)
@@ -223,11 +233,14 @@ def test_what_is_no_capture_is_refused(tmp_path, text, reason):
     "line",
     [
         "nonsense",
-        '[1, "ramp", "/bow/speed", 0.1]',
-        '[1, "ramp", "/no/such", 0.1, 0]',
-        '[-1, "ramp", "/bow/speed", 0.1, 0]',
-        '[1, "ramp", "/bow/speed", NaN, 0]',
-        '[1e300, "ramp", "/bow/speed", 0.0, 0]',
+        '[1, 1, "ramp", "/bow/speed", 0.1]',
+        '[1, 1, "ramp", "/no/such", 0.1, 0]',
+        '[-1, 1, "ramp", "/bow/speed", 0.1, 0]',
+        '[1, 1, "ramp", "/bow/speed", NaN, 0]',
+        '[1e300, 1, "ramp", "/bow/speed", 0.0, 0]',
+        '[1, "ramp", "/bow/speed", 0.1, 0]',  # as in version 2
+        '[1, 0, "ramp", "/bow/speed", 0.1, 0]',
+        '[1, 2, "ramp", "/bow/speed", 0.1, 0]',  # a player who is not there
         '[1, "/bow/speed", 0.1, 0]',  # as in version 1
         "7",
     ],
@@ -248,22 +261,23 @@ def test_a_missing_file_and_a_missing_folder_are_told(tmp_path, plain):
     with pytest.raises(ScoreError, match="No such file"):
         read_capture(tmp_path / "none")
     with pytest.raises(OutputError, match="does not exist"):
-        CaptureWriter(tmp_path / "none" / "c", instrument=plain)
+        CaptureWriter(tmp_path / "none" / "c", beginning=plain)
 
 
 # ---------------------------------------------------------------- replays
 
 
 def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
-    live = Instrument(RATE)
+    stage = alone(RATE)
+    live = stage.first
     live.report_wishes()
-    writer = CaptureWriter(tmp_path / "c", instrument=live)
+    writer = CaptureWriter(tmp_path / "c", beginning=beginning_of([live], has_room=False))
     bow(live)
     played = np.zeros(30000, np.float32)
     for start in range(0, 30000, 100):
         if start == 10000:
             live.write("/finger/1/press", 1.5)
-        live.process(played[start : start + 100])
+        stage.process(played[start : start + 100])
     writer.wishes(live.applied_wishes())
     writer.close(live.frame)
     assert (replayed(tmp_path / "c") == played).all()
@@ -271,18 +285,19 @@ def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
 
 
 def test_a_rest_in_mid_session_is_replayed(tmp_path):
-    live = Instrument(RATE)
+    stage = alone(RATE)
+    live = stage.first
     live.report_wishes()
-    writer = CaptureWriter(tmp_path / "c", instrument=live)
+    writer = CaptureWriter(tmp_path / "c", beginning=beginning_of([live], has_room=False))
     live.post(BEGIN, value=69.0, other=69.0)
     played = np.zeros(20000, np.float32)
-    live.process(played[:9000])
+    stage.process(played[:9000])
     live._rig["meters"]["running"] = 1  # as if the process was killed inside a block
-    live.recover()
-    live.process(played[9000:12000])
+    stage.recover()
+    stage.process(played[9000:12000])
     live.post(BEGIN, value=72.0, other=72.0)
-    live.process(played[12000:])
-    assert live.rests == [(9000, 9000)]
+    stage.process(played[12000:])
+    assert stage.rests == [(9000, 9000)]
     writer.wishes(live.applied_wishes())
     writer.note("rest", 9000, since=9000)
     writer.close(live.frame)
@@ -327,42 +342,96 @@ def wish_something(instrument, wishes, chance) -> None:
         wishes.release(frame=frame)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_a_session_on_a_calibrated_instrument_is_replayed_to_the_bit(tmp_path, seed):
+@pytest.mark.parametrize(("seed", "players"), [(0, 1), (1, 1), (2, 3), (3, 2)])
+def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
+    """Of calibrated instruments, in a room; also where the process died in it."""
     chance, said = random.Random(seed), []
-    style = Style(seed=seed, open_strings=list(OpenStrings)[seed % 3])
-    live = style.instrument(RATE, measured(seed), memory=mmap.mmap(-1, RIG_BYTES))
-    wishes = style.wishes(live)
-    live.report_wishes()
-    capture = LiveCapture(live, tmp_path / "c", said.append)
+    styles = [
+        Style(seed=seed + i, open_strings=list(OpenStrings)[seed % 3]) for i in range(players)
+    ]
+
+    def make(style, memory):
+        return style.instrument(RATE, measured(seed), body=style.seed, memory=memory)
+
+    stage = Ensemble([partial(make, style) for style in styles])
+    asked = [style.wishes(one) for style, one in zip(styles, stage.instruments, strict=True)]
+    for one in stage.instruments:
+        one.report_wishes()
+    capture = LiveCapture(stage, tmp_path / "c", said.append, has_room=True)
     played, frames = [], 0
     while frames < 2 * RATE:
         if chance.random() < 0.3:
-            wish_something(live, wishes, chance)
+            number = chance.randrange(players)
+            wish_something(stage.instruments[number], asked[number], chance)
+        if chance.random() < 0.05:
+            address = chance.choice(["/room/size", "/room/level", "/room/pan", "/room/decay"])
+            stage.instruments[chance.randrange(players)].write(address, chance.uniform(0.2, 1.0))
         block = chance.choice([1, 64, 100, 512])
-        played.append(run(live, block))
+        played.append(np.zeros((block, 2), np.float32))
+        stage.process(played[-1])
         frames += block
-        if seed % 2 and frames > RATE and not live.rests:
-            live._rig["meters"]["running"] = 1  # the process died before it had told of the block
-            live._rig["taped"] -= block
-            live.recover()
-            assert live.rests == [(frames - block, frames)]
+        if seed % 2 and frames > RATE and not stage.rests:
+            first = stage.first._rig
+            first["meters"]["running"] = 1  # the process died before it had told of the block
+            first["taped"] -= block
+            stage.recover()
+            assert stage.rests == [(frames - block, frames)]
             played[-1][:] = 0.0
         if chance.random() < 0.2:
             capture.keep_up()
     capture.close()
     assert said == []
-    late = live.meters()["late_events"]
-    assert late > 5
-    assert wishes.notes_played > 20
+    meters = [one.meters() for one in stage.instruments]
+    assert sum(each["late_events"] for each in meters) > 5
+    assert sum(wishes.notes_played for wishes in asked) > 20
     read = read_capture(tmp_path / "c")
-    assert len(read.wishes) == live.meters()["applied"]
+    assert np.bincount(read.players).tolist() == [each["applied"] for each in meters]
     assert len(set(read.wishes["kind"])) > 6
     assert bool(read.rests) == bool(seed % 2)
     assert read.frames == frames
     expected = np.concatenate(played)
     assert rms(expected) > 0.001
-    np.testing.assert_array_equal(replayed(tmp_path / "c"), expected)
+    assert (expected[:, 0] != expected[:, 1]).any()
+    again = np.concatenate(list(blocks(read, read.beginning.ensemble())))
+    np.testing.assert_array_equal(again, expected)
+
+
+def test_wishes_of_several_players_are_read_in_the_order_of_frames(tmp_path):
+    beginning = beginning_of([Instrument(RATE), Instrument(RATE)], has_room=True)
+    writer = CaptureWriter(tmp_path / "c", beginning=beginning)
+    for player, frames in [(1, [5, 9]), (0, [3, 7]), (1, [9]), (0, [8])]:
+        writer.wishes(np.array([(frame, LIFT, 0, 0.0, 0.0) for frame in frames], WISH), player)
+    writer.close(10)
+    read = read_capture(tmp_path / "c")
+    found = zip(read.wishes["frame"].tolist(), read.players.tolist(), strict=True)
+    assert list(found) == [(3, 0), (5, 1), (7, 0), (8, 0), (9, 1), (9, 1)]
+    assert read.beginning.has_room
+
+
+def test_what_players_have_in_common_is_written_once(tmp_path):
+    of = measured()
+    players = [Instrument(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
+    players.append(Instrument(RATE, calibration=measured(2), bowing=ordinary_table() * 1.01))
+    CaptureWriter(tmp_path / "c", beginning=beginning_of(players, has_room=True)).close(9)
+    header = json.loads((tmp_path / "c").read_text().splitlines()[0])
+    assert [player["calibration"] for player in header["players"][1:3]] == [1, 1]
+    assert [player["bowing"] for player in header["players"][1:3]] == [1, 1]
+    again = read_capture(tmp_path / "c").beginning.players
+    assert [player.calibration for player in again] == [of, of, of, measured(2)]
+    assert [player.body for player in again] == [0, 1, 2, 0]
+    for player, own in zip(again, players, strict=True):
+        np.testing.assert_array_equal(player.bowing, own.bowing)
+
+
+def test_an_instrument_of_another_build_is_read_as_it_was(tmp_path):
+    """Such as those of a section: strings, hair and body differ."""
+    usual = Quantities()
+    body = replace(usual.body, mass=tuple(1.01 * mass for mass in usual.body.mass))
+    own = replace(usual, body=body, bow=replace(usual.bow, hair=7.0, xi=(0.6, 0.5)))
+    beginning = beginning_of([Instrument(RATE, own)], has_room=True)
+    CaptureWriter(tmp_path / "c", beginning=beginning).close(9)
+    (again,) = read_capture(tmp_path / "c").beginning.players
+    assert again.quantities == own
 
 
 def test_a_replay_counts_what_it_did(tmp_path, write):
@@ -458,9 +527,9 @@ def test_a_wish_in_a_file_of_version_1_is_refused(tmp_path):
 
 def test_a_full_disk_leaves_whole_lines(tmp_path, plain):
     path = tmp_path / "c"
-    writer = CaptureWriter(path, instrument=plain)
+    writer = CaptureWriter(path, beginning=plain)
     begun = path.read_bytes()
-    first = json.dumps([1, "ramp", "/bow/speed", 0.5, 0]) + "\n"
+    first = json.dumps([1, 1, "ramp", "/bow/speed", 0.5, 0]) + "\n"
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(begun) + len(first) + 9, hard))
     try:
@@ -478,14 +547,14 @@ def test_an_older_capture_is_replaced_only_where_that_only_where_that_is_asked_f
     path = write(tmp_path / "c", RAMPS, end=12345)
     older = path.read_bytes()
     with pytest.raises(OutputError, match="exists"):
-        CaptureWriter(path, instrument=plain)
+        CaptureWriter(path, beginning=plain)
     assert path.read_bytes() == older
-    CaptureWriter(path, instrument=plain, overwrite=True).close(7)
+    CaptureWriter(path, beginning=plain, overwrite=True).close(7)
     assert read_capture(path).frames == 7
 
 
 def test_a_capture_of_nothing_can_be_taken_back(tmp_path, plain):
-    CaptureWriter(tmp_path / "c", instrument=plain).discard()
+    CaptureWriter(tmp_path / "c", beginning=plain).discard()
     assert list(tmp_path.iterdir()) == []
 
 
@@ -524,58 +593,64 @@ NO_RAMPS = [
     '[0, ["/bow/speed"], 0.1, 0]',
 ]
 NO_WISHES = [
-    f'[{2**63 - 1}, "ramp", "/bow/speed", 0.1, 0]',
-    f'[{2**80}, "ramp", "/bow/speed", 0.1, 0]',
-    '[1e3, "ramp", "/bow/speed", 0.1, 0]',
-    '[-1, "ramp", "/bow/speed", 0.1, 0]',
-    '[0, "ramp", "/bow/speed", 9e18, 441]',
-    '[0, "ramp", "/bow/speed", NaN, 0]',
-    '[0, "ramp", "/bow/speed", -Infinity, 0]',
-    f'[0, "ramp", "/bow/speed", {HUGE}, 0]',
-    '[0, "ramp", "/bow/speed", {}, 0]',
-    f'[0, "ramp", "/bow/speed", 0.1, {2**63}]',
-    '[0, "ramp", "/bow/speed", 0.1, -5]',
-    '[0, "ramp", "silence", 1.0, 0]',
-    '[0, "ramp", ["/bow/speed"], 0.1, 0]',
+    f'[{2**63 - 1}, 1, "ramp", "/bow/speed", 0.1, 0]',
+    f'[{2**80}, 1, "ramp", "/bow/speed", 0.1, 0]',
+    '[1e3, 1, "ramp", "/bow/speed", 0.1, 0]',
+    '[-1, 1, "ramp", "/bow/speed", 0.1, 0]',
+    '[0, 1, "ramp", "/bow/speed", 9e18, 441]',
+    '[0, 1, "ramp", "/bow/speed", NaN, 0]',
+    '[0, 1, "ramp", "/bow/speed", -Infinity, 0]',
+    f'[0, 1, "ramp", "/bow/speed", {HUGE}, 0]',
+    '[0, 1, "ramp", "/bow/speed", {}, 0]',
+    f'[0, 1, "ramp", "/bow/speed", 0.1, {2**63}]',
+    '[0, 1, "ramp", "/bow/speed", 0.1, -5]',
+    '[0, 1, "ramp", "silence", 1.0, 0]',
+    '[0, 1, "ramp", ["/bow/speed"], 0.1, 0]',
     "[]",
     "[0]",
-    "[0, 4]",
-    '[0, ["lift"]]',
-    '[0, "jump"]',
-    '[0, "ramp", "/playing/speed", 0.1, 0]',  # which the player has
-    '[0, "write", "/playing/speed", 0.1]',
-    '[0, "write", "/playing/speed", 9e9, 0]',
-    '[0, "write", "/playing/speed", 0.1, -1]',
-    '[0, "write", "/playing/speed", 0.1, NaN]',
-    '[0, "write", "/playing/speed", 0.1, 1e9]',
-    '[0, "hold", "/no/such", 0.1, 0]',
-    '[0, "hold", 7, 0.1, 0]',
-    '[0, "express", "/playing/speed", NaN]',
-    '[0, "express", "/playing/speed", 0.1, 0]',
-    '[0, "begin", 0, 69]',
-    '[0, "begin", 0.5, 69, 69]',
-    '[0, "begin", -2000000, 69, 69]',
-    f'[0, "begin", {2**63}, 69, 69]',
-    '[0, "begin", 0, NaN, 69]',
-    '[0, "begin", 0, 69, 127.5]',
-    '[0, "begin", 0, 69, -1]',
-    '[0, "begin", 0, 69, "A4"]',
-    '[0, "end", 0, 69, 2]',
-    '[0, "end", 0, 69, true]',
-    '[0, "end", 0, 69]',
-    '[0, "slide"]',
-    '[0, "slide", Infinity]',
-    '[0, "slide", null]',
-    '[0, "draw", 0.1]',
-    '[0, "draw", 99, 0.1]',
-    '[0, "draw", 0.1, -1]',
-    '[0, "lift", 0]',
-    '[0, "stop"]',
-    '[0, "stop", 2]',
-    '[0, "stop", -1]',
-    '[0, "stop", NaN]',
-    '[0, "stop", 0, 0]',
-    '[0, "release", 0]',
+    "[0, 1]",
+    "[0, 1, 4]",
+    '[0, 0, "lift"]',
+    '[0, 2, "lift"]',
+    '[0, 1.0, "lift"]',
+    '[0, true, "lift"]',
+    '[0, null, "lift"]',
+    '[0, 1, ["lift"]]',
+    '[0, 1, "jump"]',
+    '[0, 1, "ramp", "/playing/speed", 0.1, 0]',  # which the player has
+    '[0, 1, "write", "/playing/speed", 0.1]',
+    '[0, 1, "write", "/playing/speed", 9e9, 0]',
+    '[0, 1, "write", "/playing/speed", 0.1, -1]',
+    '[0, 1, "write", "/playing/speed", 0.1, NaN]',
+    '[0, 1, "write", "/playing/speed", 0.1, 1e9]',
+    '[0, 1, "hold", "/no/such", 0.1, 0]',
+    '[0, 1, "hold", 7, 0.1, 0]',
+    '[0, 1, "express", "/playing/speed", NaN]',
+    '[0, 1, "express", "/playing/speed", 0.1, 0]',
+    '[0, 1, "begin", 0, 69]',
+    '[0, 1, "begin", 0.5, 69, 69]',
+    '[0, 1, "begin", -2000000, 69, 69]',
+    f'[0, 1, "begin", {2**63}, 69, 69]',
+    '[0, 1, "begin", 0, NaN, 69]',
+    '[0, 1, "begin", 0, 69, 127.5]',
+    '[0, 1, "begin", 0, 69, -1]',
+    '[0, 1, "begin", 0, 69, "A4"]',
+    '[0, 1, "end", 0, 69, 2]',
+    '[0, 1, "end", 0, 69, true]',
+    '[0, 1, "end", 0, 69]',
+    '[0, 1, "slide"]',
+    '[0, 1, "slide", Infinity]',
+    '[0, 1, "slide", null]',
+    '[0, 1, "draw", 0.1]',
+    '[0, 1, "draw", 99, 0.1]',
+    '[0, 1, "draw", 0.1, -1]',
+    '[0, 1, "lift", 0]',
+    '[0, 1, "stop"]',
+    '[0, 1, "stop", 2]',
+    '[0, 1, "stop", -1]',
+    '[0, 1, "stop", NaN]',
+    '[0, 1, "stop", 0, 0]',
+    '[0, 1, "release", 0]',
 ]
 
 
@@ -645,8 +720,12 @@ def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
 def with_header(path, **changes):
     """A capture whose first line has other values; None removes one."""
     first, *rest = path.read_text().splitlines(keepends=True)
-    header = json.loads(first) | changes
-    header = {name: value for name, value in header.items() if value is not REMOVED}
+    header = json.loads(first)
+    own = header["players"][0].keys() & changes
+    for part, names in ((header["players"][0], own), (header, changes.keys() - own)):
+        part |= {name: changes[name] for name in names}
+        for name in [name for name, value in part.items() if value is REMOVED]:
+            del part[name]
     path.write_text(json.dumps(header) + "\n" + "".join(rest))
     return path
 
@@ -660,27 +739,47 @@ CALIBRATION = {
     "levels": measured().levels,
 }
 BOWING = ordinary_table().tolist()
+USUAL = Quantities().body
+BODY = {item.name: getattr(USUAL, item.name) for item in fields(USUAL)}
+NO_BODIES = [
+    *({name: value} for name in BODY if name != "radiation_rate" for value in (None, [], "x", NAN)),
+    {"mass": [*USUAL.mass, 0.1]},
+    {"mass": [-1.0, *USUAL.mass[1:]]},
+    {"frequency_hz": [0.0, *USUAL.frequency_hz[1:]]},
+    {"damping": [-1e-9, *USUAL.damping[1:]]},
+    {"sections": [[1.0, 1.0, 0.0, 1.1], *USUAL.sections[1:]]},
+    {"sections": [[1.0, 1.0, 1.9, 0.1], *USUAL.sections[1:]]},
+    {"sections": USUAL.sections[1:]},
+]
 
 
 def test_the_header_that_is_changed_below_is_one(tmp_path, write):
     path = with_header(write(tmp_path / "c", end=5), calibration=CALIBRATION, bowing=BOWING)
-    assert read_capture(path).beginning.calibration == measured()
+    assert read_capture(path).beginning.players[0].calibration == measured()
 
 
 def test_a_table_of_a_time_when_both_strings_had_one_counts_for_both(tmp_path, write):
     path = with_header(write(tmp_path / "c", end=5), calibration=CALIBRATION, bowing=BOWING[0])
-    assert read_capture(path).beginning.bowing.tolist() == [BOWING[0]] * 2
+    assert read_capture(path).beginning.players[0].bowing.tolist() == [BOWING[0]] * 2
 
 
 @pytest.mark.parametrize(
     "changes",
     [
-        *({name: REMOVED} for name in ("version", "rate", "seed", "open_strings", "tensions")),
+        *({name: REMOVED} for name in ("version", "rate", "room", "seed", "open_strings")),
+        *({name: REMOVED} for name in ("players", "quantities")),
         *({name: REMOVED} for name in ("calibration", "bowing", "build", "values")),
-        *({"version": version} for version in (0, 3, 2.0, True, "2", None, [2], "2\n")),
+        *({"version": version} for version in (0, 4, 3.0, True, "3", None, [3], "3\n")),
         *({"seed": seed} for seed in (-1, 1.5, "3", None, True, 2**60, NAN)),
         *({"open_strings": when} for when in ("sometimes", 1, None, [], "a\nb")),
-        *({"tensions": of} for of in (50.0, [], [50.0], [50.0] * 3, ["a", "b"], [None, 1], {})),
+        *({"players": of} for of in (None, {}, [], [None], [{}], 3, [1] * 17)),
+        *({"room": room} for room in (0, 1, None, "yes")),
+        *({"body": body} for body in (-1, 0.5, "x", None, 2**60)),
+        *({"quantities": of} for of in (None, [], 3, {"": 1}, {"string_1": 3}, {"body": 3})),
+        *({"quantities": {"string_1": {"T": of}}} for of in (0, -50, 1e9, NAN, "x", None, [50])),
+        *({"quantities": {"body": {**BODY, **part}}} for part in NO_BODIES),
+        *({"calibration": number} for number in (0, 1, 2, -1, 10**400)),
+        *({"bowing": number} for number in (0, 1, 2, -1)),
         *({"build": build} for build in (None, 3, "x", [1])),
         *({"values": values} for values in (None, [], "x", ["/bow/speed"])),
         {"values": {"/no/such": 0.1}},
@@ -724,11 +823,49 @@ def test_a_beginning_that_is_none_is_refused_in_one_line(tmp_path, write, change
     assert len(str(error.value)) < 500
 
 
-@pytest.mark.parametrize("tensions", [[0, 64], [-50, 64], [50, 1e9], [50, 1e308], [NAN, 64]])
-def test_strings_that_no_model_can_hold_are_refused_before_anything_sounds(
-    tmp_path, write, tensions
-):
-    path = with_header(write(tmp_path / "c", RAMPS, end=9001), tensions=tensions)
+# ---------------------------------------------------------------- files of version 2
+
+
+def second_version(path, lines=(), **changes):
+    """A file as the second version wrote it: of one player, without a room."""
+    header = {"format": "yehu-server capture", "version": 2, "rate": RATE, "seed": 3}
+    header |= {"open_strings": "always", "tensions": list(TENSIONS), "build": build()}
+    header |= {"calibration": None, "bowing": ordinary_table().tolist(), "values": {}}
+    header |= changes
+    path.write_text("".join(json.dumps(line) + "\n" for line in [header, *lines]))
+    return path
+
+
+NOTE = [[0, "begin", 0, 69.0, 69.0], [5000, "end", 0, 69.0, 0], {"end": 9600}]
+
+
+def test_a_file_of_version_2_sounds_as_it_did_without_a_room(tmp_path):
+    path = second_version(tmp_path / "c", NOTE)
+    capture = read_capture(path)
+    assert (capture.version, capture.beginning.has_room) == (2, False)
+    instrument = Instrument(RATE, TUNED, seed=3)
+    instrument.post(BEGIN, frame=0, value=69.0, other=69.0)
+    instrument.post(END, frame=5000, value=69.0)
+    samples = replayed(path)
+    assert rms(samples) > 0.001
+    np.testing.assert_array_equal(samples, run(instrument, 9600))
+
+
+def test_a_file_of_version_2_has_no_players_in_its_lines(tmp_path):
+    path = second_version(tmp_path / "c", [[0, 1, "lift"], {"end": 9}])
+    with pytest.raises(ScoreError, match="line 2"):
+        read_capture(path)
+
+
+@pytest.mark.parametrize(
+    "tensions",
+    [
+        *(50.0, [], [50.0], [50.0] * 3, ["a", "b"], [None, 1], {}),
+        *([0, 64], [-50, 64], [50, 1e9], [50, 1e308], [NAN, 64]),
+    ],
+)
+def test_strings_that_no_model_can_hold_are_refused_before_anything_sounds(tmp_path, tensions):
+    path = second_version(tmp_path / "c", NOTE, tensions=tensions)
     with pytest.raises(YehuError) as error:
         replay(read_capture(path), tmp_path / "x.wav", format_name="wav", subtype="16")
     assert len(str(error.value).splitlines()) == 1

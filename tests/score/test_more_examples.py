@@ -12,7 +12,8 @@ from pathlib import Path
 import mido
 import pytest
 
-from yehu_server.score.smf import Score, ScoreEvent, read_score
+from yehu_server.score.score import Score, ScoreEvent
+from yehu_server.score.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = ROOT / "examples"

@@ -14,8 +14,8 @@ from yehu_server.score.phrasing import (
     phrased,
     phrases_of,
 )
+from yehu_server.score.score import COMMON_TIME, Metre, Score, ScoreEvent
 from yehu_server.score.score_notes import notes_of
-from yehu_server.score.smf import COMMON_TIME, Metre, Score, ScoreEvent
 
 BEAT_S = 0.5
 

@@ -1,4 +1,4 @@
-/** The bow's area: the hair that passes under the finger, and how firm it is. */
+/** The bow's area: the hair that passes under the finger, and how firm it is; or the whole bow. */
 
 /** @typedef {import('../hands/bow.js').Bow} Bow */
 /** @typedef {import('./picture.js').Moment} Moment */
@@ -9,6 +9,12 @@ import { Picture, font } from "./picture.js";
 const GAP = 1 / 24; // between marks on the hair, in widths of the area
 const THIN = 4;
 const THICK = 26; // px, of the hair from light to firm
+// The whole bow, that the instrument draws, with the frog at the right; the string is in the middle.
+const ROOM = 0.92; // of the area's width, for all ways of the bow
+const SPACING = 0.03; // m between marks on the hair
+const NEAR_END = 0.06; // of the hair
+const STICK = 0.1; // of the area's height, above the hair
+const STRINGS = /** @type {const} */ (["inner", "outer"]);
 
 export class Bowing extends Picture {
   /**
@@ -31,6 +37,11 @@ export class Bowing extends Picture {
   draw(context, { state, elapsed, isCalm }) {
     const { bow, width, height } = this;
     const isByHand = bow.hands.isBowing;
+    if (!isByHand && bow.by === null && state && state.hair.length > 0) {
+      this.#sides(context);
+      this.#whole(context, state, isCalm);
+      return;
+    }
     if (!isByHand && state && state.bow.string >= 0) {
       bow.hair += (state.bow.speed * elapsed) / 0.55; // the instrument draws: its hair is seen too
     }
@@ -53,6 +64,62 @@ export class Bowing extends Picture {
     }
     context.globalAlpha = 1;
     if (isByHand) this.#numbers(context, y, thick);
+  }
+
+  /**
+   * The whole bow, with the string at its place on the hair.
+   * @param {CanvasRenderingContext2D} context
+   * @param {import('../interfaces.js').Snapshot} state
+   * @param {boolean} isCalm the bow rests, and the string goes along it
+   */
+  #whole(context, { bow, hair }, isCalm) {
+    const { colours, width, height } = this;
+    const scale = (ROOM * width) / (2 * hair.length); // px for a metre
+    const place = Math.min(Math.max(hair.place, 0), hair.length);
+    const frog = width / 2 + (isCalm ? hair.length / 2 : place) * scale;
+    const string = frog - place * scale;
+    const tip = frog - hair.length * scale;
+    const stick = Math.min(Math.max(STICK * height, 12), 32);
+    const y = (height + stick) / 2;
+    const isOn = bow.string >= 0;
+    const thick = 0.35 * stick;
+    context.globalAlpha = isOn ? 1 : 0.4;
+    context.strokeStyle = colours.soft;
+    context.lineCap = "round";
+    context.lineWidth = 3;
+    context.beginPath();
+    context.moveTo(tip, y);
+    context.quadraticCurveTo(tip + 0.05 * (frog - tip), y - stick, tip + 0.2 * (frog - tip), y - stick);
+    context.lineTo(frog + 10, y - stick);
+    context.stroke();
+    context.fillStyle = colours.glow;
+    context.fillRect(tip, y - thick / 2, frog - tip, thick);
+    context.fillStyle = colours.ink;
+    context.beginPath();
+    context.roundRect(frog - 2, y - stick, 12, stick + thick / 2 + 1, 3);
+    context.fill();
+    context.strokeStyle = colours.soft;
+    context.lineWidth = 1;
+    context.beginPath();
+    for (let x = SPACING; x < hair.length; x += SPACING) {
+      context.moveTo(frog - x * scale - 1.5, y + thick / 2);
+      context.lineTo(frog - x * scale + 1.5, y - thick / 2);
+    }
+    context.stroke();
+    const left = Math.min(place, hair.length - place) / hair.length;
+    context.fillStyle = bow.string === -1 ? colours.soft : colours[STRINGS[bow.string]];
+    context.fillRect(string - 1.5, y - 2 * stick, 3, 3.5 * stick);
+    if (isOn && left < NEAR_END) context.fillStyle = colours.bad; // the bow turns soon
+    context.beginPath();
+    context.arc(string, y, 0.25 * stick + 2, 0, 2 * Math.PI);
+    context.fill();
+    context.globalAlpha = 1;
+    context.font = font(12);
+    context.fillStyle = colours.soft;
+    context.textAlign = "center";
+    context.textBaseline = "top";
+    context.fillText(say("bow.tip"), Math.max(tip, 24), y + stick);
+    context.fillText(say("bow.frog"), Math.min(frog, width - 24), y + stick);
   }
 
   /**

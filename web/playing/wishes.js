@@ -6,6 +6,7 @@
  */
 
 import facts from '../facts.js';
+import { roundHalfEven } from './numbers.js';
 import { fit } from './range_policy.js';
 import { TABLE, accept, find } from './table.js';
 
@@ -26,6 +27,7 @@ const TOLD_WITHIN_S = 0.1;
  * @property {number} [seed] of the variation between notes
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
  *   fingers moves to
+ * @property {number} [people] how many may play it; by default one
  * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
  *   others set them too
  */
@@ -113,7 +115,10 @@ export class Wishes {
    */
   write(address, value, frame = null, glideMs = 0, hold = false) {
     const param = find(address);
-    const accepted = accept(param, value);
+    let accepted = accept(param, value);
+    if (address === '/playing/section') {
+      accepted = Math.min(roundHalfEven(accepted), this.#sink.people ?? 1);
+    }
     if (param.owned) {
       this.#note(address, accepted, frame);
       // Raw newtons are heard only without assist.

@@ -4,6 +4,7 @@
  */
 
 import { Engine } from "./engine.js";
+import { CHANNELS } from "./kernel.js";
 
 /** @typedef {import('./engine.js').Take} Take */
 /** @typedef {import('./engine.js').Told} Told */
@@ -36,7 +37,7 @@ async function openWorklet(context, bytes, lookLength, hear) {
   await context.audioWorklet.addModule(new URL("./processor.js", import.meta.url));
   const node = new AudioWorkletNode(context, "yehu", {
     numberOfInputs: 0,
-    outputChannelCount: [1],
+    outputChannelCount: [CHANNELS],
     processorOptions: { bytes, lookLength },
   });
   node.port.onmessage = ({ data }) => hear(data);
@@ -51,8 +52,9 @@ async function openWorklet(context, bytes, lookLength, hear) {
 /** @type {typeof openBackend} */
 async function openScript(context, bytes, lookLength, hear) {
   const engine = new Engine(bytes, context.sampleRate, SCRIPT_FRAMES, lookLength, hear);
-  const node = context.createScriptProcessor(SCRIPT_FRAMES, 0, 1);
-  node.onaudioprocess = ({ outputBuffer }) => engine.fill(outputBuffer.getChannelData(0));
+  const node = context.createScriptProcessor(SCRIPT_FRAMES, 0, CHANNELS);
+  node.onaudioprocess = ({ outputBuffer }) =>
+    engine.fill(outputBuffer.getChannelData(0), outputBuffer.getChannelData(1));
   return {
     name: "script",
     node,

@@ -3,7 +3,7 @@
  * It takes messages and tells others.
  */
 
-import { Kernel, WISH } from "./kernel.js";
+import { CHANNELS, Kernel, WISH } from "./kernel.js";
 
 const LOOKS_A_SECOND = 60;
 const CHUNK = 4096; // recorded frames that are told at a time
@@ -19,7 +19,7 @@ const MOST_LOOKS = 4; // that nobody has given back yet; then nobody is looking
  * @typedef {object} Told
  * @property {Float64Array} [seen] a look
  * @property {number} [load] share of the time that computing takes
- * @property {Float32Array} [recorded] samples
+ * @property {Float32Array} [recorded] samples, left and right in turn
  * @property {boolean} [isLast] of a recording
  * @property {{from: number, to: number, wishes: number[]}} [kept] frames, and WISH numbers each
  */
@@ -36,7 +36,6 @@ export class Engine {
     this.kernel = new Kernel(new WebAssembly.Module(bytes), rate, most, lookLength);
     this.rate = rate;
     this.tell = tell;
-    this.block = this.kernel.out.subarray(0, most);
     /** @type {Float64Array[]} */
     this.free = Array.from({ length: MOST_LOOKS }, () => new Float64Array(lookLength));
     this.nextLook = 0;
@@ -70,21 +69,27 @@ export class Engine {
       this.kept = null;
     }
     if (record === true) {
-      this.chunk = new Float32Array(CHUNK);
+      this.chunk = new Float32Array(CHANNELS * CHUNK);
       this.filled = 0;
     } else if (record === false) this.#endRecording();
   }
 
   /**
-   * Compute the next samples.
-   * @param {Float32Array} out
+   * Compute the next frames.
+   * @param {Float32Array} left
+   * @param {Float32Array} right as long
    */
-  fill(out) {
+  fill(left, right) {
     const began = Date.now(); // worklets have no finer clock; its mean is right
-    this.kernel.compute(out.length);
-    out.set(out.length === this.block.length ? this.block : this.block.subarray(0, out.length));
-    this.frame += out.length;
-    if (this.chunk) this.#record(out);
+    const frames = left.length;
+    const { out } = this.kernel;
+    this.kernel.compute(frames);
+    for (let n = 0; n < frames; n++) {
+      left[n] = out[CHANNELS * n];
+      right[n] = out[CHANNELS * n + 1];
+    }
+    this.frame += frames;
+    if (this.chunk) this.#record(frames);
     if (this.frame >= this.nextLook) this.#look();
     this.busyMs += Date.now() - began;
   }
@@ -105,15 +110,15 @@ export class Engine {
     this.tell(told, [seen.buffer]);
   }
 
-  /** @param {Float32Array} out */
-  #record(out) {
-    for (const sample of out) {
+  /** @param {number} frames that were computed */
+  #record(frames) {
+    for (let i = 0; i < CHANNELS * frames; i++) {
       if (!this.chunk) return;
-      this.chunk[this.filled] = sample;
+      this.chunk[this.filled] = this.kernel.out[i];
       this.filled += 1;
-      if (this.filled === CHUNK) {
+      if (this.filled === this.chunk.length) {
         const recorded = this.chunk;
-        this.chunk = new Float32Array(CHUNK);
+        this.chunk = new Float32Array(CHANNELS * CHUNK);
         this.filled = 0;
         this.tell({ recorded }, [recorded.buffer]);
       }

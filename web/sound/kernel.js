@@ -12,6 +12,9 @@ const SECOND_NS = 1_000_000_000n;
 /** Wishes for the frame that is computed next, whichever it is, have this one. */
 export const NOW = -1;
 
+/** Left and right, in turn. */
+export const CHANNELS = 2;
+
 /** Numbers of a wish in a message: frame or NOW, kind, index, value, other. */
 export const WISH = 5;
 
@@ -59,15 +62,15 @@ export class Kernel {
     const aligned = (/** @type {number} */ at) => Math.ceil(at / ALIGNED) * ALIGNED;
     this.rig = aligned(exported.__heap_base.value);
     this.outAt = aligned(this.rig + Number(exported.yehu_size()));
-    this.lookAt = aligned(this.outAt + 4 * most);
+    this.lookAt = aligned(this.outAt + 4 * CHANNELS * most);
     const missing = this.lookAt + 8 * lookLength - exported.memory.buffer.byteLength;
     if (missing > 0) exported.memory.grow(Math.ceil(missing / PAGE_BYTES));
     const memory = exported.memory.buffer; // it grows no more
     this.view = new DataView(memory);
-    this.out = new Float32Array(memory, this.outAt, most);
+    this.out = new Float32Array(memory, this.outAt, CHANNELS * most);
     this.seen = new Float64Array(memory, this.lookAt, lookLength);
     this.lengths = Array.from({ length: most + 1 }, (_, frames) => BigInt(frames));
-    if (exported.yehu_prepare(this.rig, rate, 1n) === 0n) {
+    if (exported.yehu_prepare(this.rig, rate, BigInt(CHANNELS)) === 0n) {
       throw new RangeError(`the instrument was not built for ${rate} Hz`);
     }
   }
@@ -109,7 +112,7 @@ export class Kernel {
   }
 
   /**
-   * Compute the next frames into `out`, of which there are at most `most`.
+   * Compute the next frames, at most `most`, into the beginning of `out`.
    * @param {number} frames
    */
   compute(frames) {

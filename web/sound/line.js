@@ -7,12 +7,16 @@ const AGAIN_AT_MOST_MS = 5000;
 const LOOK = 0; // what the first number of a message says
 const WISHES = 1;
 const MOST_UNSENT = 1 << 16; // bytes
+const FIRST_PART = "1";
+const NO_PART = 4404; // close code: the server has no such part
 
 /**
  * What the server tells once a second.
  * @typedef {object} ServerStatus
  * @property {number} page this page's number
  * @property {number} pages that are connected
+ * @property {number} part that this page plays, from 1
+ * @property {number} parts of the server
  * @property {number} rate Hz
  * @property {number} frame that is played now
  * @property {number} load share of the time that computing takes
@@ -26,6 +30,8 @@ const MOST_UNSENT = 1 << 16; // bytes
 const UNKNOWN = {
   page: -1,
   pages: 0,
+  part: 1,
+  parts: 1,
   rate: 48000,
   frame: 0,
   load: 0,
@@ -61,6 +67,7 @@ export class Line extends EventTarget {
     this.isOpen = false;
     this.wanted = { looks: false, sounds: false };
     this.wait = AGAIN_MS;
+    this.part = new URLSearchParams(location.search).get("part") ?? FIRST_PART;
     /** @type {WebSocket | null} */
     this.socket = null;
     /** Fulfilled by the first status. @type {Promise<void>} */
@@ -103,7 +110,7 @@ export class Line extends EventTarget {
   }
 
   #open() {
-    const socket = new WebSocket(socketUrl("socket"));
+    const socket = new WebSocket(`${socketUrl("socket")}?part=${encodeURIComponent(this.part)}`);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       this.isOpen = true;
@@ -115,7 +122,8 @@ export class Line extends EventTarget {
       if (typeof data === "string") this.#hear(JSON.parse(data));
       else this.#read(new Float64Array(data));
     };
-    socket.onclose = () => {
+    socket.onclose = ({ code }) => {
+      if (code === NO_PART) this.part = FIRST_PART;
       const wasOpen = this.isOpen;
       this.isOpen = false;
       if (wasOpen) this.dispatchEvent(new Event("break"));

@@ -3,6 +3,8 @@
  * slower than it was made, so that the ring stays equally full.
  */
 
+import { CHANNELS } from "./kernel.js";
+
 const RING = 1 << 15; // frames; a power of two
 const LEAST = 512; // frames of fill to aim at, at first; more after the sound has run out
 const MOST = 1 << 13;
@@ -36,7 +38,7 @@ export class Listened {
   constructor(rate, sourceRate = rate) {
     this.rate = rate;
     this.sourceRate = sourceRate;
-    this.ring = new Float32Array(RING);
+    this.ring = new Float32Array(CHANNELS * RING);
     this.written = 0; // frames, so far
     this.read = 0; // and with a fraction
     this.aim = LEAST;
@@ -48,6 +50,7 @@ export class Listened {
     this.gaps = 0;
     this.steadyS = 0; // since the last gap
     this.next = -1; // frame that should come next
+    this.between = new Float64Array(CHANNELS);
   }
 
   /** Frames that wait. */
@@ -56,17 +59,18 @@ export class Listened {
   }
 
   /**
-   * @param {number} frame number of the first sample
-   * @param {Float32Array} samples
+   * @param {number} frame number of the first
+   * @param {Float32Array} samples left and right in turn
    */
   write(frame, samples) {
     if (this.next >= 0 && frame !== this.next && this.isRunning) this.gaps += 1;
-    this.next = frame + samples.length;
-    const kept = samples.length > RING / 2 ? samples.subarray(samples.length - RING / 2) : samples;
-    for (let i = 0; i < kept.length; i++) this.ring[(this.written + i) & (RING - 1)] = kept[i];
-    this.written += kept.length;
-    const most = this.aim + TOO_FULL_S * this.sourceRate;
-    if (this.fill > most) this.#begin();
+    this.next = frame + samples.length / CHANNELS;
+    const most = (CHANNELS * RING) / 2;
+    const kept = samples.length > most ? samples.subarray(samples.length - most) : samples;
+    const start = CHANNELS * this.written;
+    for (let i = 0; i < kept.length; i++) this.ring[(start + i) & (CHANNELS * RING - 1)] = kept[i];
+    this.written += kept.length / CHANNELS;
+    if (this.fill > this.aim + TOO_FULL_S * this.sourceRate) this.#begin();
   }
 
   /** Go to where the fill is as it should be. */
@@ -77,23 +81,26 @@ export class Listened {
   }
 
   /**
-   * Read the next samples; silence while too few wait.
-   * @param {Float32Array} out
+   * Read the next frames; silence while too few wait.
+   * @param {Float32Array} left
+   * @param {Float32Array} right as long
    */
-  fillIn(out) {
+  fillIn(left, right) {
     if (!this.isRunning && this.fill >= this.aim) {
       this.#begin();
       this.isRunning = true;
     }
-    const step = this.isRunning ? this.#follow(out.length / this.rate) : 0;
-    for (let i = 0; i < out.length; i++) {
+    const step = this.isRunning ? this.#follow(left.length / this.rate) : 0;
+    for (let i = 0; i < left.length; i++) {
       if (this.isRunning && this.fill < TAPS / 2 + step) this.#stop();
       if (!this.isRunning) {
-        out[i] = 0;
+        left[i] = right[i] = 0;
         continue;
       }
       this.gain = Math.min(1, this.gain + 1 / FADE);
-      out[i] = this.gain * this.#sample();
+      this.#interpolate();
+      left[i] = this.gain * this.between[0];
+      right[i] = this.gain * this.between[1];
       this.read += step;
     }
   }
@@ -125,19 +132,22 @@ export class Listened {
     return (this.sourceRate / this.rate) * (1 + this.drift);
   }
 
-  /** The sound between its samples. */
-  #sample() {
+  /** Find the sound between its samples: fills `between`. */
+  #interpolate() {
     const whole = Math.floor(this.read);
     const place = (this.read - whole) * PHASES;
     const phase = Math.floor(place);
     const share = place - phase;
     const one = SINCS[phase];
     const other = SINCS[phase + 1];
-    let sum = 0;
+    let [left, right] = [0, 0];
     for (let tap = 0; tap < TAPS; tap++) {
       const weight = one[tap] + share * (other[tap] - one[tap]);
-      sum += weight * this.ring[(whole + tap - TAPS / 2 + 1) & (RING - 1)];
+      const at = CHANNELS * ((whole + tap - TAPS / 2 + 1) & (RING - 1));
+      left += weight * this.ring[at];
+      right += weight * this.ring[at + 1];
     }
-    return sum;
+    this.between[0] = left;
+    this.between[1] = right;
   }
 }

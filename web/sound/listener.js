@@ -1,6 +1,7 @@
 /** Hears the server: its sound comes by a WebSocket, and is played by the page. */
 
 import { Listened } from "./listened.js";
+import { CHANNELS } from "./kernel.js";
 import { socketUrl } from "./line.js";
 
 const FFT = 4096;
@@ -52,7 +53,7 @@ export class Listener {
     await context.audioWorklet.addModule(new URL("./listening_processor.js", import.meta.url));
     const node = new AudioWorkletNode(context, "listening", {
       numberOfInputs: 0,
-      outputChannelCount: [1],
+      outputChannelCount: [CHANNELS],
       processorOptions: { rate: this.rate },
     });
     node.port.postMessage({ port }, [port]);
@@ -67,9 +68,9 @@ export class Listener {
    */
   #script(port) {
     const sound = new Listened(this.context.sampleRate, this.rate);
-    const node = this.context.createScriptProcessor(SCRIPT_FRAMES, 0, 1);
+    const node = this.context.createScriptProcessor(SCRIPT_FRAMES, 0, CHANNELS);
     node.onaudioprocess = ({ outputBuffer }) => {
-      sound.fillIn(outputBuffer.getChannelData(0));
+      sound.fillIn(outputBuffer.getChannelData(0), outputBuffer.getChannelData(1));
       this.told = { fill: sound.fill, gaps: sound.gaps };
     };
     port.onmessage = ({ data }) => sound.write(data.frame, data.samples);

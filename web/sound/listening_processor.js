@@ -25,10 +25,9 @@ class Listening extends AudioWorkletProcessor {
    * @param {Float32Array[][]} outputs
    */
   process(_inputs, outputs) {
-    const [first, ...others] = outputs[0];
-    this.sound.fillIn(first);
-    for (const other of others) other.set(first);
-    this.untold += first.length;
+    const [left, right] = outputs[0];
+    this.sound.fillIn(left, right);
+    this.untold += left.length;
     if (this.untold > TELL_S * sampleRate) {
       this.untold = 0;
       this.port.postMessage({ fill: this.sound.fill, gaps: this.sound.gaps });

@@ -25,11 +25,11 @@ class Processor extends AudioWorkletProcessor {
    * @param {Float32Array[][]} outputs
    */
   process(_inputs, outputs) {
-    const [first, ...others] = outputs[0];
-    for (let done = 0; done < first.length; done += MOST_FRAMES) {
-      this.engine.fill(first.subarray(done, done + MOST_FRAMES));
+    const [left, right] = outputs[0];
+    for (let done = 0; done < left.length; done += MOST_FRAMES) {
+      const end = done + MOST_FRAMES;
+      this.engine.fill(left.subarray(done, end), right.subarray(done, end));
     }
-    for (const other of others) other.set(first);
     return this.isOpen;
   }
 }

@@ -38,6 +38,7 @@ export class Remote extends EventTarget {
     this.listener = listener;
     this.seen = new Float64Array(facts.lookLength + facts.parameters.length);
     this.isSeen = false;
+    this.people = Infinity; // the server knows how many there are
     this.state = snapshotOf(this.seen);
     this.analyser = listener?.analyser ?? null;
     /** @type {number[]} */

@@ -34,6 +34,7 @@ export function snapshotOf(seen) {
     level: seen[AT.rms] > 0 ? Math.max(20 * Math.log10(seen[AT.rms]), LEAST_DB) : LEAST_DB,
     shape: [shapeOf(seen, 0), shapeOf(seen, 1)],
     bow: { string, speed: seen[AT.speed], force: seen[AT.force], beta, x: seen[AT.bow_x] },
+    hair: { place: seen[AT.hair_place], length: seen[AT.hair_length] },
     fingers: fingersOf(seen, string),
     period: 1 / heard,
     string: { length: seen[AT.length] },

@@ -2,7 +2,7 @@
 
 import facts from "../facts.js";
 import { openBackend } from "./backends.js";
-import { NOW } from "./kernel.js";
+import { CHANNELS, NOW } from "./kernel.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { wav } from "./wav.js";
 
@@ -123,7 +123,7 @@ export class Sound extends EventTarget {
     if (recorded && this.chunks) {
       this.chunks.push(recorded);
       if (isLast) {
-        this.recorded?.(wav(this.chunks, this.context.sampleRate));
+        this.recorded?.(wav(this.chunks, this.context.sampleRate, CHANNELS));
         this.chunks = this.recorded = null;
       }
     }

@@ -1,14 +1,16 @@
-/** Writes WAV files of one channel of 32-bit floats, as they were heard. */
+/** Writes WAV files of 32-bit floats, as they were heard. */
 
 const FLOAT = 3; // the format's number
 const BITS = 32;
 const HEAD = 44; // bytes
 
 /**
- * @param {Float32Array[]} chunks of samples
+ * @param {Float32Array[]} chunks of samples, of all channels in turn
  * @param {number} rate in Hz
+ * @param {number} channels
  */
-export function wav(chunks, rate) {
+export function wav(chunks, rate, channels) {
+  const frameBytes = (channels * BITS) / 8;
   const bytes = 4 * chunks.reduce((sum, chunk) => sum + chunk.length, 0);
   const view = new DataView(new ArrayBuffer(HEAD));
   /** @param {number} at @param {string} text */
@@ -19,10 +21,10 @@ export function wav(chunks, rate) {
   write(8, "WAVEfmt ");
   view.setUint32(16, 16, true);
   view.setUint16(20, FLOAT, true);
-  view.setUint16(22, 1, true);
+  view.setUint16(22, channels, true);
   view.setUint32(24, rate, true);
-  view.setUint32(28, (rate * BITS) / 8, true);
-  view.setUint16(32, BITS / 8, true);
+  view.setUint32(28, rate * frameBytes, true);
+  view.setUint16(32, frameBytes, true);
   view.setUint16(34, BITS, true);
   write(36, "data");
   view.setUint32(40, bytes, true);

@@ -104,7 +104,9 @@ function performances(instrument) {
       const read = await readPerformance(file);
       replayer = new Replayer(instrument, read);
       load.set(true);
-      word.textContent = file.name;
+      const { players } = read;
+      word.textContent =
+        players > 1 ? say("keep.one", { name: file.name, count: players }) : file.name;
       replayer.addEventListener("end", () => {
         replayer = null;
         load.set(false);

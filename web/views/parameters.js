@@ -19,6 +19,7 @@ const ORDER = [
   "pluck",
   "string",
   "body",
+  "room",
   "output",
   "engine",
 ];

@@ -12,6 +12,7 @@ import { Line } from "../sound/line.js";
 import { Remote } from "../sound/remote.js";
 import { Sharing } from "../sound/sharing.js";
 import { inWords, say } from "../words.js";
+import { showPart } from "./part.js";
 
 /** @type {Way[]} */
 const WAYS = ["here", "there", "listen"];
@@ -22,6 +23,7 @@ const WAYS = ["here", "there", "listen"];
  */
 export function showServer(instrument) {
   const line = new Line();
+  showPart(line);
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
   const choice = make("div", { class: "choice", role: "group", "aria-label": () => say("server.name") });
@@ -63,12 +65,13 @@ export function showServer(instrument) {
   }
 
   function tell() {
-    const { device, pages, sounds } = line.status;
+    const { device, pages, sounds, parts } = line.status;
     for (const { way, button } of buttons) {
       button.setAttribute("aria-pressed", String(way === chosen));
       button.disabled = way === "here" && sounds !== "ready";
     }
     about.textContent = chosen ? say(`server.${chosen}.about`) : "";
+    if (chosen && parts > 1) about.textContent += ` ${say("server.parts")}`;
     const own = { preparing: say("server.preparing"), ready: "", none: say("server.impossible") };
     const told = [
       device ? say("server.device", { device }) : say("server.silent"),

@@ -1,16 +1,20 @@
-/** The sounds: presets, tunings, and what a MIDI keyboard's controllers do. */
+/** The sounds: presets, the room, tunings, and what a MIDI keyboard's controllers do. */
 
 /** @typedef {import('../main.js').Page} Page */
 
 import { find, make } from "../elements.js";
 import facts from "../facts.js";
 import { inWords, say, sayOr } from "../words.js";
+import { makeCards } from "./cards.js";
+import { ROOMS, showRoom } from "./room.js";
 
 /** @param {Page} page */
 export function showSounds({ instrument, tuned, board, taught }) {
   const { player } = instrument;
-  find("panel-sound", HTMLElement).append(
+  const panel = find("panel-sound", HTMLElement);
+  panel.append(
     presets(player),
+    showRoom(player, panel),
     chooser("tuning", Object.keys(facts.tunings), "equal", (name) => {
       player.applyTuning(name);
       tuned.choose(name);
@@ -22,34 +26,11 @@ export function showSounds({ instrument, tuned, board, taught }) {
 
 /** @param {import('../interfaces.js').Player} player */
 function presets(player) {
-  const group = make("div", {
-    class: "cards",
-    role: "group",
-    "aria-label": () => say("sound.presets"),
-  });
-  const cards = Object.values(facts.presets.shipped)
-    .sort(byProgram)
-    .map(({ name, about }) => {
-      const card = make("button", { type: "button", "aria-pressed": "false" }, [
-        make("span", {}, [() => sayOr(`preset.${name}`, name)]),
-        make("small", {}, [() => sayOr(`preset.${name}.about`, about)]),
-      ]);
-      card.addEventListener("click", () => {
-        player.applyPreset(name);
-        for (const one of cards) one.setAttribute("aria-pressed", String(one === card));
-      });
-      return card;
-    });
-  group.append(...cards);
-  return make("section", { class: "group" }, [make("h2", {}, [() => say("sound.presets")]), group]);
-}
-
-/**
- * @param {{program: number | null}} one
- * @param {{program: number | null}} other
- */
-function byProgram(one, other) {
-  return (one.program ?? Infinity) - (other.program ?? Infinity);
+  const sounds = Object.values(facts.presets.shipped).filter((preset) => !ROOMS.includes(preset));
+  return make("section", { class: "group" }, [
+    make("h2", {}, [() => say("sound.presets")]),
+    makeCards(player, sounds, () => say("sound.presets")),
+  ]);
 }
 
 /**

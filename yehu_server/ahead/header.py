@@ -21,10 +21,11 @@ OUTLINE = """\
 /* The yehu, a Chinese fiddle, as a library: a physical model and its player, without Python.
  *
  * Give an instrument yehu_size() bytes aligned to 64, prepare it at a rate, post wishes for
- * numbered frames, and compute blocks of samples. Nothing is allocated.
+ * numbered frames, and compute blocks of samples: left and right in turn, or one channel. Nothing
+ * is allocated.
  *
  *     void *yehu = aligned_alloc(64, (yehu_size() + 63) / 64 * 64);
- *     yehu_prepare(yehu, 48000.0, 1);
+ *     yehu_prepare(yehu, 48000.0, 2);
  *     yehu_post(yehu, 0, YEHU_BEGIN, 0, 69.0, 69.0);
  *     yehu_process(yehu, out, 256);
  *

@@ -14,6 +14,7 @@ import numpy as np
 
 from yehu_server.controls.record import CONTROLS
 from yehu_server.engine import native as engine
+from yehu_server.engine import rig as memory
 from yehu_server.engine.atomics import at
 from yehu_server.engine.look import look
 from yehu_server.engine.output import OUTPUT
@@ -23,18 +24,19 @@ from yehu_server.physics.layout import STATE
 from yehu_server.player.notes import told_pitch
 from yehu_server.player.record import PLAYER
 from yehu_server.player.rows import ROWS, SLOT_OF
+from yehu_server.stage.record import STAGE
 
 Array = Any
 
-RIG_BYTES = engine.RIG.itemsize
-WORDS = RIG_BYTES // 8
+BYTES = memory.memory_bytes(1)
+WORDS = BYTES // 8
 play_block = engine.callback.symbol
 
 
 @native("int64()")
 def size() -> int:
     """Bytes that an instrument takes."""
-    return RIG_BYTES
+    return BYTES
 
 
 @native("void(voidptr, voidptr, int64)", calls=[engine.callback])
@@ -49,7 +51,7 @@ def process(rig: Any, out: Any, frames: int) -> None:
 @native("int64(voidptr)")
 def frame(rig: Any) -> int:
     """Number of the next frame."""
-    return int(carray(at(rig, engine.CONTROLS_AT), (1,), CONTROLS)[0].frame)
+    return int(carray(at(rig, memory.CONTROLS_AT), (1,), CONTROLS)[0].frame)
 
 
 @native("float64(voidptr, int64)")
@@ -58,22 +60,24 @@ def value(rig: Any, parameter: int) -> float:
     if not 0 <= parameter < ROWS:
         return np.nan
     if SLOT_OF[parameter] >= 0:
-        controls = carray(at(rig, engine.CONTROLS_AT), (1,), CONTROLS)[0]
+        controls = carray(at(rig, memory.CONTROLS_AT), (1,), CONTROLS)[0]
         return float(controls.target[SLOT_OF[parameter]])
-    return float(carray(at(rig, engine.PLAYER_AT), (1,), PLAYER)[0].value[parameter])
+    return float(carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0].value[parameter])
 
 
 @native("float64(voidptr)")
 def pitch(rig: Any) -> float:
     """The pitch that sounds (fractional MIDI note), or NaN in silence."""
-    return told_pitch(carray(at(rig, engine.PLAYER_AT), (1,), PLAYER)[0])
+    return told_pitch(carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0])
 
 
 @native("int64(voidptr)")
 def lost(rig: Any) -> int:
     """How often the state was lost, and put back to rest; it should stay 0."""
-    state = carray(at(rig, engine.STATE_AT), (1,), STATE)[0]
-    return int(state.lost + carray(at(rig, engine.OUTPUT_AT), (1,), OUTPUT)[0].unsound)
+    state = carray(at(rig, memory.STATE_AT), (1,), STATE)[0]
+    output = carray(at(rig, memory.OUTPUT_AT), (1,), OUTPUT)[0]
+    mix = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
+    return int(state.lost + output.unsound + mix.unsound)
 
 
 def preparing(rates: Sequence[float], images: Sequence[Array]) -> Native:
@@ -90,18 +94,18 @@ def preparing(rates: Sequence[float], images: Sequence[Array]) -> Native:
 
     def prepare(rig: Any, rate: float, channels: int) -> int:
         """Make an instrument at a rate (Hz), at rest; return 0 where there is none for it."""
-        memory = carray(rig, (WORDS,), np.int64)
+        words_of = carray(rig, (WORDS,), np.int64)
         start = 0
         for i in range(len(known)):
             if known[i] == rate:
                 for word in range(WORDS):
-                    memory[word] = 0
+                    words_of[word] = 0
                 while start < ends[i]:
                     first, count = words[start], words[start + 1]
                     for word in range(count):
-                        memory[first + word] = words[start + 2 + word]
+                        words_of[first + word] = words[start + 2 + word]
                     start += 2 + count
-                carray(at(rig, engine.OUTPUT_AT), (1,), OUTPUT)[0].channels = channels
+                carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0].channels = channels
                 return 1
             start = ends[i]
         return 0

@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 import soundfile
 
-from yehu_server.audio import wav
+from yehu_server.audio import flac, wav
 from yehu_server.audio.flac import FlacStream
 from yehu_server.audio.wav import WavStream
 from yehu_server.errors import OutputError
 from yehu_server.files import anything, replacing, why
 
 FORMATS = ("wav", "flac")
+MOST_CHANNELS = {"wav": wav.MOST_CHANNELS, "flac": flac.MOST_CHANNELS}
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}
 RENDERED = (
     "yehu-server render"  # software named in a rendered file, which may therefore be replaced
@@ -27,7 +28,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class SoundWriter:
-    """Writes a mono sound file whose header is valid after each write.
+    """Writes a sound file whose header is valid after each write.
 
     Parameters
     ----------
@@ -39,6 +40,8 @@ class SoundWriter:
     subtype : "16", "24" or "float"
     software : str
         Named in the file as its maker.
+    channels : int
+        1 to `MOST_CHANNELS` of the format.
 
     Raises
     ------
@@ -54,17 +57,22 @@ class SoundWriter:
         format_name: str,
         subtype: str,
         software: str = "",
+        *,
+        channels: int = 1,
     ) -> None:
-        check_format(format_name, subtype)
+        check_format(format_name, subtype, channels)
         is_wav = format_name == "wav"
         self._target = target
-        self._limit = wav.WAV_LIMIT // wav.BYTES[subtype] if is_wav else None
+        self._channels = channels
+        self._limit = wav.WAV_LIMIT // (channels * wav.BYTES[subtype]) if is_wav else None
         self.frames = 0
         self.peak = 0.0
         self._power = 0.0
         with self._telling():
             make = WavStream if is_wav else FlacStream
-            self._stream: WavStream | FlacStream = make(file, rate, subtype, software)
+            self._stream: WavStream | FlacStream = make(
+                file, rate, subtype, software, channels=channels
+            )
 
     @property
     def kept_frames(self) -> int:
@@ -72,10 +80,11 @@ class SoundWriter:
         return self._stream.frames
 
     def write(self, samples: Samples) -> None:
-        """Append samples [shape=(frames,), full scale 1]."""
+        """Append samples [shape=(frames,) of one channel, or (frames, channels); full scale 1]."""
         self.frames += len(samples)
         if self._limit is not None and self.frames > self._limit:
-            raise OutputError(f"{self._target}: too long for a WAV file (4 GiB); use FLAC")
+            instead = "; use FLAC" if self._channels <= flac.MOST_CHANNELS else ""
+            raise OutputError(f"{self._target}: too long for a WAV file (4 GiB){instead}")
         self.peak = max(self.peak, float(np.abs(samples).max(initial=0.0)))
         self._power += float(np.square(samples, dtype=np.float64).sum())
         with self._telling():
@@ -95,8 +104,9 @@ class SoundWriter:
 
     @property
     def rms(self) -> float:
-        """Root mean square of all samples, of full scale."""
-        return float((self._power / self.frames) ** 0.5) if self.frames else 0.0
+        """Root mean square of all samples of all channels, of full scale."""
+        samples = self.frames * self._channels
+        return float((self._power / samples) ** 0.5) if samples else 0.0
 
 
 def format_of(target: Path) -> str:
@@ -115,8 +125,8 @@ def format_of(target: Path) -> str:
     return ending
 
 
-def check_format(format_name: str, subtype: str) -> None:
-    """Refuse samples of a subtype that a format cannot hold.
+def check_format(format_name: str, subtype: str, channels: int = 1) -> None:
+    """Refuse samples of a subtype, or a number of channels, that a format cannot hold.
 
     Raises
     ------
@@ -125,6 +135,9 @@ def check_format(format_name: str, subtype: str) -> None:
     """
     if not soundfile.check_format(format_name.upper(), SUBTYPES[subtype]):
         raise OutputError(f"a {format_name} file cannot hold {subtype} samples; use 16 or 24")
+    most = MOST_CHANNELS[format_name]
+    if not 1 <= channels <= most:
+        raise OutputError(f"a {format_name} file holds 1 to {most} channels, not {channels}")
 
 
 @contextlib.contextmanager
@@ -134,8 +147,10 @@ def sound_file(
     format_name: str,
     subtype: str,
     may_replace: Callable[[Path], bool] = anything,
+    *,
+    channels: int = 1,
 ) -> Iterator[SoundWriter]:
-    """Open a mono sound file that appears at `target` only once it is complete.
+    """Open a sound file that appears at `target` only once it is complete.
 
     Parameters
     ----------
@@ -143,15 +158,17 @@ def sound_file(
     subtype : "16", "24" or "float"
     may_replace : callable
         Called with the target where a file is there; returns whether to replace it.
+    channels : int
+        1 to `MOST_CHANNELS` of the format.
 
     Raises
     ------
     OutputError
         Where it cannot be written, or not replaced.
     """
-    check_format(format_name, subtype)
     with replacing(target, may_replace) as partial, io.FileIO(partial, "w") as file:
-        writer = SoundWriter(file, target, rate, format_name, subtype, RENDERED)
+        form = (rate, format_name, subtype, RENDERED)
+        writer = SoundWriter(file, target, *form, channels=channels)
         try:
             yield writer
         except BaseException:
@@ -168,7 +185,7 @@ def is_rendered(target: Path) -> bool:
     try:
         if target.stat().st_size == 0:
             return True
-        with soundfile.SoundFile(target) as file:
+        with target.open("rb") as data, soundfile.SoundFile(data) as file:  # of any name
             return str(file.software).startswith(RENDERED)
     except (OSError, soundfile.LibsndfileError):
         return False

@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 import soundfile
 
+from yehu_server.audio.wav import check_shape
 from yehu_server.files import write_all
 
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24"}
+MOST_CHANNELS = 8
 SYNC = b"\xff\xf8"  # first bytes of a block of fixed size
 HEADER_BYTES = 42  # of the file up to the end of STREAMINFO
 BLOCK_FRAMES = slice(10, 12)  # largest number of frames of a block
@@ -26,9 +28,14 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class FlacStream:
-    """Writes a mono FLAC file; see `wav.WavStream`."""
+    """Writes a FLAC file of 1 to `MOST_CHANNELS` channels; see `wav.WavStream`.
 
-    def __init__(self, file: io.FileIO, rate: int, subtype: str, software: str = "") -> None:
+    By the format, more than two channels belong to speakers around the listener.
+    """
+
+    def __init__(
+        self, file: io.FileIO, rate: int, subtype: str, software: str = "", *, channels: int = 1
+    ) -> None:
         self.frames = 0  # in the file
         self._given = 0
         self._spy = _Spy(file)
@@ -36,7 +43,7 @@ class FlacStream:
             self._spy,
             "w",
             samplerate=rate,
-            channels=1,
+            channels=channels,
             format="FLAC",
             subtype=SUBTYPES[subtype],
         )
@@ -44,7 +51,8 @@ class FlacStream:
             self._encoder.software = software
 
     def write(self, samples: Samples) -> None:
-        """Append samples [shape=(frames,), full scale 1]."""
+        """Append samples; see `wav.WavStream.write`."""
+        check_shape(samples, self._encoder.channels)
         # soundfile asserts that all frames were written, which fails on a full disk.
         with contextlib.suppress(AssertionError, soundfile.LibsndfileError):
             self._encoder.write(samples)

@@ -22,7 +22,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.child import Child, Message
-from yehu_server.engine.instrument import RIG_BYTES, Instrument
+from yehu_server.engine.ensemble import Ensemble
+from yehu_server.engine.rig import memory_bytes
 from yehu_server.errors import DeviceError
 from yehu_server.lasting import SHORTAGES, AwakeTime, Backoff, keep_on, why
 
@@ -38,16 +39,17 @@ HOPELESS_S = 0.5  # a delay that the silent clock does not make up for
 
 
 class SharedMemory:
-    """Memory for an instrument, which a child process can map by its file descriptor."""
+    """Memory for instruments and their stage, which child processes can map by its descriptor."""
 
-    def __init__(self) -> None:
+    def __init__(self, parts: int = 1) -> None:
+        self.size = memory_bytes(parts)
         if hasattr(os, "memfd_create"):
             self.descriptor = os.memfd_create("yehu-server")
         else:
             with tempfile.TemporaryFile() as file:
                 self.descriptor = os.dup(file.fileno())
-        os.ftruncate(self.descriptor, RIG_BYTES)
-        self.buffer = mmap.mmap(self.descriptor, RIG_BYTES)
+        os.ftruncate(self.descriptor, self.size)
+        self.buffer = mmap.mmap(self.descriptor, self.size)
 
     def close(self) -> None:
         """Close the descriptor; the memory is freed with the last process that has mapped it."""
@@ -57,11 +59,11 @@ class SharedMemory:
 
 
 class SilentClock:
-    """Computes the instrument's samples in real time, without a device."""
+    """Computes the samples in real time, without a device."""
 
-    def __init__(self, instrument: Instrument, blocksize: int) -> None:
-        self._instrument = instrument
-        self._block = np.zeros((blocksize, instrument.channels), np.float32)
+    def __init__(self, ensemble: Ensemble, blocksize: int) -> None:
+        self._ensemble = ensemble
+        self._block = np.zeros((blocksize, ensemble.channels), np.float32)
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="silent clock", daemon=True)
         self._thread.start()
@@ -72,11 +74,11 @@ class SilentClock:
         self._thread.join()
 
     def _run(self) -> None:
-        period = len(self._block) / self._instrument.rate
+        period = len(self._block) / self._ensemble.rate
         due = time.monotonic()
         while not self._ending.is_set():
             with contextlib.suppress(MemoryError):
-                self._instrument.process(self._block)
+                self._ensemble.process(self._block)
             due += period
             early = due - time.monotonic()
             if early > 0.0:
@@ -94,6 +96,7 @@ class OutputOptions:
     blocksize: int = 128
     latency: str | float = "low"  # or seconds
     channels: int = 2
+    parts: int = 1  # number of instruments that play together
 
 
 @dataclass
@@ -107,9 +110,9 @@ class OutputState:
 
 
 class Output:
-    """Plays an instrument on a device, which it looks for from its construction on.
+    """Plays an ensemble on a device, which it looks for from its construction on.
 
-    Call `find`, make the instrument with that rate in ``memory``, then call `begin`, and at last
+    Call `find`, make the ensemble with that rate in ``memory``, then call `begin`, and at last
     `end`.
 
     Parameters
@@ -121,13 +124,13 @@ class Output:
     def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:
         self._options = options
         self._changed = changed
-        self.memory = SharedMemory()
+        self.memory = SharedMemory(options.parts)
         self.state = OutputState()
         self._events: queue.Queue[Message] = queue.Queue()
         self._child: Child | None = None
         self._found: Message | None = None
         self._clock: SilentClock | None = None
-        self._instrument: Instrument | None = None
+        self._ensemble: Ensemble | None = None
         self._thread = threading.Thread(target=self._supervise, name="audio", daemon=True)
         self._ending = threading.Event()
         self._awake = AwakeTime()
@@ -161,15 +164,15 @@ class Output:
             raise DeviceError(self.state.problem)
         return self._options.rate or NULL_RATE
 
-    def begin(self, instrument: Instrument) -> None:
-        """Start to play an instrument that lies in ``memory``.
+    def begin(self, ensemble: Ensemble) -> None:
+        """Start to play an ensemble that lies in ``memory``.
 
         Raises
         ------
         DeviceError
             Where a named device cannot be opened.
         """
-        self._instrument = instrument
+        self._ensemble = ensemble
         self._start_clock()
         if self._found is not None:
             self._open(self._found)
@@ -206,34 +209,35 @@ class Output:
         self._child.send("look", device=self._options.device)
 
     def _open(self, found: Message) -> None:
-        instrument = self._instrument
-        if self._child is None or instrument is None:
+        ensemble = self._ensemble
+        if self._child is None or ensemble is None:
             return
-        instrument_channels = min(self._options.channels, found["channels"])
+        channels = min(self._options.channels, found["channels"])
         self._child.send(
             "open",
             memory=self.memory.descriptor,
-            rate=instrument.rate,
+            size=self.memory.size,
+            rate=ensemble.rate,
             blocksize=self._options.blocksize,
             latency=self._options.latency,
-            channels=instrument_channels,
+            channels=channels,
         )
         self._wanted = found
-        self._channels = instrument_channels
+        self._channels = channels
 
     def _take_up(self) -> str:
-        """Hand the instrument over from the clock to the device; return why that failed."""
-        instrument = self._instrument
+        """Hand the ensemble over from the clock to the device; return why that failed."""
+        ensemble = self._ensemble
         ready = self._await({"ready", "failed", "gone"}, "the audio device")
-        if ready["event"] != "ready" or self._child is None or instrument is None:
+        if ready["event"] != "ready" or self._child is None or ensemble is None:
             return self._reason(ready)
         self._stop_clock()
-        instrument.channels = self._channels
+        ensemble.channels = self._channels
         self._child.send("start")
         started = self._await({"started", "failed", "gone"}, "the audio device")
         if started["event"] != "started":
             self._drop_child()
-            instrument.recover()
+            ensemble.recover()
             self._start_clock()
             return self._reason(started)
         self._refused.worked()
@@ -241,7 +245,7 @@ class Output:
         self._heart = (-1, 0.0)
         name = self._wanted["name"]
         self.state = OutputState(name, ready["latency_ms"], self.state.losses)
-        self._changed(f"playing on {name} at {instrument.rate:g} Hz")
+        self._changed(f"playing on {name} at {ensemble.rate:g} Hz")
         return ""
 
     @staticmethod
@@ -321,18 +325,18 @@ class Output:
 
     def _rest_on_clock(self) -> None:
         self._drop_child()
-        if self._instrument is not None:
-            self._instrument.recover()
+        if self._ensemble is not None:
+            self._ensemble.recover()
         self._start_clock()
 
     # -- the silent clock ----------------------------------------------------------------------
 
     def _meters(self) -> Any:
-        return self._instrument.meters() if self._instrument is not None else {"callbacks": 0}
+        return self._ensemble.meters() if self._ensemble is not None else {"callbacks": 0}
 
     def _start_clock(self) -> None:
-        if self._clock is None and self._instrument is not None:
-            self._clock = SilentClock(self._instrument, self._options.blocksize)
+        if self._clock is None and self._ensemble is not None:
+            self._clock = SilentClock(self._ensemble, self._options.blocksize)
 
     def _stop_clock(self) -> None:
         clock, self._clock = self._clock, None

@@ -1,22 +1,45 @@
-"""Record live sound, from the instrument's tape."""
+"""Record live sound in stereo, from the tape of what plays."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
-from yehu_server.audio.file import SoundWriter, format_of
+from yehu_server.audio.file import Samples, SoundWriter, format_of
 from yehu_server.audio.wav import BYTES
-from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.files import create, discard
 
 EVERY_S = 0.05
+CHANNELS = 2  # left and right
 SUBTYPES = {"wav": "float", "flac": "24"}
 ROOM_S = 1.0  # a recording begins only if so much fits on the disk
+
+
+class Tape(Protocol):
+    """What plays, and keeps the last seconds of it."""
+
+    @property
+    def rate(self) -> float:
+        """Frames in a second."""
+
+    @property
+    def frame(self) -> int:
+        """The next frame to play."""
+
+    def taped(self, start: int) -> tuple[int, Samples]:
+        """The samples that were played from a frame on.
+
+        Returns
+        -------
+        frame : int
+            The first frame returned: a later one where `start` is no longer kept.
+        samples : ndarray [shape=(frames, CHANNELS), float32]
+        """
 
 
 class Recorder:
@@ -40,24 +63,25 @@ class Recorder:
 
     def __init__(
         self,
-        instrument: Instrument,
+        tape: Tape,
         target: Path,
         start: int,
         said: Callable[[str], None],
         *,
         overwrite: bool = False,
     ) -> None:
-        format_name, rate = format_of(target), round(instrument.rate)
+        format_name, rate = format_of(target), round(tape.rate)
         subtype = SUBTYPES[format_name]
-        room_bytes = round(ROOM_S * rate) * BYTES[subtype]
+        room_bytes = round(ROOM_S * rate) * CHANNELS * BYTES[subtype]
         self.target = target
         self.missed_frames = 0
         self.failure = ""  # why it ended by itself
-        self._instrument = instrument
+        self._tape = tape
         self._position = start
         self._said = said
         self._file = create(target, overwrite=overwrite, room_bytes=room_bytes)
-        self._writer = SoundWriter(self._file, target, rate, format_name, subtype)
+        form = (rate, format_name, subtype)
+        self._writer = SoundWriter(self._file, target, *form, channels=CHANNELS)
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
         self._thread.start()
@@ -75,7 +99,7 @@ class Recorder:
     @property
     def seconds(self) -> float:
         """Length of the recording (s)."""
-        return self._writer.kept_frames / self._instrument.rate
+        return self._writer.kept_frames / self._tape.rate
 
     def stop(self) -> None:
         """End the recording at the last frame played."""
@@ -87,7 +111,7 @@ class Recorder:
             ending = False
             while not ending:
                 ending = self._ending.wait(EVERY_S)
-                begin, samples = self._instrument.taped(self._position)
+                begin, samples = self._tape.taped(self._position)
                 if begin > self._position:  # the thread was late by more than the tape
                     self._miss(begin)
                 self._writer.write(samples)
@@ -101,7 +125,7 @@ class Recorder:
 
     def _miss(self, begin: int) -> None:
         """Write silence for missing frames, so that later ones keep their time."""
-        rate = self._instrument.rate
+        rate = self._tape.rate
         lost, at = begin - self._position, self._writer.frames
         self.missed_frames += lost
         self._said(
@@ -110,7 +134,7 @@ class Recorder:
         )
         while self._position < begin:
             frames = min(begin - self._position, round(rate))
-            self._writer.write(np.zeros(frames, np.float32))
+            self._writer.write(np.zeros((frames, CHANNELS), np.float32))
             self._position += frames
 
     def _close(self) -> None:

@@ -1,7 +1,7 @@
 """The process that holds the audio stream: ``python -m yehu_server.audio.stream``.
 
 It looks for the device until it is found, opens a stream with the compiled callback, and reports
-when the device is lost. The instrument lies in memory shared with the parent, so that another such
+when the device is lost. The instruments lie in memory shared with the parent, so that another such
 process, or the silent clock, continues where this one stopped.
 """
 
@@ -34,7 +34,7 @@ class Stream:
 
         from yehu_server.engine import native
 
-        self._memory = mmap.mmap(order["memory"], native.RIG.itemsize)
+        self._memory = mmap.mmap(order["memory"], order["size"])
         address = np.frombuffer(self._memory, np.uint8).ctypes.data
         foreign = sounddevice._ffi  # noqa: SLF001 - the documented way for C callbacks
         self._stream = sounddevice._StreamBase(  # noqa: SLF001

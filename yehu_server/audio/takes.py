@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from yehu_server.audio.recorder import Recorder
-from yehu_server.engine.instrument import Instrument
+from yehu_server.audio.recorder import Recorder, Tape
 from yehu_server.errors import OutputError
 from yehu_server.files import inside
 
@@ -24,8 +23,8 @@ class Takes:
         Called with a line when a recording begins or ends.
     """
 
-    def __init__(self, instrument: Instrument, folder: Path, said: Callable[[str], None]) -> None:
-        self._instrument = instrument
+    def __init__(self, tape: Tape, folder: Path, said: Callable[[str], None]) -> None:
+        self._tape = tape
         self._folder = folder
         self._said = said
         self._everything: Recorder | None = None
@@ -39,7 +38,7 @@ class Takes:
         OutputError
             Where the file cannot be written.
         """
-        self._everything = Recorder(self._instrument, target, 0, self._said, overwrite=overwrite)
+        self._everything = Recorder(self._tape, target, 0, self._said, overwrite=overwrite)
 
     def start(self, name: str) -> str:
         """Record to a file of a plain name in the folder; return its name.
@@ -59,7 +58,7 @@ class Takes:
                 raise OutputError(f"{target.name} exists")
         except OSError as error:
             raise OutputError(f"{self._folder}: {error.strerror}") from error
-        self._requested = Recorder(self._instrument, target, self._instrument.frame, self._said)
+        self._requested = Recorder(self._tape, target, self._tape.frame, self._said)
         self._said(f"recording {target}")
         return target.name
 

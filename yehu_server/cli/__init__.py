@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import signal
 import sys
@@ -12,7 +13,9 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server import __version__
 from yehu_server.cli import (
+    body,
     build,
+    dataset,
     devices,
     learn,
     mappings,
@@ -21,6 +24,7 @@ from yehu_server.cli import (
     presets,
     render,
     replay,
+    score,
     serve,
     simulate,
     surfaces,
@@ -30,10 +34,14 @@ from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import parse
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import YehuError
+from yehu_server.files import why
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command; return its exit code: 0, 2 for bad input, 130 when interrupted."""
+    """Run a command; return its exit code.
+
+    0; 1 where something asked for failed a check; 2 for bad input; 130 when interrupted.
+    """
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), _interrupt)
@@ -43,6 +51,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         code: int = arguments.run(arguments)
     except YehuError as error:
         warn(str(error))
+        return 2
+    except OSError as error:
+        if error.errno != errno.ENOSPC:  # of standard output: files are told by their names
+            raise
+        warn(f"standard output: {why(error)}")
         return 2
     except MemoryError:
         warn("not enough memory")
@@ -65,10 +78,15 @@ def _parser() -> Parser:
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"yehu-server {__version__}")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    # With `prog`, nothing is written to standard output here, which may be full.
+    commands = parser.add_subparsers(
+        title="commands", metavar="COMMAND", required=True, prog=parser.prog
+    )
     for command in (
         serve,
+        body,
         build,
+        dataset,
         devices,
         learn,
         mappings,
@@ -77,6 +95,7 @@ def _parser() -> Parser:
         presets,
         render,
         replay,
+        score,
         simulate,
         surfaces,
         sweep,

@@ -21,6 +21,35 @@ from yehu_server.lines import one_line
 class Parser(argparse.ArgumentParser):
     """A parser that reports a wrong call in one line, without the usage."""
 
+    def __init__(self, *args: Any, **words: Any) -> None:
+        super().__init__(*args, **words)
+        self._actions_by_word: dict[str, Parser] = {}
+
+    def add_word(self, word: str, run: Callable[[argparse.Namespace], int], text: str) -> Parser:
+        """Add an action beside the command's own arguments, by its first word; return its parser.
+
+        argparse's subparsers leave no room for such arguments.
+        """
+        parser = Parser(
+            prog=f"{self.prog} {word}",
+            description=f"{text.capitalize()}.",
+            formatter_class=RawDescriptionRichHelpFormatter,
+            allow_abbrev=False,
+        )
+        parser.set_defaults(run=run)
+        self._actions_by_word[word] = parser
+        return parser
+
+    def parse_known_args(  # type: ignore[override]
+        self, args: Any = None, namespace: Any = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Parse as argparse does, or leave it to the parser of the first word."""
+        action = self._actions_by_word.get(args[0]) if args else None
+        if action is not None:
+            return action.parse_known_args(args[1:], namespace)
+        known: tuple[argparse.Namespace, list[str]] = super().parse_known_args(args, namespace)
+        return known
+
     @property
     def options(self) -> list[str]:
         """All options, with their dashes."""
@@ -76,10 +105,17 @@ def add_reporting(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
 
 
-def add_output(parser: argparse.ArgumentParser) -> None:
-    """Add -o and --overwrite, for the sound file to write."""
+def add_output(
+    parser: argparse.ArgumentParser, kind: Callable[[str], Path] = target, more: str = ""
+) -> None:
+    """Add -o and --overwrite, for the sound file to write; `kind` converts its name."""
     parser.add_argument(
-        "-o", "--output", required=True, type=target, metavar="OUT", help="the sound file to write"
+        "-o",
+        "--output",
+        required=True,
+        type=kind,
+        metavar="OUT",
+        help=f"the sound file to write{more}",
     )
     parser.add_argument(
         "--overwrite",
@@ -100,8 +136,15 @@ def add_folder(parser: argparse.ArgumentParser, *, required: bool = True, text: 
     )
 
 
-def check_output(arguments: argparse.Namespace) -> Callable[[Path], bool]:
+def check_output(
+    arguments: argparse.Namespace, output: Path | None = None
+) -> Callable[[Path], bool]:
     """Check that the output of `add_output` may be written; return which files it may replace.
+
+    Parameters
+    ----------
+    output : Path, optional
+        Another file that is written beside it.
 
     Raises
     ------
@@ -112,8 +155,8 @@ def check_output(arguments: argparse.Namespace) -> Callable[[Path], bool]:
     from yehu_server.files import anything, check_free, check_target
 
     may_replace = anything if arguments.overwrite else is_rendered
-    check_target(arguments.output)
-    check_free(arguments.output, may_replace)
+    check_target(output or arguments.output)
+    check_free(output or arguments.output, may_replace)
     return may_replace
 
 

@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_command, add_server, server_of
+from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import ParameterError, YehuError
 
@@ -19,6 +20,7 @@ examples:
   yehu-server learn --soft /playing/pressure /playing/bow_position
   yehu-server learn
   yehu-server learn --forget /playing/vibrato
+  yehu-server learn --part 2 /playing/vibrato
 
 Start `yehu-server serve` first. Binds are saved at once, in a mapping file of your own.
 """
@@ -49,6 +51,12 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--forget", action="store_true", help="remove the binds of these parameters"
     )
+    parser.add_argument(
+        "--part",
+        type=positive,
+        metavar="N",
+        help="of several players, the one who moves the control, counted from 1 (default: 1)",
+    )
     add_server(parser)
 
 
@@ -66,24 +74,27 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None:
+    from yehu_server.control.parts import group
+
+    own = "" if arguments.part is None else group(arguments.part - 1)
     if arguments.forget:
-        client.send("/unlearn", address)
-        _, count = client.answer("/unlearned").arguments
+        client.send(f"{own}/unlearn", address)
+        _, count = client.answer(f"{own}/unlearned").arguments
         tell(f"{address}: {count} forgotten")
         return
-    client.send("/learn", address, int(arguments.soft))
-    (target,) = client.answer("/learning").arguments
+    client.send(f"{own}/learn", address, int(arguments.soft))
+    (target,) = client.answer(f"{own}/learning").arguments
     tell(f"move the control for {target} ... (Ctrl-C ends)", flush=True)
     try:
         for message in client.answers(LONGEST_S):
-            if message.address == "/learned":
+            if message.address == f"{own}/learned":
                 _, source, file = message.arguments
                 tell(f"{source} moves {target}, kept in {file}")
                 return
     except KeyboardInterrupt:
-        client.send("/learn")
+        client.send(f"{own}/learn")
         raise
-    client.send("/learn")
+    client.send(f"{own}/learn")
     raise ParameterError(f"nothing was moved for {LONGEST_S:g} s")
 
 

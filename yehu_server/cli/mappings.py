@@ -43,7 +43,9 @@ def add_to(commands: Any) -> None:
         description="List and show mappings; check or convert files of your own.",
         epilog=EXAMPLES,
     )
-    actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
+    actions = parser.add_subparsers(
+        title="actions", metavar="ACTION", required=True, prog=parser.prog
+    )
     add_action(actions, "list", _list, "list the shipped mappings and your own")
     show = add_action(actions, "show", _show, "show the binds of a mapping")
     show.add_argument(

@@ -29,7 +29,9 @@ def add_to(commands: Any) -> None:
         description="List and show presets; check files of your own.",
         epilog=EXAMPLES,
     )
-    actions = parser.add_subparsers(title="actions", metavar="ACTION", required=True)
+    actions = parser.add_subparsers(
+        title="actions", metavar="ACTION", required=True, prog=parser.prog
+    )
     listed = add_action(actions, "list", _list, "list the presets")
     show = add_action(actions, "show", _show, "show the values of a preset")
     show.add_argument("preset", metavar="NAME", help="the name of a preset, or a file")

@@ -4,33 +4,52 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+import sys
+from typing import Any
 
-from yehu_server.cli.arguments import (
-    add_command,
-    add_instrument,
-    add_output,
-    add_reporting,
-    check_output,
-    progress_bar,
-    warn_of_compiling,
+from yehu_server.cli import render_folder
+from yehu_server.cli.arguments import add_command, add_instrument, add_output, add_reporting
+from yehu_server.cli.cluster_options import add_cluster
+from yehu_server.cli.converters import (
+    channel,
+    decibels,
+    hours,
+    positive,
+    seconds,
+    share,
+    target,
+    whole,
 )
-from yehu_server.cli.converters import channel, decibels, seconds, share, whole
-from yehu_server.cli.style_options import add_playing, style_of
+from yehu_server.cli.render_one import rendered
+from yehu_server.cli.render_pipe import (
+    is_piped,
+    piped_in,
+    quiet_pipe,
+    score_source,
+    shown_target,
+    sound_target,
+    tell_beside,
+)
+from yehu_server.cli.stage_options import add_stage
+from yehu_server.cli.style_options import add_playing
 from yehu_server.cli.terminal import tell, warn
+from yehu_server.score.duration import MAX_DURATION_H
 
-if TYPE_CHECKING:
-    from yehu_server.playing.style import Style
-
-PHRASING = 0.5  # of files, where nothing else is asked for
 EXAMPLES = """\
 examples:
   yehu-server render tune.mid -o tune.wav
   yehu-server render tune.mid -o tune.flac --rate 48000 --normalize
   yehu-server render suite-1.mid suite-2.mid -o suite.wav --channel 1
   yehu-server render tune.mid -o close.wav --set /playing/bow_position=0.08 --gain-db 6
+  yehu-server render quartet.mid --ensemble -o quartet.wav --stems stems
+  yehu-server render songs -o sounds --format flac
+  yehu-server render songs -o sounds --dask tcp://10.0.0.1:8786
+  yehu-server render - -o - --format raw < tune.mid > tune.f32
+
+A folder is rendered on all cores, and only what is not up to date: docs/folders.md tells more, and
+docs/cluster.md of clusters.
+Ensemble files are described in docs/ensemble.md.
+What becomes of damaged MIDI files is described in docs/midi_files.md.
 """
 
 
@@ -40,12 +59,19 @@ def add_to(commands: Any) -> None:
         commands,
         "render",
         run=run,
-        help="render MIDI files to a sound file",
-        description="Render MIDI files, one after another, to a sound file.",
+        help="render MIDI files to a sound file, or a folder of them to a folder",
+        description="Render MIDI files, one after another, to a sound file; or all of a folder, "
+        "each to a file of its own.",
         epilog=EXAMPLES,
     )
-    parser.add_argument("midi", nargs="+", type=Path, metavar="IN.mid", help="the MIDI files")
-    add_output(parser)
+    parser.add_argument(
+        "midi",
+        nargs="+",
+        type=score_source,
+        metavar="IN.mid",
+        help="the MIDI files, or a folder of them; - reads standard input",
+    )
+    add_output(parser, sound_target, "; - writes standard output; of a folder, a folder")
     parser.add_argument(
         "--rate",
         type=whole,
@@ -54,13 +80,14 @@ def add_to(commands: Any) -> None:
         help="sample rate (default: 44100)",
     )
     parser.add_argument(
-        "--format", choices=("wav", "flac"), help="file format (default: by the ending of OUT)"
+        "--format",
+        choices=("wav", "flac", "raw"),
+        help="file format (default: by the ending of OUT); raw, samples alone, for -o -",
     )
     parser.add_argument(
         "--subtype",
         choices=("16", "24", "float"),
-        default="24",
-        help="sample format (default: 24 bits)",
+        help="sample format (default: 24 bits; of raw, float)",
     )
     parser.add_argument(
         "--channel",
@@ -92,82 +119,56 @@ def add_to(commands: Any) -> None:
         help="how much plain notes are shaped, by phrases, accents, slurs, vibrato and slides; "
         "what a file marks stays: 0 to 1 (default: 0.5; 0: exactly as written)",
     )
+    parser.add_argument(
+        "--song",
+        type=positive,
+        metavar="N",
+        help="play only the N-th song of each file, where a file has several "
+        "(default: one after another)",
+    )
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="refuse MIDI files with any damage, with exit code 1 (default: warn)",
+    )
+    parser.add_argument(
+        "--max-duration",
+        type=hours,
+        default=MAX_DURATION_H,
+        metavar="HOURS",
+        help=f"refuse MIDI files that last longer together (default: {MAX_DURATION_H:g})",
+    )
+    parser.add_argument(
+        "--plot",
+        type=target,
+        metavar="PNG",
+        help="also draw level, pitch asked and played, and spectrogram; of a folder, a folder",
+    )
+    add_stage(parser)
     add_instrument(parser)
     add_playing(parser)
+    add_cluster(parser)
     add_reporting(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.audio.file import format_of
-    from yehu_server.engine.warming import warm_up
-    from yehu_server.files import check_apart
-    from yehu_server.physics.grid import check_rate
-    from yehu_server.physics.quantities import Quantities, read_quantities
-    from yehu_server.playing.calibration import calibration_key
-    from yehu_server.playing.calibrations import calibration_for
-    from yehu_server.render import Options, render
-    from yehu_server.score.phrasing import is_fingered, phrased
-    from yehu_server.score.smf import concatenate, read_score
+    if render_folder.is_for_folder(arguments):
+        return render_folder.run(arguments)
+    from yehu_server.score.smf.faults import DamagedError
 
-    check_rate(arguments.rate)
-    style = style_of(arguments)
-    phrasing = arguments.phrasing
-    if phrasing is None:
-        phrasing = dict(style.settings).get("/playing/phrasing", PHRASING)
-    instrument = [] if arguments.instrument is None else [arguments.instrument]
-    check_apart({"-o": arguments.output}, [*arguments.midi, *style.files, *instrument])
-    may_replace = check_output(arguments)
-    _warn_of_own(arguments, style)
-    channels = arguments.channel
-    options = Options(
-        rate=arguments.rate,
-        format_name=arguments.format or format_of(arguments.output),
-        subtype=arguments.subtype,
-        channels=frozenset(channels) if channels is not None else None,
-        tail_s=arguments.tail,
-        gain_db=arguments.gain_db,
-        normalize=arguments.normalize,
-        style=style,
-        quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
-    )
-    scores = [read_score(path) for path in arguments.midi]
-    score = concatenate([phrased(score, phrasing) for score in scores])
-    options = replace(options, phrasing=0.0 if is_fingered(score) else phrasing)
-    for warning in score.warnings:
-        warn(warning)
-    warn_of_compiling(arguments)
-    warm_up()
-    with progress_bar(arguments, "calibrating", "notes") as progress:
-        rate = float(options.rate)
-        calibration = calibration_for(
-            rate, options.quantities, a4=options.style.a4, progress=progress
-        )
-    options = replace(options, calibration=calibration)
-    with progress_bar(arguments, "rendering") as progress:
-        summary = render(score, arguments.output, options, progress, may_replace)
+    try:
+        with piped_in(arguments), quiet_pipe(arguments.output):
+            done = rendered(arguments)
+    except DamagedError as error:
+        warn(str(error))
+        return 1
+    say = tell_beside if is_piped(arguments.output) else tell
     if arguments.json:
-        fields = dict(vars(summary))
-        by_channel = fields.pop("notes_by_channel")
-        fields["policy"] = summary.policy.value
-        fields["mapping"] = {"name": style.mapping.name, "files": [*map(str, style.mapping.files)]}
-        fields["phrasing"] = phrasing
-        fields["preset"] = None if style.preset is None else str(style.preset)
-        fields["calibration"] = calibration_key(rate, options.quantities, style.a4)
-        fields["practice"] = "shipped" if style.practice is None else str(style.practice)
-        fields["channels"] = {str(channel + 1): notes for channel, notes in by_channel.items()}
-        print(json.dumps(fields))
+        file = sys.stderr if is_piped(arguments.output) else sys.stdout
+        print(json.dumps(done.fields), file=file)
     elif not arguments.quiet:
         from yehu_server.report import render_report
 
-        tell(render_report(arguments.output, summary))
+        say(render_report(shown_target(arguments.output), done.summary))
     return 0
-
-
-def _warn_of_own(arguments: argparse.Namespace, style: Style) -> None:
-    """Warn where serve would use the user's own mapping of this name."""
-    from yehu_server.playing.mapping import MINE, own_mappings
-
-    own = style.mapping.files[0].stem
-    if (arguments.mapping or own) == own and own in own_mappings() and not arguments.quiet:
-        warn(f"mapping {own}: the shipped one; --mapping {MINE}{own} is your own")

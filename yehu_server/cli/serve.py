@@ -26,6 +26,7 @@ examples:
   yehu-server serve --osc 192.168.1.5:9000 --osc-allow 192.168.1.0/24
   yehu-server serve --http 192.168.1.5:9001 --http-allow 192.168.1.0/24
   yehu-server serve --record take.wav --capture take.jsonl
+  yehu-server serve --parts 2 --part 1=keystep --part 2=seaboard --part-mapping 2=mpe
 
 The OSC messages are described in docs/osc.md,
 OSCQuery in docs/oscquery.md. Ctrl-C ends it.
@@ -100,9 +101,9 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         server = Server(options, say, progress)
     if server.output.state.problem and arguments.audio_device != "null":
         say(f"{server.output.state.problem}: playing on a silent clock")
-    mapping = options.style.mapping
-    if is_own(mapping):
-        say(f"mapping {mapping.name}, your own: {mapping.files[0]}")
+    for mapping in {part.style.mapping.name: part.style.mapping for part in options.parts}.values():
+        if is_own(mapping):
+            say(f"mapping {mapping.name}, your own: {mapping.files[0]}")
     server.start()
     ending.server = server
     try:

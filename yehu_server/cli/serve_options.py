@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from functools import partial
 from ipaddress import ip_network
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,8 @@ from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import add_config
 from yehu_server.cli.converters import port, positive, target, whole, within
 from yehu_server.cli.log import LEVELS
-from yehu_server.cli.style_options import add_playing, mapping_of, style_of
+from yehu_server.cli.part_options import add_parts, part_options, routes_of
+from yehu_server.cli.style_options import add_playing
 from yehu_server.control.addresses import (
     ANYWHERE,
     HTTP_ADDRESS,
@@ -34,6 +34,7 @@ def add_arguments(parser: Parser) -> None:
     _add_web(parser.add_argument_group("OSCQuery"))
     _add_page(parser.add_argument_group("the page"))
     _add_playing(parser.add_argument_group("playing"))
+    add_parts(parser.add_argument_group("the stage"))
     running = parser.add_argument_group("running")
     _add_running(running)
     add_config(running, parser)
@@ -68,7 +69,8 @@ def _add_audio(group: Any) -> None:
         type=positive,
         default=2,
         metavar="N",
-        help="number of channels, all with the same signal (default: 2, or as the device has)",
+        help="number of channels, left and right in turn; 1 has the mean of both (default: 2, or "
+        "as the device has)",
     )
 
 
@@ -220,16 +222,18 @@ def options_of(arguments: argparse.Namespace) -> Any:
     from yehu_server.files import check_apart
     from yehu_server.server import ServeOptions
 
-    style = style_of(arguments, is_live=True)
+    parts = part_options(arguments)
     outputs = {"--record": arguments.record, "--capture": arguments.capture}
     config = [] if arguments.config is None else [arguments.config]
     check_apart(
         {name: path for name, path in outputs.items() if path is not None},
-        [*style.files, *config],
+        [*(file for part in parts for file in part.style.files), *config],
     )
-    midi = arguments.midi_api != "none"
-    if midi:
+    midi = None
+    if arguments.midi_api != "none":
         check_api(arguments.midi_api)
+        named = (arguments.midi_in, arguments.virtual_midi, arguments.midi_api)
+        midi = MidiOptions(*named, routes=routes_of(arguments, parts))
     options = ServeOptions(
         output=OutputOptions(
             device=arguments.audio_device,
@@ -238,9 +242,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
             latency=arguments.latency,
             channels=arguments.channels,
         ),
-        midi=MidiOptions(arguments.midi_in, arguments.virtual_midi, arguments.midi_api)
-        if midi
-        else None,
+        midi=midi,
         osc=parse_address(arguments.osc, *OSC_ADDRESS),
         allowed=Allowed(arguments.osc_allow),
         http=WebOptions(parse_address(arguments.http, *HTTP_ADDRESS), Allowed(arguments.http_allow))
@@ -248,8 +250,8 @@ def options_of(arguments: argparse.Namespace) -> Any:
         else None,
         page=_page_of(arguments),
         announce=arguments.announce,
-        style=style,
-        reread=partial(mapping_of, arguments, is_live=True) if arguments.watch else None,
+        parts=parts,
+        has_room=not arguments.dry,
         jitter_ms=arguments.jitter_buffer,
         record=arguments.record,
         capture=arguments.capture,

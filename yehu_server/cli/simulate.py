@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.errors import OutputError
     from yehu_server.files import check_apart, check_target
     from yehu_server.score.gesture import read_gesture
-    from yehu_server.simulate import simulate
+    from yehu_server.simulation import simulate
 
     gesture = read_gesture(arguments.gesture)
     check_target(arguments.output)

@@ -34,7 +34,8 @@ def add_playing(group: Any) -> None:
     group.add_argument(
         "--preset",
         metavar="NAME",
-        help="the sound to start with: the name of a preset, or a file (see yehu-server presets)",
+        help="the sound to start with: the name of a preset, or a file (see yehu-server presets); "
+        "a plus takes several together, such as sul-tasto+hall",
     )
     group.add_argument(
         "--programs",

@@ -14,6 +14,7 @@ EXAMPLES = """\
 examples:
   yehu-server surfaces -o panels
   yehu-server surfaces -o panels --server 192.168.1.5:9000 --only yehu.pd
+  yehu-server surfaces -o panels --part 2
   yehu-server surfaces -o mappings --check
 
 docs/surfaces.md describes how to open each.
@@ -39,6 +40,13 @@ def add_to(commands: Any) -> None:
         f"(default: {shown(*OSC_ADDRESS)}); in TouchOSC it is set by hand",
     )
     parser.add_argument(
+        "--part",
+        type=int,
+        metavar="N",
+        help="for part N of a server with several (serve --parts): the files speak to "
+        "/yehu/part/N, and have -part-N in their names",
+    )
+    parser.add_argument(
         "--only",
         action="append",
         default=[],
@@ -54,8 +62,11 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.errors import OutputError, ParameterError
-    from yehu_server.surfaces.catalogue import chosen, is_fresh, write
+    from yehu_server.engine.rig import MOST_PARTS
+    from yehu_server.errors import ParameterError
+    from yehu_server.files import make_folder
+    from yehu_server.surfaces.catalogue import chosen, file_of, is_fresh, write
+    from yehu_server.surfaces.layout import ALL
 
     folder: Path = arguments.output
     server = parse_address(arguments.server, *OSC_ADDRESS)
@@ -64,16 +75,19 @@ def run(arguments: argparse.Namespace) -> int:
         raise ParameterError(
             f"{arguments.server!r}: expected HOST:PORT, such as {shown(*OSC_ADDRESS)}"
         )
+    part: int = ALL if arguments.part is None else arguments.part
+    if arguments.part is not None and not 1 <= part <= MOST_PARTS:
+        raise ParameterError(f"--part {part}: a stage has parts 1 to {MOST_PARTS}")
     surfaces = chosen(arguments.only)
     if arguments.check:
-        stale = [surface for surface in surfaces if not is_fresh(surface, folder, server)]
+        stale = [surface for surface in surfaces if not is_fresh(surface, folder, server, part)]
         for surface in stale:
-            tell(f"{folder / surface.name}: stale; yehu-server surfaces -o {folder} writes it")
+            tell(
+                f"{file_of(surface, folder, part)}: stale; "
+                f"yehu-server surfaces -o {folder} writes it"
+            )
         return 1 if stale else 0
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{folder}: {error.strerror}") from error
+    make_folder(folder)
     for surface in surfaces:
-        tell(f"{write(surface, folder, server)}: for {surface.about}")
+        tell(f"{write(surface, folder, server, part)}: for {surface.about}")
     return 0

@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
+from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import (
     add_command,
-    add_folder,
-    add_gesture,
     add_reporting,
     progress_bar,
     warn_of_compiling,
 )
-from yehu_server.cli.converters import positive
-from yehu_server.cli.terminal import tell
+from yehu_server.cli.cluster_options import add_cluster
+from yehu_server.cli.converters import positive, target
+from yehu_server.cli.sweep_show import add_show
+from yehu_server.cli.terminal import tell, warn
 
 EXAMPLES = """\
 examples:
-  yehu-server sweep gesture.json -o runs --vary bow_force=0.1:2:20 --vary bow_velocity=0.1,0.2
-  yehu-server sweep gesture.json -o runs --vary instrument.bow.epsilon_0=2e4,3e4,4e4 --index-only
+  yehu-server sweep examples/studies/schelleng.toml -o schelleng.npz
+  yehu-server sweep show schelleng.npz -o schelleng.png
+  yehu-server sweep show schelleng.npz -o schelleng.html
+  yehu-server sweep gesture.json -o runs.npz --vary bow_force=0.1:2:20:log
+  yehu-server sweep gesture.json -o runs.npz --vary instrument.bow.epsilon_0=2e4,3e4 --signals runs
 
-Names are those of a gesture file, which is described in docs/simulate.md
+Studies are described in docs/sweep.md, gestures in docs/simulate.md
 """
 
 
@@ -32,64 +37,123 @@ def add_to(commands: Any) -> None:
         commands,
         "sweep",
         run=run,
-        help="run a gesture with all combinations of some values, on all cores",
-        description="Run a gesture file with all combinations of some values, on all cores.",
+        help="bow many strokes and name the regime of each, on all cores; draw the maps",
+        description="Bow the strokes of a study, or vary a gesture, on all cores: the regime of "
+        "each, when it began, pitch, level and brightness, in one file. An interrupted sweep goes "
+        "on with the same command. `sweep show FILE` draws the result.",
         epilog=EXAMPLES,
     )
-    add_gesture(parser)
-    add_folder(parser, text="folder for the results")
+    parser.add_argument(
+        "study",
+        type=Path,
+        metavar="STUDY",
+        help="a study (TOML), or a gesture (JSON) to --vary",
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        required=True,
+        type=target,
+        metavar="FILE",
+        help="the result to write, .npz or .zarr",
+    )
     parser.add_argument(
         "--vary",
         action="append",
-        required=True,
+        default=[],
         metavar="NAME=VALUES",
-        help="V1,V2,... or FROM:TO:STEPS of a control or instrument entry; may be repeated",
+        help="V1,V2,... or FROM:TO:STEPS or FROM:TO:STEPS:log; may be repeated",
     )
     parser.add_argument(
-        "--index-only", action="store_true", help="keep pitch and level of each run, but no arrays"
+        "--signals",
+        type=Path,
+        metavar="FOLDER",
+        help="also keep all signals of each stroke, as `simulate` does",
+    )
+    parser.add_argument(
+        "--energy", action="store_true", help="with --signals: the energy ledger too"
+    )
+    parser.add_argument(
+        "--strings",
+        type=positive,
+        default=0,
+        metavar="EVERY",
+        help="with --signals: the shapes of the strings every EVERY samples",
     )
     parser.add_argument(
         "--workers",
         type=positive,
         metavar="N",
-        help="number of runs at a time (default: one per core)",
+        help="number of strokes at a time (default: one per core)",
     )
+    add_cluster(parser)
     parser.add_argument(
-        "--overwrite",
-        action="store_true",
-        help="remove the results of an earlier sweep from the folder",
+        "--overwrite", action="store_true", help="replace an earlier result, or begin anew"
     )
     add_reporting(parser)
+    add_show(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     import time
 
-    from yehu_server.score.gesture import read_gesture
-    from yehu_server.sweep import INDEX, axis_of, sweep, variations
+    from yehu_server.sweeps.axes import axis_of
+    from yehu_server.sweeps.running import check_free_result, sweep_to
+    from yehu_server.sweeps.signals import keep_signals, prepare_folder
+    from yehu_server.sweeps.study import read_study
 
-    gesture = read_gesture(arguments.gesture)
-    axes = [axis_of(text) for text in arguments.vary]
-    runs = variations(gesture.source, axes, arguments.gesture.parent)
+    study = read_study(arguments.study, [axis_of(text) for text in arguments.vary])
+    check_free_result(arguments.output, overwrite=arguments.overwrite)
+    if arguments.signals is not None:
+        prepare_folder(study, arguments.signals, overwrite=arguments.overwrite)
     start = time.perf_counter()
     warn_of_compiling(arguments, plays=False)
-    with progress_bar(arguments, "sweeping", "runs") as progress:
-        rows = sweep(
-            runs,
+    with _cluster(arguments) as cluster, progress_bar(arguments, "sweeping", "strokes") as progress:
+        result = sweep_to(
+            study,
             arguments.output,
-            energy=arguments.energy,
-            strings_every=arguments.strings,
-            keep=not arguments.index_only,
             workers=arguments.workers,
+            cluster=cluster,
             overwrite=arguments.overwrite,
             progress=progress,
         )
     elapsed = time.perf_counter() - start
-    seconds = len(rows) * gesture.duration
+    if arguments.signals is not None:
+        with progress_bar(arguments, "keeping signals", "strokes") as progress:
+            keep_signals(
+                study,
+                result,
+                arguments.signals,
+                energy=arguments.energy,
+                strings_every=arguments.strings,
+                workers=arguments.workers,
+                progress=progress,
+            )
+    counts = counts_of(result)
     if arguments.json:
-        print(json.dumps({"runs": len(rows), "elapsed_s": elapsed, "simulated_s": seconds}))
+        print(json.dumps({"strokes": len(result), "elapsed_s": elapsed, "regimes": counts}))
     elif not arguments.quiet:
-        pace = f"{seconds:.1f} s in {elapsed:.1f} s"
-        tell(f"{arguments.output / INDEX}: {len(rows)} runs, {pace}")
+        tell(f"{arguments.output}: {len(result)} strokes in {elapsed:.1f} s")
+        tell(", ".join(f"{name} {100.0 * n / len(result):.0f} %" for name, n in counts.items()))
     return 0
+
+
+def counts_of(result: Any) -> dict[str, int]:
+    """The number of strokes of each regime that there is."""
+    numbers = result.columns["regime"].tolist()
+    return {
+        name: count
+        for number, name in enumerate(result.regimes)
+        if (count := numbers.count(number))
+    }
+
+
+def _cluster(arguments: argparse.Namespace) -> Any:
+    """A connection to the cluster of --dask, or none."""
+    if arguments.dask is None:
+        return contextlib.nullcontext()
+    from yehu_server.jobs.cluster import Cluster
+    from yehu_server.sweeps.running import warm_up
+
+    return Cluster(arguments.dask, warm_up, warn)

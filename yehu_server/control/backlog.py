@@ -134,6 +134,17 @@ class Backlog(Generic[T]):
         sender = self._senders.get(peer)
         return 0 if sender is None else self._room.of(sender)
 
+    def drop(self, which: Callable[[T], bool]) -> None:
+        """Drop some waiting packets."""
+        for sender in self._senders.values():
+            dropped = [
+                work for work in sender.works if work.thing is not None and which(work.thing)
+            ]
+            for work in dropped:
+                sender.works.remove(work)
+                self._count -= 1
+                self._room.give_back(sender, work.size)
+
     def clear(self) -> None:
         """Drop all waiting packets."""
         for sender in self._senders.values():

@@ -5,9 +5,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from yehu_server.control.parts import FIRST, group
 from yehu_server.params.table import PREFIX, find
+from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_address
 
@@ -31,11 +34,15 @@ class Argument:
 
 @dataclass(frozen=True)
 class Call:
-    """A call: its address after the prefix, what it does, and its arguments."""
+    """A call: its address after the prefix, what it does, and its arguments.
+
+    `is_for_all` marks calls that no part has of its own.
+    """
 
     address: str
     doc: str
     arguments: tuple[Argument, ...] = ()
+    is_for_all: bool = False
 
 
 def _of(address: str, name: str) -> Argument:
@@ -79,7 +86,12 @@ CALLS: tuple[Call, ...] = (
     ),
     Call("/panic", "Ends all notes and all sound, and drops messages that wait for their time."),
     Call("/reset", "The same, and sets every parameter to its default."),
-    Call("/get", "Sends the value of a parameter, or a status value.", (Argument("address", "s"),)),
+    Call(
+        "/get",
+        "Sends the value of a parameter, or a status value.",
+        (Argument("address", "s"),),
+        is_for_all=True,
+    ),
     Call("/params", "Sends all parameters: value, range, default, unit, meaning."),
     Call("/status", "Sends all status values."),
     Call("/subscribe", "Sends all parameters, and for some time every change.", (SECONDS,)),
@@ -87,12 +99,12 @@ CALLS: tuple[Call, ...] = (
     Call(
         "/subscribe/status", "Sends all status values, and for some time every change.", (SECONDS,)
     ),
-    Call("/unsubscribe", "Ends all subscriptions."),
+    Call("/unsubscribe", "Ends all subscriptions.", is_for_all=True),
     Call("/preset/load", "Sets the parameters of a preset.", (NAME,)),
     Call("/preset/morph", "Sets values between those of two presets.", (FROM, TO, AMOUNT)),
     Call("/preset/save", "Saves the parameters as a preset.", (NAME,)),
-    Call("/preset/delete", "Removes a preset of the player's own.", (NAME,)),
-    Call("/preset/list", "Sends all presets: name, MIDI program, description."),
+    Call("/preset/delete", "Removes a preset of the player's own.", (NAME,), is_for_all=True),
+    Call("/preset/list", "Sends all presets: name, MIDI program, description.", is_for_all=True),
     Call(
         "/learn",
         "Binds the controller that is moved next to a parameter; without one, ends learning.",
@@ -100,34 +112,55 @@ CALLS: tuple[Call, ...] = (
     ),
     Call("/unlearn", "Forgets what was learned for a parameter.", (Argument("address", "s"),)),
     Call("/bindings", "Sends all bindings: source, target, span, curve, place, value."),
-    Call("/record/start", "Records into the recordings folder.", (NAME,)),
-    Call("/record/stop", "Ends the recording."),
-    Call("/ping", "Answers with the same arguments."),
+    Call("/record/start", "Records into the recordings folder.", (NAME,), is_for_all=True),
+    Call("/record/stop", "Ends the recording.", is_for_all=True),
+    Call("/ping", "Answers with the same arguments.", is_for_all=True),
 )
 
 
-def preset_calls(names: tuple[str, ...]) -> list[Call]:
-    """The calls that take a preset, with the names there are; addresses include the prefix."""
+def preset_calls(names: tuple[str, ...], addressed: str = FIRST) -> list[Call]:
+    """The calls of a group that take a preset, with the names there are.
+
+    Addresses include the prefix.
+    """
     choice = replace(NAME, choices=names)
     takes = {
         "/preset/load": (choice,),
         "/preset/morph": (replace(FROM, choices=names), replace(TO, choices=names), AMOUNT),
     }
     return [
-        replace(call, address=PREFIX + call.address, arguments=takes[call.address])
+        replace(call, address=PREFIX + addressed + call.address, arguments=takes[call.address])
         for call in CALLS
         if call.address in takes
     ]
 
 
-def own_calls(mapping: Mapping) -> list[Call]:
-    """The OSC addresses of the user's own that a mapping binds, as calls."""
+def own_calls(mapping: Mapping, addressed: str = FIRST, below: str = "") -> list[Call]:
+    """The OSC addresses of the user's own that a mapping of a group binds, as calls.
+
+    `below` is put before the addresses.
+    """
     return [
         Call(
-            bind.source,
-            f"Moves {PREFIX}{bind.target}, by the mapping {mapping.name}.",
+            below + bind.source,
+            f"Moves {PREFIX}{addressed}{bind.target}, by the mapping {mapping.name}.",
             (Argument("place", lo=min(bind.input_range), hi=max(bind.input_range)),),
         )
         for bind in mapping.binds
         if is_address(bind.source)
     ]
+
+
+def more_calls(players: Sequence[LivePlayer]) -> list[Call]:
+    """The calls with the presets there are, and the user's own addresses, of some parts."""
+    names = tuple(players[0].presets.names())
+    calls = preset_calls(names)
+    plain: dict[str, Call] = {}  # of the first part that binds each
+    for part, player in enumerate(players):
+        mapping = player.mapping
+        own = own_calls(mapping, group(part) if part else FIRST)
+        plain = {call.address: call for call in own} | plain
+        if len(players) > 1:
+            calls += preset_calls(names, group(part))
+            calls += own_calls(mapping, group(part), PREFIX + group(part))
+    return [*calls, *plain.values()]

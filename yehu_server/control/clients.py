@@ -6,72 +6,48 @@ All is sent from the listening port, each message by itself: Pure Data does not 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator
 
-from yehu_server.control.allowance import Allowance
+from yehu_server.control.listener import ERRORS_A_SECOND, ERRORS_AT_ONCE, Listener
 from yehu_server.control.packets import pack
+from yehu_server.control.parts import FIRST, divided
 from yehu_server.control.peers import Peer
-from yehu_server.control.status import PLACE, as_argument
+from yehu_server.control.status import PLACE
+from yehu_server.control.telling import Status, Telling, Values
 from yehu_server.lines import shortened
-from yehu_server.params.table import UNIT, read
 
-FLUSH_S = 1.0 / 60.0
-STATUS_S = 0.25  # between readings of the status
+FLUSH_S = 1.0 / 60.0  # between rounds of telling
+SLICE_S = 0.0005  # of a round, after which other messages are handled
 SWEEP_S = 1.0
 MOST_SUBSCRIBERS, MOST_OF_A_HOST = 64, 32
 MOST_KNOWN, MOST_CROWDED = 1024, 8192
-MOST_TOLD = 512  # messages of one `flush`
-ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
 FORGIVEN_S = ERRORS_AT_ONCE / ERRORS_A_SECOND
-
-
-@dataclass
-class Client:
-    """A peer and what it is to be told."""
-
-    peer: Peer
-    until: float = 0.0  # end of its subscription (monotonic s)
-    form: str = ""  # of addresses it is told: plain, or ending in UNIT
-    status_until: float = 0.0  # end of its subscription to the status (monotonic s)
-    listens: set[str] = field(default_factory=set)  # addresses of which it is told all changes
-    hushed_until: float = 0.0  # until then it is not answered (monotonic s)
-    to_tell: dict[str, None] = field(default_factory=dict)  # addresses to send, in order
-    errors: Allowance = field(default_factory=lambda: Allowance(ERRORS_A_SECOND, ERRORS_AT_ONCE))
-    complained: float = field(default_factory=time.monotonic)
-
-    def subscribes(self, now: float) -> bool:
-        """Whether it has a subscription."""
-        return max(self.until, self.status_until) > now
 
 
 class Clients:
     """The peers that are sent values and errors.
 
+    Addresses come in groups (``parts``): those of a part have its group before them, which is
+    left out of what `values` and `status` return.
+
     Parameters
     ----------
     values : callable
-        Returns all parameters' values, by address.
+        Returns the values of all parameters of a group, by address.
     prefix : str
         Put before addresses.
     status : callable, optional
-        Returns the status values, by name; their addresses are PLACE and the name.
+        Returns the status values of a group, by name; their addresses are PLACE and the name.
     """
 
-    def __init__(
-        self,
-        values: Callable[[], dict[str, float]],
-        prefix: str,
-        status: Callable[[], Mapping[str, float | str]] = dict,
-    ) -> None:
+    def __init__(self, values: Values, prefix: str, status: Status = lambda _group: {}) -> None:
         self._values = values
         self.prefix = prefix
         self._status = status
-        self._clients: dict[Peer, Client] = {}
-        self._told: dict[str, float] = {}  # values at the last flush
-        self._told_status: dict[str, float | str] = {}
-        self._looked = 0.0  # when the status was last read
-        self._flushed = 0.0
+        self._clients: dict[Peer, Listener] = {}
+        self._telling = Telling(values, status, prefix)
+        self._round: Iterator[None] | None = None  # what is left of a round
+        self._flushed = 0.0  # when it began
         self._swept = 0.0
         self._is_waiting = False
         self._crowded = MOST_KNOWN  # number of clients at which idle ones are dropped
@@ -84,31 +60,22 @@ class Clients:
         now = time.monotonic()
         return sum(client.subscribes(now) for client in list(self._clients.values()))  # any thread
 
-    def _client(self, peer: Peer) -> Client:
+    def _client(self, peer: Peer) -> Listener:
         client = self._clients.get(peer)
         if client is None:
             if len(self._clients) >= self._crowded:
                 self._forget_idle()
                 self._crowded = max(MOST_KNOWN, 2 * len(self._clients))
-            client = self._clients[peer] = Client(peer)
+            client = self._clients[peer] = Listener(peer)
         return client
 
     def _forget_idle(self, *, forgiven_s: float = 0.0) -> None:
         """Drop clients with nothing to be sent, some time after their last error."""
         now = time.monotonic()
-        self._clients = {
-            peer: client
-            for peer, client in self._clients.items()
-            if max(
-                client.until,
-                client.status_until,
-                client.hushed_until,
-                client.complained + forgiven_s,
-            )
-            > now
-            or client.to_tell
-            or client.listens
-        }
+        for peer, client in list(self._clients.items()):
+            until = max(client.until, client.hushed_until, client.complained + forgiven_s)
+            if until <= now and client.is_idle:
+                del self._clients[peer]
 
     # -- what clients are sent ---------------------------------------------------------------
 
@@ -118,7 +85,7 @@ class Clients:
             return
         client = self._client(peer)
         if client.hushed_until <= time.monotonic():
-            client.to_tell.update(dict.fromkeys(addresses))
+            client.to_tell.update((address, divided(address)[0]) for address in addresses)
             self._is_waiting = True
 
     def hush(self, peer: Peer, seconds: float) -> None:
@@ -128,10 +95,11 @@ class Clients:
         """
         self._client(peer).hushed_until = time.monotonic() + seconds
 
-    def subscribe(self, peer: Peer, seconds: float, form: str = "") -> bool:
+    def subscribe(self, peer: Peer, seconds: float, form: str = "", addressed: str = FIRST) -> bool:
         """Send a peer every change for some time; return whether there was room for one more.
 
-        `form` is empty for plain values, UNIT for values as 0 to 1, or PLACE for the status.
+        `form` is empty for plain values, UNIT for values as 0 to 1, or PLACE for the status;
+        `addressed` is the group of addresses.
         """
         client, now = self._client(peer), time.monotonic()
         if not client.subscribes(now):
@@ -140,36 +108,41 @@ class Clients:
                 return False
         self._is_waiting = True
         if form == PLACE:
-            client.status_until = now + seconds
-            client.to_tell.update(dict.fromkeys(PLACE + name for name in self._status()))
+            client.asked_status[addressed] = now + seconds
+            names = self._status(addressed)
+            told = (addressed + PLACE + name for name in names)
+            client.to_tell.update(dict.fromkeys(told, addressed))
             return True
-        client.until = now + seconds
-        client.form = form
-        client.to_tell.update(dict.fromkeys(address + form for address in self._values()))
+        client.subscribed[addressed] = now + seconds, form
+        values = self._values(addressed)
+        told = (addressed + address + form for address in values)
+        client.to_tell.update(dict.fromkeys(told, addressed))
         return True
 
     def unsubscribe(self, peer: Peer) -> None:
         """End a peer's subscriptions."""
         client = self._client(peer)
-        client.until = client.status_until = 0.0
+        client.subscribed.clear()
+        client.asked_status.clear()
 
     def listen(self, peer: Peer, address: str) -> None:
         """Send a peer the value at an address (without the prefix) now, and whenever it changes."""
         client = self._client(peer)
-        client.listens.add(address)
-        client.to_tell[address] = None
+        addressed, among = client.among(address)
+        among.setdefault(addressed, set()).add(address)
+        client.to_tell[address] = addressed
         self._is_waiting = True
 
     def ignore(self, peer: Peer, address: str) -> None:
         """End what `listen` began."""
-        client = self._client(peer)
-        client.listens.discard(address)
-        client.to_tell.pop(address, None)
+        self._client(peer).ignore(address)
 
     def hears(self, peer: Peer) -> bool:
         """Whether a peer is sent changes of values."""
         client = self._clients.get(peer)
-        return client is not None and (client.until > time.monotonic() or bool(client.listens))
+        if client is None:
+            return False
+        return bool(client.listens or client.watches or client.forms(time.monotonic()))
 
     def forget(self, peer: Peer) -> None:
         """Drop a peer that has hung up."""
@@ -197,79 +170,34 @@ class Clients:
     @property
     def _is_watched(self) -> bool:
         now = time.monotonic()
-        return any(client.subscribes(now) or client.listens for client in self._clients.values())
+        return any(
+            client.subscribes(now) or client.listens or client.watches
+            for client in self._clients.values()
+        )
 
     def wait_s(self) -> float | None:
         """Seconds until the next flush; None where there is nothing to send."""
+        if self._round is not None:
+            return 0.0
         if not self._is_waiting and not self._is_watched:
             return None
         return max(0.0, self._flushed + FLUSH_S - time.monotonic())
 
     def flush(self) -> None:
-        """Send what is due, at most 60 times a second."""
+        """Send what is due, at most 60 times a second; go on with it for up to SLICE_S."""
         now = time.monotonic()
         if now - self._swept > SWEEP_S:
             self._swept = now
             self._forget_idle(forgiven_s=FORGIVEN_S)
-        if now - self._flushed < FLUSH_S or not (self._is_waiting or self._is_watched):
-            return
-        self._flushed = now
-        self._is_waiting = False
-        values = self._values()
-        changed = {address: None for address, v in values.items() if self._told.get(address) != v}
-        self._told = values
-        heard = {address + form for address in changed for form in ("", UNIT)}
-        changed_status = self._changed_status(now)
-        heard |= changed_status
-        for client in self._clients.values():
-            if client.until > now:
-                client.to_tell.update({address + client.form: None for address in changed})
-            if client.status_until > now:
-                client.to_tell.update(dict.fromkeys(changed_status))
-            client.to_tell.update(dict.fromkeys(client.listens & heard))
-        self._tell()
-
-    def _tell(self) -> None:
-        """Send up to MOST_TOLD messages; clients that are left out come first the next time."""
-        packets: dict[str, bytes] = {}
-        left = MOST_TOLD
-        for peer, client in list(self._clients.items()):  # sending may end one
-            if not client.to_tell:
-                continue
-            if left <= 0:
-                self._is_waiting = True
-                break
-            while client.to_tell and left > 0 and client.peer.takes_more:
-                address = next(iter(client.to_tell))
-                del client.to_tell[address]
-                if address not in packets:
-                    packets[address] = pack(self.prefix + address, self._value(address))
-                client.peer.send(packets[address])
-                left -= 1
-            if client.to_tell:
-                self._is_waiting = True
-            if peer in self._clients:
-                self._clients[peer] = self._clients.pop(peer)  # to the end of the row
-
-    def _value(self, address: str) -> float | str:
-        if address.startswith(PLACE):
-            return self._told_status[address]
-        return read(self._told, address)
-
-    def _changed_status(self, now: float) -> set[str]:
-        """Addresses of status values that changed, where a client wants them and it is time."""
-        asked = {
-            address
-            for client in self._clients.values()
-            for address in (*client.listens, *client.to_tell)
-            if address.startswith(PLACE)
-        }
-        is_new = not asked <= self._told_status.keys()
-        is_asked = asked or any(client.status_until > now for client in self._clients.values())
-        if not is_asked or (now - self._looked < STATUS_S and not is_new):
-            return set()
-        self._looked = now
-        told = self._told_status
-        status = {PLACE + name: as_argument(value) for name, value in self._status().items()}
-        self._told_status = status
-        return {address for address, value in status.items() if told.get(address) != value}
+        if self._round is None:
+            if now - self._flushed < FLUSH_S or not (self._is_waiting or self._is_watched):
+                return
+            self._flushed = now
+            self._is_waiting = False
+            self._round = self._telling.round(self._clients, now)
+        steps, self._round = self._round, None  # an error ends a round
+        for _ in steps:
+            if time.monotonic() > now + SLICE_S:
+                self._round = steps
+                return
+        self._is_waiting |= any(client.telling for client in self._clients.values())

@@ -7,9 +7,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from yehu_server.control.packets import pack
+from yehu_server.control.parts import check_own, divided
 from yehu_server.control.peers import Peer
-from yehu_server.control.request import Desk, Request
-from yehu_server.errors import YehuError
+from yehu_server.control.request import Request
+from yehu_server.errors import ParameterError, YehuError
 from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learned
 from yehu_server.playing.learner import Found
@@ -17,6 +18,7 @@ from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping_entries import free
 
 if TYPE_CHECKING:
+    from yehu_server.control.part_calls import Backstage
     from yehu_server.playing.mapping import Mapping
 
 PATIENCE_S = 60.0  # to wait for something to be moved
@@ -24,12 +26,9 @@ NOT_MOVED = -1.0
 
 
 class LearnCalls:
-    """Carries out ``/learn``, ``/unlearn`` and ``/bindings``.
+    """Carries out ``/learn``, ``/unlearn`` and ``/bindings``, at a group of addresses.
 
-    Parameters
-    ----------
-    complain : callable
-        Sends a peer an error, with the address that it sent to.
+    What is learned is learned by the mapping: all parts that use it have it.
 
     Attributes
     ----------
@@ -37,12 +36,13 @@ class LearnCalls:
         The function that carries out each call; each raises YehuError where it refuses.
     """
 
-    def __init__(
-        self, player: LivePlayer, desk: Desk, complain: Callable[[Peer, str, str], None]
-    ) -> None:
+    def __init__(self, player: LivePlayer, addressed: str, backstage: Backstage) -> None:
         self._player = player
-        self._desk = desk
-        self._complain = complain
+        self._addressed = addressed
+        self._prefix = PREFIX + addressed
+        self._desk = backstage.desk
+        self._complain = backstage.complain
+        self._remap = backstage.remap
         self._wants = 0  # number of requests, so that what is found for an earlier one is ignored
         self.by_address: dict[str, Callable[[Request], None]] = {
             "/learn": self._learn,
@@ -55,17 +55,17 @@ class LearnCalls:
         self._wants += 1
         self._player.listen(None)
         if not call.arguments or list(call.arguments) == [None]:
-            call.peer.send(pack(f"{PREFIX}/learning", ""))
+            call.peer.send(pack(f"{self._prefix}/learning", ""))
             return
         address, soft = call.word_and_flag()
-        target = free(_plain(address), "learn one").address
+        target = self._target(address, "learn one")
         wants, until = self._wants, time.monotonic() + PATIENCE_S
 
         def found(source: Found) -> None:
             self._desk.soon(lambda: self._found(call.peer, target, source, soft, wants, until))
 
         self._player.listen(found)
-        call.peer.send(pack(f"{PREFIX}/learning", PREFIX + target))
+        call.peer.send(pack(f"{self._prefix}/learning", self._prefix + target))
 
     def _found(
         self, peer: Peer, target: str, source: Found, soft: bool, wants: int, until: float
@@ -75,21 +75,21 @@ class LearnCalls:
         try:
             mapping, path = learned.learn(self._player.mapping, target, source, soft=soft)
         except YehuError as error:
-            self._complain(peer, f"{PREFIX}/learn", str(error))
+            self._complain(peer, f"{self._prefix}/learn", str(error))
             return
         self._take(mapping)
         self._desk.say(f"{source.source} moves {target} from now on ({path})")
-        peer.send(pack(f"{PREFIX}/learned", PREFIX + target, source.source, str(path)))
+        peer.send(pack(f"{self._prefix}/learned", self._prefix + target, source.source, str(path)))
 
     def _unlearn(self, call: Request) -> None:
-        target = free(_plain(call.word()), "forget one").address
+        target = self._target(call.word(), "forget one")
         mapping, count = learned.unlearn(self._player.mapping, target)
         if count:
             self._take(mapping)
-        call.peer.send(pack(f"{PREFIX}/unlearned", PREFIX + target, count))
+        call.peer.send(pack(f"{self._prefix}/unlearned", self._prefix + target, count))
 
     def _take(self, mapping: Mapping) -> None:
-        self._player.remap(mapping, frame=self._player.frame_of())
+        self._remap(self._player, mapping)
         self._desk.tree_changed("/")
 
     def _bindings(self, call: Request) -> None:
@@ -101,11 +101,16 @@ class LearnCalls:
             if bind.is_by_range:
                 bend_range = self._player.value("/playing/bend_range")
                 ends = (bind.semitones(0.0, bend_range), bind.semitones(1.0, bend_range))
-            row = (bind.source, PREFIX + bind.target, *ends, bind.curve_name)
-            call.peer.send(pack(f"{PREFIX}/binding", *row, "; ".join(bind.terms), at, value))
-        call.peer.send(pack(f"{PREFIX}/bindings", len(rows)))
+            row = (bind.source, self._prefix + bind.target, *ends, bind.curve_name)
+            call.peer.send(pack(f"{self._prefix}/binding", *row, "; ".join(bind.terms), at, value))
+        call.peer.send(pack(f"{self._prefix}/bindings", len(rows)))
 
-
-def _plain(address: str) -> str:
-    """An address as the parameter table has it."""
-    return address.removeprefix(PREFIX).removesuffix(UNIT)
+    def _target(self, address: str, what: str) -> str:
+        """An address of the part as the parameter table has it; raises where it is no free one."""
+        plain = address.removeprefix(PREFIX)
+        addressed, own = divided(plain)
+        if addressed not in ("", self._addressed):
+            raise ParameterError(f"{address}: is of another part; see {PREFIX}{addressed}/learn")
+        own = own.removesuffix(UNIT)
+        check_own(self._addressed, own)
+        return free(own, what).address

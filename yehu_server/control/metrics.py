@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 
 from prometheus_client import CollectorRegistry
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.exposition import choose_encoder
 from prometheus_client.registry import Collector
 
-from yehu_server.control.status import STATUS, Kind
+from yehu_server.control.part_status import PART_STATUS, Kind
+from yehu_server.control.query import Told
+from yehu_server.control.status import STATUS
 
 NAMESPACE = "yehu"
 FAMILIES = {Kind.GAUGE: GaugeMetricFamily, Kind.COUNTER: CounterMetricFamily}
@@ -20,12 +22,17 @@ class Metrics(Collector):
 
     Parameters
     ----------
-    status : callable
+    told : callable
         Returns the status values, by name.
+    parts : callable
+        Returns those of each part, where there are several; they have the label ``part``.
     """
 
-    def __init__(self, status: Callable[[], Mapping[str, float | str]]) -> None:
-        self._status = status
+    def __init__(
+        self, told: Callable[[], Told], parts: Callable[[], Sequence[Told]] = tuple
+    ) -> None:
+        self._told = told
+        self._parts = parts
         self._registry = CollectorRegistry()
         self._registry.register(self)
 
@@ -35,11 +42,17 @@ class Metrics(Collector):
 
     def collect(self) -> Iterator[Metric]:
         """See `Collector`."""
-        status = self._status()
+        status = self._told().status
         for row in STATUS:
             family = FAMILIES.get(row.kind)
             if family is not None:
                 yield family(f"{NAMESPACE}_{row.name}", row.doc, value=float(status[row.name]))
+        parts = self._parts()
+        for own in PART_STATUS if parts else ():
+            metric = FAMILIES[own.kind](f"{NAMESPACE}_part_{own.name}", own.doc, labels=["part"])
+            for number, part in enumerate(parts, start=1):
+                metric.add_metric([str(number)], float(part.status[own.name]))
+            yield metric
 
     def text(self, accept: str) -> tuple[bytes, str]:
         """The metrics, in a format that a client's Accept header asks for, and its content type."""

@@ -74,6 +74,8 @@ class Inputs:
     def __init__(self, parent: Parent, order: Message) -> None:
         self._parent = parent
         self._patterns: Sequence[str] = order["patterns"]
+        # Whether all others but through ports are opened, too.
+        self._others = bool(order.get("others", not self._patterns))
         self._virtual: str | None = order["virtual"]
         self._api = order["api"]
         self._open: dict[str, Input] = {}
@@ -105,11 +107,13 @@ class Inputs:
             self._open.pop(name).close()
         self._refused &= set(stable)
         for name, full_name in stable.items():
-            if name not in self._open | dict.fromkeys(self._refused) and is_wanted(
-                name, self._patterns
-            ):
+            if name not in self._open | dict.fromkeys(self._refused) and self._wants(name):
                 self._add(name, full_name)
         self._seek(stable)
+
+    def _wants(self, name: str) -> bool:
+        named = bool(self._patterns) and is_wanted(name, self._patterns)
+        return named or (self._others and is_wanted(name, ()))
 
     def _seek(self, names: Iterable[str]) -> None:
         """Report patterns that no port matches, at the first look."""

@@ -1,40 +1,51 @@
-"""Carry out OSC messages: setting parameters, and the calls.
+"""Carry out OSC messages: those to a part (``part_calls``), and the calls that are for all.
 
 The protocol is described in docs/osc.md.
 """
 
 from __future__ import annotations
 
-import difflib
 import logging
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Mapping as Values
 from dataclasses import dataclass
 
 from yehu_server.control.backlog import Backlog
-from yehu_server.control.calls import LONGEST_SUBSCRIPTION_S
 from yehu_server.control.clients import Clients
-from yehu_server.control.learn_calls import LearnCalls
+from yehu_server.control.osc_names import (
+    fitting,
+    near,
+    parameter_of,
+    readable,
+    value_at,
+)
 from yehu_server.control.packets import Message, PacketError, answer, pack, steps, unpack
-from yehu_server.control.patterns import PatternError, is_pattern, matches
+from yehu_server.control.part_calls import Act, Backstage, PartCalls, port_of, within_an_hour
+from yehu_server.control.parts import (
+    FIRST,
+    OWN,
+    PART,
+    check_own,
+    check_part,
+    divided,
+    group,
+    part_of,
+)
+from yehu_server.control.patterns import is_pattern
 from yehu_server.control.peers import Peer
-from yehu_server.control.preset_calls import PresetCalls
 from yehu_server.control.request import Desk, Request
 from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
-from yehu_server.control.status import PLACE, STATUS, STATUS_ADDRESSES, as_argument
-from yehu_server.errors import ParameterError, RefusedError, YehuError
-from yehu_server.params.spec import Param
-from yehu_server.params.table import BY_ADDRESS, PREFIX, TABLE, UNIT, find, read
+from yehu_server.control.status import PLACE
+from yehu_server.errors import YehuError
+from yehu_server.params.table import BY_ADDRESS, PREFIX, UNIT
 from yehu_server.playing.live import Arrivals, LivePlayer
+from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_own
 
 log = logging.getLogger(__name__)
 
-Act = Callable[[Request], None]
-
-LONGEST_PATTERN = 256
 DUE_AT_ONCE = 1024  # scheduled messages taken up at a time
-SUBSCRIBED_S = 60.0
 
 
 class UnknownError(Exception):
@@ -53,48 +64,63 @@ class Counts:
 
 
 class OscHandler:
-    """Carries out the messages of packets; called by the thread of ``sockets.OscPorts`` only."""
+    """Carries out the messages of packets; called by the thread of ``sockets.OscPorts`` only.
 
-    def __init__(self, player: LivePlayer, desk: Desk) -> None:
-        self._player = player
+    Parameters
+    ----------
+    players : sequence of LivePlayer
+        Those of all parts. The first has addresses without its part, too.
+    """
+
+    def __init__(self, players: Sequence[LivePlayer], desk: Desk) -> None:
+        self._players = players
         self._desk = desk
         self.counts = Counts()
-        self.clients = Clients(player.values, PREFIX, desk.status)
+        self.clients = Clients(self._values, PREFIX, self._states)
         self._schedule: Schedule[bytes, Peer] = Schedule()
         self._due: Backlog[bytes] = Backlog(self._act_on_due, lambda _peer: None)
-        self._tags = TagClock(player)
-        self._arrivals = Arrivals(player)
+        self._tags = TagClock(players[0])
+        self._arrivals = Arrivals(players[0])
+        backstage = Backstage(
+            self.clients,
+            desk,
+            self._complain,
+            forget=self._forget_waiting,
+            changed=self._tree_changed,
+            remap=self._remap,
+        )
+        self._groups = {FIRST: players[0]}
+        self._groups |= {group(part): player for part, player in enumerate(players)}
         self._calls: dict[str, Act] = {
-            "/note": self._note,
-            "/note/off": self._note_off,
-            "/pitch": self._pitch,
-            "/bend": lambda call: self._set(call, "/playing/bend"),
-            "/press": lambda call: self._set(call, "/playing/press"),
-            "/bow": self._bow,
-            "/release": self._release,
+            addressed + address: action
+            for addressed, player in self._groups.items()
+            for address, action in PartCalls(player, addressed, backstage).by_address.items()
+        }
+        self._calls |= {
             "/panic": self._panic,
             "/reset": self._reset,
             "/get": self._get,
-            "/params": self._params,
-            "/status": self._status,
-            "/subscribe": self._subscribe,
-            "/subscribe/unit": lambda call: self._subscribe(call, UNIT),
-            "/subscribe/status": lambda call: self._subscribe(call, PLACE),
             "/unsubscribe": self._unsubscribe,
             "/record/start": self._record_start,
             "/record/stop": self._record_stop,
             "/ping": lambda call: call.peer.send(answer(f"{PREFIX}/pong", call.payload)),
         }
-        self._calls |= PresetCalls(player, self.clients, self._complain, desk).by_address
-        self._calls |= LearnCalls(player, desk, self._complain).by_address
+        self._addresses = tuple(PREFIX + call for call in self._calls)
         # Messages of another server that was made to send us its values.
-        self._answers: dict[str, Act] = {
-            f"{PREFIX}/subscribed": self._hush,
-            f"{PREFIX}/error": lambda _call: None,
-        }
-        for param in TABLE:
-            self._calls[param.address] = self._setter(param.address)
-            self._calls[param.address + UNIT] = self._unit_setter(param)
+        self._answers: dict[str, Act] = {f"{PREFIX}/error": lambda _call: None}
+        for addressed in self._groups:
+            self._answers[f"{PREFIX}{addressed}/subscribed"] = self._hush
+        self._readable = tuple(readable(self._groups))
+        self._is_readable = frozenset(self._readable)
+
+    def _values(self, addressed: str) -> dict[str, float]:
+        """The values of the parameters of a group, by address."""
+        values = self._groups[addressed].values()
+        return {param.address: values[param.address] for param in OWN} if addressed else values
+
+    def _states(self, addressed: str) -> Values[str, float | str]:
+        """The status values of a group, by name."""
+        return self._desk.part_status(part_of(addressed)) if addressed else self._desk.status()
 
     @property
     def waiting(self) -> int:
@@ -138,7 +164,7 @@ class OscHandler:
     def tick(self) -> None:
         """See `sockets.Handler`."""
         # Early enough to be there when the device asks for their frames.
-        self._schedule.ahead_s = AHEAD_S + self._player.delay / self._player.instrument.rate
+        self._schedule.ahead_s = AHEAD_S + self._players[0].delay / self._players[0].instrument.rate
         for due_s, packet, peer in self._schedule.due(DUE_AT_ONCE):
             self._due.add(packet, peer, self._tags.frame_at(due_s), len(packet), is_due=True)
         self._due.work()
@@ -166,7 +192,7 @@ class OscHandler:
         try:
             actions = self._actions(message.address)
         except UnknownError:
-            self._complain(peer, message.address, lambda: _near(message.address))
+            self._complain(peer, message.address, lambda: near(message.address, len(self._players)))
             return
         except YehuError as error:
             self._complain(peer, message.address, str(error))
@@ -184,138 +210,123 @@ class OscHandler:
             return [self._answers[address]]
         if known in self._calls and known != address:
             return [self._calls[known]]
-        own = {address: self._mover(address) for address in self._player.addresses}
-        if self._player.listens and is_own(address):
-            own.setdefault(address, lambda _call: None)
-            own[address] = self._hearing(address, own[address])
+        own = self._own()
+        if is_own(address) or divided(known)[0]:
+            own |= self._heard(address, own)
         if address in own:
             return [own[address]]
         if is_pattern(address):
-            calls = {PREFIX + call: action for call, action in self._calls.items()} | own
-            return [calls[one] for one in fitting(address, calls)]
+            found = fitting(address, (*self._addresses, *own))
+            return [own.get(one) or self._calls[one.removeprefix(PREFIX)] for one in found]
         raise UnknownError
+
+    def _own(self) -> dict[str, Act]:
+        """What moves the addresses of the user's own: plain ones are the first's who binds them."""
+        own: dict[str, Act] = {}
+        for part, player in enumerate(self._players):
+            for address in player.addresses:
+                act = _mover(player, address)
+                own.setdefault(address, act)
+                own[PREFIX + group(part) + address] = act
+        return own
+
+    def _heard(self, address: str, own: dict[str, Act]) -> dict[str, Act]:
+        """The same, where MIDI learn of a part waits for an address to hear."""
+        addressed, plain = divided(address.removeprefix(PREFIX))
+        player = self._groups.get(addressed)
+        listening = [player] if addressed else self._players
+        hearing = [one for one in listening if one is not None and one.listens and is_own(plain)]
+        move = own.get(address)
+
+        def hear(call: Request) -> None:
+            for player in hearing:
+                player.hear(plain, call.numbers(1)[0])
+            if move is not None:
+                move(call)
+
+        return {address: hear} if hearing else {}
 
     def _complain(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         self.counts.errors += 1
         self.clients.complain(peer, address, reason)
 
-    def _mover(self, address: str) -> Act:
-        """Move what the mapping binds to an address of the user's own."""
-        return lambda call: self._player.move(address, call.numbers(1)[0], frame=call.frame)
+    def _tree_changed(self, path: str) -> None:
+        """Announce that the tree has changed at a path below each group that it has."""
+        for addressed in self._groups if len(self._players) > 1 else (FIRST,):
+            self._desk.tree_changed(PREFIX + addressed + path)
 
-    def _hearing(self, address: str, action: Act) -> Act:
-        """The same, and let MIDI learn hear the value."""
-
-        def hear(call: Request) -> None:
-            self._player.hear(address, call.numbers(1)[0])
-            action(call)
-
-        return hear
+    def _remap(self, player: LivePlayer, mapping: Mapping) -> None:
+        """Give a mapping to a player, and to all others that had the same."""
+        before = player.mapping
+        for one in self._players:
+            if one.mapping == before:
+                one.remap(mapping, frame=one.frame_of())
 
     # -- parameters --------------------------------------------------------------------------
-
-    def _setter(self, address: str) -> Act:
-        return lambda call: self._set(call, address)
-
-    def _set(self, call: Request, address: str) -> None:
-        (value,) = call.numbers(1)
-        self._player.write(address, value, frame=call.frame)
-        self.clients.echo(call.peer, [address])
-
-    def _unit_setter(self, param: Param) -> Act:
-        def set_unit(call: Request) -> None:
-            (unit,) = call.numbers(1)
-            self._player.write(param.address, param.from_unit(unit), frame=call.frame)
-            self.clients.echo(call.peer, [param.address + UNIT])
-
-        return set_unit
 
     def _get(self, call: Request) -> None:
         wanted = call.word().removeprefix(PREFIX)
         if is_pattern(wanted):
-            known = (*BY_ADDRESS, *(address + UNIT for address in BY_ADDRESS))
-            addresses = fitting(wanted, (*known, *STATUS_ADDRESSES))
-        elif wanted in STATUS_ADDRESSES:
+            addresses = fitting(wanted, self._readable)
+        elif wanted in self._is_readable:
             addresses = [wanted]
         else:
-            addresses = [_parameter(wanted.removesuffix(UNIT)).address + _form(wanted)]
+            addresses = [self._found(wanted)]
         call.check_peer()
-        values = self._player.values()
-        asks_status = any(address in STATUS_ADDRESSES for address in addresses)
-        status = self._desk.status() if asks_status else {}
+        known: dict[tuple[str, bool], Values[str, float | str]] = {}
         for address in addresses:
-            if address in STATUS_ADDRESSES:
-                value = as_argument(status[address.removeprefix(PLACE)])
-            else:
-                value = read(values, address)
-            call.peer.send(pack(PREFIX + address, value))
+            addressed, own = divided(address)
+            is_status = own.startswith(PLACE)
+            if (addressed, is_status) not in known:
+                source = self._states if is_status else self._values
+                known[addressed, is_status] = source(addressed)
+            values = known[addressed, is_status]
+            call.peer.send(pack(PREFIX + address, value_at(values, own)))
 
-    def _params(self, call: Request) -> None:
-        call.check_peer()
-        values = self._player.values()
-        for param in TABLE:
-            value = values[param.address]
-            row = (PREFIX + param.address, value, param.lo, param.hi, param.default)
-            call.peer.send(pack(f"{PREFIX}/param", *row, param.unit, param.doc))
-        call.peer.send(pack(f"{PREFIX}/params", len(TABLE)))
+    def _found(self, address: str) -> str:
+        """The address of a parameter; raises ParameterError, with a similar one if there is one."""
+        addressed, own = divided(address)
+        check_part(addressed, len(self._players))
+        check_own(addressed, own)
+        form = UNIT if own.endswith(UNIT) else ""
+        return addressed + parameter_of(own.removesuffix(UNIT)) + form
 
-    # -- playing -----------------------------------------------------------------------------
-
-    def _note(self, call: Request) -> None:
-        note, velocity = call.numbers(2)
-        if velocity == 0.0:
-            self._player.note_off(note, frame=call.frame)
-        else:
-            self._player.note_on(note, velocity, frame=call.frame)
-
-    def _note_off(self, call: Request) -> None:
-        self._player.note_off(call.numbers(1, 2)[0], frame=call.frame)
-
-    def _pitch(self, call: Request) -> None:
-        self._player.slide(call.numbers(1)[0], frame=call.frame)
-
-    def _bow(self, call: Request) -> None:
-        speed, force = call.numbers(2)
-        self._player.draw(speed, force, frame=call.frame)
-        self.clients.echo(call.peer, ["/bow/speed", "/bow/force"])
-
-    def _release(self, call: Request) -> None:
-        self._player.release(frame=call.frame)
+    # -- all parts ---------------------------------------------------------------------------
 
     def _panic(self, call: Request) -> None:
-        self._forget_waiting()
-        self._player.panic(frame=call.frame)
+        self._forget_waiting(FIRST)
+        for player in self._players:
+            player.panic(frame=call.frame)
 
-    def _forget_waiting(self) -> None:
-        self._schedule.clear()
-        self._due.clear()
+    def _forget_waiting(self, addressed: str) -> None:
+        """Drop the messages of a part that wait for their time; without a part, all."""
+        if not addressed:
+            self._schedule.clear()
+            self._due.clear()
+            return
+        own, parts = f"{PREFIX}{addressed}/".encode(), f"{PREFIX}{PART}".encode()
+
+        def is_of_part(packet: bytes) -> bool:
+            is_plain = not packet.startswith(parts)
+            return packet.startswith(own) or (is_plain and part_of(addressed) == 0)
+
+        self._schedule.drop(is_of_part)
+        self._due.drop(is_of_part)
 
     def _reset(self, call: Request) -> None:
-        self._forget_waiting()
-        self._player.reset(frame=call.frame)
+        self._forget_waiting(FIRST)
+        for player in self._players:
+            player.reset(frame=call.frame)
         self.clients.echo(call.peer, BY_ADDRESS)
 
     # -- services ----------------------------------------------------------------------------
 
-    def _status(self, call: Request) -> None:
-        call.check_peer()
-        for name, value in self._desk.status().items():
-            call.peer.send(pack(PREFIX + PLACE + name, as_argument(value)))
-
-    def _subscribe(self, call: Request, form: str = "") -> None:
-        numbers = call.numbers(0, 2)
-        seconds = _within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
-        peer = call.peer.at(_port(numbers[1])) if len(numbers) == 2 else call.peer
-        if not self.clients.subscribe(peer, seconds, form):
-            raise RefusedError("there are too many subscribers")
-        peer.send(pack(f"{PREFIX}/subscribed", seconds))
-
     def _hush(self, call: Request) -> None:
-        self.clients.hush(call.peer, _within_an_hour(call.numbers(1)[0]))
+        self.clients.hush(call.peer, within_an_hour(call.numbers(1)[0]))
 
     def _unsubscribe(self, call: Request) -> None:
         numbers = call.numbers(0, 1)
-        peer = call.peer.at(_port(numbers[0])) if numbers else call.peer
+        peer = call.peer.at(port_of(numbers[0])) if numbers else call.peer
         self.clients.unsubscribe(peer)
         peer.send(pack(f"{PREFIX}/unsubscribed"))
 
@@ -328,58 +339,6 @@ class OscHandler:
         call.peer.send(pack(f"{PREFIX}/record/stopped", name))
 
 
-def _form(address: str) -> str:
-    """The part of an address after the parameter's own."""
-    return UNIT if address.endswith(UNIT) else ""
-
-
-def _parameter(address: str) -> Param:
-    """Find a parameter; raise ParameterError, with a similar address if there is one."""
-    if address in STATUS_ADDRESSES:
-        raise ParameterError(f"the status cannot be set; ask for it by {PREFIX}/get")
-    if address.startswith(PLACE):
-        names = [status.name for status in STATUS]
-        near = difflib.get_close_matches(address.removeprefix(PLACE), names, n=1)
-        hint = f"; did you mean {PLACE}{near[0]}?" if near else ""
-        raise ParameterError(f"unknown status value {address!r}{hint}")
-    return find(address)
-
-
-def _near(address: str) -> str:
-    """The reason for an unknown address, with a similar one if there is one."""
-    if not address.startswith(PREFIX + "/"):
-        return f"unknown address (all begin with {PREFIX}/)"
-    try:
-        _parameter(address.removeprefix(PREFIX)[:LONGEST_PATTERN].removesuffix(UNIT))
-    except YehuError as error:
-        return str(error)
-    return "unknown address"
-
-
-def _within_an_hour(seconds: float) -> float:
-    return min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
-
-
-def _port(number: float) -> int:
-    if not 0 < number <= 65535 or number != int(number):
-        raise RefusedError(f"{number:g} is not a port")
-    return int(number)
-
-
-def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[str]:
-    """The addresses that a pattern matches.
-
-    Raises
-    ------
-    RefusedError
-        Where the pattern is wrong or matches none.
-    """
-    if len(pattern) > LONGEST_PATTERN:
-        raise RefusedError("the pattern is too long")
-    try:
-        found = [address for address in addresses if matches(pattern, prefix + address)]
-    except PatternError as error:
-        raise RefusedError(str(error)) from error
-    if not found:
-        raise RefusedError("the pattern matches no address")
-    return found
+def _mover(player: LivePlayer, address: str) -> Act:
+    """Move what the mapping of a player binds to an address of the user's own."""
+    return lambda call: player.move(address, call.numbers(1)[0], frame=call.frame)

@@ -12,6 +12,7 @@ import mido
 
 from yehu_server.child import Child, Message
 from yehu_server.child_keeper import ChildKeeper
+from yehu_server.control.midi_routes import Route, Router
 from yehu_server.playing.live import Arrivals, LivePlayer
 
 log = logging.getLogger(__name__)
@@ -24,10 +25,11 @@ class MidiOptions:
     patterns: Sequence[str] = ()  # empty: all but through ports
     virtual: str | None = None
     api: str | None = None  # None: the first there is
+    routes: Sequence[Route] = ()  # see midi_routes.Router
 
 
 class MidiPorts:
-    """Passes MIDI messages from the process that holds the inputs to the player.
+    """Passes MIDI messages from the process that holds the inputs to the players of all parts.
 
     Parameters
     ----------
@@ -37,10 +39,14 @@ class MidiPorts:
     """
 
     def __init__(
-        self, player: LivePlayer, options: MidiOptions, changed: Callable[[str], None]
+        self,
+        players: Sequence[LivePlayer],
+        options: MidiOptions,
+        changed: Callable[[str], None],
     ) -> None:
-        self._player = player
-        self._arrivals = Arrivals(player)
+        self._players = players
+        self._router = Router(options.routes, len(players))
+        self._arrivals = Arrivals(players[0])
         self._options = options
         self._changed = changed
         self._numbers: dict[str, int] = {}  # a port that comes back gets its old one
@@ -72,9 +78,13 @@ class MidiPorts:
         self._keeper.stop()
 
     def _attend(self, child: Child, gone: threading.Event) -> None:
-        options = self._options
+        options, routed = self._options, self._router.patterns
         child.send(
-            "open", patterns=list(options.patterns), virtual=options.virtual, api=options.api
+            "open",
+            patterns=[*options.patterns, *routed],
+            others=not options.patterns and self._router.wants_others,
+            virtual=options.virtual,
+            api=options.api,
         )
         gone.wait()
 
@@ -88,7 +98,7 @@ class MidiPorts:
             self._receive(event)
         elif kind == "appeared":
             self._connected[event["port"]] = None
-            self._changed(f"MIDI: {event['port']} is connected")
+            self._changed(f"MIDI: {event['port']} is connected{self._whose(event['port'])}")
         elif kind in ("vanished", "silent"):
             self._let_go_of(event["port"])
             if kind == "vanished":
@@ -107,6 +117,15 @@ class MidiPorts:
             self.problem = ""
             log.info("MIDI: through %s", event["api"])
 
+    def _whose(self, port: str) -> str:
+        """What a port plays, where there are several parts."""
+        if len(self._players) == 1:
+            return ""
+        parts = [str(part + 1) for part in self._router.parts_of(port)]
+        if not parts:
+            return ", and plays no part"
+        return f" to part {parts[0]}" if len(parts) == 1 else f" to parts {', '.join(parts)}"
+
     def _tell_missing(self, pattern: str, present: Sequence[str]) -> None:
         if pattern not in self._missing:  # once, however often the process starts
             self._missing.add(pattern)
@@ -121,11 +140,15 @@ class MidiPorts:
             self.malformed += 1
             return
         number = self._numbers.setdefault(event["port"], len(self._numbers))
-        self._player.receive(message, frame=self._arrivals.frame_of(event["at"]), port=number)
+        frame = self._arrivals.frame_of(event["at"])
+        for part in self._router.parts_of(event["port"], getattr(message, "channel", None)):
+            self._players[part].receive(message, frame=frame, port=number)
 
     def _let_go_of(self, port: str) -> None:
         with contextlib.suppress(KeyError):
-            self._player.let_go_of(self._numbers[port], frame=self._player.frame_of())
+            for part in self._router.parts_of(port):
+                player = self._players[part]
+                player.let_go_of(self._numbers[port], frame=player.frame_of())
 
     def _let_go(self) -> None:
         """End the notes of all ports."""

@@ -6,11 +6,15 @@ Source: the OSCQuery proposal (github.com/Vidvox/OSCQueryProposal), third revisi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from yehu_server.control.calls import CALLS, Argument, Call
-from yehu_server.control.status import PLACE, STATUS, as_argument
+from yehu_server.control.part_status import PART_STATUS, PartValue
+from yehu_server.control.parts import FIRST, OF_PARTS, OWN, PLAIN, check_part, divided, group
+from yehu_server.control.status import PLACE, STATUS, StatusValue, as_argument
+from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE
 from yehu_server.params.table import UNIT as AS_UNIT
@@ -35,45 +39,69 @@ UNIT_NAMES = {
     "MIDI note": "time.midinote",
     "dB": "gain.db",
 }
-# Addresses to which clients may listen, without the prefix.
-LISTENABLE = frozenset(
-    [param.address + form for param in TABLE for form in ("", AS_UNIT)]
-    + [PLACE + row.name for row in STATUS]
-)
+# Addresses to which clients may listen, without the prefix, and below a part.
+LISTENABLE = PLAIN | {PLACE + row.name for row in STATUS}
+LISTENABLE_OF_PARTS = OF_PARTS | {PLACE + row.name for row in PART_STATUS}
+PART_DOC = "Part {}: a player of its own, with the instrument that it plays."
 
 
-def tree(
-    values: Mapping[str, float],
-    status: Mapping[str, float | str],
-    more_calls: Iterable[Call] = (),
-) -> Node:
+@dataclass(frozen=True)
+class Told:
+    """The values of a group of addresses (``parts``): parameters by address, status by name."""
+
+    values: Mapping[str, float]
+    status: Mapping[str, float | str]
+
+
+def is_listenable(address: str, parts: int) -> bool:
+    """Whether clients may listen to an address, without the prefix."""
+    addressed, own = divided(address)
+    try:
+        check_part(addressed, parts)
+    except ParameterError:
+        return False
+    return own in (LISTENABLE_OF_PARTS if addressed else LISTENABLE)
+
+
+def tree(told: Told, more_calls: Iterable[Call] = (), parts: Sequence[Told] = ()) -> Node:
     """The whole tree.
 
     Parameters
     ----------
-    values, status : mapping
-        Parameters by address, status values by name.
+    told : Told
+        What addresses without a part have.
     more_calls : iterable of Call
         Calls added to `CALLS`, or in place of some; their addresses include the prefix.
+    parts : sequence of Told
+        What those of each part have, where there are several.
     """
     root: Node = {"FULL_PATH": "/", "ACCESS": NO_VALUE, "DESCRIPTION": ROOT_DOC}
-    for param in TABLE:
-        address = PREFIX + param.address
-        _put(root, address, _of_param(param, values[param.address]))
-        _put(root, address + AS_UNIT, _of_unit(param, values[param.address]))
-    for row in STATUS:
-        value = as_argument(status[row.name])
-        described = {"ACCESS": READ, "TYPE": _type(value), "VALUE": [_json(value)]}
-        _put(
-            root,
-            PREFIX + PLACE + row.name,
-            described | {"DESCRIPTION": row.doc} | _units([row.unit]),
-        )
-    for call in CALLS:
-        _put(root, PREFIX + call.address, _of_call(call))
+    _put_group(root, FIRST, told)
+    for part, own in enumerate(parts):
+        described = {"DESCRIPTION": PART_DOC.format(part + 1)}
+        _put(root, PREFIX + group(part), described)
+        _put_group(root, group(part), own)
     for call in more_calls:
         _put(root, call.address, _of_call(call))
     return root
+
+
+def _put_group(root: Node, addressed: str, told: Told) -> None:
+    """Add the nodes of a group of addresses."""
+    prefix = PREFIX + addressed
+    for param in OWN if addressed else TABLE:
+        number = told.values[param.address]
+        _put(root, prefix + param.address, _of_param(param, number))
+        _put(root, prefix + param.address + AS_UNIT, _of_unit(param, number))
+    rows: Iterable[StatusValue | PartValue] = PART_STATUS if addressed else STATUS
+    for row in rows:
+        value = as_argument(told.status[row.name])
+        described = {"ACCESS": READ, "TYPE": _type(value), "VALUE": [_json(value)]}
+        described |= {"DESCRIPTION": row.doc} | _units([row.unit])
+        _put(root, prefix + PLACE + row.name, described)
+    for call in CALLS:
+        if not (addressed and call.is_for_all):
+            _put(root, prefix + call.address, _of_call(call))
 
 
 def find(root: Node, path: str) -> Node | None:

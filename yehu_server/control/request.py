@@ -17,6 +17,9 @@ class Desk(Protocol):
     def status(self) -> Mapping[str, float | str]:
         """The status values, by name."""
 
+    def part_status(self, part: int) -> Mapping[str, float]:
+        """The status values of a part, counted from 0, by name."""
+
     def start_recording(self, name: str) -> str:
         """Record to a file of a plain name; return the file's name. Raises YehuError."""
 

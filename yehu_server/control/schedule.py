@@ -11,6 +11,7 @@ from __future__ import annotations
 import heapq
 import itertools
 import time
+from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from yehu_server.control.room import OVERHEAD_BYTES, Room
@@ -103,6 +104,18 @@ class Schedule(Generic[T, Sender]):
         if not self._waiting:
             return None
         return max(0.0, self._waiting[0][0] - self.ahead_s - time.time())
+
+    def drop(self, which: Callable[[T], bool]) -> None:
+        """Drop some things."""
+        kept = []
+        for entry in self._waiting:
+            _, _, thing, sender, size = entry
+            if which(thing):
+                self._room.give_back(sender, size)
+            else:
+                kept.append(entry)
+        self._waiting = kept
+        heapq.heapify(self._waiting)
 
     def clear(self) -> None:
         """Drop everything."""

@@ -5,23 +5,21 @@ OSC, OSCQuery, the metrics, the status line of `serve` and docs/osc.md take them
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from enum import Enum
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
+
+from yehu_server.control.part_status import PART_ROWS, Kind, PartSources, decibels
 
 if TYPE_CHECKING:
     from yehu_server.control.osc import Counts
     from yehu_server.control.peers import Traffic, WebTraffic
     from yehu_server.control.ports import MidiPorts
-    from yehu_server.engine.instrument import Instrument
+    from yehu_server.engine.ensemble import Ensemble
     from yehu_server.playing.delay import Delay
-    from yehu_server.playing.live import LivePlayer
 
 PLACE = "/status/"  # before the names, in addresses
 INT_MAX = (1 << 31) - 1
-SILENT_DB = -120.0
 
 
 class OutputState(Protocol):
@@ -37,9 +35,8 @@ class OutputState(Protocol):
 class StatusSources:
     """What the status values are read from."""
 
-    meters: Any  # a record of dtype telemetry.METERS
-    instrument: Instrument
-    player: LivePlayer
+    parts: Sequence[PartSources]
+    ensemble: Ensemble
     delay: Delay
     output: OutputState
     blocksize: int
@@ -51,14 +48,6 @@ class StatusSources:
     midi: MidiPorts | None
     recording: str
     uptime_s: float
-
-
-class Kind(Enum):
-    """Kind of a status value."""
-
-    TEXT = "text"
-    GAUGE = "gauge"  # a number that may rise and fall
-    COUNTER = "counter"  # a number that only grows
 
 
 @dataclass(frozen=True)
@@ -76,19 +65,25 @@ TEXT, GAUGE, COUNTER = Kind.TEXT, Kind.GAUGE, Kind.COUNTER
 
 
 def _count(name: str) -> Callable[[StatusSources], int]:
-    """Read a whole number of the meters."""
-    return lambda now: int(now.meters[name])
+    """Read a whole number of the callback's meters, which the first instrument has."""
+    return lambda now: int(now.parts[0].meters[0][name])
 
 
 def _number(name: str) -> Callable[[StatusSources], float]:
-    """Read another number of the meters."""
-    return lambda now: float(now.meters[name])
+    """Read another number of the callback's meters."""
+    return lambda now: float(now.parts[0].meters[0][name])
 
 
-def _decibels(name: str) -> Callable[[StatusSources], float]:
-    """Read an amplitude of the meters, in decibels."""
-    least = 10.0 ** (SILENT_DB / 20.0)
-    return lambda now: 20.0 * math.log10(max(float(now.meters[name]), least))
+def _of_parts(name: str) -> StatusValue:
+    """The status value of all parts that is the sum of theirs, or the first one's."""
+    row = PART_ROWS[name]
+
+    def read(now: StatusSources) -> float:
+        counted = now.parts if row.is_sum else now.parts[:1]
+        values = [row.read(part) for part in counted]
+        return sum(values[1:], values[0])
+
+    return StatusValue(row.name, row.kind, row.doc, read, row.unit)
 
 
 STATUS: tuple[StatusValue, ...] = (
@@ -104,7 +99,7 @@ STATUS: tuple[StatusValue, ...] = (
         "Why no device plays; empty where one does.",
         lambda now: now.output.problem,
     ),
-    StatusValue("rate", GAUGE, "Sample rate of the device.", lambda now: now.instrument.rate, "Hz"),
+    StatusValue("rate", GAUGE, "Sample rate of the device.", lambda now: now.ensemble.rate, "Hz"),
     StatusValue(
         "blocksize",
         GAUGE,
@@ -128,37 +123,29 @@ STATUS: tuple[StatusValue, ...] = (
         "delay_ms",
         GAUGE,
         "Delay from a message to its sound, without the device's latency.",
-        lambda now: 1e3 * now.player.delay / now.instrument.rate,
+        lambda now: 1e3 * now.parts[0].player.delay / now.ensemble.rate,
         "ms",
     ),
     StatusValue("uptime_s", GAUGE, "Time since the start.", lambda now: now.uptime_s, "s"),
     StatusValue("frame", COUNTER, "Frames played since the start.", _count("frame")),
     StatusValue(
-        "peak_db", GAUGE, "Peak of the last sixtieth of a second, dBFS.", _decibels("peak"), "dB"
-    ),
-    StatusValue(
-        "rms_db", GAUGE, "Level of the last sixtieth of a second, dBFS.", _decibels("rms"), "dB"
-    ),
-    StatusValue(
-        "note",
+        "peak_db",
         GAUGE,
-        "Pitch that sounds, of a note or of a bow drawn by hand; -1 for none.",
-        lambda now: -1.0 if now.player.pitch is None else now.player.pitch,
-        "MIDI note",
+        "Peak of the last sixtieth of a second, dBFS.",
+        lambda now: decibels(now.ensemble.level[0]),
+        "dB",
     ),
     StatusValue(
-        "bow_speed",
+        "rms_db",
         GAUGE,
-        "Speed of the bow; the sign is its direction.",
-        lambda now: now.player.value("/bow/speed"),
-        "m/s",
+        "Level of the last sixtieth of a second, dBFS.",
+        lambda now: decibels(now.ensemble.level[1]),
+        "dB",
     ),
-    StatusValue(
-        "bow_side",
-        GAUGE,
-        "String that the bow is on: 1 inner (F4), -1 outer (C5), 0 for none.",
-        lambda now: now.player.value("/bow/side"),
-    ),
+    StatusValue("parts", GAUGE, "Number of parts.", lambda now: len(now.parts)),
+    _of_parts("note"),
+    _of_parts("bow_speed"),
+    _of_parts("bow_side"),
     StatusValue(
         "load",
         GAUGE,
@@ -185,34 +172,12 @@ STATUS: tuple[StatusValue, ...] = (
         "Number of times the device disappeared.",
         lambda now: now.output.losses,
     ),
-    StatusValue(
-        "applied_events",
-        COUNTER,
-        "Events (moves of bow or finger) that reached the model.",
-        _count("applied"),
-    ),
-    StatusValue(
-        "late_events", COUNTER, "Events that came after their frame.", _count("late_events")
-    ),
-    StatusValue(
-        "dropped_events",
-        COUNTER,
-        "Events dropped because the ring was full.",
-        lambda now: now.instrument.dropped_events,
-    ),
-    StatusValue("waiting_events", GAUGE, "Events that wait for their frame.", _count("waiting")),
-    StatusValue(
-        "unconverged_solves",
-        COUNTER,
-        "Friction solves that did not converge.",
-        _count("unconverged"),
-    ),
-    StatusValue(
-        "lost_states",
-        COUNTER,
-        "Number of times the model lost its state and was put back to rest.",
-        _count("lost"),
-    ),
+    _of_parts("applied_events"),
+    _of_parts("late_events"),
+    _of_parts("dropped_events"),
+    _of_parts("waiting_events"),
+    _of_parts("unconverged_solves"),
+    _of_parts("lost_states"),
     StatusValue("osc_packets", COUNTER, "OSC packets received.", lambda now: now.osc.packets),
     StatusValue(
         "osc_messages",

@@ -10,7 +10,7 @@ import ipaddress
 import json
 import logging
 import socket
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -67,9 +67,11 @@ class WebOptions:
 class Sources:
     """Where answers come from; all may be called by any thread."""
 
-    values: Callable[[], Mapping[str, float]]  # parameters, by address
-    status: Callable[[], Mapping[str, float | str]]  # by name
+    told: Callable[[], query.Told]  # of addresses without a part
     folder: Path  # that has the page of parameters
+    # Of those of each part, where there are several.
+    parts: Callable[[], Sequence[query.Told]] = tuple
+    number: int = 1  # of parts
     more_calls: Callable[[], Iterable[Call]] = tuple  # beside calls.CALLS
     page_port: Callable[[], int | None] = lambda: None  # where the page is served, if it is
 
@@ -90,8 +92,8 @@ class WebServer:
         self._allowed = options.allowed
         self._osc = osc
         self._sources = sources
-        self._sockets = WebSockets(osc, clients, self.traffic)
-        self._metrics = Metrics(sources.status)
+        self._sockets = WebSockets(osc, clients, self.traffic, sources.number)
+        self._metrics = Metrics(sources.told, sources.parts)
         self._names = own_names()
         self._listening = listen("OSCQuery", *options.address)
         self.host, self.port = self._listening.getsockname()[:2]
@@ -210,7 +212,7 @@ class WebServer:
             if name not in query.ATTRIBUTES:
                 raise web.HTTPBadRequest(text=one_line(f"unknown attribute {name!r}") + "\n")
         sources = self._sources
-        root = query.tree(sources.values(), sources.status(), sources.more_calls())
+        root = query.tree(sources.told(), sources.more_calls(), sources.parts())
         node = query.find(root, request.path)
         if node is None:
             raise web.HTTPNotFound(text=one_line(f"nothing at {request.path}") + "\n")

@@ -13,7 +13,7 @@ from aiohttp import WSMsgType, web
 
 from yehu_server.control.clients import Clients
 from yehu_server.control.peers import MOST_UNSENT_BYTES, WebTraffic
-from yehu_server.control.query import LISTENABLE
+from yehu_server.control.query import is_listenable
 from yehu_server.control.sockets import OscPorts
 from yehu_server.lines import shortened
 from yehu_server.params.table import PREFIX
@@ -93,10 +93,13 @@ class WebPeer:
 class WebSockets:
     """All open WebSockets; used by the web's thread."""
 
-    def __init__(self, osc: OscPorts, clients: Clients, traffic: WebTraffic) -> None:
+    def __init__(
+        self, osc: OscPorts, clients: Clients, traffic: WebTraffic, parts: int = 1
+    ) -> None:
         self._osc = osc
         self._clients = clients  # used by the OSC thread only
         self._traffic = traffic
+        self._parts = parts  # number of them
         self._open: dict[web.WebSocketResponse, WebPeer] = {}
 
     async def serve(self, request: web.Request) -> web.WebSocketResponse:
@@ -139,7 +142,7 @@ class WebSockets:
 
     def _obey(self, text: str, peer: WebPeer) -> None:
         try:
-            command, address = _read(text)
+            command, address = _read(text, self._parts)
         except CommandError as error:
             peer.send(_command("ERROR", str(error)))
             return
@@ -151,7 +154,7 @@ def _command(command: str, data: Any) -> str:
     return json.dumps({"COMMAND": command, "DATA": data})
 
 
-def _read(text: str) -> tuple[str, str]:
+def _read(text: str, parts: int) -> tuple[str, str]:
     """Read a command and its address (without the prefix); raises CommandError."""
     try:
         said = json.loads(text)
@@ -163,6 +166,6 @@ def _read(text: str) -> tuple[str, str]:
     if command not in ("LISTEN", "IGNORE"):
         raise CommandError(f"unknown command {shortened(repr(command))}; there are LISTEN, IGNORE")
     address = path.removeprefix(PREFIX) if isinstance(path, str) else ""
-    if address not in LISTENABLE or address == path:
+    if not is_listenable(address, parts) or address == path:
         raise CommandError(f"{command}: nothing to listen to at {shortened(repr(path))}")
     return command, address

@@ -20,6 +20,15 @@ BODY, LIMITER = SLOT["/body/gain"], SLOT["/output/limiter"]
 TUNING = np.array([SLOT[f"/string/{name}/tuning"] for name in STRING_NAMES])
 LOSS = np.array([SLOT[f"/string/{name}/loss"] for name in STRING_NAMES])
 NOISE = SLOT["/bow/noise"]
+# What the stage is told of a player with each sample, and the columns that it is in.
+PLACED = np.array([
+    SLOT[f"/{name}"]
+    for name in (
+        "room/size", "room/decay", "room/damping", "room/level", "room/distance", "room/pan",
+        "body/width",
+    )
+])  # fmt: skip
+SIZE_NOW, DECAY_NOW, DAMPING_NOW, LEVEL_NOW, DISTANCE_NOW, PAN_NOW, WIDTH_NOW = range(7)
 SLOTS = len(ENGINE)
 LOWEST = np.array([param.lo for param in ENGINE])
 HIGHEST = np.array([param.hi for param in ENGINE])

@@ -1,4 +1,4 @@
-"""The instrument for Python: post wishes, compute samples, read meters; live and offline alike."""
+"""The instrument for Python: post wishes, read meters; alone, compute samples without a room."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from yehu_server.controls.slots import SILENCE
 from yehu_server.engine import native
 from yehu_server.engine.mailbox import LIVE_BUDGET, RING, mend
 from yehu_server.engine.output import prepare_output, rest_output
+from yehu_server.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.engine.telemetry import METERS
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT, TABLE, find
@@ -26,18 +27,18 @@ from yehu_server.player.calibration import Calibration
 from yehu_server.player.fingering import OpenStrings
 from yehu_server.player.record import end_all, prepare_player
 from yehu_server.player.wishes import RAMP, WISH
+from yehu_server.stage.record import STAGE, prepare_stage, rest_stage
+from yehu_server.stage.seat import prepare_seat, rest_seat
 
 Array = Any
 
-RIG_BYTES = native.RIG.itemsize
-TAPE_FRAMES = native.TAPE
-
 
 class Instrument:
-    """A yehu that computes sound.
+    """A yehu and its player.
 
     One thread at a time may post wishes (`post`, `write`, `silence`), and another may compute
-    samples (`process`), also in another process that shares `memory`.
+    samples, also in another process that shares `memory`: `process` those of an instrument
+    alone, without a room; ``ensemble.Ensemble`` those of one or more on a stage.
 
     Parameters
     ----------
@@ -56,9 +57,13 @@ class Instrument:
     start_values : mapping
         Values of parameters at the start, by address; others have their default.
     channels : int
-        Number of channels, which all get the same signal.
+        Number of channels that `process` writes.
+    body : int
+        Which of many bodies it has, for what differs to both sides.
     memory : buffer of RIG_BYTES, optional
-        Holds all state. With it the instrument is live: wishes of one block are limited.
+        Holds all state of an instrument of an ensemble.
+    is_live : bool
+        Whether the number of wishes that one block takes is limited.
 
     Raises
     ------
@@ -77,7 +82,9 @@ class Instrument:
         bowing: Array | None = None,
         start_values: Mapping[str, float] | None = None,
         channels: int = 1,
+        body: int = 0,
         memory: Any = None,
+        is_live: bool = False,
     ) -> None:
         check_rate(rate)
         self.rate = rate
@@ -87,13 +94,20 @@ class Instrument:
         defaults = {param.address: param.default for param in TABLE}
         self.start_values = defaults | seeded | dict(start_values or {})
         self.quantities = quantities or Quantities()
-        self._rig = (
-            new_record(native.RIG) if memory is None else np.frombuffer(memory, native.RIG, count=1)
-        )
+        self.body = body
+        self._stage = None
+        if memory is None:
+            memory = new_memory(1)
+            self._stage = np.frombuffer(memory, STAGE, offset=RIG_BYTES, count=1)
+        self._memory = memory
+        self._rig = np.frombuffer(memory, RIG, count=1)
         self._address = self._rig.ctypes.data
+        self._clock = self._address
         self._rig["model"] = kernel.prepare(self.quantities, rate, MAX_FINGERS)
-        self._rig["mail"]["budget"] = RING if memory is None else LIVE_BUDGET
-        prepare_output(self._rig["output"], rate, channels)
+        self._rig["mail"]["budget"] = LIVE_BUDGET if is_live else RING
+        if self._stage is not None:
+            self._rig["parts"][0, 0] = 1
+            prepare_stage(self._stage[0], rate, channels, has_room=False)
         self.reset()
 
     def reset(self) -> None:
@@ -114,7 +128,10 @@ class Instrument:
             seed=self.seed,
         )
         rig["heard"] = 0.0
-        prepare_output(rig["output"], self.rate, self.channels)
+        prepare_output(rig["output"], self.rate)
+        prepare_seat(rig["seat"][0], self.rate, self.body)
+        if self._stage is not None:
+            rest_stage(self._stage[0])
         mail = rig["mail"]
         kept = mail["budget"].copy(), mail["reporting"].copy()
         mail[:] = np.zeros(1, mail.dtype)
@@ -133,13 +150,9 @@ class Instrument:
         return int(self._address)
 
     @property
-    def channels(self) -> int:
-        """Number of channels that get the signal."""
-        return int(self._rig["output"]["channels"][0])
-
-    @channels.setter
-    def channels(self, channels: int) -> None:
-        self._rig["output"]["channels"] = channels
+    def memory(self) -> Any:
+        """The buffer that holds all its state."""
+        return self._memory
 
     @property
     def frame(self) -> int:
@@ -226,7 +239,7 @@ class Instrument:
         return float(self._rig["controls"]["target"][0, SLOT[address]])
 
     def process(self, out: Array) -> None:
-        """Compute the next samples (full scale is 1).
+        """Compute the next samples of an instrument alone, without a room (full scale is 1).
 
         Parameters
         ----------
@@ -235,8 +248,10 @@ class Instrument:
         Raises
         ------
         TypeError
-            Where `out` is not contiguous.
+            Where `out` is not contiguous, or the instrument is one of an ensemble.
         """
+        if self._stage is None:
+            raise TypeError("an instrument of an ensemble is played by the ensemble")
         if len(out):
             address = addressof(c_float.from_buffer(out))  # four times as fast as `out.ctypes`
             native.callback.call(None, address, len(out), None, 0, self._address)
@@ -250,6 +265,9 @@ class Instrument:
         kernel.come_to_rest(rig["model"][0], rig["state"][0])
         settle(rig["controls"][0])
         rest_output(rig["output"])
+        rest_seat(rig["seat"][0])
+        if self._stage is not None:
+            rest_stage(self._stage[0])
 
     def bow_by_tables(self) -> None:
         """Let the player's right hand do nothing about what it hears, until a reset."""
@@ -265,22 +283,25 @@ class Instrument:
         end_all(self._rig["player"][0], self._rig["controls"][0])
         self.come_to_rest()
 
-    def recover(self) -> None:
-        """Repair the state after a process was killed while it computed a block.
+    def is_broken(self) -> bool:
+        """Whether a process was killed while it computed a block with this instrument first."""
+        return bool(self._rig["meters"]["running"][0])
 
-        All notes end, the model is put to rest, and the frames of that block become silence;
-        ``rests`` has their first frame and the one after them. Nothing may compute meanwhile.
-        """
-        rig = self._rig
-        rig["version"][0, 0] += rig["version"][0, 0] % 2
-        if rig["meters"]["running"][0]:
-            rig["meters"]["running"] = 0
-            mend(rig["heap"][0], rig["mail"][0])
-            self.end_all()
-            gap = int(rig["taped"][0, 0]), self.frame
-            rig["tape"][0, np.arange(*gap) % TAPE_FRAMES] = 0.0
-            rig["taped"][0, 0] = self.frame
-            self.rests.append(gap)
+    def mend(self) -> None:
+        """Put meters and waiting wishes in order again, after a process was killed."""
+        self._rig["version"][0, 0] += self._rig["version"][0, 0] % 2
+        self._rig["meters"]["running"] = 0
+        mend(self._rig["heap"][0], self._rig["mail"][0])
+
+    def skip_to(self, frame: int) -> None:
+        """Go on at a later frame. Nothing may compute meanwhile."""
+        self._rig["controls"]["frame"] = frame
+
+    def tape_up_to(self, frame: int) -> int:
+        """Tell that all is on the tape up to a frame; return up to which it was."""
+        was = int(self._rig["taped"][0, 0])
+        self._rig["taped"][0, 0] = frame
+        return was
 
     def meters(self) -> Any:
         """The last published meters: a record of dtype ``telemetry.METERS``."""
@@ -293,7 +314,11 @@ class Instrument:
 
     def frame_at(self, time_ns: int) -> float:
         """The frame that is played at a time of ``time.monotonic_ns()``."""
-        return float(native.frame_at.call(self._address, time_ns))
+        return float(native.frame_at.call(self._clock, time_ns))
+
+    def follow_clock(self, address: int) -> None:
+        """Take the time of frames from the first instrument of an ensemble, at an address."""
+        self._clock = address
 
     def report_wishes(self) -> None:
         """Report fulfilled wishes from now on, for `applied_wishes`."""
@@ -305,19 +330,7 @@ class Instrument:
         count = native.read_reports.call(self._address, wishes.ctypes.data, RING)
         return wishes[:count].copy()
 
-    def taped(self, start: int) -> tuple[int, Array]:
-        """The samples that were played from a frame on.
 
-        Returns
-        -------
-        frame : int
-            The first frame returned: a later one where the tape, which holds the last
-            `TAPE_FRAMES`, has overwritten `start`.
-        samples : ndarray [shape=(frames,), float32]
-        """
-        margin = TAPE_FRAMES // 8  # may be overwritten during the copy
-        end = native.taped.call(self._address)
-        begin = max(start, end - TAPE_FRAMES + margin)
-        tape = self._rig["tape"][0]
-        samples = tape[np.arange(begin, end) % TAPE_FRAMES]
-        return begin, samples
+def new_memory(parts: int) -> Any:
+    """Memory for some instruments and their stage, all zeros, at the beginning of a cache line."""
+    return new_record(np.dtype((np.void, memory_bytes(parts)))).view(np.uint8)

@@ -15,7 +15,15 @@ from yehu_server.controls.hands import bow_force, turned
 from yehu_server.controls.record import CONTROLS
 from yehu_server.controls.slots import FINGER_POSITION, FINGER_PRESS, POSITION, SIDE, SLOTS, SPEED
 from yehu_server.engine.atomics import at
-from yehu_server.engine.native import CONTROLS_AT, METERS_AT, MODEL_AT, PLAYER_AT, STATE_AT
+from yehu_server.engine.rig import (
+    CONTROLS_AT,
+    METERS_AT,
+    MODEL_AT,
+    PARTS_AT,
+    PLAYER_AT,
+    RIG_BYTES,
+    STATE_AT,
+)
 from yehu_server.engine.telemetry import METERS, SHAPE_POINTS, displacement
 from yehu_server.jit import native
 from yehu_server.memory import carray
@@ -23,6 +31,8 @@ from yehu_server.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
 from yehu_server.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 from yehu_server.player.notes import told_pitch
 from yehu_server.player.record import PLAYER
+from yehu_server.player.rows import BOW_LENGTH
+from yehu_server.stage.record import STAGE
 
 NO_STRING = -1
 LEAST_PRESS = 1e-6  # N; below, a finger is lifted
@@ -37,7 +47,9 @@ LOOK = np.dtype(
         ("certainty", np.float64),
         ("error", np.float64),  # cents; positive where the string is sharp
         ("slips", np.float64),  # in a period
-        ("peak", np.float64),  # of the sound, in the last sixtieth of a second
+        # Of the mix, in the last sixtieth of a second; of this instrument's own sound, before the
+        # stage, where it is not the first of several.
+        ("peak", np.float64),
         ("rms", np.float64),
         ("length", np.float64),  # m; of the strings, from the loop to the bridge
         ("string", np.float64),  # that is bowed, or NO_STRING
@@ -45,6 +57,8 @@ LOOK = np.dtype(
         ("force", np.float64),  # of the bow (N)
         ("beta", np.float64),  # of the bow
         ("bow_x", np.float64),  # m from the loop
+        ("hair_place", np.float64),  # m from the frog: where the string is on the hair
+        ("hair_length", np.float64),  # m; 0: the hair has no ends
         ("finger_x", np.float64, MAX_FINGERS),  # m from the loop
         ("finger_press", np.float64, MAX_FINGERS),  # N; 0: lifted
         # Schelleng's limits at a speed of 1 m/s and beta 1, for the string and pitch played: both
@@ -78,7 +92,12 @@ def look(rig: Any, into: Any) -> None:
     seen.pitch = told_pitch(p)
     seen.frequency = p.a4 * math.exp2((seen.pitch - 69.0) / 12.0)
     seen.certainty, seen.error, seen.slips = p.ear.certainty, p.ear.error, p.ear.slips
-    seen.peak, seen.rms = t.peak, t.rms
+    parts = carray(at(rig, PARTS_AT), (1,), np.int64)[0]
+    if parts > 0:
+        mix = carray(at(rig, parts * RIG_BYTES), (1,), STAGE)[0]
+        seen.peak, seen.rms = mix.peak, mix.rms
+    else:
+        seen.peak, seen.rms = t.peak, t.rms
     seen.length = m.bridge_x
     side = c.value[SIDE]
     string = 0 if side >= 0.0 else 1
@@ -87,6 +106,7 @@ def look(rig: Any, into: Any) -> None:
     seen.force = abs(side) * bow_force(c, string, seen.speed) * (1.0 + c.drift[drift.FORCE])
     seen.beta = c.value[POSITION] * c.place_drift
     seen.bow_x = c.bridge_x - seen.beta * (c.bridge_x - c.sounding_from)
+    seen.hair_place, seen.hair_length = c.place, p.value[BOW_LENGTH]
     for j in range(MAX_FINGERS):
         seen.finger_x[j] = c.value[FINGER_POSITION[j]]
         press = c.value[FINGER_PRESS[j]]

@@ -1,7 +1,8 @@
 """The audio callback, and the other functions of the instrument that C can call. Compiled.
 
-All state of an instrument lies in one record, the rig. Its address is the `userdata` of the
-audio stream, in this process or another one. The same callback computes live and offline sound.
+All state of the instruments that play together, and of their stage, lies in one piece of memory:
+``rig``. Its address is the `userdata` of the audio stream, in this process or another one. The same
+callback computes live and offline sound.
 """
 
 from __future__ import annotations
@@ -10,12 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.controls.gains import TO_BODY, TO_LIMITER, amplitude, level
-from yehu_server.controls.hands import write_controls
-from yehu_server.controls.ramps import move
 from yehu_server.controls.record import CHUNK, CONTROLS
-from yehu_server.controls.slots import BLEND, BODY, LIMITER, LOSS, TUNING
-from yehu_server.controls.strings import has_new_strings
 from yehu_server.engine.atomics import (
     at,
     fence_acquire,
@@ -23,265 +19,51 @@ from yehu_server.engine.atomics import (
     load_acquire,
     store_release,
 )
-from yehu_server.engine.mailbox import (
-    APPLIED_AT_ONCE,
-    HEAP,
-    LINE,
-    MAIL,
-    RING,
-    WAITING,
-    copy_wish,
-    leave,
-    wait,
-)
-from yehu_server.engine.output import OUTPUT, fall_silent, play_out
+from yehu_server.engine.mailbox import MAIL, RING
+from yehu_server.engine.mixing import mix
+from yehu_server.engine.output import OUTPUT
 from yehu_server.engine.processor import (
     flush_denormals,
     monotonic_ns,
     restore_denormals,
     thread_cpu_ns,
 )
-from yehu_server.engine.telemetry import METERS, account, close_window, hear, tell_time
-from yehu_server.jit import compiled, compiled_to_share, native
+from yehu_server.engine.rig import (
+    CONTROLS_AT,
+    DRAINED_AT,
+    MAIL_AT,
+    METERS_AT,
+    OUTPUT_AT,
+    PARTS_AT,
+    PLAYER_AT,
+    POSTED_AT,
+    PUBLISHED_AT,
+    READ_AT,
+    REPORTED_AT,
+    REPORTS_AT,
+    RIG_BYTES,
+    RING_AT,
+    STATE_AT,
+    TAPED_AT,
+    VERSION_AT,
+)
+from yehu_server.engine.sounding import sound
+from yehu_server.engine.telemetry import METERS, account, tell_time
+from yehu_server.jit import compiled_to_share, native
 from yehu_server.memory import carray
-from yehu_server.physics import kernel
-from yehu_server.physics.layout import MODEL, RELATIVE_VELOCITY, STATE, STRINGS
-from yehu_server.player.attention import attend
-from yehu_server.player.ear import HEARD, remember
+from yehu_server.physics.layout import STATE
 from yehu_server.player.notes import told_pitch
 from yehu_server.player.record import PLAYER
-from yehu_server.player.wishes import WISH, fulfil
+from yehu_server.player.wishes import WISH
+from yehu_server.stage.record import STAGE
 
-Array = Any
-
-TAPE = 1 << 19  # the last samples, for recorders: 10 s at 48 kHz
 STALL_NS = 20_000_000
 TRIES = 100
 
-RIG = np.dtype(
-    [
-        ("model", MODEL),
-        ("state", STATE),
-        ("controls", CONTROLS),
-        ("player", PLAYER),
-        ("heard", np.float64, 2 * HEARD),
-        ("output", OUTPUT),
-        ("mail", MAIL),
-        ("meters", METERS),
-        ("version", np.int64, LINE),
-        ("published", METERS),
-        ("taped", np.int64, LINE),
-        ("ring", WISH, RING),
-        ("heap", WAITING, HEAP),
-        ("reports", WISH, RING),
-        ("tape", np.float32, TAPE),
-    ],
-    align=True,
-)
+sound_chunk, mix_chunk = sound.symbol, mix.symbol
 
 
-def _offset(field: str, inside: str = "") -> int:
-    fields: Any = RIG.fields
-    kind, start = fields[field][:2]
-    return int(start + (kind.fields[inside][1] if inside else 0))
-
-
-MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
-PLAYER_AT, HEARD_AT = _offset("player"), _offset("heard")
-OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
-VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
-RING_AT, HEAP_AT, REPORTS_AT = _offset("ring"), _offset("heap"), _offset("reports")
-TAPE_AT = _offset("tape")
-POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
-REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
-fulfil_wish, attend_string = fulfil.symbol, attend.symbol
-
-
-@compiled_to_share
-def drain(rig: Any, mail: Any, frame: int) -> bool:
-    """Move posted wishes to the heap, up to the budget of a callback.
-
-    Returns whether some are left because the heap is full: then it is worth trying again soon.
-    """
-    ring = carray(at(rig, RING_AT), (RING,), WISH)
-    heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
-    posted = load_acquire(rig, POSTED_AT)
-    drained = mail.drained[0]
-    end = min(posted, drained + mail.budget)
-    while drained < end and mail.waiting < HEAP:
-        wish = ring[drained & (RING - 1)]
-        mail.late += 1 if wish.frame < frame else 0
-        wait(heap, mail.waiting, wish, drained)
-        mail.waiting += 1
-        drained += 1
-    store_release(rig, DRAINED_AT, drained)
-    return bool(drained < posted and mail.waiting >= HEAP)
-
-
-@compiled_to_share
-def apply(rig: Any, mail: Any, c: Any) -> None:
-    """Fulfil the wishes that are due at this frame, and report them."""
-    heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
-    for _ in range(APPLIED_AT_ONCE):
-        if mail.waiting == 0 or heap[0].wish.frame > c.frame:
-            return
-        wish = heap[0].wish
-        player, controls = at(rig, PLAYER_AT), at(rig, CONTROLS_AT)
-        fulfil_wish(player, controls, c.frame, wish.kind, wish.index, wish.value, wish.other)
-        if mail.reporting != 0:
-            report(rig, mail, c.frame, wish)
-        mail.applied += 1
-        leave(heap, mail.waiting)
-        mail.waiting -= 1
-
-
-@compiled_to_share
-def report(rig: Any, mail: Any, frame: int, wish: Any) -> None:
-    """Report a fulfilled wish for captures, with the frame that it was fulfilled at."""
-    reported = mail.reported[0]
-    if reported - load_acquire(rig, READ_AT) >= RING:
-        mail.unreported += 1
-        return
-    entry = carray(at(rig, REPORTS_AT), (RING,), WISH)[reported & (RING - 1)]
-    copy_wish(wish, entry)
-    entry.frame = frame
-    store_release(rig, REPORTED_AT, reported + 1)
-
-
-@compiled
-def retune(model: Array, state: Array, c: Any) -> None:
-    """Give the model's strings the tuning and loss of this frame."""
-    for i in range(STRINGS):
-        cents, loss = c.value[TUNING[i]], c.value[LOSS[i]]
-        if cents != c.tuning[i] or loss != c.loss[i]:
-            c.tuning[i], c.loss[i] = cents, loss
-            T = c.tension[i] * 2.0 ** (
-                cents / 600.0
-            )  # the frequency is proportional to its square root
-            kernel.retune(model, state, i, T, c.sigma_0[i] * loss, c.sigma_1[i] * loss)
-
-
-@compiled_to_share
-def play(rig: Any, out: Array) -> None:
-    """Compute one block. The samples do not depend on the sizes of blocks.
-
-    Parameters
-    ----------
-    out : ndarray [shape=(frames, channels), float32]
-        In full scale.
-
-    Real time: safe; no allocation, no exception, every sample finite.
-    """
-    model = carray(at(rig, MODEL_AT), (1,), MODEL)
-    state = carray(at(rig, STATE_AT), (1,), STATE)
-    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
-    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
-    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
-    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
-    done = 0
-    while done < out.shape[0]:
-        is_full = drain(rig, mail, c.frame)
-        first = c.frame
-        frames = 0
-        silenced, retuned = False, False
-        while frames < CHUNK and done + frames < out.shape[0] and not silenced and not retuned:
-            apply(rig, mail, c)
-            if is_full:
-                is_full = drain(rig, mail, c.frame)
-            if c.frame == p.ear.next:
-                attend_string(at(rig, PLAYER_AT), at(rig, CONTROLS_AT), at(rig, HEARD_AT))
-            move(c)
-            write_controls(c, o.controls[frames])
-            gain = level(c)
-            if c.silence_in > 0:
-                c.silence_in -= 1
-                gain *= c.silence_in / c.fade
-                silenced = c.silence_in == 0
-            o.gain[frames] = gain
-            o.body[frames] = amplitude(c, TO_BODY, c.value[BODY])
-            o.blend[frames] = c.value[BLEND]
-            o.soft[frames] = amplitude(c, TO_LIMITER, c.value[LIMITER])
-            retuned = has_new_strings(c)
-            c.frame += 1
-            frames += 1
-        # Strings are retuned at the very sample. One call of the kernel, since it is inlined.
-        start, end = 0, frames - 1 if retuned else frames
-        while start < frames:
-            if start == end:
-                retune(model, state, c)
-                end = frames
-            kernel.advance(model, state, o.controls[start:end], o.probes[start:end], None)
-            start = end
-        put_out(rig, out, done, first, frames)
-        if silenced:
-            kernel.come_to_rest(model[0], state[0])
-            fall_silent(o)
-        close_window(t, model[0], state[0].motion)
-        done += frames
-
-
-@compiled_to_share
-def put_out(rig: Any, out: Array, done: int, first: int, frames: int) -> None:
-    """Put the frames just computed into a block, from its frame `done` on, and onto the tape.
-
-    Parameters
-    ----------
-    first : int
-        Number of the first of the frames since the start.
-    """
-    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
-    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    tape = carray(at(rig, TAPE_AT), (TAPE,), np.float32)
-    heard = carray(at(rig, HEARD_AT), (2 * HEARD,), np.float64)
-    for n in range(frames):
-        remember(heard, first + n, o.probes[n, RELATIVE_VELOCITY])
-        sample: Any = np.float32(play_out(o, n))
-        tape[(first + n) & (TAPE - 1)] = sample
-        hear(t, sample)
-        for channel in range(out.shape[1]):
-            out[done + n, channel] = sample
-
-
-@native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)", calls=[fulfil, attend])
-def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig: Any) -> int:
-    """Compute one block for PortAudio (a PaStreamCallback).
-
-    Parameters
-    ----------
-    output : pointer to float32 [shape=(frames, channels)]
-    rig : pointer to a record of dtype RIG
-
-    Real time: safe; no Python, no lock, no allocation, no exception.
-    """
-    if frames == 0:
-        return 0
-    started_ns, cpu_ns = monotonic_ns(), thread_cpu_ns()
-    mode = flush_denormals()
-    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
-    state = carray(at(rig, STATE_AT), (1,), STATE)[0]
-    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
-    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
-    t.running = 1
-    block: Any = np.int64(frames)
-    tell_time(t, c.frame, started_ns, block)
-    publish(rig)  # at once, so that messages that arrive now are stamped by this block
-    play(rig, carray(output, (block, o.channels), np.float32))
-    t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
-    t.late_events, t.applied, t.drained = mail.late, mail.applied, mail.drained[0]
-    t.next_frame = c.frame
-    t.pitch = told_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
-    t.waiting, t.unreported = mail.waiting, mail.unreported
-    restore_denormals(mode)
-    account(t, thread_cpu_ns() - cpu_ns, flags)
-    t.running, t.ended_ns = 0, monotonic_ns()
-    store_release(rig, TAPED_AT, c.frame)
-    publish(rig)
-    return 0
-
-
-@compiled_to_share
+@native("void(voidptr)")
 def publish(rig: Any) -> None:
     """Publish the meters by a seqlock: readers get all of a block's, or none."""
     version = load_acquire(rig, VERSION_AT)
@@ -289,6 +71,66 @@ def publish(rig: Any) -> None:
     fence_release()
     carray(at(rig, PUBLISHED_AT), (1,), METERS)[0] = carray(at(rig, METERS_AT), (1,), METERS)[0]
     store_release(rig, VERSION_AT, version + 2)
+
+
+tell = publish.symbol
+
+
+@native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)", calls=[sound, mix, publish])
+def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rigs: Any) -> int:
+    """Compute one block for PortAudio (a PaStreamCallback).
+
+    Parameters
+    ----------
+    output : pointer to float32 [shape=(frames, channels)]
+    rigs : pointer to records of dtype RIG, and one of dtype STAGE after them
+
+    Real time: safe; no Python, no lock, no allocation, no exception.
+    """
+    if frames == 0:
+        return 0
+    started_ns, cpu_ns = monotonic_ns(), thread_cpu_ns()
+    mode = flush_denormals()
+    t = carray(at(rigs, METERS_AT), (1,), METERS)[0]
+    c = carray(at(rigs, CONTROLS_AT), (1,), CONTROLS)[0]
+    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
+    channels = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0].channels
+    t.running = 1
+    block: Any = np.int64(frames)
+    tell_time(t, c.frame, started_ns, block)
+    tell(rigs)  # at once, so that messages that arrive now are stamped by this block
+    done = 0
+    while done < block:
+        count, first = min(block - done, CHUNK), c.frame
+        for part in range(parts):
+            sound_chunk(at(rigs, part * RIG_BYTES), count)
+        here = at(output, 4 * channels * done)
+        mix_chunk(rigs, first, count, here, here, 0)
+        done += count
+    for part in range(parts):
+        tell_of(at(rigs, part * RIG_BYTES), t.frame, block)
+    restore_denormals(mode)
+    account(t, thread_cpu_ns() - cpu_ns, flags)
+    t.running, t.ended_ns = 0, monotonic_ns()
+    store_release(rigs, TAPED_AT, c.frame)
+    for part in range(parts):
+        tell(at(rigs, part * RIG_BYTES))
+    return 0
+
+
+@compiled_to_share
+def tell_of(rig: Any, frame: int, block: int) -> None:
+    """Write what a block did to one instrument into its meters."""
+    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    state = carray(at(rig, STATE_AT), (1,), STATE)[0]
+    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    t.frame, t.block = frame, block
+    t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
+    t.late_events, t.applied, t.drained = mail.late, mail.applied, mail.drained[0]
+    t.next_frame = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0].frame
+    t.pitch = told_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
+    t.waiting, t.unreported = mail.waiting, mail.unreported
 
 
 @native("int64(voidptr, voidptr)")

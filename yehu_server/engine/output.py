@@ -1,14 +1,14 @@
-"""The output stage, from the model's probes to samples: DC blocker, gain, limiter, fades."""
+"""The output of one instrument, from the model's probes to samples: DC blocker, gain, fades."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from yehu_server.controls.one_pole import pole_of_cutoff, pole_of_time
 from yehu_server.controls.record import CHUNK, FADE_S
+from yehu_server.controls.slots import PLACED
 from yehu_server.jit import compiled
 from yehu_server.physics.layout import (
     BRIDGE_FORCE,
@@ -24,13 +24,11 @@ Array = Any
 BLOCKED_HZ = 10.0  # cutoff of the DC blocker
 # Pressure (Pa) for a newton at the bridge: a blend is about as loud at both of its ends.
 BRIDGE_PRESSURE = 0.1
-LARGEST = (
-    2.0  # a sample beyond this is an error: rounding takes the limiter's output hardly beyond 1
-)
+LARGEST = 1e12  # of full scale: a sample beyond this is an error
+STILL = -1
 
 OUTPUT = np.dtype(
     [
-        ("channels", np.int64),  # of the device, all with the same signal
         ("last", np.float64),  # the last sample
         ("unsound", np.int64),  # number of samples that were not numbers, replaced by silence
         ("ghost", np.float64),  # decays from the last sample before a lost state
@@ -44,15 +42,17 @@ OUTPUT = np.dtype(
         ("body", np.float64, CHUNK),
         ("blend", np.float64, CHUNK),
         ("soft", np.float64, CHUNK),
+        ("placed", np.float64, (CHUNK, len(PLACED))),  # what the stage is told
+        ("dry", np.float64, CHUNK),  # the samples, for the stage
+        ("fallen", np.int64),  # row of `dry` at which the instrument came to rest, or STILL
     ],
     align=True,
 )
 
 
-def prepare_output(output: Any, rate: float, channels: int) -> None:
+def prepare_output(output: Any, rate: float) -> None:
     """Set the coefficients of a record of dtype OUTPUT [shape=(1,)] for a rate (Hz), in place."""
-    output["channels"] = channels
-    output["unsound"] = 0
+    output["unsound"], output["fallen"] = 0, STILL
     output["decay"] = pole_of_time(FADE_S, rate)
     output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
     rest_output(output)
@@ -65,20 +65,6 @@ def rest_output(output: Any) -> None:
 
 
 @compiled
-def limit(x: float, soft: float) -> float:
-    """Soft clipping: above `soft` (0 to 1) peaks are bent, so that none exceeds full scale.
-
-    Odd, memoryless, and smooth where `soft` is below 1. Real time: safe.
-    """
-    size = abs(x)
-    if size <= soft:
-        return x
-    room = 1.0 - soft
-    bent = 1.0 if room <= 0.0 else soft + room * math.tanh((size - soft) / room)
-    return bent if x > 0.0 else -bent
-
-
-@compiled
 def fall_silent(o: Any) -> None:
     """Clear the filters' states, when the model is put to rest. Real time: safe."""
     o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
@@ -88,7 +74,7 @@ def fall_silent(o: Any) -> None:
 def play_out(o: Any, n: int) -> float:
     """Compute a sample from row `n` of the probes; a lost state fades out. Real time: safe.
 
-    The sample is finite whatever the probes are.
+    The sample is finite whatever the probes are; it is not limited.
     """
     probe = o.probes[n]
     if probe[ITERATIONS] < 0:
@@ -100,9 +86,8 @@ def play_out(o: Any, n: int) -> float:
     source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
     o.swing = source - o.pressure + o.blocker * o.swing
     o.pressure = source
-    loud = o.swing * o.gain[n] + o.ghost
-    sample = limit(loud, o.soft[n])
-    if not (abs(loud) < math.inf and abs(sample) <= LARGEST):  # true for NaN too
+    sample = o.swing * o.gain[n] + o.ghost
+    if not abs(sample) <= LARGEST:  # true for NaN too
         sample = 0.0
         o.unsound += 1
         fall_silent(o)

@@ -1,7 +1,7 @@
 """Compile what playing needs, before the first sound; or load it from the cache.
 
 At the first start machine code is made of the bitcode that is shipped. Where none is for this
-machine and these sources, all is compiled, the callback in a process of its own, which leaves it
+machine and these sources, all is compiled, the model in a process of its own, which leaves it
 in the cache: it calls the player by name, so both can be compiled at a time.
 """
 
@@ -14,19 +14,23 @@ import sys
 
 from yehu_server.bitcode.capture import capturing
 from yehu_server.bitcode.shipped import Shipped
+from yehu_server.engine.mixing import mix, mix_block
 from yehu_server.engine.native import (
     callback,
     frame_at,
     post,
+    publish,
     read_meters,
     read_reports,
     taped,
 )
+from yehu_server.engine.sounding import sound, sound_block
 from yehu_server.jit import IS_CACHED, IS_PLAIN, make_of_shipped
 from yehu_server.player.attention import attend
 from yehu_server.player.wishes import fulfil
 
-PLAYED_BY = (fulfil, attend, read_meters, frame_at, post, read_reports, taped, callback)
+BESIDE = (fulfil, attend, publish, read_meters, frame_at, post, read_reports, taped, mix)
+PLAYED_BY = (*BESIDE, sound, sound_block, mix_block, callback)
 
 
 def warm_up() -> None:
@@ -36,15 +40,16 @@ def warm_up() -> None:
     make_of_shipped(PLAYED_BY)
     with contextlib.ExitStack() as stack:
         beside = None
-        if IS_CACHED and (os.cpu_count() or 1) > 1 and not callback.is_kept:
+        if IS_CACHED and (os.cpu_count() or 1) > 1 and not sound.is_kept:
             command = [sys.executable, "-m", __name__]
             beside = subprocess.Popen(command, stderr=subprocess.DEVNULL)  # noqa: S603 - our own
             stack.callback(beside.kill)  # where we are interrupted
-        for function in PLAYED_BY[:-1]:
+        for function in BESIDE:
             _ = function.address
         if beside is not None:
             beside.wait()
-    _ = callback.address
+    for function in PLAYED_BY:
+        _ = function.address
 
 
 def capture() -> Shipped:
@@ -61,4 +66,4 @@ def is_warm() -> bool:
 
 
 if __name__ == "__main__":
-    callback.keep()
+    sound.keep()

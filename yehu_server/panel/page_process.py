@@ -42,7 +42,8 @@ class Pages:
         self._site = Site()
         self._sounds = PREPARING  # whether pages can sound themselves
         self._status: dict[str, Any] = {}
-        self._sockets = PageSockets(Seen(order["memory"]), parent.tell, self._told)
+        seen = Seen(order["memory"])
+        self._sockets = PageSockets(seen, order["rigs"], parent.tell, self._told)
         self._loop = asyncio.new_event_loop()
         self._finder = Child("yehu_server.panel.module_process", self._hear_of_module)
 
@@ -66,6 +67,7 @@ class Pages:
         """Hear of the state of the server, until the control process hangs up."""
         for order in orders:
             self._loop.call_soon_threadsafe(self._status.update, order["status"])
+            self._loop.call_soon_threadsafe(self._sockets.tell_own, order["own"])
         self._finder.kill()
         os._exit(0)
 

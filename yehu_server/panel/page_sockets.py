@@ -2,7 +2,8 @@
 
 A message of numbers is a sequence of float64, little-endian. From a page it is wishes, of WISH
 numbers each. To a page its first number says what follows: LOOK or WISHES, or it comes from the
-socket of sound: then it is one frame number, and float32 samples from there on.
+socket of sound: then it is one frame number, and float32 samples from there on, left and right in
+turn. A page plays one part, which its address names: `/socket?part=2`; without, the first.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import asyncio
 import json
 import struct
 import time
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from aiohttp import WSMsgType, web
 from yehu_server.control.allowance import Allowance
 from yehu_server.panel.frames import TEXT, frame_of, write
 from yehu_server.panel.seen import Seen
-from yehu_server.player.wishes import KINDS, RAMP
+from yehu_server.player.wishes import HOLD, KINDS, RAMP, WRITE
 
 LOOK, WISHES = 0.0, 1.0
 WISH = 5  # numbers: frame or NOW, kind, index, value, other
@@ -32,7 +33,7 @@ MOST_WISHES = 1024  # of a message
 MESSAGE_BYTES = 8 * WISH * MOST_WISHES
 WISHES_PER_S, WISHES_AT_ONCE = 2000.0, 4000.0
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
-WRONG = 1008  # close code: against the rules
+WRONG, NO_PART = 1008, 4404  # close codes: against the rules; there is no such part
 # A page that is heard for the first time hears this much of what was just played.
 FIRST_FRAMES = 512
 
@@ -40,10 +41,11 @@ Tell = Callable[..., None]
 
 
 class Page:
-    """A page that is connected, by its number."""
+    """A page that is connected, by its number, and the part it plays, counted from 0."""
 
-    def __init__(self, number: int, transport: Any) -> None:
+    def __init__(self, number: int, part: int, transport: Any) -> None:
         self.number = number
+        self.part = part
         self.transport = transport
         self.looks = self.sounds = False  # whether it wants looks; whether it sounds itself
         self.allowance = Allowance(WISHES_PER_S, WISHES_AT_ONCE)
@@ -54,18 +56,30 @@ class PageSockets:
 
     Parameters
     ----------
+    rigs : sequence of int
+        The instrument that shows each part.
     tell : callable
         Tells the control process an event, with its details.
     status : callable
         The state of the server, beside what is in the record, of JSON's types.
     """
 
-    def __init__(self, seen: Seen, tell: Tell, status: Callable[[], Mapping[str, Any]]) -> None:
+    def __init__(
+        self,
+        seen: Seen,
+        rigs: Sequence[int],
+        tell: Tell,
+        status: Callable[[], Mapping[str, Any]],
+    ) -> None:
         self._seen = seen
+        self._rigs = rigs
         self._tell = tell
         self._status = status
         self._pages: dict[web.WebSocketResponse, Page] = {}
         self._listeners: dict[web.WebSocketResponse, Any] = {}
+        # Of each part, the values that it has where its instrument has others: in a section, whose
+        # players have seats of their own.
+        self._own: dict[int, dict[int, float]] = {}
 
     @property
     def count(self) -> int:
@@ -76,8 +90,12 @@ class PageSockets:
 
     async def serve_page(self, request: web.Request) -> web.WebSocketResponse:
         """Serve a page until it goes."""
+        part = self._part_of(request)
         socket = await _open(request)
-        page = Page(self._free_number(), request.transport)
+        if part is None:
+            await socket.close(code=NO_PART, message=f"there are {len(self._rigs)} parts".encode())
+            return socket
+        page = Page(self._free_number(), part, request.transport)
         self._pages[socket] = page
         try:
             self._send_status(page)
@@ -111,6 +129,12 @@ class PageSockets:
             self._listeners.pop(socket, None)
         return socket
 
+    def _part_of(self, request: web.Request) -> int | None:
+        """The part that an address names, counted from 0; None where there is none."""
+        words = [str(part) for part in range(1, len(self._rigs) + 1)]
+        word = request.query.get("part", "1")
+        return words.index(word) if word in words else None
+
     def _free_number(self) -> int:
         taken = {page.number for page in self._pages.values()}
         return next(number for number in range(MOST_PAGES + 1) if number not in taken)
@@ -125,12 +149,18 @@ class PageSockets:
         return True
 
     async def _pass_on(self, page: Page, wishes: Any) -> None:
-        """Tell the control process and other pages that sound; a hasty page waits."""
+        """Tell the control process, and other pages that sound as this part; a hasty page waits."""
         arrived_ns = time.monotonic_ns()
-        self._tell("wishes", page=page.number, at=arrived_ns, wishes=wishes.tolist())
+        self._tell(
+            "wishes", page=page.number, part=page.part, at=arrived_ns, wishes=wishes.tolist()
+        )
+        own = self._own.get(page.part, {})
+        for _, kind, row, value, _ in wishes:
+            if kind in (WRITE, HOLD) and row in own:
+                own[int(row)] = value  # at once: the control process tells it later
         frame = frame_of(struct.pack("<2d", WISHES, page.number) + wishes.tobytes())
         for other in self._pages.values():
-            if other is not page and other.sounds:
+            if other is not page and other.sounds and other.part == page.part:
                 write(other.transport, frame, MOST_UNSENT)
         page.allowance.spend(len(wishes))
         if (left := page.allowance.left(time.monotonic())) < 0.0:
@@ -138,14 +168,28 @@ class PageSockets:
 
     # -- telling all -------------------------------------------------------------------------
 
+    def tell_own(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
+        """Take the values that parts have where their instruments have others.
+
+        Parameters
+        ----------
+        own : sequence
+            Of each part, rows and their values.
+        """
+        self._own = {
+            part: {int(row): value for row, value in values} for part, values in enumerate(own)
+        }
+
     async def send_looks(self) -> None:
         """Send looks, for ever."""
         async for _ in every(LOOK_S):
             viewers = [page for page in self._pages.values() if page.looks]
-            if viewers:
-                frame = frame_of(struct.pack("<d", LOOK) + self._seen.look())
+            for part in {page.part for page in viewers}:
+                look = self._seen.look(self._rigs[part], self._own.get(part, {}))
+                frame = frame_of(struct.pack("<d", LOOK) + look)
                 for page in viewers:
-                    write(page.transport, frame, MOST_UNSENT)
+                    if page.part == part:
+                        write(page.transport, frame, MOST_UNSENT)
 
     async def send_sound(self) -> None:
         """Send the sound, for ever."""
@@ -182,6 +226,8 @@ class PageSockets:
         status = {
             "page": page.number,
             "pages": len(self._pages),
+            "part": page.part + 1,
+            "parts": len(self._rigs),
             "rate": self._seen.rate,
             "frame": self._seen.taped(),
             "load": load,

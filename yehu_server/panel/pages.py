@@ -12,7 +12,11 @@ from yehu_server.child_keeper import ChildKeeper
 from yehu_server.control.addresses import Address
 from yehu_server.control.web import listen
 from yehu_server.errors import DeviceError, ParameterError
+from yehu_server.params.table import TABLE
+from yehu_server.player.rows import ROW
+from yehu_server.player.wishes import HOLD, WRITE
 from yehu_server.playing.live import Arrivals, LivePlayer
+from yehu_server.playing.section_people import OWN, SECTION
 from yehu_server.playing.visitor import Wish
 
 STATUS_S = 0.5
@@ -34,12 +38,16 @@ class Pages:
 
     Parameters
     ----------
+    players : sequence of LivePlayer
+        The player of each part.
     memory : int
-        File descriptor of the memory that has the instrument.
+        File descriptor of the memory that has the instruments.
     status : callable
         What pages are told of the server, of JSON's types; any thread may call.
     changed : callable
         Called with a line when the process had to be started again; from another thread.
+    rigs : sequence of int
+        The instrument that shows each part: by default the first shows the first part, and so on.
 
     Raises
     ------
@@ -49,19 +57,21 @@ class Pages:
 
     def __init__(
         self,
-        player: LivePlayer,
+        players: Sequence[LivePlayer],
         options: PageOptions,
         memory: int,
         status: Callable[[], Mapping[str, Any]],
         changed: Callable[[str], None],
+        rigs: Sequence[int] | None = None,
     ) -> None:
-        self._player = player
+        self._players = tuple(players)
+        self._rigs = list(range(len(players)) if rigs is None else rigs)
         self._options = options
         self._memory = memory
         self._status = status
         self._changed = changed
-        self._arrivals = Arrivals(player)
-        self._known: set[int] = set()  # numbers of pages that wished something
+        self._arrivals = Arrivals(self._players[0])
+        self._known: set[tuple[int, int]] = set()  # pages that wished something, and of which part
         self.refused = 0  # wishes that nobody can have
         host, port = options.address
         try:
@@ -94,15 +104,24 @@ class Pages:
         """Tell the process what to serve, and the status whenever it is another."""
         allowed = list(self._options.networks)
         listening = self._listening.fileno()
-        child.send("serve", memory=self._memory, socket=listening, allowed=allowed)
-        told: Mapping[str, Any] = {}
+        child.send("serve", memory=self._memory, rigs=self._rigs, socket=listening, allowed=allowed)
+        told: Any = None
         while not gone.wait(STATUS_S):
-            if (status := self._status()) != told:
-                child.send("tell", status=status)
-                told = status
+            if (news := (self._status(), self._own())) != told:
+                child.send("tell", status=news[0], own=news[1])
+                told = news
+
+    def _own(self) -> list[list[tuple[int, float]]]:
+        """Of each part that is a section, what each of its players has a value of its own of."""
+        return [
+            [(ROW[address], player.value(address)) for address in OWN]
+            if player.value(SECTION) > 1
+            else []
+            for player in self._players
+        ]
 
     def _ended(self, by_itself: bool) -> None:
-        for page in list(self._known):
+        for page in {page for page, _ in self._known}:
             self._dismiss(page)
         if by_itself:
             self._changed("pages: their process ended; it is started again")
@@ -110,21 +129,31 @@ class Pages:
     def _heard(self, event: Message) -> None:
         kind = event["event"]
         if kind == "wishes":
-            self._fulfil(event["page"], event["at"], event["wishes"])
+            self._fulfil(event["page"], event["part"], event["at"], event["wishes"])
         elif kind == "left":
             self._dismiss(event["page"])
 
-    def _fulfil(self, page: int, arrived_ns: int, wishes: Sequence[Sequence[float]]) -> None:
-        self._known.add(page)
+    def _fulfil(
+        self, page: int, part: int, arrived_ns: int, wishes: Sequence[Sequence[float]]
+    ) -> None:
         now = self._arrivals.frame_of(arrived_ns)
-        latest = now + round(AHEAD_S * self._player.instrument.rate)
+        latest = now + round(AHEAD_S * self._players[0].instrument.rate)
         for frame, kind, index, value, other in wishes:
             try:
                 wish = Wish(int(kind), int(index), value, other)
-                self._player.fulfil(page, wish, frame=min(max(int(frame), now), latest))
+                asked = 0 if _is_for_all(wish) else part
+                self._known.add((page, asked))
+                self._players[asked].fulfil(page, wish, frame=min(max(int(frame), now), latest))
             except ParameterError:
                 self.refused += 1
 
     def _dismiss(self, page: int) -> None:
-        self._known.discard(page)
-        self._player.dismiss(page, frame=self._player.frame_of())
+        for known in [known for known in self._known if known[0] == page]:
+            self._known.discard(known)
+            player = self._players[known[1]]
+            player.dismiss(page, frame=player.frame_of())
+
+
+def _is_for_all(wish: Wish) -> bool:
+    """Whether it sets what all parts share: the first part's player has it."""
+    return wish.kind in (WRITE, HOLD) and TABLE[wish.index].is_shared

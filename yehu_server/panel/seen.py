@@ -1,24 +1,33 @@
-"""The instrument of the server, seen from the pages' process: it reads the shared record only."""
+"""The instruments of the server, seen from the pages' process: it reads the shared memory only."""
 
 from __future__ import annotations
 
 import mmap
+import os
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from yehu_server.engine import native
-from yehu_server.engine.instrument import RIG_BYTES, TAPE_FRAMES
 from yehu_server.engine.look import LOOK, look
+from yehu_server.engine.rig import RIG, RIG_BYTES
 from yehu_server.engine.telemetry import METERS
+from yehu_server.params.table import TABLE
+from yehu_server.player.rows import ROW
+from yehu_server.stage.record import STAGE, TAPE
 
 Array = Any
 
-MARGIN = TAPE_FRAMES // 8  # frames of the tape that may be overwritten during a copy
+_NOTHING: Mapping[int, float] = MappingProxyType({})
+
+MARGIN = TAPE // 8  # frames of the tape that may be overwritten during a copy
+SHARED_ROWS = [ROW[param.address] for param in TABLE if param.is_shared]
 
 
 class Seen:
-    """An instrument in shared memory, while another process plays it.
+    """Instruments on a stage in shared memory, while another process plays them.
 
     Parameters
     ----------
@@ -27,22 +36,37 @@ class Seen:
     """
 
     def __init__(self, descriptor: int) -> None:
-        self._memory = mmap.mmap(descriptor, RIG_BYTES)
-        self._rig = np.frombuffer(self._memory, native.RIG, count=1)
-        self._address = self._rig.ctypes.data
+        self._memory = mmap.mmap(descriptor, os.fstat(descriptor).st_size)
+        count = int(np.frombuffer(self._memory, RIG, count=1)["parts"][0, 0])
+        self._rigs = np.frombuffer(self._memory, RIG, count=count)
+        self._stage = np.frombuffer(self._memory, STAGE, offset=count * RIG_BYTES, count=1)[0]
+        self._address = self._rigs.ctypes.data
         self._look = np.zeros(1, LOOK)
         self._meters = np.zeros(1, METERS)
 
     @property
     def rate(self) -> float:
         """Sample rate (Hz)."""
-        return float(self._rig["model"]["rate"][0])
+        return float(self._rigs["model"]["rate"][0])
 
-    def look(self) -> bytes:
-        """A look at it (``engine.look``), and then the value of each row of the parameter table."""
-        look.call(self._address, self._look.ctypes.data)
-        values: bytes = self._rig["player"]["value"].tobytes()
-        return self._look.tobytes() + values
+    def look(self, rig: int = 0, own: Mapping[int, float] = _NOTHING) -> bytes:
+        """A look at an instrument (``engine.look``), and then the value of each row of the table.
+
+        Its level is that of the mix, and what all share is as the first instrument has it.
+
+        Parameters
+        ----------
+        own : mapping
+            Values of rows in place of those that it has.
+        """
+        seen, values = self._look[0], self._rigs["player"]["value"][rig].copy()
+        look.call(self._address + rig * RIG_BYTES, self._look.ctypes.data)
+        if rig:
+            seen["peak"], seen["rms"] = self._stage["peak"], self._stage["rms"]
+            values[SHARED_ROWS] = self._rigs["player"]["value"][0, SHARED_ROWS]
+        for row, value in own.items():
+            values[row] = value
+        return self._look.tobytes() + bytes(values.tobytes())
 
     def load(self) -> tuple[float, int]:
         """The share of the time that computing takes, and the number of drop-outs so far."""
@@ -57,7 +81,10 @@ class Seen:
         return int(native.taped.call(self._address))
 
     def sound(self, begin: int, end: int) -> tuple[int, bytes]:
-        """Samples of some frames, float32; they begin later where the tape has lost the first."""
-        begin = max(begin, end - TAPE_FRAMES + MARGIN)
-        samples = self._rig["tape"][0, np.arange(begin, end) % TAPE_FRAMES]
-        return begin, samples.tobytes()
+        """Some frames of the mix, left and right in turn, float32.
+
+        They begin later where the tape has lost the first.
+        """
+        begin = max(begin, end - TAPE + MARGIN)
+        frames = self._stage["tape"][np.arange(begin, end) % TAPE]
+        return begin, frames.tobytes()

@@ -20,9 +20,12 @@ PROGRAMS = range(1, 129)  # MIDI programs, counted from 1
 MOST_REMARKS = 10
 # A preset may have all parameters except those that the player moves as notes sound.
 POSSIBLE = {param.address: param for param in TABLE if not param.owned}
-# The present state of controllers, and the seed, are no part of a sound and are not saved; a file
-# may have them all the same.
-NOT_SAVED = {"/playing/bend", "/playing/dynamics", "/playing/expression", "/engine/seed"}
+# The present state of controllers, the seed, and who sits where are no part of a sound and are not
+# saved; a file may have them all the same.
+NOT_SAVED = {
+    *("/playing/bend", "/playing/dynamics", "/playing/expression", "/engine/seed"),
+    *("/playing/section", "/room/pan", "/room/distance"),
+}
 SAVED = tuple(address for address in POSSIBLE if address not in NOT_SAVED)
 
 

@@ -52,7 +52,8 @@ class Param:
 
     `lo`, `hi` and `default` are in `unit`; `smooth_ms` is the ramp of a write that names none.
     `owned` marks parameters that the player moves while notes sound (decisions/0006);
-    `is_choice` marks discrete ones, such as switches (on from `TURNED_ON` up).
+    `is_choice` marks discrete ones, such as switches (on from `TURNED_ON` up); `is_shared` those
+    that are one for all players on the stage.
     """
 
     address: str
@@ -67,6 +68,7 @@ class Param:
     smooth_ms: float = 5.0
     owned: bool = False
     is_choice: bool = False
+    is_shared: bool = False
 
     def accept(self, value: float) -> float:
         """Clamp a value to the range.

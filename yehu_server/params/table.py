@@ -135,8 +135,8 @@ TABLE: tuple[Param, ...] = (
     ),
     Param(
         "/output/limiter", "", "dB", -24.0, 0.0, -3.0,
-        "Level above which peaks are limited; at 0 they are clipped at full scale.",
-        place=Place.ENGINE, smooth_ms=20.0,
+        "Level above which peaks of the mix are limited; at 0 they are clipped at full scale.",
+        place=Place.ENGINE, smooth_ms=20.0, is_shared=True,
     ),
     Param(
         "/body/gain", "", "dB", -24.0, 24.0, 0.0,
@@ -146,6 +146,42 @@ TABLE: tuple[Param, ...] = (
     Param(
         "/body/blend", "", "1", 0.0, 1.0, 0.0,
         "Mix from the radiated sound (0) to the force of the strings on the bridge (1).",
+        place=Place.ENGINE, smooth_ms=20.0,
+    ),
+    Param(
+        "/body/width", "", "1", 0.0, 1.0, 0.3,
+        "How much the sound of the body differs to both sides, above some 1.5 kHz; 0: not at all.",
+        place=Place.ENGINE, smooth_ms=20.0,
+    ),
+    Param(
+        "/room/size", "", "m", 2.0, 40.0, 5.0,
+        "Length of the room; its width and height go with it.",
+        place=Place.ENGINE, curve=Curve.EXP, is_shared=True,
+    ),
+    Param(
+        "/room/decay", "", "s", 0.1, 10.0, 0.4,
+        "Reverberation time: the time in which the sound of the room decays by 60 dB.",
+        place=Place.ENGINE, curve=Curve.EXP, smooth_ms=50.0, is_shared=True,
+    ),
+    Param(
+        "/room/damping", "", "1", 0.0, 1.0, 0.4,
+        "How much sooner high notes decay, above some 2.5 kHz: 0 as low ones, 1 in a fifth of the "
+        "time.",
+        place=Place.ENGINE, smooth_ms=50.0, is_shared=True,
+    ),
+    Param(
+        "/room/level", "", "1", 0.0, 1.0, 0.15,
+        "Level of the room: 0 none, 1 as in a room of this size and reverberation time.",
+        place=Place.ENGINE, smooth_ms=50.0, is_shared=True,
+    ),
+    Param(
+        "/room/distance", "", "m", 1.0, 20.0, 2.0,
+        "Distance of the player from the listener: farther is quieter, and has more of the room.",
+        place=Place.ENGINE, curve=Curve.EXP, smooth_ms=50.0,
+    ),
+    Param(
+        "/room/pan", "", "1", -1.0, 1.0, 0.0,
+        "Place of the player: -1 left, 0 in the middle, 1 right.",
         place=Place.ENGINE, smooth_ms=20.0,
     ),
     Param(
@@ -253,6 +289,11 @@ TABLE: tuple[Param, ...] = (
         "/playing/phrasing", "", "1", 0.0, 1.0, 0.0,
         "How much the player shapes plain notes by itself: vibrato that comes late on long notes, "
         "slides on leaps. Files get phrases, accents and slurs too (render --phrasing).",
+    ),
+    Param(
+        "/playing/section", "", "1", 1.0, 16.0, 1.0,
+        "How many people play this part, each on an instrument of their own; at most as many as "
+        "it began with.", is_choice=True,
     ),
     Param(
         "/playing/attack", "", "ms", 5.0, 500.0, 40.0,

@@ -147,6 +147,21 @@ def read_body(path: Path = BODY_FILE) -> Body:
         raise ParameterError(f"body file {path}: {error.strerror}") from error
     except (ValueError, KeyError, TypeError, OverflowError) as error:
         raise ParameterError(f"body file {path}: not a body file ({error!r})") from error
+    try:
+        check_body(body)
+    except ParameterError as error:
+        raise ParameterError(f"body file {path}: {error}") from error
+    return body
+
+
+def check_body(body: Body) -> None:
+    """Refuse a body that is not passive or not stable.
+
+    Raises
+    ------
+    ParameterError
+        Where it is not.
+    """
     figures = (
         *body.omega,
         *body.mass,
@@ -156,17 +171,16 @@ def read_body(path: Path = BODY_FILE) -> Body:
         *(figure for section in body.sections for figure in section),
     )
     if not all(math.isfinite(figure) for figure in figures):
-        raise ParameterError(f"body file {path}: holds a number that is not finite")
+        raise ParameterError("holds a number that is not finite")
     if not body.mass or min(*body.mass, *body.frequency_hz, body.radiation_rate) <= 0.0:
-        raise ParameterError(f"body file {path}: masses, frequencies and rate must be positive")
+        raise ParameterError("masses, frequencies and rate must be positive")
     if min(body.damping) < 0.0:
-        raise ParameterError(f"body file {path}: a mode with negative damping is not passive")
+        raise ParameterError("a mode with negative damping is not passive")
     for _, _, a1, a2 in body.sections:
         if not (abs(a2) < 1.0 and abs(a1) < 1.0 + a2):
-            raise ParameterError(f"body file {path}: a radiation section is unstable")
+            raise ParameterError("a radiation section is unstable")
         if a1 * a1 >= 4.0 * a2:
-            raise ParameterError(f"body file {path}: a radiation section has real poles")
-    return body
+            raise ParameterError("a radiation section has real poles")
 
 
 @lru_cache(maxsize=1)

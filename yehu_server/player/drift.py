@@ -41,12 +41,14 @@ FOLLOW = 0.15  # of the way to those of the next turn, in a hop
 
 TIMES_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
 TIMES = 4
-KEPT = np.exp(-HOP_S / TIMES_S)
+# Here and below rounded, as the last bits of exp and cos differ from processor to processor, and
+# what is compiled ahead, on another one, is to play the same samples.
+KEPT = np.round(np.exp(-HOP_S / TIMES_S), 12)
 # Uniform numbers in -1..1 have a variance of 1/3; the sums have one of 1.
 ADDED = np.sqrt(3.0 * (1.0 - KEPT**2) / TIMES)
 TREMOR_HZ, WIDTH_HZ = 10.0, 3.0
-RADIUS = math.exp(-math.pi * WIDTH_HZ * HOP_S)
-TURN = 2.0 * RADIUS * math.cos(2.0 * math.pi * TREMOR_HZ * HOP_S)
+RADIUS = round(math.exp(-math.pi * WIDTH_HZ * HOP_S), 12)
+TURN = round(2.0 * RADIUS * math.cos(2.0 * math.pi * TREMOR_HZ * HOP_S), 12)
 KICK = math.sqrt(3.0 * (1.0 - RADIUS**2) * ((1.0 + RADIUS**2) ** 2 - TURN**2) / (1.0 + RADIUS**2))
 HANDS = 2
 CALMING, STEADY = 0.8, 1e-6  # a hand that does not play comes to rest, by so much in a hop

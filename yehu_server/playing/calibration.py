@@ -80,7 +80,7 @@ def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
         for source in sorted((package / folder).glob("*.py"))
     ]
     sources += [package / "player" / f"{name}.py" for name in ("bowing", "calibration")]
-    sources += [package / "engine" / f"{name}.py" for name in ("native", "output")]
+    sources += [package / "engine" / f"{name}.py" for name in ("sounding", "output")]
     sources += [Path(__file__)]
     bowed = shipped_practice(rate)[:, PLACES.index(DEFAULT_PLACE)].tolist()
     return key_of(sources, repr((rate, a4, quantities, bowed)))

@@ -28,7 +28,7 @@ from yehu_server.playing.target_values import TargetValues
 from yehu_server.playing.wishes import Key, Wishes
 
 # "Reset all controllers" leaves volume, as the recommended practice RP-015 asks.
-KEPT_ON_RESET = {"/playing/volume"}
+KEPT_ON_RESET = {"/playing/volume", "/room/pan"}
 # These spring back when the hand lets go; faders and pedals stay where they are.
 SPRUNG = (BEND, PRESSURE)
 FINE_BITS = 7
@@ -255,7 +255,21 @@ class Controllers:
     ) -> None:
         """Write the targets of a source that was moved on a channel; `glides` in ms, by target."""
         self._values.keep_of(source)
-        key = self._wishes.sounding or self._values.last_key
+        sounding = self._wishes.all_sounding
+        keys: list[Key | None] = [*sounding] or [self._values.last_key]
+        for key in keys:
+            self._follow(source, channel, frame, glides, key, len(sounding) > 1)
+
+    def _follow(
+        self,
+        source: str,
+        channel: int,
+        frame: int | None,
+        glides: dict[str, float] | None,
+        key: Key | None,
+        is_divided: bool,
+    ) -> None:
+        """Write the targets of a moved source as a key has them; to its players, if divided."""
         binds = self.mapping.of(source)
         if key is not None:
             binds = tuple(bind for bind in binds if self._values.is_for(bind, channel, key))
@@ -264,7 +278,8 @@ class Controllers:
         for bind in binds:
             glide_ms = (glides or {}).get(bind.target, 0.0)
             value = values[bind.target]
-            self._wishes.write(bind.target, value, frame=frame, glide_ms=glide_ms)
+            only = key if is_divided else None
+            self._wishes.write(bind.target, value, frame=frame, glide_ms=glide_ms, key=only)
 
     def _takes_over(self, bind: Bind, channel: int, position: float) -> bool:
         """Whether a soft bind moves its target: it set its present value, or reaches it now."""

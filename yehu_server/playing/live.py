@@ -15,13 +15,13 @@ import mido
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.learner import Found, Learner
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.style import Style
 from yehu_server.playing.visitor import Visitor, Wish
-from yehu_server.playing.wishes import Key
+from yehu_server.playing.wishes import Key, Wishes
 
 ELSEWHERE = -1  # the channel of notes that do not come from MIDI
 
@@ -56,6 +56,11 @@ class LivePlayer:
     delay_ms : float
         From arrival to sound. Constant, and long enough that the frame has not been played
         yet, so that messages keep their rhythm.
+    part : int
+        Which of the parts on the stage it plays, counted from 0. What all parts share is the
+        first one's.
+    wishes : Wishes, optional
+        What its wishes go through; by default those of the style, to the instrument.
     """
 
     def __init__(
@@ -64,12 +69,15 @@ class LivePlayer:
         style: Style,
         *,
         delay_ms: float,
+        part: int = 0,
+        wishes: Wishes | None = None,
     ) -> None:
         self.instrument = instrument
+        self.part = part
         self.presets = style.presets
         self.delay = instrument.frames(delay_ms)
         self._lock = threading.RLock()
-        self._wishes = style.wishes(instrument)
+        self._wishes = style.wishes(instrument) if wishes is None else wishes
         self._midi = style.midi(self._wishes)
         self._learner = Learner()
         self._found: Callable[[Found], None] | None = None
@@ -127,9 +135,15 @@ class LivePlayer:
             self._midi.load(values, frame=self._at(frame))
 
     def sound(self) -> dict[str, float]:
-        """The parameters that a preset keeps: see `Controllers.sound`."""
+        """The parameters that a preset keeps: see `Controllers.sound`.
+
+        Those that all parts share are in the sound of the first.
+        """
         with self._lock:
-            return self._midi.sound()
+            sound = self._midi.sound()
+        if self.part == 0:
+            return sound
+        return {address: sound[address] for address in sound if not find(address).is_shared}
 
     def hold(self, address: str, value: float) -> float:
         """Set a parameter from the first frame on, and hold it as long as the program runs."""
@@ -193,6 +207,12 @@ class LivePlayer:
             found(source)
 
     # -- notes -------------------------------------------------------------------------------
+
+    @property
+    def keys(self) -> int:
+        """Number of keys that are held."""
+        with self._lock:
+            return len(self._wishes.held())
 
     @property
     def pitch(self) -> float | None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from yehu_server.documents import parse_json, parse_toml
-from yehu_server.errors import MappingError, ParameterError
+from yehu_server.errors import MappingError, ParameterError, SettingsError
 from yehu_server.files import MAX_SETTINGS_BYTES, read_text
 from yehu_server.params.spec import Curve
 from yehu_server.playing import mapping_entries as entries
@@ -45,10 +45,11 @@ class MappingFile:
 
 
 class FileErrors:
-    """Collects the errors in a file, to raise them all at once."""
+    """Collects the errors in a file, to raise them all at once, as errors of a kind."""
 
-    def __init__(self, path: Path, text: str) -> None:
+    def __init__(self, path: Path, text: str, kind: type[SettingsError] = MappingError) -> None:
         self._path = path
+        self._kind = kind
         self._text = text
         self._lines: dict[KeyPath, int] | None = None
         self._found: list[tuple[int, str]] = []
@@ -58,27 +59,33 @@ class FileErrors:
 
         Raises
         ------
-        MappingError
+        SettingsError
             As `raise_all`, where there are MOST_ERRORS.
         """
-        if self._lines is None:
-            self._lines = lines_of(self._text)
-        line = line_at(self._lines, key)
-        where = f"{self._path}: " if line is None else f"{self._path}:{line}: "
-        self._found.append((line or 0, where + reason))
+        self._found.append((self._line(key) or 0, f"{self.where(key)}: {reason}"))
         if len(self._found) == MOST_ERRORS:
             self.raise_all()
+
+    def where(self, key: KeyPath) -> str:
+        """The file, and the line of an entry if it has one."""
+        line = self._line(key)
+        return str(self._path) if line is None else f"{self._path}:{line}"
+
+    def _line(self, key: KeyPath) -> int | None:
+        if self._lines is None:
+            self._lines = lines_of(self._text)
+        return line_at(self._lines, key)
 
     def raise_all(self) -> None:
         """Raise what was added, by line; return if nothing was.
 
         Raises
         ------
-        MappingError
-            The first error; its `more` are the others.
+        SettingsError
+            Of the kind: the first error; its `more` are the others.
         """
         if self._found:
-            raise MappingError(*(what for _, what in sorted(self._found, key=lambda one: one[0])))
+            raise self._kind(*(what for _, what in sorted(self._found, key=lambda one: one[0])))
 
 
 def read_mapping_file(path: Path) -> MappingFile:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import tomlkit
@@ -17,6 +17,8 @@ from yehu_server.params.preset import SAVED, VERSION, Preset, parse
 
 ENDING = ".toml"
 MINE = "mine/"  # prefix of the names of the user's own presets
+AND = "+"  # between the names of presets that are taken together
+MOST_TOGETHER = 8
 # Presets are read while the instrument plays, which must take some milliseconds only.
 MOST_OWN = 128  # as many as there are MIDI programs
 MOST_BYTES = 1 << 14  # of one preset; all values take under 1000, the rest is for comments
@@ -45,9 +47,20 @@ def read_preset(path: Path, name: str | None = None) -> Preset:
 
 
 def is_name(name_or_path: str) -> bool:
-    """Whether a text is the name of a preset, not a path."""
-    name = name_or_path.removeprefix(MINE)
-    return PLAIN_NAME.fullmatch(name) is not None and not name.endswith(ENDING)
+    """Whether a text is the name of a preset, or the names of several, not a path."""
+    names = [name.removeprefix(MINE) for name in name_or_path.split(AND)]
+    return not name_or_path.endswith(ENDING) and all(map(PLAIN_NAME.fullmatch, names))
+
+
+def together(presets: Sequence[Preset]) -> Preset:
+    """Several presets as one, which sets what each of them sets, the later ones last."""
+    values = {address: value for preset in presets for address, value in preset.values.items()}
+    return Preset(
+        AND.join(preset.name for preset in presets),
+        values,
+        " ".join(preset.about for preset in presets if preset.about),
+        unknown=tuple(dict.fromkeys(each for preset in presets for each in preset.unknown)),
+    )
 
 
 class Presets:
@@ -100,14 +113,20 @@ class Presets:
         raise PresetError(f"no preset {name!r} (there are: {', '.join(names[:MOST_NAMED])}{more})")
 
     def load(self, name: str) -> Preset:
-        """Read a preset by its name.
+        """Read a preset by its name, or several by names with a plus between them.
+
+        Of several, each sets what it names, the later ones last: ``sul-tasto+hall``.
 
         Raises
         ------
         PresetError
-            Where there is no such preset, or it is wrong.
+            Where there is no such preset, it is wrong, or they are too many.
         """
-        return self._read(self.file(name), name.removeprefix(MINE))
+        names = name.split(AND)
+        if len(names) > MOST_TOGETHER:
+            raise PresetError(f"{len(names)} presets: at most {MOST_TOGETHER} go together")
+        found = [self._read(self.file(each), each.removeprefix(MINE)) for each in names]
+        return found[0] if len(found) == 1 else together(found)
 
     def find(self, name_or_path: str) -> Preset:
         """Read a preset by its name or path.
@@ -122,14 +141,16 @@ class Presets:
         return read_preset(Path(name_or_path))
 
     def find_file(self, name_or_path: str) -> Path:
-        """The file that `find` reads.
+        """The file that `find` reads; of several the first.
 
         Raises
         ------
         PresetError
             As `file`.
         """
-        return self.file(name_or_path) if is_name(name_or_path) else Path(name_or_path)
+        if is_name(name_or_path):
+            return self.file(name_or_path.split(AND, maxsplit=1)[0])
+        return Path(name_or_path)
 
     def all(self) -> tuple[list[Preset], list[PresetError]]:
         """All presets by name, and the errors in files that cannot be read."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping as Values
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -59,7 +60,10 @@ class Style:
         calibration: Calibration,
         quantities: Quantities | None = None,
         *,
+        start_values: Values[str, float] | None = None,
+        body: int = 0,
         memory: Any = None,
+        is_live: bool = False,
     ) -> Instrument:
         """An instrument at a rate (Hz), calibrated, with a player of this style.
 
@@ -67,7 +71,7 @@ class Style:
         ----------
         quantities : Quantities
             The instrument as it is before it is tuned.
-        memory : buffer
+        start_values, body, memory, is_live
             See `Instrument`.
         """
         return Instrument(
@@ -77,7 +81,10 @@ class Style:
             open_strings=self.open_strings,
             bowing=shipped_practice(rate) if self.bowing is None else self.bowing,
             seed=self.seed,
+            start_values=start_values,
+            body=body,
             memory=memory,
+            is_live=is_live,
         )
 
     def wishes(self, instrument: Instrument) -> Wishes:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.spec import Param
-from yehu_server.params.table import TABLE, find
+from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.player import wishes
 from yehu_server.player.fingering import OPEN_WITHIN
 from yehu_server.player.rows import ROW
@@ -74,6 +74,11 @@ class Wishes:
     ) -> None:
         self._instrument.post(kind, frame=frame, index=index, value=value, other=other)
 
+    @property
+    def people(self) -> int:
+        """How many players there are."""
+        return 1
+
     # -- parameters --------------------------------------------------------------------------
 
     @property
@@ -111,10 +116,12 @@ class Wishes:
         frame: int | None = None,
         hold: bool = False,
         glide_ms: float = 0.0,
+        key: Key | None = None,  # noqa: ARG002 - one instrument plays one key
     ) -> float:
         """Set any parameter of the table; return the value it then has.
 
-        The moves of bow and fingers that follow take at least `glide_ms`.
+        The moves of bow and fingers that follow take at least `glide_ms`. Where several keys
+        sound (`all_sounding`), `key` is the one that it is for; by default it is for all.
 
         Raises
         ------
@@ -123,6 +130,8 @@ class Wishes:
         """
         param = find(address)
         accepted = param.accept(value)
+        if address == "/playing/section":
+            accepted = min(float(round(accepted)), float(self.people))
         if param.owned:
             self._note(address, accepted, frame)
             if address == "/bow/force":  # raw newtons are heard only without assist
@@ -136,6 +145,17 @@ class Wishes:
         kind = wishes.HOLD if hold else wishes.WRITE
         self._post(kind, frame, ROW[address], accepted, glide_ms)
         return accepted
+
+    def start_with(self, address: str, value: float) -> float:
+        """Hold a parameter at a value, from the first sample on; see `write`."""
+        accepted = self.write(address, value, hold=True)
+        self.jump(address, accepted)
+        return accepted
+
+    def jump(self, address: str, value: float) -> None:
+        """Have the engine begin with a value that a parameter was given, and not move there."""
+        if address in SLOT:
+            self._post(wishes.RAMP, None, SLOT[address], find(address).accept(value))
 
     def _note(self, address: str, value: float, frame: int | None) -> None:
         at = self._instrument.frame if frame is None else frame
@@ -157,6 +177,11 @@ class Wishes:
         """The key whose note sounds, if any."""
         self._forget_ended()
         return self._sounding
+
+    @property
+    def all_sounding(self) -> list[Key]:
+        """The keys that sound at once: more than one where a section divides."""
+        return [] if self.sounding is None else [self.sounding]
 
     def holds(self, key: Key) -> bool:
         """Whether a key is held."""

@@ -1,30 +1,22 @@
 """Read captures of sessions; docs/capture.md describes the format.
 
-Version 1 held what moved bow and fingers, not what was wished of the player.
+Version 1 held what moved bow and fingers, not what was wished of the player. Versions 1 and 2 have
+one player.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.files import read_lines
-from yehu_server.params.table import find
-from yehu_server.physics.grid import check_rate
-from yehu_server.physics.layout import STRINGS
-from yehu_server.physics.quantities import Quantities, override
-from yehu_server.player.bowing import ordinary_table
-from yehu_server.player.calibration import Calibration
-from yehu_server.player.fingering import OpenStrings
 from yehu_server.player.wishes import WISH
-from yehu_server.playing.calibrations import read_calibration
+from yehu_server.score.capture_beginning import Beginning, read_header
 from yehu_server.score.capture_format import (
     FORMAT,
     VERSION,
@@ -32,41 +24,14 @@ from yehu_server.score.capture_format import (
     build,
     frames_of,
     from_line,
+    player_of,
     ramp_of,
 )
 
 MOST_BYTES = 1 << 30
 MOST_WISHES = 20_000_000  # each takes 40 bytes
 MOST_RESTS = 1000
-LOWEST_A4, HIGHEST_A4 = 1.0, 20000.0  # Hz
 CHUNK = 1 << 16  # wishes
-
-
-@dataclass(frozen=True)
-class Beginning:
-    """All that a session starts from."""
-
-    rate: float
-    tensions: tuple[float, float]  # N, of the strings as tuned
-    seed: int = 0
-    open_strings: OpenStrings = OpenStrings.ALWAYS
-    calibration: Calibration | None = None
-    bowing: Any = field(default_factory=ordinary_table)
-    values: Mapping[str, float] = field(default_factory=dict)  # of parameters; others: default
-
-    def instrument(self) -> Instrument:
-        """An instrument that starts so."""
-        first, second = self.tensions
-        changes = {"string_1": {"T": first}, "string_2": {"T": second}}
-        return Instrument(
-            self.rate,
-            override(Quantities(), changes),
-            calibration=self.calibration,
-            bowing=self.bowing,
-            open_strings=self.open_strings,
-            seed=self.seed,
-            start_values=self.values,
-        )
 
 
 @dataclass
@@ -77,6 +42,7 @@ class Capture:
     build: dict[str, str]
     version: int = VERSION
     wishes: Any = field(default_factory=lambda: np.zeros(0, WISH))  # by frame
+    players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # whose they are, from 0
     rests: dict[int, int] = field(
         default_factory=dict
     )  # frame of each rest, and since when it was silent
@@ -108,12 +74,13 @@ def read_capture(path: Path) -> Capture:
     lines = read_lines(path, MOST_BYTES)
     try:
         capture = _header(path, next(lines, ""))
-        chunks: list[Any] = []
+        chunks: list[tuple[Any, Any]] = []
         wishes: list[Fields] = []
+        players: list[int] = []
         for number, line in enumerate(lines, start=2):
             try:
                 if line.strip():
-                    _take(json.loads(line), capture, wishes)
+                    _take(json.loads(line), capture, wishes, players)
             except _WRONG as error:
                 if not line.endswith("\n"):  # cut short by a crash
                     break
@@ -121,19 +88,30 @@ def read_capture(path: Path) -> Capture:
                     f"{path}: line {number}: not a line of a capture ({error})"
                 ) from error
             if len(wishes) == CHUNK:
-                chunks.append(np.array(wishes, WISH))
+                chunks.append((np.array(wishes, WISH), np.array(players, np.int64)))
                 wishes.clear()
+                players.clear()
                 if len(chunks) * CHUNK >= MOST_WISHES:
                     raise ScoreError(f"{path}: has more than {MOST_WISHES} events")
+        chunks.append((np.array(wishes, WISH), np.array(players, np.int64)))
     except OSError as error:
         raise ScoreError(f"{path}: {error.strerror}") from error
     except ValueError as error:  # no UTF-8, or a NUL in the name
         raise ScoreError(f"{path}: not a capture ({error})") from error
-    capture.wishes = np.concatenate([*chunks, np.array(wishes, WISH)])
-    if np.any(np.diff(capture.wishes["frame"]) < 0):
-        raise ScoreError(f"{path}: events are not in order of frames")
+    _put_in_order(path, capture, chunks)
     _warn(capture)
     return capture
+
+
+def _put_in_order(path: Path, capture: Capture, chunks: list[tuple[Any, Any]]) -> None:
+    """Put all wishes in the order of frames; those of each player are in it already."""
+    wishes = np.concatenate([chunk for chunk, _ in chunks])
+    players = np.concatenate([chunk for _, chunk in chunks])
+    for player in range(len(capture.beginning.players)):
+        if np.any(np.diff(wishes["frame"][players == player]) < 0):
+            raise ScoreError(f"{path}: events are not in order of frames")
+    order = np.argsort(wishes["frame"], kind="stable")
+    capture.wishes, capture.players = wishes[order], players[order]
 
 
 _WRONG = (
@@ -147,14 +125,9 @@ def _header(path: Path, line: str) -> Capture:
         if header["format"] != FORMAT:
             raise ScoreError(f"{path}: not a capture")
         version = header["version"]
-        if version not in (1, VERSION) or type(version) is not int:
+        if version not in range(1, VERSION + 1) or type(version) is not int:
             raise ScoreError(f"{path}: version {version!r} of the format is not known")
-        rate = float(header["rate"])
-        check_rate(rate)
-        first, second = map(float, header["tensions"])
-        beginning = Beginning(rate, (first, second), values=_values(header["values"]))
-        if version == VERSION:
-            beginning = _players(beginning, header)
+        beginning = read_header(header, version)
         return Capture(beginning, dict(header["build"]), version)
     except ParameterError as error:
         raise ScoreError(f"{path}: {error}") from error
@@ -162,44 +135,19 @@ def _header(path: Path, line: str) -> Capture:
         raise ScoreError(f"{path}: not a capture") from error
 
 
-def _values(values: Mapping[str, float]) -> dict[str, float]:
-    """Values of parameters, by address; raises ParameterError where one is unknown or outside."""
-    for address, value in values.items():
-        param = find(address)
-        if param.accept(value) != value:
-            raise ParameterError(f"{address}: {value} is not within {param.range_text}")
-    return dict(values)
-
-
-def _players(beginning: Beginning, header: Any) -> Beginning:
-    """The same with what the player starts from; raises as a JSON value of another form does."""
-    bowing = np.array(header["bowing"], np.float64)
-    if bowing.ndim == 3:  # of captures made when both strings were bowed by one table
-        bowing = np.stack([bowing] * STRINGS)
-    if bowing.shape != ordinary_table().shape or not np.all(np.isfinite(bowing)):
-        raise ValueError("bowing")
-    data = header["calibration"]
-    calibration = None
-    if data is not None:
-        a4 = float(data["a4"])
-        if not LOWEST_A4 <= a4 <= HIGHEST_A4:
-            raise ValueError("a4")
-        calibration = read_calibration(data, Quantities(), a4)
-    return replace(
-        beginning,
-        seed=frames_of(header["seed"]),
-        open_strings=OpenStrings(header["open_strings"]),
-        calibration=calibration,
-        bowing=bowing,
-    )
-
-
-def _take(entry: Any, capture: Capture, wishes: list[Fields]) -> None:
-    if isinstance(entry, list) and capture.version == 1:
-        frame, *ramp = entry
-        wishes.append((frames_of(frame), *ramp_of(*ramp)))
-    elif isinstance(entry, list):
-        wishes.append(from_line(entry))
+def _take(entry: Any, capture: Capture, wishes: list[Fields], players: list[int]) -> None:
+    if isinstance(entry, list):
+        player = 0
+        if capture.version == 1:
+            frame, *ramp = entry
+            wish = frames_of(frame), *ramp_of(*ramp)
+        elif capture.version == 2:
+            wish = from_line(entry)
+        else:
+            player = player_of(entry[1], len(capture.beginning.players))
+            wish = from_line([entry[0], *entry[2:]])
+        wishes.append(wish)
+        players.append(player)
     elif "end" in entry:
         capture.end = frames_of(entry["end"])
     elif "rest" in entry:

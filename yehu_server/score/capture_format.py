@@ -26,7 +26,7 @@ from yehu_server.player.wishes import (
     WRITE,
 )
 
-FORMAT, VERSION = "yehu-server capture", 2
+FORMAT, VERSION = "yehu-server capture", 3
 MOST_FRAMES = 1 << 53
 MOST_MS = 3.6e6
 MOST_CHANNELS = 1 << 20
@@ -52,10 +52,10 @@ def build() -> dict[str, str]:
     }
 
 
-def as_line(wish: Any) -> list[Any]:  # noqa: PLR0911 - one for each kind
-    """The JSON value of a wish, a record of dtype WISH."""
+def as_line(wish: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for each kind
+    """The JSON value of a wish, a record of dtype WISH, of a player, counted from 0."""
     frame, kind, index, value, other = wish.item()
-    line: list[Any] = [frame, KINDS[kind]]
+    line: list[Any] = [frame, player + 1, KINDS[kind]]
     if kind == RAMP:
         return [*line, ADDRESSES[index], value, int(other)]
     if kind in (WRITE, HOLD):
@@ -72,7 +72,7 @@ def as_line(wish: Any) -> list[Any]:  # noqa: PLR0911 - one for each kind
 
 
 def from_line(line: list[Any]) -> Fields:
-    """The fields of a wish, from its JSON value.
+    """The fields of a wish, from its JSON value without the player.
 
     Raises
     ------
@@ -113,6 +113,11 @@ def ramp_of(address: str, target: Any, ramp: Any) -> tuple[int, int, float, floa
     index = INDICES[address]
     lo, hi = (0.0, 0.0) if index == SILENCE else (ENGINE[index].lo, ENGINE[index].hi)
     return RAMP, index, _within(target, lo, hi), float(frames_of(ramp))
+
+
+def player_of(number: Any, players: int) -> int:
+    """The player of a line, counted from 0; raises ValueError."""
+    return _whole(number, 1, players) - 1
 
 
 def frames_of(value: Any) -> int:

@@ -13,30 +13,12 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import OutputError
 from yehu_server.files import create, discard, why, write_all
-from yehu_server.playing.calibrations import as_data
-from yehu_server.score.capture_format import FORMAT, VERSION, as_line, build
+from yehu_server.score.capture_beginning import Beginning, header_of
+from yehu_server.score.capture_format import as_line
 
 ROOM_BYTES = 1 << 16  # free space needed to begin a capture
-
-
-def header_of(instrument: Instrument) -> dict[str, Any]:
-    """The first line: all that an instrument and its player start from."""
-    calibration = instrument.calibration
-    return {
-        "format": FORMAT,
-        "version": VERSION,
-        "rate": instrument.rate,
-        "seed": instrument.seed,
-        "open_strings": instrument.open_strings.value,
-        "tensions": [silk.T for silk in instrument.quantities.strings],
-        "calibration": None if calibration is None else as_data(calibration),
-        "bowing": instrument.bowing.tolist(),
-        "build": build(),
-        "values": instrument.start_values,
-    }
 
 
 class CaptureWriter:
@@ -44,8 +26,8 @@ class CaptureWriter:
 
     Parameters
     ----------
-    instrument : Instrument
-        What is captured, as it is before the first frame.
+    beginning : Beginning
+        What the session starts from.
     overwrite : bool
         Whether to replace an older file.
 
@@ -59,17 +41,17 @@ class CaptureWriter:
         self,
         target: Path,
         *,
-        instrument: Instrument,
+        beginning: Beginning,
         overwrite: bool = False,
     ) -> None:
         self._target = target
         self._file = create(target, overwrite=overwrite, room_bytes=ROOM_BYTES)
         self._whole_bytes = 0
-        self._write([header_of(instrument)])
+        self._write([header_of(beginning)])
 
-    def wishes(self, wishes: Any) -> None:
-        """Add wishes [shape=(wishes,), dtype=WISH] that were fulfilled."""
-        self._write(map(as_line, wishes))
+    def wishes(self, wishes: Any, player: int = 0) -> None:
+        """Add wishes [shape=(wishes,), dtype=WISH] that a player, counted from 0, fulfilled."""
+        self._write(as_line(wish, player) for wish in wishes)
 
     def note(self, what: str, frame: int, **details: int) -> None:
         """Add a ``rest`` (after a gap `since` a frame), or ``lost`` `events`."""

@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
+from yehu_server.score.capture_beginning import beginning_of
 from yehu_server.score.capture_writer import CaptureWriter
 
 
 class LiveCapture:
-    """Writes the wishes that a player fulfils to a file; a full disk ends only the capture.
+    """Writes the wishes that players fulfil to a file; a full disk ends only the capture.
 
     Parameters
     ----------
-    instrument : Instrument
-        It must report its wishes (``Instrument.report_wishes``) from the first frame on.
+    ensemble : Ensemble
+        Its instruments must report their wishes (``Instrument.report_wishes``) from the first
+        frame on.
+    has_room : bool
+        Whether it plays in a room.
     said : callable
         Called with a line when the capture ends by itself.
     overwrite : bool
@@ -30,16 +34,19 @@ class LiveCapture:
 
     def __init__(
         self,
-        instrument: Instrument,
+        ensemble: Ensemble,
         target: Path,
         said: Callable[[str], None],
         *,
+        has_room: bool,
         overwrite: bool = False,
     ) -> None:
-        self._instrument = instrument
+        self._ensemble = ensemble
         self._said = said
         self._writer: CaptureWriter | None = CaptureWriter(
-            target, instrument=instrument, overwrite=overwrite
+            target,
+            beginning=beginning_of(ensemble.instruments, has_room=has_room),
+            overwrite=overwrite,
         )
         self._rests = 0  # number of those written
         self._unreported = 0
@@ -59,7 +66,7 @@ class LiveCapture:
         writer, self._writer = self._writer, None
         if writer is not None:
             try:
-                writer.close(self._instrument.frame)
+                writer.close(self._ensemble.frame)
             except OutputError as error:
                 self._end(error)
 
@@ -70,14 +77,16 @@ class LiveCapture:
         self._writer = None
 
     def _write(self, writer: CaptureWriter) -> None:
-        for since, frame in self._instrument.rests[self._rests :]:
+        for since, frame in self._ensemble.rests[self._rests :]:
             writer.note("rest", frame, since=since)
             self._rests += 1
-        writer.wishes(self._instrument.applied_wishes())
-        meters = self._instrument.meters()
-        unreported = int(meters["unreported"])
+        unreported = 0
+        for player, instrument in enumerate(self._ensemble.instruments):
+            writer.wishes(instrument.applied_wishes(), player)
+            unreported += int(instrument.meters()["unreported"])
         if unreported > self._unreported:
-            writer.note("lost", int(meters["frame"]), events=unreported - self._unreported)
+            frame = int(self._ensemble.meters()["frame"])
+            writer.note("lost", frame, events=unreported - self._unreported)
             self._unreported = unreported
 
     def _end(self, error: OutputError) -> None:

@@ -8,13 +8,14 @@ that overlap.
 from __future__ import annotations
 
 import math
+from bisect import insort
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+from yehu_server.score.score import Score
 from yehu_server.score.score_notes import ScoreNote, notes_of
-from yehu_server.score.smf import Score, ScoreEvent
 
 LOUDNESS = {1, 2, 7, 11}  # controllers: modulation, breath, volume, expression
 PEDALS = {64, 68}  # sustain, legato
@@ -85,20 +86,22 @@ def is_fingered(score: Score) -> bool:
 def phrases_of(notes: Sequence[ScoreNote]) -> list[list[ScoreNote]]:
     """Divide the notes of one voice into phrases."""
     phrases: list[list[ScoreNote]] = []
+    lengths: list[float] = []  # of the last phrase, sorted
     for note in notes:
-        if not phrases or _ends_before(phrases[-1], note):
+        if not phrases or _ends_before(phrases[-1], lengths, note):
             phrases.append([])
+            lengths = []
         phrases[-1].append(note)
+        insort(lengths, note.length_s)
     return phrases
 
 
-def _ends_before(phrase: list[ScoreNote], note: ScoreNote) -> bool:
+def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote) -> bool:
     last = phrase[-1]
     if note.start_s - last.end_s >= REST_S:
         return True
     if note.beat - phrase[0].beat >= LONGEST_PHRASE_BEATS:
         return True
-    lengths = sorted(each.length_s for each in phrase)
     usual = lengths[len(lengths) // 2]
     return len(phrase) > 3 and last.length_s > LONG_NOTE * usual
 
@@ -167,7 +170,7 @@ def _changed(score: Score, velocities: dict[int, int], ends_s: dict[int, float])
             message = event.message.copy(velocity=velocities[number])
             events.append(replace(event, message=message))
         elif number in ends_s:
-            events.append(ScoreEvent(ends_s[number], event.message, event.beat))
+            events.append(replace(event, time_s=ends_s[number]))
         else:
             events.append(event)
     events.sort(key=lambda event: event.time_s)

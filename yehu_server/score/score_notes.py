@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from yehu_server.score.smf import Score
+from yehu_server.score.score import Score
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from yehu_server.errors import OutputError
 from yehu_server.files import replacing
 from yehu_server.surfaces import max as max_patch
 from yehu_server.surfaces import page, puredata, stage, touchosc
+from yehu_server.surfaces.layout import ALL, for_part
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,19 @@ def chosen(names: Sequence[str]) -> list[Surface]:
     return [surface for surface in SURFACES if not names or surface.name in names]
 
 
-def write(surface: Surface, folder: Path, server: Address = OSC_ADDRESS) -> Path:
+def file_of(surface: Surface, folder: Path, part: int = ALL) -> Path:
+    """The file of a surface for a part, from 1: ``yehu-part-2.pd``."""
+    path = folder / surface.name
+    return path if part == ALL else path.with_stem(f"{path.stem}-part-{part}")
+
+
+def made(surface: Surface, server: Address, part: int) -> bytes:
+    """What a surface's file has, for a server and a part."""
+    with for_part(part):
+        return surface.make(server)
+
+
+def write(surface: Surface, folder: Path, server: Address = OSC_ADDRESS, part: int = ALL) -> Path:
     """Write a surface's file, replacing an older one; return its path.
 
     Raises
@@ -59,17 +72,19 @@ def write(surface: Surface, folder: Path, server: Address = OSC_ADDRESS) -> Path
     OutputError
         Where it cannot be written.
     """
-    target = folder / surface.name
-    data = surface.make(server)
+    target = file_of(surface, folder, part)
+    data = made(surface, server, part)
     with replacing(target) as partial:
         partial.write_bytes(data)
     return target
 
 
-def is_fresh(surface: Surface, folder: Path, server: Address = OSC_ADDRESS) -> bool:
+def is_fresh(
+    surface: Surface, folder: Path, server: Address = OSC_ADDRESS, part: int = ALL
+) -> bool:
     """Whether a folder holds the file as it would be written now."""
     try:
-        there = surface.content((folder / surface.name).read_bytes())
+        there = surface.content(file_of(surface, folder, part).read_bytes())
     except (OSError, zlib.error):
         return False
-    return there == surface.content(surface.make(server))
+    return there == surface.content(made(surface, server, part))

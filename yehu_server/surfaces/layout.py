@@ -1,13 +1,17 @@
-"""What all surfaces share: groups of parameters, two pads, keys, and the subscription."""
+"""What all surfaces share: parameters in groups, pads, keys, addresses, and the subscription."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 
 from yehu_server.analysis.pitch import note_name
+from yehu_server.control.calls import CALLS
+from yehu_server.control.parts import group as group_of_part
 from yehu_server.params.spec import Param
-from yehu_server.params.table import PREFIX, TABLE, find
+from yehu_server.params.table import PREFIX, TABLE, UNIT, find
 from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 
 FIRST_GROUP = "playing"  # used most
@@ -89,6 +93,45 @@ def label(param: Param) -> str:
     return " ".join(param.address.split("/")[2:]).replace("_", " ")
 
 
+# -- the part that a surface is for ---------------------------------------------------------------
+
+ALL = 0  # in place of a part, from 1: the addresses without a part, which are those of the first
+_part: ContextVar[int] = ContextVar("part", default=ALL)
+_FOR_ALL = {param.address for param in TABLE if param.is_shared} | {
+    call.address for call in CALLS if call.is_for_all
+}
+
+
+@contextmanager
+def for_part(part: int) -> Iterator[None]:
+    """Let what is made meanwhile speak to a part, from 1, or `ALL`."""
+    before = _part.set(part)
+    try:
+        yield
+    finally:
+        _part.reset(before)
+
+
 def full(address: str) -> str:
-    """Return a parameter's OSC address."""
-    return PREFIX + address
+    """Return the OSC address of a parameter or call."""
+    part = _part.get()
+    if part == ALL or address.removesuffix(UNIT) in _FOR_ALL:
+        return PREFIX + address
+    return PREFIX + group_of_part(part - 1) + address
+
+
+def subscriptions(form: str = "") -> list[str]:
+    """The OSC addresses to subscribe at, so that all parameters are told in a form."""
+    asked = full("/subscribe" + form)
+    common = PREFIX + "/subscribe" + form  # a part does not tell what all parts share
+    return [asked] if asked == common else [asked, common]
+
+
+def named(name: str) -> str:
+    """Put the part behind a name: ``yehu part 2``."""
+    return name if _part.get() == ALL else f"{name} part {_part.get()}"
+
+
+def port_from(first: int) -> int:
+    """A port to listen at, another for each part."""
+    return first + _part.get()

@@ -18,7 +18,7 @@ from yehu_server.params.spec import Param
 from yehu_server.surfaces import layout
 from yehu_server.surfaces.layout import Axis, Group, full
 
-PORT = 7400  # at which the patch receives values from the server
+PORT = 7400  # at which the patch receives values from the server; that of part N at N more
 # While a dial is moved it ignores the server, whose echo would move it back.
 QUIET_MS = 250
 
@@ -40,7 +40,10 @@ class Panel:
 
     def __init__(self) -> None:
         self.patcher = Patcher(
-            title="yehu", openinpresentation=1, on_invalid="raise", validate_attrs=False
+            title=layout.named("yehu"),
+            openinpresentation=1,
+            on_invalid="raise",
+            validate_attrs=False,
         )
         self._boxes = 0
 
@@ -97,6 +100,11 @@ def make(server: Address) -> bytes:
     return (json.dumps(panel.patcher.to_dict(), indent=1) + "\n").encode("utf-8")
 
 
+def _local(kind: str, name: str) -> str:
+    """An object that sends to, or receives at, a name that another part's patch does not have."""
+    return f"{kind} {layout.named('yehu').replace(' ', '.')}.{name}"
+
+
 def _shelves(groups: Sequence[Group]) -> Iterator[tuple[Group, int, int]]:
     """Return each group's row and column: beside the one before it where there is room."""
     row, column, rows = 0, 0, 0
@@ -115,19 +123,20 @@ def _network(panel: Panel, server: Address) -> None:
     begin = panel.add("loadbang", (16, 16))
     metro = panel.add(f"metro {1000 * layout.SUBSCRIBE_EVERY_S}", (16, 76))
     on = panel.add("message 1", (16, 46))
-    asking = f"{full('/subscribe')} {layout.SUBSCRIBED_S} {PORT}"
+    heard_at = layout.port_from(PORT)
+    asking = ", ".join(f"{to} {layout.SUBSCRIBED_S} {heard_at}" for to in layout.subscriptions())
     subscribe = panel.add(f"message {asking}", (16, 106))
     out = panel.add(f"udpsend {host} {port}", (16, 176))
     panel.chain(begin, on, metro, subscribe, out)
-    panel.chain(panel.add("r yehu.out", (250, 106)), out)
-    moved = panel.add("r yehu.moved", (360, 16))
+    panel.chain(panel.add(_local("r", "out"), (250, 106)), out)
+    moved = panel.add(_local("r", "moved"), (360, 16))
     order = panel.add("t b b", (360, 46))
     wait = panel.add(f"delay {QUIET_MS}", (360, 76))
     then = panel.add("t b b", (360, 106))
     close = panel.add("message 0", (500, 76))
     reopen = panel.add("message 1", (500, 106))
     gate = panel.add("gate 1 1", (500, 146))
-    heard = panel.add(f"udpreceive {PORT}", (620, 106))
+    heard = panel.add(f"udpreceive {heard_at}", (620, 106))
     panel.chain(moved, out)
     panel.chain(moved, order, wait, then, subscribe)
     panel.connect(order, close, outlet=1)
@@ -135,13 +144,13 @@ def _network(panel: Panel, server: Address) -> None:
     panel.chain(close, gate)
     panel.chain(reopen, gate)
     panel.connect(heard, gate, inlet=1)
-    panel.chain(gate, panel.add("s yehu.in", (500, 176)))
+    panel.chain(gate, panel.add(_local("s", "in"), (500, 176)))
 
 
 def _hands(panel: Panel) -> None:
     """Add two pads, keys and buttons."""
     half = (COLUMNS * CELL[0] - MARGIN) / 2
-    send = panel.add("s yehu.out", (16, 560))
+    send = panel.add(_local("s", "out"), (16, 560))
     pitch = panel.add(f"prepend {full('/pitch')}", (16, 500))
     press = panel.add(f"prepend {full('/press')}", (200, 500))
     string = (layout.STRING_PITCH, layout.STRING_PRESS)
@@ -228,8 +237,8 @@ def _dial(panel: Panel, param: Param, at: Place, shown: Place) -> None:
     panel.add(f"comment {param.range_text}", (x + 90, y + 50), range_place, textjustification=1,
               fontsize=9.0, size=(90.0, 18.0))  # fmt: skip
     said = panel.add(f"prepend {address}", (x, y + 118), size=(170.0, LINE))
-    panel.chain(dial, said, panel.add("s yehu.moved", (x, y + 144)))
-    told = panel.add("r yehu.in", (x, y))
+    panel.chain(dial, said, panel.add(_local("s", "moved"), (x, y + 144)))
+    told = panel.add(_local("r", "in"), (x, y))
     route = panel.add(f"route {address}", (x, y + 70), size=(170.0, LINE))
     quietly = panel.add("prepend set", (x, y + 94))
     begin = panel.add(f"loadmess set {param.default:g}", (x, y + 26), size=(86.0, LINE))

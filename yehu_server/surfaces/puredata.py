@@ -107,7 +107,7 @@ def _play(patch: Canvas) -> None:
     keys = layout.KEYS
     patch.text(20, 10, f"keys {keys[0].name} to {keys[-1].name}")
     patch.object(
-        20, 34, f"hradio 22 1 0 {len(keys)} {KEY} empty empty 0 -8 0 10 {COLOURS} 0"
+        20, 34, f"hradio 22 1 0 {len(keys)} {_local(KEY)} empty empty 0 -8 0 10 {COLOURS} 0"
     )  # fmt: skip
     for place, (name, label) in enumerate(
         ((END, "end_the_note"), (LIFT, "lift_the_bow"), (RELEASE, "release"), (PANIC, "panic"))
@@ -115,7 +115,7 @@ def _play(patch: Canvas) -> None:
         patch.object(
             20 + 140 * place,
             72,
-            f"bng 22 250 50 0 {name} empty {label} 28 11 0 12 {COLOURS}",
+            f"bng 22 250 50 0 {_local(name)} empty {label} 28 11 0 12 {COLOURS}",
         )
 
 
@@ -149,11 +149,17 @@ def _wires(server: Address) -> Canvas:
     connect = wires.message(120, 80, f"connect {host} {port}")
     where = wires.message(300, 80, _defaults(), 60)
     subscribe = wires.message(20, 110, f"{layout.SUBSCRIBED_S}")
-    asking = wires.object(20, 140, _format("/subscribe"))
+    asking = [
+        wires.object(20 + 150 * column, 140, _format_of(address))
+        for column, address in enumerate(layout.subscriptions())
+    ]
     send = wires.object(20, 200, "list prepend send")
     trim = wires.object(20, 230, "list trim")
     net = wires.object(20, 260, "netsend -u -b")
-    wires.chain(begin, order, metro, subscribe, asking, send, trim, net)
+    wires.chain(begin, order, metro, subscribe)
+    for one in asking:
+        wires.chain(subscribe, one, send)
+    wires.chain(send, trim, net)
     wires.connect(order, connect, outlet=1)
     wires.connect(order, where, outlet=2)
     wires.connect(connect, net)
@@ -172,8 +178,17 @@ def _defaults() -> str:
     )
 
 
+def _local(name: str) -> str:
+    """A name that all patches of one Pd know, another for each part."""
+    return name.replace("yehu", layout.named("yehu").replace(" ", "."), 1)
+
+
 def _format(address: str) -> str:
-    return "oscformat " + full(address).strip("/").replace("/", " ")
+    return _format_of(full(address))
+
+
+def _format_of(address: str) -> str:
+    return "oscformat " + address.strip("/").replace("/", " ")
 
 
 def _sliders(wires: Canvas, send: int) -> int:
@@ -193,7 +208,7 @@ def _sliders(wires: Canvas, send: int) -> int:
 
 def _calls(wires: Canvas, send: int) -> None:
     """Add what keys, which slur, and buttons send."""
-    key = wires.object(20, 420, f"r {KEY}")
+    key = wires.object(20, 420, f"r {_local(KEY)}")
     note = wires.object(20, 445, f"+ {layout.KEYS[0].note}")
     change = wires.object(20, 470, "change -1")
     order = wires.object(20, 495, "t f b f")
@@ -208,7 +223,7 @@ def _calls(wires: Canvas, send: int) -> None:
     wires.connect(order, last, inlet=1)
     wires.chain(begin, on, send)
     wires.chain(last, off, send)
-    end = wires.object(250, 420, f"r {END}")
+    end = wires.object(250, 420, f"r {_local(END)}")
     then = wires.object(250, 445, "t b b b")
     none = wires.message(250, 500, "0")
     forget = wires.message(300, 470, "set -1")
@@ -221,7 +236,7 @@ def _calls(wires: Canvas, send: int) -> None:
         ((LIFT, "0 0", "/bow"), (RELEASE, "", "/release"), (PANIC, "", "/panic"))
     ):
         x = 400 + 180 * place
-        path = [wires.object(x, 420, f"r {name}")]
+        path = [wires.object(x, 420, f"r {_local(name)}")]
         if arguments:
             path.append(wires.message(x, 445, arguments))
         wires.chain(*path, wires.object(x, 470, _format(address)), send)

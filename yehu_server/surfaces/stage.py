@@ -48,7 +48,7 @@ def _walk(widget: Widget) -> list[Widget]:
 
 
 def _subscribing() -> str:
-    send = f"send('{full('/subscribe')}', {layout.SUBSCRIBED_S})"
+    send = "; ".join(f"send('{to}', {layout.SUBSCRIBED_S})" for to in layout.subscriptions())
     return f"{send}\nsetInterval(() => {{ {send} }}, {1000 * layout.SUBSCRIBE_EVERY_S})"
 
 

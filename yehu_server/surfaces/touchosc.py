@@ -48,7 +48,7 @@ function update()
   local now = getMillis()
   if subscribed == nil or now - subscribed > {every_ms} then
     subscribed = now
-    sendOSC('{address}')
+    {sending}
   end
 end
 """
@@ -103,7 +103,8 @@ def document() -> py2tosc.Document:
         name="pages", frame=(0, BAR, WIDTH, HEIGHT - BAR), tabbar_size=TABS, children=pages
     )
     every_ms = 1000 * layout.SUBSCRIBE_EVERY_S
-    script = SUBSCRIBE.format(every_ms=every_ms, address=full("/subscribe" + UNIT))
+    sending = "\n    ".join(f"sendOSC('{to}')" for to in layout.subscriptions(UNIT))
+    script = SUBSCRIBE.format(every_ms=every_ms, sending=sending)
     root = py2tosc.group(
         name="yehu",
         frame=(0, 0, WIDTH, HEIGHT),
@@ -127,7 +128,7 @@ def _identify(control: Control, path: str) -> None:
 
 def _bar() -> Iterator[Control]:
     frame = (GAP, GAP, 500, BAR - 2 * GAP)
-    yield _label("title", frame, "yehu", text_size=22, text_align_h=1)
+    yield _label("title", frame, layout.named("yehu"), text_size=22, text_align_h=1)
     for place, (call, colour) in enumerate((("/release", WOOD), ("/panic", ALARM))):
         name = call.strip("/")
         x = WIDTH - (2 - place) * (150 + GAP)

@@ -7,12 +7,13 @@ from fuzz.instrument import Instrument
 from fuzz.target import scratch, target, written
 
 from yehu_server.controls.slots import HIGHEST, LOWEST, SILENCE
+from yehu_server.engine.rig import MOST_PARTS
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
 from yehu_server.physics.grid import check_rate
-from yehu_server.physics.quantities import Quantities, override
 from yehu_server.player.wishes import KINDS, RAMP
-from yehu_server.score.capture import Beginning, Capture, read_capture
+from yehu_server.score.capture import Capture, read_capture
+from yehu_server.score.capture_beginning import Beginning
 from yehu_server.score.capture_format import MOST_FRAMES
 from yehu_server.score.capture_writer import CaptureWriter
 
@@ -25,6 +26,10 @@ WORDS = (
     b", 0]\n",
     b'"version": 1',
     b'"version": 2',
+    b'"version": 3',
+    b'"players": ',
+    b'"quantities": ',
+    b"\n[0, 1, ",
     *(f'"{kind}", '.encode() for kind in KINDS),
     b'"/bow/speed"',
     b'"/playing/bend"',
@@ -37,27 +42,16 @@ WORDS = (
 MOST_FULFILLED = 2000
 
 
-class Played:
-    """Stands in for the instrument of a capture, as its writer sees it."""
-
-    def __init__(self, beginning: Beginning) -> None:
-        first, second = beginning.tensions
-        changes = {"string_1": {"T": first}, "string_2": {"T": second}}
-        self.quantities = override(Quantities(), changes)
-        self.rate, self.seed = beginning.rate, beginning.seed
-        self.open_strings, self.calibration = beginning.open_strings, beginning.calibration
-        self.bowing, self.start_values = beginning.bowing, beginning.values
-
-
 def check_beginning(beginning: Beginning) -> None:
-    """A replay begins with these two checks; what else it starts from is in range."""
+    """A replay begins with this check; what else it starts from is in range."""
     check_rate(beginning.rate)
-    Played(beginning)
-    assert all(find(address).accept(value) == value for address, value in beginning.values.items())
-    assert np.isfinite(beginning.bowing).all()
-    if beginning.calibration is not None:
-        for tables in (beginning.calibration.sharpening, beginning.calibration.levels):
-            assert all(np.isfinite(table).all() for table in tables)
+    assert 1 <= len(beginning.players) <= MOST_PARTS
+    for start in beginning.players:
+        assert all(find(address).accept(value) == value for address, value in start.values.items())
+        assert np.isfinite(start.bowing).all()
+        if start.calibration is not None:
+            for tables in (start.calibration.sharpening, start.calibration.levels):
+                assert all(np.isfinite(table).all() for table in tables)
 
 
 def check_wishes(taken: Capture) -> None:
@@ -88,15 +82,21 @@ def capture(data: bytes) -> None:
     check_wishes(taken)
     again = scratch() / "again.jsonl"
     again.unlink(missing_ok=True)
-    writer = CaptureWriter(again, instrument=Played(taken.beginning))
-    writer.wishes(taken.wishes)
+    writer = CaptureWriter(again, beginning=taken.beginning)
+    for player in range(len(taken.beginning.players)):
+        writer.wishes(taken.wishes[taken.players == player], player)
     for rest, since in taken.rests.items():
         writer.note("rest", rest, since=since)
     writer.close(taken.frames)
     read = read_capture(again)
-    assert np.array_equal(read.wishes, taken.wishes)
-    assert np.array_equal(read.beginning.bowing, taken.beginning.bowing)
-    for what in ("rate", "tensions", "seed", "open_strings", "calibration", "values"):
-        assert getattr(read.beginning, what) == getattr(taken.beginning, what), what
+    for player, start in enumerate(taken.beginning.players):
+        ours, theirs = read.players == player, taken.players == player
+        assert np.array_equal(read.wishes[ours], taken.wishes[theirs])
+        written_start = read.beginning.players[player]
+        assert np.array_equal(written_start.bowing, start.bowing)
+        for what in ("quantities", "seed", "open_strings", "calibration", "values", "body"):
+            assert getattr(written_start, what) == getattr(start, what), what
+    assert read.beginning.rate == taken.beginning.rate
+    assert read.beginning.has_room == taken.beginning.has_room
     assert read.rests == taken.rests
     assert read.end == taken.frames

@@ -45,6 +45,9 @@ class Desk:
     def status(self) -> dict[str, float | str]:
         return {"load": 0.5, "recording": ""}
 
+    def part_status(self, part: int) -> dict[str, float]:
+        return {"note": -1.0, "keys": float(part)}
+
     def soon(self, action: Callable[[], None]) -> None:
         action()
 
@@ -132,7 +135,7 @@ def osc_calls(data: bytes) -> None:
         instrument, desk, ear = Instrument(), Desk(), Ear(host="ear")
         style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
         player = LivePlayer(instrument, style, delay_ms=3.0)
-        handler = OscHandler(player, desk)
+        handler = OscHandler([player], desk)
 
         def take(what: bytes) -> None:
             for _ in handler.handle(what, ear, clock.monotonic_ns()):

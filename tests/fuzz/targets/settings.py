@@ -1,4 +1,4 @@
-"""Files of settings: config, presets, mappings."""
+"""Files of settings: config, presets, mappings, ensembles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from fuzz.target import scratch, target, written
 
 from yehu_server import cli
 from yehu_server.cli.config import parse
-from yehu_server.errors import MappingError, ParameterError, PresetError
+from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.errors import EnsembleError, MappingError, ParameterError, PresetError
 from yehu_server.params.preset import SAVED
 from yehu_server.params.table import BY_ADDRESS, TABLE, find
 from yehu_server.playing.mapping import with_bases
@@ -27,6 +28,7 @@ from yehu_server.playing.mapping_file import (
 )
 from yehu_server.playing.mapping_writer import as_toml, canonical, edited
 from yehu_server.playing.presets import Presets, read_preset
+from yehu_server.score.ensemble_file import read_ensemble
 
 ADDRESSES = tuple(f'"{address}"'.encode() for address in list(BY_ADDRESS)[::4])
 TOML = (
@@ -118,6 +120,41 @@ def preset(data: bytes) -> None:
         assert again.values[address] == float(f"{values[address]:.7g}"), address
     assert {**read.values, **again.values} == dict(again.values)
     assert (again.about, again.program, again.unknown) == (read.about, read.program, read.unknown)
+
+
+@target(
+    "ensemble",
+    EnsembleError,
+    words=(
+        b"\n[[part]]\n",
+        b"[room]\n",
+        b"room = ",
+        b"size = ",
+        b"channel = ",
+        b"track = ",
+        b"name = ",
+        b"preset = ",
+        b"instrument = ",
+        b"section = ",
+        b"seed = ",
+        b"pan = ",
+        b"distance = ",
+        b"gain = ",
+        b"set = { ",
+        *ADDRESSES,
+        *TOML,
+    ),
+)
+def ensemble(data: bytes) -> None:
+    """An ensemble has parts that play something, values in range; or is an EnsembleError."""
+    read = read_ensemble(written(data, "ensemble.toml"))
+    assert 1 <= len(read.parts) <= MOST_PARTS
+    for part in read.parts:
+        assert part.channel is not None or part.track is not None
+        assert "\n" not in (part.name or "")
+        for address, value in part.settings:
+            assert find(address).lo <= value <= find(address).hi
+    assert not read.room or "/room/size" in dict(read.room)
 
 
 MAPPING_WORDS = (

@@ -16,7 +16,7 @@ from fuzz.target import ROOT, target
 from yehu_server.control import web_sockets
 from yehu_server.control.clients import Clients
 from yehu_server.control.packets import PacketError, unpack
-from yehu_server.control.query import LISTENABLE
+from yehu_server.control.query import LISTENABLE, Told
 from yehu_server.control.status import STATUS, Kind
 from yehu_server.control.web import Sources, WebOptions, WebServer
 from yehu_server.control.web_sockets import CommandError
@@ -112,8 +112,8 @@ class House:
         logger.addHandler(self.defects)
         logger.propagate = False
         self.loop.set_exception_handler(lambda _loop, said: self._defect(said))
-        clients = Clients(lambda: VALUES, PREFIX, lambda: STATES)
-        sources = Sources(lambda: VALUES, lambda: STATES, ROOT / "mappings")
+        clients = Clients(lambda _group: VALUES, PREFIX, lambda _group: STATES)
+        sources = Sources(lambda: Told(VALUES, STATES), ROOT / "mappings")
         self.web = WebServer(WebOptions((HOST, 0)), Osc(), clients, sources)
         self._clients = clients
         self._server = self.loop.run_until_complete(self._set_up())
@@ -261,6 +261,6 @@ def websocket(data: bytes) -> None:
 )
 def websocket_command(data: bytes) -> None:
     """A text frame is a command for an existing address, or a CommandError."""
-    command, address = web_sockets._read(data.decode(errors="replace"))
+    command, address = web_sockets._read(data.decode(errors="replace"), 1)
     assert command in {"LISTEN", "IGNORE"}
     assert address in LISTENABLE

@@ -1,0 +1,97 @@
+"""Strokes of a sweep a second, beside what the kernel alone allows; printed, saved on request.
+
+    .venv/bin/python bench/strokes.py [--save bench/results/NAME.json]
+
+The strokes are a Schelleng diagram of 0.3 s each. The kernel's figure is `kernel.advance` over the
+same controls, made in advance, without judging them. Times are medians of several runs.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import report
+from rich.console import Console
+from rich.table import Table
+
+from yehu_server.physics import kernel, layout
+from yehu_server.regimes.strokes import find
+from yehu_server.sweeps.running import sweep
+from yehu_server.sweeps.study import Study, study_of
+
+RUNS = 5
+DATA = {
+    "duration": 0.3,
+    "stroke": {"string": 1, "note": 70, "acceleration": 10.0},
+    "vary": {
+        "force": {"from": 0.05, "to": 5.0, "steps": 12, "spread": "log"},
+        "position": {"from": 0.05, "to": 0.3, "steps": 10, "spread": "log"},
+    },
+}
+
+
+def kernel_strokes(study: Study) -> list[Any]:
+    """Model, state and arrays of each stroke, as `kernel.advance` takes them."""
+    strokes = []
+    for number in range(study.coarse):
+        place = np.unravel_index(number, study.shape)
+        gesture = study.bow.gesture(study.axes, [int(i) for i in place])
+        model = kernel.prepare(gesture.quantities, gesture.sample_rate)
+        controls = gesture.control_rows()
+        probes = np.zeros((gesture.frames, layout.probe_columns(1)))
+        strokes.append((model, kernel.at_rest(model), controls, probes))
+    return strokes
+
+
+def advance(stroke: Any) -> None:
+    model, state, controls, probes = stroke
+    state = state.copy()
+    kernel.advance(model, state, controls, probes, None)
+
+
+def paced(work: Callable[[], object], count: int) -> float:
+    """Strokes a second, the median of RUNS after one that does not count."""
+    work()
+    paces = []
+    for _ in range(RUNS):
+        start = time.perf_counter()
+        work()
+        paces.append(count / (time.perf_counter() - start))
+    return statistics.median(paces)
+
+
+def main() -> None:
+    """Measure and print everything."""
+    arguments = report.options(__doc__ or "").parse_args()
+    study = study_of(DATA)
+    count, alone = study.coarse, kernel_strokes(study)
+    index = np.stack(np.unravel_index(np.arange(count), study.shape), axis=1)
+    strokes = study.bow.strokes(study.axes, index)
+    cores = os.cpu_count() or 1
+    figures: dict[str, float] = {
+        "kernel alone, 1 thread": paced(lambda: deque(map(advance, alone), maxlen=0), count),
+        "strokes judged, 1 thread": paced(lambda: find(*strokes), count),
+    }
+    with ThreadPoolExecutor(cores) as pool:
+        figures[f"kernel alone, {cores} threads"] = paced(
+            lambda: list(pool.map(advance, alone)), count
+        )
+    figures[f"whole sweep, {cores} threads"] = paced(lambda: sweep(study, workers=cores), count)
+    table = Table(
+        "strokes of 0.3 s at 44.1 kHz", "a second", title=f"load {os.getloadavg()[0]:.1f}"
+    )
+    for name, pace in figures.items():
+        table.add_row(name, f"{pace:.0f}")
+    Console().print(table)
+    report.save(arguments.save, figures, load=os.getloadavg()[0])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,184 @@
+"""Draw the figures of docs/playability.md from the kept maps, and write its tables.
+
+    .venv/bin/python scripts/playability_study/draw.py [FOLDER]
+
+It writes figures to docs/figures, and the tables into the page; or figures alone to FOLDER.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from maps import KINDS, NEVER, Maps, bands, median, read
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+from tables import write_tables
+
+from yehu_server.analysis.pitch import note_name
+from yehu_server.physics.quantities import measured_body
+from yehu_server.sweeps.colours import COLOURS
+from yehu_server.sweeps.picture import edges
+
+ROOT = Path(__file__).resolve().parents[2]
+STRINGS = ("F4 string", "C5 string")
+BLUE, RED, GREEN = "#1f5fa8", "#c03a2b", "#2f8f5b"
+Array = Any
+
+
+def panel(axes: Any, maps: Maps, cells: Array, **options: Any) -> Any:
+    """Draw one map, on logarithmic scales."""
+    x, y = edges(maps.places, log=True), edges(maps.forces, log=True)
+    image = axes.pcolormesh(x, y, cells, rasterized=True, **options)
+    axes.set(xscale="log", yscale="log", xlim=x[[0, -1]], ylim=y[[0, -1]])
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.set_minor_formatter(NullFormatter())
+    axes.tick_params(labelsize=7)
+    return image
+
+
+def limits(axes: Any, maps: Maps, i: int) -> None:
+    """Draw Schelleng's limits."""
+    halo = [withStroke(linewidth=2.6, foreground="w")]
+    axes.plot(maps.places, maps.upper[i], "k-", lw=1.1, path_effects=halo)
+    axes.plot(maps.places, maps.lower[i], "k--", lw=1.1, path_effects=halo)
+
+
+def tiles(count: int, across: int) -> tuple[Any, Any]:
+    """A figure with a panel for each map."""
+    down = -(-count // across)
+    figure, panels = plt.subplots(
+        down, across, figsize=(2.15 * across, 2.05 * down + 0.7), sharex=True, sharey=True,
+        layout="constrained",
+    )  # fmt: skip
+    for axes in panels.flat[count:]:
+        axes.set_visible(False)
+    return figure, panels
+
+
+def label_tiles(panels: Any, x: str) -> None:
+    """Name the axes of the outer panels."""
+    for axes in panels[:, 0]:
+        axes.set_ylabel("bow force, N", fontsize=8)
+    for axes in panels[-1]:
+        axes.set_xlabel(x, fontsize=8)
+
+
+def regimes(strings: list[Maps], target: Path) -> None:
+    """Draw Schelleng's diagram of every note on both strings."""
+    every = [(k, maps, i) for k, maps in enumerate(strings) for i in range(len(maps.notes))]
+    figure, panels = tiles(len(every), 8)
+    names = strings[0].facts["regimes"]
+    colours = ListedColormap([COLOURS[name] for name in names])
+    norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
+    for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
+        panel(axes, maps, maps.regime[i], cmap=colours, norm=norm)
+        limits(axes, maps, i)
+        axes.set_title(f"{note_name(float(maps.notes[i]))}, {STRINGS[k][:2]}", fontsize=8, pad=2)
+    handles: list[Any] = [Patch(fc=COLOURS[name], ec="0.6", label=name) for name in names[1:]]
+    handles += [
+        Line2D([], [], color="k", ls="-", label="Schelleng's upper limit"),
+        Line2D([], [], color="k", ls="--", label="and lower limit"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
+    label_tiles(panels, "bow position β")
+    save(figure, target / "playability_schelleng.png")
+
+
+def onsets(strings: list[Maps], target: Path) -> None:
+    """Draw Guettler's diagram of every note on both strings."""
+    every = [(k, maps, i) for k, maps in enumerate(strings) for i in range(len(maps.notes))]
+    figure, panels = tiles(len(every), 8)
+    image: Any = None
+    for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
+        shown = np.ma.masked_equal(maps.periods[i], NEVER)
+        axes.set_facecolor("0.85")
+        image = panel(axes, maps, shown, cmap="viridis_r", vmin=0.0, vmax=60.0)
+        limits(axes, maps, i)
+        axes.set_title(f"{note_name(float(maps.notes[i]))}, {STRINGS[k][:2]}", fontsize=8, pad=2)
+    label = "periods from the first slip to Helmholtz motion; grey: never"
+    figure.colorbar(image, ax=panels, label=label, aspect=50, pad=0.01)
+    label_tiles(panels, "acceleration, m/s²")
+    save(figure, target / "playability_guettler.png")
+
+
+def forces(strings: list[Maps], target: Path) -> None:
+    """Draw least and greatest force over the notes, beside Schelleng's limits."""
+    figure, panels = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True, layout="constrained")
+    for axes, maps, name in zip(panels, strings, STRINGS, strict=True):
+        least, greatest = bands(maps)
+        at = int(np.abs(np.log(maps.places / 0.13)).argmin())
+        near = slice(max(0, at - 4), at + 5)
+        for found, limit, colour, label in (
+            (greatest, maps.upper, RED, "greatest"),
+            (least, maps.lower, BLUE, "least"),
+        ):
+            middle = median(found[:, near])
+            axes.plot(maps.notes, middle, "o-", color=colour, label=f"{label} force, measured")
+            axes.plot(maps.notes, limit[:, at], "--", color=colour, label="Schelleng's limit")
+        for frequency in measured_body().frequency_hz:
+            note = 69.0 + 12.0 * np.log2(frequency / 440.0)
+            if maps.notes[0] - 0.5 < note < maps.notes[-1] + 0.5:
+                axes.axvline(note, color="0.7", lw=3, zorder=0)
+        axes.set(yscale="log", title=f"{name}, β = 0.13, 0.2 m/s")
+        axes.set_xticks(maps.notes, [note_name(float(note)) for note in maps.notes], rotation=90)
+        axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    panels[0].set_ylabel("bow force, N; grey: modes of the body")
+    panels[0].legend(fontsize=8)
+    save(figure, target / "playability_forces.png")
+
+
+def repeats(both: list[Maps], target: Path) -> None:
+    """Draw how many of the bows make Helmholtz motion, and on how many cells they agree."""
+    figure, panels = plt.subplots(
+        1, len(both), figsize=(11, 4.6), layout="constrained", squeeze=False
+    )
+    image: Any = None
+    for axes, maps in zip(panels[0], both, strict=True):
+        share = maps.helmholtz.mean(axis=0)
+        image = panel(axes, maps, share, cmap="cividis", vmin=0.0, vmax=1.0)
+        limits(axes, maps, 0)
+        axes.set(
+            title=maps.facts["about"].rpartition(", ")[2],
+            xlabel="bow position β",
+            ylabel="bow force, N",
+        )
+    figure.colorbar(image, ax=panels, label="share of sixteen bows in Helmholtz motion")
+    save(figure, target / "playability_repeats.png")
+
+
+def save(figure: Any, path: Path) -> None:
+    figure.savefig(path, dpi=90)
+    plt.close(figure)
+    print(path)
+
+
+def main() -> None:
+    """Draw all figures, and write all tables."""
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "figures"
+    found = {
+        kind: [maps for maps in (read(f"{kind}_{i}") for i in (1, 2)) if maps is not None]
+        for kind in KINDS
+    }
+    regimes(found["schelleng"], target)
+    onsets(found["guettler"], target)
+    forces(found["schelleng"], target)
+    repeats(found["repeats"], target)
+    if len(sys.argv) == 1:
+        write_tables(ROOT / "docs" / "playability.md", found)
+
+
+if __name__ == "__main__":
+    main()

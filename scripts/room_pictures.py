@@ -1,0 +1,68 @@
+"""Draw how the rooms of the presets answer: reflections, decay, and the spectrum of the tail.
+
+    .venv/bin/python scripts/room_pictures.py [FOLDER]
+
+It writes rooms.png to FOLDER (default: docs/figures).
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from yehu_server.playing.presets import Presets
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+acoustics: Any = import_module("acoustics")
+stages: Any = import_module("stages")
+
+RATE = 48000.0
+NAMES = ("study", "courtyard", "hall")
+BANDS = ((250.0, "#1f5fa8"), (1000.0, "0.4"), (4000.0, "#c03a2b"))
+
+
+def heard(name: str) -> tuple[dict[str, float], Any, Any]:
+    """What is asked of a preset's room, and what an impulse gives there: directly, by the room."""
+    values = Presets().load(name).values
+    asked = {address.rpartition("/")[2]: value for address, value in values.items()}
+    return asked, *stages.response(RATE, 1.2 * asked["decay"] + 0.1, **asked)
+
+
+def main() -> None:
+    """Draw."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "figures"
+    figure, rows = plt.subplots(len(NAMES), 3, figsize=(12.0, 8.0), layout="constrained")
+    for axes, name in zip(rows, NAMES, strict=True):
+        asked, direct, room = heard(name)
+        at = np.arange(len(room)) / RATE
+        axes[0].plot(1e3 * at, direct[:, 0], color="0.7", lw=0.8)
+        axes[0].plot(1e3 * at, room[:, 0], color="#1f5fa8", lw=0.6)
+        axes[0].set(xlim=(-2.0, 120.0), ylim=(-0.5, 0.8), xlabel="ms", ylabel=name)
+        for centre, colour in BANDS:
+            left = acoustics.energy_left(acoustics.octave(room, RATE, centre))
+            curve = 10.0 * np.log10(np.maximum(left / left[0], 1e-12))
+            axes[1].plot(at, curve, color=colour, lw=1.0, label=f"{centre:g} Hz")
+        axes[1].set(xlim=(0.0, 1.2 * asked["decay"]), ylim=(-70.0, 3.0), xlabel="s", ylabel="dB")
+        axes[1].legend(fontsize=8)
+        axes[2].specgram(
+            room[:, 0] + 1e-12, NFFT=1024, noverlap=896, Fs=RATE, vmin=-190.0, vmax=-100.0
+        )
+        axes[2].set(ylim=(0.0, 16000.0), xlabel="s", ylabel="Hz")
+    rows[0][0].set_title("an impulse, left ear")
+    rows[0][1].set_title("what is left of the sound")
+    rows[0][2].set_title("spectrogram of the room")
+    figure.savefig(folder / "rooms.png", dpi=110)
+
+
+if __name__ == "__main__":
+    main()

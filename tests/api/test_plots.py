@@ -1,0 +1,287 @@
+"""``yehu.plot``: what its pictures show."""
+
+from __future__ import annotations
+
+import sys
+import types
+from collections.abc import Iterator
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import yehu_server as yehu
+from yehu_server import YehuError
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+
+RATE = 44100
+BOWED = {"bow_force": [[0, 0], [0.03, 0.7]], "bow_velocity": [[0, 0], [0.03, 0.3]]}
+NAMES = ("silent", "helmholtz", "multiple slip", "octave", "anomalous low", "raucous", "aperiodic")
+
+
+@pytest.fixture(autouse=True)
+def _figures() -> Iterator[None]:
+    plt.close("all")  # what other tests left
+    yield
+    plt.close("all")
+
+
+def sine(hz: float, seconds: float = 0.5) -> np.ndarray:
+    return 0.1 * np.sin(2.0 * np.pi * hz * np.arange(round(seconds * RATE)) / RATE)
+
+
+def result(axes: dict, **grids) -> types.SimpleNamespace:
+    """What a sweep found, as maps see it."""
+    gesture = {"controls": {"bow_velocity": 0.2}}
+    return types.SimpleNamespace(
+        axes={name: np.array(values) for name, values in axes.items()},
+        grid=lambda name: np.array(grids[name]),
+        regimes=NAMES,
+        meta={"gesture": gesture},
+    )
+
+
+def labels(axes) -> list[str]:
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+def line(axes, label: str):
+    return next(each for each in axes.get_lines() if each.get_label() == label)
+
+
+# ---------------------------------------------------------------- sounds
+
+
+def test_a_spectrogram_is_brightest_at_the_sine_and_has_its_pitch_over_it():
+    axes = yehu.plot.spectrogram(sine(1000.0), RATE, top_hz=4000.0)
+    (image,) = axes.get_images()
+    left, right, bottom, top = image.get_extent()
+    spectrum = image.get_array()
+    row = spectrum[:, spectrum.shape[1] // 2].argmax()
+    khz = bottom + (row + 0.5) * (top - bottom) / len(spectrum)
+    assert khz == pytest.approx(1.0, abs=0.02)
+    assert (left, right) == (pytest.approx(0.0, abs=0.01), pytest.approx(0.5, abs=0.02))
+    heard = line(axes, "pitch").get_ydata()
+    assert np.nanmedian(heard) == pytest.approx(1.0, abs=0.002)
+    assert axes.get_ylim() == (0.0, 4.0)
+
+
+def test_a_spectrogram_may_go_without_pitch():
+    assert not yehu.plot.spectrogram(sine(500.0), RATE, pitch=False).get_lines()
+
+
+def test_pitch_and_level_of_an_array():
+    axes = yehu.plot.pitch(sine(440.0), RATE)
+    assert np.nanmedian(line(axes, "played").get_ydata()) == pytest.approx(69.0, abs=0.02)
+    plt.figure()
+    axes = yehu.plot.level(sine(440.0), RATE)
+    middle = line(axes, "level (rms)").get_ydata()[10:-10]
+    assert middle == pytest.approx(-20.0 - 3.01, abs=0.3)
+
+
+def test_the_pitch_of_a_rendering_has_what_was_asked_for():
+    tune = yehu.render([("G4", 0.0, 0.4), ("C5", 0.4, 0.4)], dry=True, mono=True)
+    axes = yehu.plot.pitch(tune)
+    asked = line(axes, "asked").get_ydata()
+    assert set(np.round(asked[np.isfinite(asked)])) == {67.0, 72.0}
+    played = line(axes, "played")
+    at = np.searchsorted(played.get_xdata(), [0.25, 0.65])
+    assert played.get_ydata()[at] == pytest.approx([67.0, 72.0], abs=0.2)
+
+
+def test_the_pitch_of_a_simulation_is_found_however_quiet_it_is():
+    pressure = 1e-6 * sine(440.0)
+    quiet = types.SimpleNamespace(arrays={"pressure": pressure}, meta={"sample_rate": RATE})
+    axes = yehu.plot.pitch(quiet)
+    assert np.nanmedian(line(axes, "played").get_ydata()) == pytest.approx(69.0, abs=0.02)
+
+
+def test_pitch_is_counted_from_the_reference():
+    axes = yehu.plot.pitch(sine(442.0), RATE, a4=442.0)
+    assert np.nanmedian(line(axes, "played").get_ydata()) == pytest.approx(69.0, abs=0.02)
+
+
+# ---------------------------------------------------------------- runs
+
+
+@pytest.fixture(scope="module")
+def run() -> yehu.Simulation:
+    controls = BOWED | {"press_force": [[0, 0], [0.1, 0], [0.11, 1.0]]}
+    gesture = {"duration": 0.2, "controls": controls}
+    return yehu.simulate(gesture, energy=True, strings_every=20)
+
+
+def test_strings_are_drawn_where_they_are(run):
+    axes = yehu.plot.strings(run, 0.15)
+    row = int(np.abs(run.arrays["strings_time"] - 0.15).argmin())
+    inner = line(axes, "inner string")
+    np.testing.assert_allclose(inner.get_ydata(), 1e3 * run.arrays["string_1"][row])
+    np.testing.assert_allclose(inner.get_xdata(), run.arrays["x_1"])
+    assert line(axes, "finger").get_xdata() == pytest.approx([0.1])
+    assert line(axes, "bow").get_xdata()[0] == pytest.approx(0.255)
+    assert line(axes, "bridge").get_xdata() == pytest.approx([0.3])
+
+
+def test_a_finger_that_is_lifted_is_not_drawn(run):
+    labels_of = [each.get_label() for each in yehu.plot.strings(run, 0.05).get_lines()]
+    assert "finger" not in labels_of
+    assert "bow" in labels_of
+
+
+def test_strings_of_an_instrument_have_all_fingers_that_are_down():
+    fiddle = yehu.Instrument()
+    controls = {"/finger/1/position": 0.05, "/finger/2/position": 0.1}
+    controls |= {"/finger/1/press": 1.5, "/finger/2/press": 1.5}
+    played = fiddle.record(0.1, controls=controls, strings_every=100)
+    axes = yehu.plot.strings(played, 0.09)
+    assert line(axes, "finger").get_xdata() == pytest.approx([0.05, 0.1])
+
+
+def test_the_stack_of_energies_ends_at_what_was_given():
+    run = yehu.simulate({"duration": 0.2, "controls": BOWED}, energy=True)
+    axes = yehu.plot.energy(run)
+    given = line(axes, "given").get_ydata()
+    top = axes.collections[-1].get_paths()[0].vertices[:, 1].max()
+    assert top == pytest.approx(given.max(), rel=2e-3)
+    # By another way: force times speed of the bow, in mJ.
+    arrays = run.arrays
+    worked = 1e3 * np.sum(arrays["friction_force"] * arrays["bow_velocity"]) / RATE
+    assert given[-1] == pytest.approx(abs(worked), rel=0.02)
+    assert "W missing" in axes.get_title("left")
+
+
+def test_a_plucked_string_begins_with_its_energy():
+    pluck = {"string": 1, "position": 0.1, "amplitude": 0.001}
+    axes = yehu.plot.energy(yehu.simulate({"duration": 0.1, "pluck": pluck}, energy=True))
+    # A triangle of height a: T a^2 / 2 (1 / x + 1 / (L - x)), and a little for its stiffness.
+    expected = 1e3 * 0.5 * 50.61 * 1e-6 * (1.0 / 0.1 + 1.0 / 0.2)
+    assert line(axes, "given").get_ydata() == pytest.approx(expected, rel=0.1)
+
+
+# ---------------------------------------------------------------- maps
+
+
+def test_regimes_are_drawn_where_they_were_found():
+    found = result(
+        {"bow_force": [0.1, 0.2, 0.3], "bow_velocity": [0.1, 0.2]},
+        regime=[[0, 1], [1, 1], [6, 2]],
+    )
+    axes = yehu.plot.regimes(found, "bow_velocity", "bow_force")
+    (mesh,) = axes.collections
+    np.testing.assert_array_equal(mesh.get_array().reshape(3, 2), [[0, 1], [1, 1], [6, 2]])
+    assert labels(axes) == ["silent", "helmholtz", "multiple slip", "aperiodic"]
+    assert axes.get_xlim() == pytest.approx((0.05, 0.25))
+    plt.figure()
+    turned = yehu.plot.regimes(found, "bow_force", "bow_velocity")
+    cells = turned.collections[0].get_array().reshape(2, 3)
+    np.testing.assert_array_equal(cells, [[0, 1, 6], [1, 1, 2]])
+
+
+def test_values_may_be_in_any_order():
+    found = result(
+        {"bow_force": [0.3, 0.1, 0.2], "bow_velocity": [0.2, 0.1]}, regime=[[1, 2], [3, 4], [5, 6]]
+    )
+    (mesh,) = yehu.plot.regimes(found, "bow_velocity", "bow_force").collections
+    np.testing.assert_array_equal(mesh.get_array().reshape(3, 2), [[4, 3], [6, 5], [2, 1]])
+    assert mesh.get_coordinates()[0, :, 0].tolist() == pytest.approx([0.05, 0.15, 0.25])
+
+
+def test_a_third_axis_is_looked_at_where_it_is_told():
+    axes = {"bow_force": [0.1, 0.2], "press_force": [0.5, 1.0, 2.0], "bow_velocity": [0.1, 0.2]}
+    grid = np.arange(12).reshape(2, 3, 2) % 7
+    found = result(axes, regime=grid)
+    with pytest.raises(YehuError, match="press_force"):
+        yehu.plot.regimes(found, "bow_velocity", "bow_force")
+    drawn = yehu.plot.regimes(found, "bow_velocity", "bow_force", at={"press_force": 1.1})
+    np.testing.assert_array_equal(drawn.collections[0].get_array().reshape(2, 2), grid[:, 1])
+
+
+def test_schellengs_limits_are_his_closed_forms():
+    beta = np.geomspace(0.05, 0.3, 5)
+    forces = np.geomspace(0.05, 3.0, 4)
+    found = result(
+        {"bow_position": 0.3 - 0.3 * beta, "bow_force": forces}, regime=np.ones((5, 4), int)
+    )
+    axes = yehu.plot.schelleng(found)
+    upper = line(axes, "Schelleng's upper limit")
+    # [Schelleng]: 2 Z v / (beta (mu_S - mu_C)), of the inner string of table 1, at 0.2 m/s.
+    impedance = np.sqrt(50.61 * 1250.0 * np.pi) * 0.55e-3
+    expected = 2.0 * impedance * 0.2 / ((1.0207 - 0.5071) * upper.get_xdata())
+    np.testing.assert_allclose(upper.get_ydata(), expected, rtol=1e-6)
+    lower = line(axes, "Schelleng's lower limit").get_ydata()
+    np.testing.assert_allclose(lower * upper.get_xdata() ** 2, lower[0] * upper.get_xdata()[0] ** 2)
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    assert labels(axes)[-2:] == ["Schelleng's upper limit", "Schelleng's lower limit"]
+
+
+def test_schelleng_counts_bow_positions_from_the_finger():
+    found = result({"bow_position": [0.25, 0.28], "bow_force": [0.1, 1.0]}, regime=[[1, 1]] * 2)
+    found.meta["gesture"]["controls"] |= {"press_force": 1.5, "finger_position": 0.1}
+    (mesh,) = (each for each in yehu.plot.schelleng(found).collections)
+    places = mesh.get_coordinates()[0, :, 0]
+    middles = 0.5 * (places[1:] + places[:-1])
+    assert middles.tolist() == pytest.approx([0.1, 0.25])  # of 0.2 m
+
+
+def test_guettler_shows_the_time_and_leaves_white_what_never_came():
+    seconds = [[0.02, np.nan], [0.1, 0.05]]
+    found = result({"bow_acceleration": [1.0, 2.0], "bow_force": [0.1, 0.2]}, helmholtz_s=seconds)
+    axes = yehu.plot.guettler(found)
+    cells = axes.collections[0].get_array().reshape(2, 2)
+    assert cells.mask.tolist() == [[False, False], [True, False]]
+    assert cells.compressed().tolist() == pytest.approx([20.0, 100.0, 50.0])
+
+
+# ---------------------------------------------------------------- axes in, axes out
+
+
+def test_it_draws_into_the_axes_that_it_is_given(run):
+    figure, panels = plt.subplots(1, 3)
+    found = result({"bow_position": [0.25, 0.28], "bow_force": [0.1, 1.0]}, regime=[[1, 1]] * 2)
+    assert yehu.plot.spectrogram(sine(440.0), RATE, ax=panels[0]) is panels[0]
+    assert yehu.plot.strings(run, 0.1, ax=panels[1]) is panels[1]
+    assert yehu.plot.schelleng(found, ax=panels[2]) is panels[2]
+    assert plt.get_fignums() == [figure.number]
+
+
+FOUND = result({"bow_force": [0.1, 0.2], "bow_velocity": [0.1, 0.2]}, regime=[[1, 1]] * 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "options", "names"),
+    [
+        ("spectrogram", [np.zeros(99)], {}, "sample_rate"),
+        ("spectrogram", [np.zeros(99), RATE], {"top_hz": 1e6}, "top_hz"),
+        ("level", ["a.wav"], {}, "sound"),
+        ("level", [np.zeros(99), RATE], {"ax": 7}, "ax"),
+        ("strings", [np.zeros(3), 0.0], {}, "strings_every"),
+        ("energy", [object()], {}, "energy=True"),
+        ("regimes", [FOUND, "bow_force", "x"], {}, "'x'"),
+        ("regimes", [FOUND, "bow_force", "bow_force"], {}, "two axes"),
+        ("regimes", [FOUND, "bow_force", "bow_velocity"], {"at": {"z": 1.0}}, "'z'"),
+        ("schelleng", [FOUND], {}, "bow_position"),
+        ("guettler", [FOUND], {}, "bow_acceleration"),
+    ],
+)
+def test_what_cannot_be_drawn_is_told_in_one_line(name, arguments, options, names):
+    with pytest.raises(YehuError) as refused:
+        getattr(yehu.plot, name)(*arguments, **options)
+    assert names in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_moment_is_one_of_the_run(run):
+    with pytest.raises(YehuError, match="time"):
+        yehu.plot.strings(run, 9.0)
+    with pytest.raises(YehuError, match="time"):
+        yehu.plot.strings(run, "end")
+
+
+def test_without_matplotlib_one_line_says_what_to_install(run, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for draw in (lambda: yehu.plot.energy(run), lambda: yehu.plot.level(np.zeros(9), RATE)):
+        with pytest.raises(YehuError, match=r"yehu.plot needs .*yehu-server\[plots\]"):
+            draw()

@@ -1,0 +1,221 @@
+"""``yehu.render``: files and lists of notes to sound, as the command renders them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+from pitch import cents, pitch_of
+from scores import midi_file, notes
+
+import yehu_server as yehu
+from yehu_server import Note, YehuError
+
+RATE = 44100
+PHRASE = [("F4", 0.0, 0.3), ("A4", 0.3, 0.3), ("C5", 0.6, 0.4)]
+
+
+def of_second(sound, begin: float, end: float):
+    return sound[round(begin * RATE) : round(end * RATE)]
+
+
+def error(sound, note: float) -> float:
+    return cents(pitch_of(sound, RATE), 440.0 * 2.0 ** ((note - 69.0) / 12.0))
+
+
+@pytest.fixture
+def tune(tmp_path) -> Path:
+    return midi_file(tmp_path / "tune.mid", notes((0.0, 0.3, 67, 90), (0.3, 0.3, 72, 60)))
+
+
+@pytest.fixture
+def plain(tmp_path) -> Path:
+    """A tune that phrasing shapes: all its notes are alike."""
+    pitches = (67, 69, 72, 74, 72, 69)
+    rows = ((0.25 * place, 0.25, pitch, 80) for place, pitch in enumerate(pitches))
+    return midi_file(tmp_path / "plain.mid", notes(*rows))
+
+
+# ---------------------------------------------------------------- files
+
+
+SCALE = next((Path(__file__).parents[2] / "tunings").glob("*.scl"))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, ""),
+        ({"dry": True, "mono": True, "sample_rate": 48000}, "--dry --mono --rate 48000"),
+        ({"preset": "flautando", "seed": 3}, "--preset flautando --seed 3"),
+        ({"settings": {"/playing/vibrato": 20.0}}, "--set /playing/vibrato=20"),
+        ({"normalize": True, "phrasing": 0.0}, "--normalize --phrasing 0"),
+        ({"gain_db": -6.0, "tuning": SCALE}, f"--gain-db -6 --tuning {SCALE}"),
+        ({"instrument": {"string_1": {"sigma_0": 2.0}}}, "--instrument mine.toml"),
+    ],
+)
+def test_it_is_the_sound_of_the_command(plain, tmp_path, monkeypatch, command, options, words):
+    monkeypatch.chdir(tmp_path)
+    Path("mine.toml").write_text("[string_1]\nsigma_0 = 2.0\n")
+    target = tmp_path / "out.wav"
+    form = ("--subtype", "float", "--tail", "0.2")
+    assert command("render", plain, "-o", target, *form, *words.split())[0] == 0
+    expected, rate = soundfile.read(target, dtype="float32")
+    found = yehu.render(plain, tail=0.2, **options)
+    assert found.sample_rate == rate
+    np.testing.assert_array_equal(found.sound, expected)
+
+
+def test_it_tells_what_it_was(tune):
+    found = yehu.render(str(tune), tail=0.5)
+    assert found.duration == pytest.approx(0.6 + 0.5, abs=0.01)
+    assert found.sound.shape == (round(found.duration * RATE), 2)
+    assert found.sound.dtype == np.float32
+    assert (found.name, found.warnings) == ("tune", ())
+    assert found.summary.notes_played == 2
+    assert found.summary.peak == pytest.approx(np.abs(found.sound).max())
+    times, asked = found.asked
+    assert asked[np.searchsorted(times, 0.15)] == pytest.approx(67.0)
+    assert asked[np.searchsorted(times, 0.45)] == pytest.approx(72.0)
+    assert math.isnan(asked[-1])
+
+
+def test_what_could_not_be_played_as_written_is_told(tmp_path):
+    low = midi_file(tmp_path / "low.mid", notes((0.0, 0.2, 40, 90)))
+    assert yehu.render(low).warnings == ("1 note outside F4 to F6, moved by octaves",)
+    damaged = tmp_path / "damaged.mid"
+    damaged.write_bytes(low.read_bytes()[:-6])
+    assert len(yehu.render(damaged).warnings) > 1
+
+
+@pytest.mark.parametrize(("name", "subtype"), [("a.wav", "PCM_24"), ("a.flac", "PCM_24")])
+def test_it_is_saved_and_read_again(tune, tmp_path, name, subtype):
+    found = yehu.render(tune)
+    (tmp_path / name).write_text("what was there")
+    found.save(tmp_path / name)
+    again, rate = soundfile.read(tmp_path / name)
+    assert (rate, soundfile.info(tmp_path / name).subtype) == (RATE, subtype)
+    assert np.abs(again - found.sound).max() < 2.0**-22
+
+
+@pytest.mark.parametrize(
+    ("path", "options", "names"),
+    [
+        ("a.mp3", {}, "mp3"),
+        ("nowhere/a.wav", {}, "nowhere"),
+        ("a.flac", {"subtype": "float"}, "float"),
+        ("a.wav", {"subtype": "8"}, "subtype"),
+    ],
+)
+def test_what_cannot_be_saved_is_told(tune, tmp_path, monkeypatch, path, options, names):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(YehuError, match=names):
+        yehu.render(tune, tail=0.0).save(path, **options)
+    assert sorted(tmp_path.iterdir()) == before
+
+
+# ---------------------------------------------------------------- lists of notes
+
+
+def test_a_list_of_notes_is_played_in_time_and_in_tune():
+    sound = yehu.render(PHRASE, dry=True, mono=True).sound
+    for note, begin, end in ((65, 0.15, 0.3), (69, 0.45, 0.6), (72, 0.75, 1.0)):
+        assert error(of_second(sound, begin, end), note) == pytest.approx(0.0, abs=15.0)
+
+
+@pytest.mark.parametrize(
+    "same",
+    [
+        [Note(*row) for row in PHRASE],
+        [list(row) for row in reversed(PHRASE)],
+        np.array([[65, 0.0, 0.3, 80], [69, 0.3, 0.3, 80], [72, 0.6, 0.4, 80]]),
+        iter(PHRASE),
+    ],
+    ids=["Note", "lists", "array", "iterator"],
+)
+def test_notes_come_in_any_form(same):
+    expected = yehu.render(PHRASE, tail=0.0).sound
+    np.testing.assert_array_equal(yehu.render(same, tail=0.0).sound, expected)
+
+
+def test_a_pitch_may_lie_between_the_keys():
+    sound = yehu.render([("A4+50", 0.0, 0.5), (67.25, 0.5, 0.5)], dry=True, mono=True).sound
+    assert error(of_second(sound, 0.25, 0.5), 69.5) == pytest.approx(0.0, abs=15.0)
+    assert error(of_second(sound, 0.75, 1.0), 67.25) == pytest.approx(0.0, abs=15.0)
+
+
+def test_a_repeated_note_is_struck_twice_and_lasts():
+    notes_of = [("A4", 0.0, 0.5), ("A4", 0.3, 0.5)]
+    found = yehu.render(notes_of, tail=0.0)
+    assert found.summary.notes_played == 2
+    assert found.duration == pytest.approx(0.8, abs=0.01)
+    times, asked = found.asked
+    assert asked[np.searchsorted(times, 0.7)] == 69.0
+    np.testing.assert_array_equal(yehu.render(notes_of[::-1], tail=0.0).sound, found.sound)
+
+
+def test_progress_is_told(tune):
+    told = []
+    yehu.render(tune, tail=0.0, progress=lambda done, total: told.append((done, total)))
+    assert [done for done, _ in told] == sorted(done for done, _ in told)
+    assert told[-1][1] == pytest.approx(0.6, abs=0.01)
+
+
+# ---------------------------------------------------------------- what is refused
+
+
+@pytest.mark.parametrize(
+    ("score", "names"),
+    [
+        ("/no/such.mid", "such.mid"),
+        (7, "score"),
+        (None, "score"),
+        ([], "no notes"),
+        ([("A4", 0.0)], "note 0"),
+        ([("A4", 0.0, 0.5), ("X9", 0.5, 0.5)], "note 1: 'X9'"),
+        ([("A4", -1.0, 0.5)], "start"),
+        ([("A4", 0.0, 0.0)], "duration"),
+        ([("A4", 0.0, 1e9)], "duration"),
+        ([("A4", 0.0, 0.5, 0)], "velocity"),
+        (["A4", "C5"], "note 0"),
+        (np.zeros((2, 7)), "note 0"),
+        (np.array([[65.0, np.nan, 1.0]]), "start"),
+    ],
+)
+def test_a_wrong_score_is_told_in_one_line(score, names):
+    with pytest.raises(YehuError) as refused:
+        yehu.render(score)
+    assert names in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "names"),
+    [
+        ({"phrasing": 2.0}, "phrasing"),
+        ({"tail": -1.0}, "tail"),
+        ({"gain_db": 90.0}, "gain_db"),
+        ({"channels": [0]}, "channels"),
+        ({"channels": 3}, "channels"),
+        ({"mapping": 3}, "mapping"),
+        ({"out_of_range": "drop"}, "drop"),
+        ({"mapping": "no-such"}, "no-such"),
+        ({"song": 0}, "song"),
+        ({"song": 5}, "song"),
+        ({"preset": "loud"}, "loud"),
+    ],
+)
+def test_a_wrong_option_is_told_in_one_line(tune, options, names):
+    with pytest.raises(YehuError) as refused:
+        yehu.render(tune, **options)
+    assert names in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_an_option_that_is_none_is_told_as_python_does(tune):
+    with pytest.raises(TypeError, match="prset"):
+        yehu.render(tune, prset="flautando")

@@ -1,0 +1,90 @@
+"""Which scores a folder has, and where they are rendered to."""
+
+import os
+
+import pytest
+
+from yehu_server.batch import tree
+from yehu_server.batch.tree import tree_of
+from yehu_server.errors import ScoreError
+
+
+@pytest.fixture
+def made(tmp_path):
+    """Make empty files in a folder; what becomes of them, by their names."""
+
+    def make(*names: str) -> dict[str, str]:
+        for name in names:
+            path = tmp_path / "in" / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch()
+        found = tree_of(tmp_path / "in", tmp_path / "out", ".wav")
+        places = {entry.name: entry.target for entry in found.entries}
+        return {name: os.path.relpath(target, tmp_path / "out") for name, target in places.items()}
+
+    return make
+
+
+def test_the_tree_is_kept(made):
+    found = made("a.mid", "x/b.MIDI", "x/y z/c.kar", "x/readme.txt", "d.wav")
+    assert found == {"a.mid": "a.wav", "x/b.MIDI": "x/b.wav", "x/y z/c.kar": "x/y z/c.wav"}
+
+
+def test_hidden_files_and_folders_are_left_out(made):
+    assert made("._a.mid", ".trash/b.mid", "c.mid") == {"c.mid": "c.wav"}
+
+
+def test_scores_that_differ_in_their_endings_go_to_files_of_their_own(made):
+    found = made("a.mid", "a.MID", "a.kar", "A.mid")
+    assert found["A.mid"] == "A.wav"
+    assert found["a.mid"] == "a.mid.wav"
+    assert found["a.kar"] == "a.kar.wav"
+    targets = [target.casefold() for name, target in found.items()]
+    assert len(set(targets)) == len(targets)
+
+
+def test_a_score_without_a_name_of_its_own_is_a_problem(tmp_path, made):
+    made("a.mid", "A.kar", "a.kar.mid")
+    found = tree_of(tmp_path / "in", tmp_path / "out", ".wav")
+    assert found.problems == (("A.kar", "another score is rendered to a file of this name"),)
+
+
+def test_a_new_file_beside_a_score_does_not_move_its_result(made):
+    before = made("b.mid", "c.mid")
+    after = made("b.kar", "c.MID", "c.rmi")
+    assert {name: after[name] for name in before} == before
+
+
+def test_an_output_within_the_input_is_not_read(tmp_path):
+    inner = tmp_path / "out"
+    inner.mkdir()
+    (inner / "a.mid").touch()
+    (tmp_path / "b.mid").touch()
+    assert [entry.name for entry in tree_of(tmp_path, inner, ".wav").entries] == ["b.mid"]
+    both = tree_of(tmp_path, tmp_path, ".wav").entries
+    assert [entry.name for entry in both] == ["b.mid", "out/a.mid"]
+
+
+def test_links_are_followed_but_not_in_a_circle(tmp_path):
+    (tmp_path / "in" / "x").mkdir(parents=True)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "a.mid").touch()
+    (tmp_path / "in" / "there").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "in" / "x" / "round").symlink_to(tmp_path / "in")
+    (tmp_path / "in" / "self.mid").symlink_to("self.mid")
+    found = tree_of(tmp_path / "in", tmp_path / "out", ".wav")
+    assert [entry.name for entry in found.entries] == ["self.mid", "there/a.mid"]
+    assert found.skipped == (("x/round", "a link back to a folder it is in"),)
+    assert found.problems == ()
+
+
+def test_there_is_a_bound(monkeypatch, made):
+    monkeypatch.setattr(tree, "MOST_SCORES", 2)
+    with pytest.raises(ScoreError, match="more than 2 scores"):
+        made("a.mid", "b.mid", "c.mid")
+
+
+def test_folders_are_looked_into_up_to_a_depth(tmp_path, made):
+    made("/".join(["d"] * 80) + "/a.mid")
+    [(_, why)] = tree_of(tmp_path / "in", tmp_path / "out", ".wav").problems
+    assert why == "more than 64 folders deep"

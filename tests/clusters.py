@@ -1,0 +1,64 @@
+"""A Dask cluster on this machine, for tests: a scheduler and workers, processes of their own."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parent
+HERE = ("--host", "127.0.0.1", "--no-dashboard")
+
+
+class Processes:
+    """A scheduler and its workers, each of one thread, without anybody who starts them again."""
+
+    def __init__(self, folder: Path, **environment: str) -> None:
+        self.file = folder / "scheduler.json"
+        self.log = folder / "log"
+        self.environment = {**os.environ, "PYTHONPATH": f"{TESTS}:{TESTS.parent}", **environment}
+        self.scheduler = self._start("dask_scheduler", "--port", "0", "--scheduler-file", self.file)
+        wait_until(lambda: self.file.exists() and self.file.read_text().endswith("}"))
+        self.workers: list[subprocess.Popen] = []
+
+    def add_worker(self, **environment: str) -> subprocess.Popen:
+        self.environment |= environment
+        words = ("--scheduler-file", self.file, "--nthreads", "1", "--no-nanny")
+        self.workers.append(self._start("dask_worker", *words))
+        return self.workers[-1]
+
+    def _start(self, what: str, *words: object) -> subprocess.Popen:
+        command = [sys.executable, "-m", f"distributed.cli.{what}", *map(str, words), *HERE]
+        with self.log.open("a") as log:
+            return subprocess.Popen(
+                command, env=self.environment, stdout=log, stderr=log, cwd=self.file.parent
+            )
+
+    def end(self) -> None:
+        for process in (*self.workers, self.scheduler):
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+
+
+@contextlib.contextmanager
+def cluster_in(folder: Path, workers: int = 2, **environment: str) -> Iterator[Processes]:
+    """A cluster with its files in a folder, for the time of a block."""
+    processes = Processes(folder, **environment)
+    try:
+        for _ in range(workers):
+            processes.add_worker()
+        yield processes
+    finally:
+        processes.end()
+
+
+def wait_until(is_so, seconds: float = 120.0) -> None:
+    deadline = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)

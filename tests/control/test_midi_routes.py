@@ -1,0 +1,166 @@
+"""Which MIDI input plays which part."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from yehu_server.control.midi_routes import Route, Router, check_routes, route_of
+from yehu_server.control.ports import MidiOptions, MidiPorts
+from yehu_server.errors import ParameterError
+
+NOTE = [0x90, 67, 90]
+
+
+@pytest.mark.parametrize(
+    ("text", "route"),
+    [
+        ("keystep", Route(0, "keystep")),
+        ("Key  Step", Route(0, "Key Step")),
+        ("keystep:1", Route(0, "keystep", 0)),
+        ("keystep:16", Route(0, "keystep", 15)),
+        (":3", Route(0, "", 2)),
+        ("a2j:keys", Route(0, "a2j:keys")),
+        ("a2j:keys:4", Route(0, "a2j:keys", 3)),
+    ],
+)
+def test_an_input_is_words_of_its_name_and_a_channel(text, route):
+    assert route_of(0, text) == route
+
+
+@pytest.mark.parametrize("text", ["", " ", "keys:0", "keys:17", ":0", "keys:99999999999999"])
+def test_what_is_no_input_is_refused_in_a_line(text):
+    with pytest.raises(ParameterError) as error:
+        route_of(0, text)
+    assert len(str(error.value)) < 120
+
+
+def routes(*texts: str) -> list[Route]:
+    return [route_of(int(text[0]) - 1, text[2:]) for text in texts]
+
+
+@pytest.mark.parametrize(
+    "twice",
+    [
+        ("1=keys", "1=keys"),
+        ("1=keys", "2=KEYS"),
+        ("1=keys:2", "2=keys"),
+        ("1=keys", "2=keys:2"),
+        ("1=keys:2", "2=keys:2"),
+        ("1=:2", "2=:2"),
+        ("1=key step", "2=step  key"),
+    ],
+)
+def test_an_input_that_is_named_twice_is_refused(twice):
+    with pytest.raises(ParameterError, match="named twice"):
+        check_routes(routes(*twice), 2)
+
+
+def test_parts_share_an_input_by_its_channels_and_a_part_has_several():
+    check_routes(routes("1=keys:1", "2=keys:2", "1=breath", "3=:3"), 3)
+
+
+@pytest.mark.parametrize(("part", "parts"), [("4=keys", 3), ("2=keys", 1), ("0=keys", 3)])
+def test_a_part_that_is_not_there_has_no_input(part, parts):
+    with pytest.raises(ParameterError, match=f"no part {part[0]}: there"):
+        check_routes(routes(part), parts)
+
+
+def test_by_default_each_input_plays_a_part_and_further_ones_the_last():
+    router = Router([], 3)
+    names = ["a", "b", "c", "d", "e"]
+    assert [router.parts_of(name) for name in names] == [[0], [1], [2], [2], [2]]
+    assert [router.parts_of(name) for name in reversed(names)] == [[2], [2], [2], [1], [0]]
+    assert router.wants_others
+    assert router.patterns == []
+
+
+def test_with_one_part_all_inputs_play_it():
+    router = Router([], 1)
+    assert [router.parts_of(name, 3) for name in "abc"] == [[0], [0], [0]]
+
+
+def test_inputs_that_are_not_named_play_the_parts_that_are_not():
+    router = Router(routes("2=keystep", "2=breath"), 3)
+    assert router.parts_of("Keystep MIDI 1", 5) == [1]
+    assert router.parts_of("Breath Controller") == [1]
+    assert [router.parts_of(name) for name in ["x", "y", "z"]] == [[0], [2], [2]]
+    assert router.wants_others
+    assert router.patterns == ["keystep", "breath"]
+
+
+def test_where_all_parts_are_named_other_inputs_play_none():
+    router = Router(routes("1=keystep", "2=seaboard"), 2)
+    assert router.parts_of("organ") == []
+    assert not router.wants_others
+
+
+def test_channels_of_an_input_play_their_parts():
+    router = Router(routes("1=daw:1", "2=daw:2", "3=:3"), 3)
+    assert [router.parts_of("daw", channel) for channel in range(4)] == [[0], [1], [2], []]
+    assert router.parts_of("other", 2) == [2]
+    assert router.parts_of("other", 0) == []
+    assert router.parts_of("daw") == [0, 1, 2]  # such as a reset of the whole input
+    assert router.wants_others
+
+
+class Player:
+    """Keeps what it receives."""
+
+    def __init__(self) -> None:
+        self.instrument = SimpleNamespace(rate=48000.0)
+        self.got: list[tuple[str, int]] = []
+        self.let_go: list[int] = []
+
+    def frame_of(self, _arrived_ns: int = 0) -> int:
+        return 0
+
+    def receive(self, message, *, frame: int, port: int) -> None:  # noqa: ARG002
+        self.got.append((message.type, port))
+
+    def let_go_of(self, port: int, *, frame: int) -> None:  # noqa: ARG002
+        self.let_go.append(port)
+
+
+def opened(parts: int, *texts: str) -> tuple[list[Player], MidiPorts, list[str]]:
+    players, said = [Player() for _ in range(parts)], []
+    ports = MidiPorts(players, MidiOptions(routes=routes(*texts)), said.append)
+    for name in ("first", "second", "third"):
+        ports._heard({"event": "appeared", "port": name})
+    return players, ports, said
+
+
+def test_what_an_input_plays_is_told_as_it_comes_and_heard_by_that_part():
+    players, ports, said = opened(2)
+    assert said == [
+        "MIDI: first is connected to part 1",
+        "MIDI: second is connected to part 2",
+        "MIDI: third is connected to part 2",
+    ]
+    for name in ("third", "second", "first"):
+        ports._heard({"event": "midi", "port": name, "at": 0, "bytes": NOTE})
+    assert [player.got for player in players] == [
+        [("note_on", 2)],
+        [("note_on", 0), ("note_on", 1)],
+    ]
+    ports._heard({"event": "vanished", "port": "first"})
+    assert [player.let_go for player in players] == [[2], []]
+    ports._heard({"event": "appeared", "port": "first"})
+    assert said[-1] == "MIDI: first is connected to part 1"
+
+
+def test_a_channel_is_heard_by_its_part_and_a_reset_by_all_of_the_input():
+    players, ports, said = opened(3, "1=first:1", "3=first:2", "2=second")
+    assert said == [
+        "MIDI: first is connected to parts 1, 3",
+        "MIDI: second is connected to part 2",
+        "MIDI: third is connected, and plays no part",
+    ]
+    for bytes_ in (NOTE, [0x91, 67, 90], [0x92, 67, 90], [0xFF]):
+        ports._heard({"event": "midi", "port": "first", "at": 0, "bytes": bytes_})
+    kinds = [[kind for kind, _ in player.got] for player in players]
+    assert kinds == [["note_on", "reset"], [], ["note_on", "reset"]]
+    ports._heard({"event": "midi", "port": "third", "at": 0, "bytes": NOTE})
+    assert players[1].got == []
+    assert ports.received == 5

@@ -1,0 +1,104 @@
+"""What is left to chance in a data set, and how a description says it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from yehu_server.dataset.draws import chance, draw_of
+from yehu_server.errors import ParameterError
+
+MANY = 4000
+
+
+def drawn(entry) -> np.ndarray:
+    draw = draw_of(entry, "x")
+    return np.array([draw.value(chance(1, number, "x")) for number in range(MANY)])
+
+
+def test_chance_is_even_and_the_same_each_time():
+    shares = np.array([chance(7, number, "a") for number in range(MANY)])
+    counts, _ = np.histogram(shares, 10, (0.0, 1.0))
+    assert abs(counts - MANY / 10).max() < 5.0 * math.sqrt(MANY / 10)
+    assert shares.tolist() == [chance(7, number, "a") for number in range(MANY)]
+    assert 0.0 <= shares.min() < shares.max() < 1.0
+
+
+def test_chance_of_one_name_tells_nothing_of_another_seed_number_or_name():
+    ones = np.array([chance(1, number, "a") for number in range(MANY)])
+    for others in (
+        [chance(2, number, "a") for number in range(MANY)],
+        [chance(1, number, "b") for number in range(MANY)],
+        [chance(1, number + 1, "a") for number in range(MANY)],
+    ):
+        assert abs(np.corrcoef(ones, others)[0, 1]) < 5.0 / math.sqrt(MANY)
+
+
+def test_a_number_is_itself():
+    assert set(drawn(0.25)) == {0.25}
+
+
+def test_even_draws_have_their_middle_in_the_middle():
+    values = drawn({"from": 2.0, "to": 4.0})
+    assert 2.0 <= values.min() < 2.01
+    assert 3.99 < values.max() < 4.0
+    assert values.mean() == pytest.approx(3.0, abs=0.05)
+
+
+def test_draws_by_ratio_have_the_geometric_mean_in_the_middle():
+    values = drawn({"from": 0.1, "to": 10.0, "spacing": "ratio"})
+    assert np.median(values) == pytest.approx(1.0, rel=0.15)
+    assert values.min() >= 0.1
+    assert values.max() <= 10.0
+
+
+def test_whole_numbers_have_both_ends_and_are_alike():
+    values, counts = np.unique(drawn({"from": -1, "to": 2, "spacing": "whole"}), return_counts=True)
+    assert values.tolist() == [-1.0, 0.0, 1.0, 2.0]
+    assert abs(counts - MANY / 4).max() < 5.0 * math.sqrt(MANY / 4)
+
+
+def test_choices_have_their_weights():
+    values, counts = np.unique(
+        drawn({"choose": [1, 5, 9], "weights": [1, 0, 3]}), return_counts=True
+    )
+    assert values.tolist() == [1.0, 9.0]
+    assert counts[1] / MANY == pytest.approx(0.75, abs=0.03)
+
+
+def test_normal_draws_stay_within_their_ends():
+    values = drawn({"mean": 0.0, "deviation": 1.0, "from": -1.0, "to": 1.0})
+    assert abs(values).max() <= 1.0
+    assert values.mean() == pytest.approx(0.0, abs=0.04)
+    # of a normal distribution cut off at one deviation to both sides
+    assert values.std() == pytest.approx(0.5396, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        "1",
+        True,
+        math.nan,
+        10**400,
+        [],
+        {},
+        {"from": 1},
+        {"from": 2, "to": 1},
+        {"from": 1, "to": 2, "spacing": "log"},
+        {"from": 0, "to": 2, "spacing": "ratio"},
+        {"from": 0.5, "to": 2, "spacing": "whole"},
+        {"choose": []},
+        {"choose": [1, "2"]},
+        {"choose": [1, 2], "weights": [1]},
+        {"choose": [1, 2], "weights": [0, 0]},
+        {"choose": [1, 2], "weights": [-1, 2]},
+        {"mean": 0, "deviation": 0, "from": -1, "to": 1},
+        {"mean": 0, "deviation": 1, "from": 100, "to": 101},
+        {"mean": 0, "deviation": 1},
+    ],
+    ids=str,
+)
+def test_what_is_no_draw_is_refused_by_its_name(entry):
+    with pytest.raises(ParameterError, match=r"^here"):
+        draw_of(entry, "here")

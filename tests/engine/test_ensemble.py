@@ -1,0 +1,184 @@
+"""Instruments on one stage: each as if alone, all by one callback."""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+
+import numpy as np
+import pytest
+from sound import alone, bow, run
+
+from yehu_server.engine import mixing, sounding
+from yehu_server.engine.ensemble import Ensemble
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.errors import ParameterError
+from yehu_server.player.wishes import BEGIN
+
+RATE = 22050.0
+KEYS = (69.0, 74.0, 77.0)
+
+
+def trio(**how: object) -> Ensemble:
+    """Three who play a note each, in three places."""
+    makes = [lambda memory, k=k: Instrument(RATE, seed=k, body=k, memory=memory) for k in range(3)]
+    ensemble = Ensemble(makes, **how)
+    for instrument, key, pan in zip(ensemble.instruments, KEYS, (-0.5, 0.0, 0.7), strict=True):
+        instrument.post(BEGIN, value=key, other=key)
+        instrument.write("/room/pan", pan)
+        instrument.write("/output/gain", -12.0, ramp_ms=0.0)
+    return ensemble
+
+
+def both(ensemble: Ensemble, frames: int, block: int = 0) -> np.ndarray:
+    out = np.zeros((frames, 2), np.float32)
+    for start in range(0, frames, block or frames):
+        ensemble.process(out[start : start + (block or frames)])
+    return out
+
+
+def apart(ensemble: Ensemble, frames: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What `process` would give, by computing each instrument apart: mix, stems, dry samples."""
+    parts = len(ensemble.instruments)
+    dry = np.zeros((parts, frames))
+    told = np.zeros((parts, frames, sounding.TOLD))
+    first = ensemble.frame
+    for instrument, samples, said in zip(ensemble.instruments, dry, told, strict=True):
+        pointers = samples.ctypes.data, said.ctypes.data
+        sounding.sound_block.call(instrument.address, frames, *pointers)
+    out = np.zeros((frames, ensemble.channels), np.float32)
+    stems = np.zeros((frames, parts + 1, 2))
+    pointers = [each.ctypes.data for each in (dry, told, out, stems)]
+    mixing.mix_block.call(ensemble.address, first, frames, *pointers, 1)
+    return out, stems, dry
+
+
+def test_instruments_sound_the_same_apart_as_in_the_callback():
+    frames = 4000
+    out, _, _ = apart(trio(), frames)
+    assert np.abs(out).max() > 0.02
+    np.testing.assert_array_equal(out, both(trio(), frames, block=333))
+
+
+def test_an_instrument_sounds_among_others_as_it_does_alone():
+    _, _, dry = apart(trio(), 4000)
+    for k, key in enumerate(KEYS):
+        one = alone(RATE, seed=k)
+        one.first.post(BEGIN, value=key, other=key)
+        one.first.write("/output/gain", -12.0, ramp_ms=0.0)
+        np.testing.assert_array_equal(run(one, 4000), dry[k].astype(np.float32))
+
+
+@pytest.mark.parametrize("gain_db", [-12.0, 24.0], ids=["as it is", "limited"])
+def test_the_mix_is_the_sum_of_its_stems(gain_db):
+    ensemble = trio()
+    ensemble.instruments[1].write("/output/gain", gain_db)
+    out, stems, _ = apart(ensemble, 6000)
+    peak = np.abs(out).max()
+    assert 0.05 < peak <= 1.0
+    assert (peak > 0.71) == (gain_db > 0.0)  # the limiter acts from -3 dB on
+    np.testing.assert_allclose(stems.sum(axis=1), out, atol=1e-6)
+    assert np.abs(stems[:, -1]).max() > 0.001  # the room
+
+
+def test_a_player_on_the_left_is_heard_on_the_left():
+    ensemble = trio()
+    for instrument in ensemble.instruments:
+        instrument.write("/body/width", 0.0, ramp_ms=0.0)
+    _, stems, _ = apart(ensemble, 6000)
+    left, right = np.sqrt(np.mean(np.square(stems[3000:]), axis=0)).T
+    assert left[0] > 1.3 * right[0]
+    assert left[1] == pytest.approx(right[1], rel=1e-9)
+    assert right[2] > 1.3 * left[2]
+
+
+def test_without_a_room_both_sides_are_the_dry_sound():
+    ensemble = trio(has_room=False)
+    for instrument in ensemble.instruments:
+        instrument.write("/room/pan", 0.0, ramp_ms=0.0)
+    out, stems, dry = apart(ensemble, 4000)
+    np.testing.assert_array_equal(out[:, 0], out[:, 1])
+    np.testing.assert_array_equal(stems[:, 0, 0], dry[0])
+    assert not stems[:, -1].any()
+
+
+def test_after_a_process_died_all_go_on_at_one_frame_and_nothing_sounds():
+    ensemble = trio()
+    both(ensemble, 4096)
+    first, second, _ = ensemble.instruments
+    first._rig["meters"]["running"] = 1
+    first._rig["controls"]["frame"] += 64  # the others were not yet computed
+    second._rig["state"]["motion"]["u"] = np.nan
+    ensemble.recover()
+    assert [instrument.frame for instrument in ensemble.instruments] == [4160] * 3
+    assert ensemble.rests == [(4096, 4160)]
+    begin, samples = ensemble.taped(4000)
+    assert (begin, len(samples)) == (4000, 160)
+    assert samples[:96].any()
+    assert not samples[96:].any()
+    assert not both(ensemble, 2000).any()
+    assert ensemble.lost_states == 0
+
+
+def test_all_tell_the_time_by_one_clock():
+    ensemble = trio()
+    both(ensemble, 4000, block=333)
+    now_ns = time.monotonic_ns()
+    told = [instrument.frame_at(now_ns) for instrument in ensemble.instruments]
+    assert told == [ensemble.frame_at(now_ns)] * 3
+    assert told[0] > 0.0
+
+
+def test_the_tape_has_what_was_heard_on_both_sides():
+    ensemble = trio()
+    heard = both(ensemble, 4000, block=333)
+    begin, taped = ensemble.taped(0)
+    assert begin == 0
+    np.testing.assert_array_equal(taped, heard)
+    assert np.abs(heard[:, 0] - heard[:, 1]).max() > 0.001
+
+
+def test_a_single_channel_has_the_mean_of_both():
+    one = np.zeros(4000, np.float32)
+    trio(channels=1).process(one)
+    np.testing.assert_allclose(one, both(trio(), 4000).mean(axis=1), atol=1e-7)
+
+
+def test_further_channels_have_left_and_right_in_turn():
+    out = np.zeros((1000, 5), np.float32)
+    trio(channels=5).process(out)
+    expected = both(trio(), 1000)
+    np.testing.assert_array_equal(out, expected[:, [0, 1, 0, 1, 0]])
+
+
+def test_its_level_is_that_of_the_mix():
+    ensemble = trio()
+    both(ensemble, 5000)
+    begin = both(ensemble, int(RATE / 60) + 1 - 5000 % (int(RATE / 60) + 1))  # to a window's end
+    assert len(begin) > 0
+    window = both(ensemble, int(RATE / 60) + 1)
+    peak, rms = ensemble.level
+    assert peak == pytest.approx(np.abs(window).max(), rel=1e-6)
+    assert rms == pytest.approx(np.sqrt(np.mean(np.square(window, dtype=float))), rel=1e-5)
+
+
+@pytest.mark.parametrize("parts", [0, MOST_PARTS + 1])
+def test_a_stage_has_room_for_1_to_16(parts):
+    with pytest.raises(ParameterError, match=f"{parts} parts: a stage has 1 to 16"):
+        Ensemble([partial(Instrument, RATE)] * parts)
+
+
+def test_instruments_of_one_stage_have_one_rate():
+    def make(rate: float):
+        return lambda memory: Instrument(rate, memory=memory)
+
+    with pytest.raises(ParameterError, match="one sample rate"):
+        Ensemble([make(22050.0), make(44100.0)])
+
+
+def test_an_instrument_of_an_ensemble_is_not_played_by_itself():
+    ensemble = alone(RATE)
+    bow(ensemble.first)
+    with pytest.raises(TypeError, match="played by the ensemble"):
+        ensemble.first.process(np.zeros(64, np.float32))

@@ -1,0 +1,166 @@
+"""MusicXML, plain and compressed, and how it is played."""
+
+from __future__ import annotations
+
+import io
+import math
+import zipfile
+
+from fuzz.target import Program, target, written
+
+from yehu_server.errors import ScoreError
+from yehu_server.params.table import find
+from yehu_server.score.duration import LONGEST_DURATION_H
+from yehu_server.score.musicxml.reader import read_musicxml
+from yehu_server.score.setting import Setting
+from yehu_server.score.written.notated import MARKS, SIGNS, SPANS, Written
+from yehu_server.score.written.performed import performed
+from yehu_server.score.written.text import lines_of
+
+# What is played of more would take longer than reading it, and is bounded elsewhere.
+FEW_NOTES, FEW_BEATS, FEW_TEXTS = 100, 200, 2000
+MOST_CHOICES = 1024  # bytes, of a score that is built
+CONTAINER = b'<container><rootfiles><rootfile full-path="s.musicxml"/></rootfiles></container>'
+WORDS = (
+    b"<measure>", b"</measure>", b"<chord/>", b"<grace/>", b"<rest/>", b"<tie type='start'/>",
+    b"<backup><duration>1</duration></backup>", b"<sound tempo='60'/>", b"999999999", b"-1",
+    b"<!DOCTYPE x [<!ENTITY a 'b'>]>", b"&a;", b"1e308", b"<ending number='1' type='start'/>",
+)  # fmt: skip
+# What bars are built of; % stands for a number.
+NOTATIONS = (
+    "", "<slur type='start'/>", "<slur type='stop'/>", "<slide type='start'/>",
+    "<slide type='stop'/>", "<glissando type='start'/>", "<glissando type='stop'/>", "<fermata/>",
+    "<ornaments><trill-mark/><wavy-line type='start'/></ornaments>",
+    "<ornaments><wavy-line type='stop'/></ornaments>",
+    "<ornaments><tremolo>%</tremolo></ornaments>",
+    "<ornaments><tremolo type='start'/></ornaments>",
+    "<ornaments><tremolo type='stop'/></ornaments>", "<ornaments><mordent/><turn/></ornaments>",
+    "<articulations><scoop/><falloff/><staccato/></articulations>",
+    "<articulations><caesura/><breath-mark/><accent/></articulations>",
+    "<technical><harmonic/><fingering>%</fingering><string>%</string></technical>",
+    "<technical><up-bow/><snap-pizzicato/><open-string/></technical>",
+    "<dynamics><sfz/></dynamics>", "<tied type='start'/>", "<tied type='continue'/>",
+)  # fmt: skip
+OTHERS = (
+    "<backup><duration>%</duration></backup>", "<forward><duration>%</duration></forward>",
+    "</measure><measure number='%'>", "<attributes><divisions>%</divisions></attributes>",
+    "<attributes><time><beats>%</beats><beat-type>4</beat-type></time></attributes>",
+    "<attributes><key><fifths>%</fifths></key></attributes>",
+    "<attributes><transpose><chromatic>%</chromatic></transpose></attributes>",
+    "<barline><repeat direction='forward'/></barline>",
+    "<barline><repeat direction='backward' times='%'/></barline>",
+    "<barline><ending number='%' type='start'/></barline>",
+    "<barline><ending number='%' type='stop'/></barline>",
+    "<sound tempo='%'/>", "<sound dacapo='yes'/>", "<sound dalsegno='s'/>", "<sound segno='s'/>",
+    "<sound tocoda='c'/>", "<sound coda='c'/>", "<sound fine='yes'/>", "<sound dynamics='%'/>",
+    "</measure></part><part id='%'><measure>",
+)  # fmt: skip
+TYPES = (
+    "<wedge type='crescendo' number='%'/>", "<wedge type='diminuendo'/>",
+    "<wedge type='stop' number='%'/>", "<dynamics><pp/></dynamics>", "<words>rit.</words>",
+    "<words>a tempo</words>", "<words>pizz.</words>", "<words>arco</words>", "<segno/>",
+    "<words>cresc.</words>", "<words>sul pont.</words>", "<dashes type='stop'/>", "<coda/>",
+    "<metronome><beat-unit>quarter</beat-unit><per-minute>%</per-minute></metronome>",
+)  # fmt: skip
+KINDS = ("", "", "", "<chord/>", "<grace/>", "<cue/>")
+
+
+def built(program: Program) -> str:
+    """A score of bars with notes, directions and bar lines, as the bytes choose."""
+    parts = ["<score-partwise><part id='1'><measure>"]
+    while program:
+        choice = program.byte()
+        number = program.byte()
+        shown = str(number if number < 200 else (number - 220) * 10 ** (number % 12))
+        if choice < 128:
+            step = "CDEFGAB"[choice % 7]
+            notations = NOTATIONS[program.byte() % len(NOTATIONS)].replace("%", shown)
+            parts.append(
+                f"<note>{KINDS[choice % len(KINDS)]}<pitch><step>{step}</step><octave>"
+                f"{4 + choice % 3}</octave></pitch><duration>{shown}</duration><voice>"
+                f"{number % 3}</voice><notations>{notations}</notations></note>"
+            )
+        elif choice < 192:
+            parts.append(OTHERS[choice % len(OTHERS)].replace("%", shown))
+        else:
+            kind = TYPES[choice % len(TYPES)].replace("%", shown)
+            offset = f"<offset>{shown}</offset>" if choice % 2 else ""
+            parts.append(f"<direction><direction-type>{kind}</direction-type>{offset}</direction>")
+    return "".join((*parts, "</measure></part></score-partwise>"))
+
+
+def check_written(score: Written) -> None:
+    for part in score.parts:
+        beats = [note.beat for note in part.notes]
+        assert beats == sorted(beats)
+        for note in part.notes:
+            assert note.beat >= 0
+            assert note.length > 0
+            assert 0.0 <= note.pitch <= 127.0
+            assert all(mark.name in MARKS for mark in note.marks)
+        for one, after in zip(part.notes, part.notes[1:], strict=False):
+            assert one.end <= after.beat
+        assert all(span.name in SPANS and span.begin <= span.end for span in part.spans)
+        assert all(sign.name in SIGNS for sign in part.signs)
+    for text in (score.title, *score.unknown, *score.warnings):
+        assert text.isprintable()
+
+
+def check_played(score: Written) -> None:
+    notes = sum(len(part.notes) for part in score.parts)
+    texts = sum(len(part.spans) + len(part.signs) for part in score.parts)
+    if notes > FEW_NOTES or score.end > FEW_BEATS or texts > FEW_TEXTS:
+        return
+    assert all(line.isprintable() for line in lines_of(score))
+    if not notes:
+        return
+    played = performed(score)
+    times = [event.time_s for event in played.events]
+    assert times == sorted(times)
+    assert 0.0 <= times[0] <= times[-1] <= played.duration_s <= LONGEST_DURATION_H * 3600
+    assert math.isfinite(played.duration_s)
+    for event in played.events:
+        message = event.message
+        if isinstance(message, Setting) and message.value is not None:
+            param = find(message.address)
+            assert param.lo <= message.value <= param.hi
+
+
+@target("musicxml", ScoreError, words=WORDS, also=("examples/*.musicxml",))
+def musicxml(data: bytes) -> None:
+    """A file is a score of notes in order, within bounds, that can be played, or a ScoreError."""
+    score = read_musicxml(written(data, "file.musicxml"))
+    check_written(score)
+    check_played(score)
+
+
+@target("musicxml-built", ScoreError)
+def musicxml_built(data: bytes) -> None:
+    """Bars of any notes and directions are a score that can be played, or a ScoreError."""
+    text = built(Program(data[:MOST_CHOICES]))
+    score = read_musicxml(written(text.encode(), "file.musicxml"))
+    check_written(score)
+    check_played(score)
+
+
+@target("mxl", ScoreError, words=(b"PK\x03\x04", b"PK\x01\x02", b"PK\x05\x06"))
+def mxl(data: bytes) -> None:
+    """An archive is a score, or a ScoreError, whatever its files are named and hold.
+
+    The first byte says how it is made: as it is, or packed of a container and a score, of which
+    the next bytes choose names and damage.
+    """
+    program = Program(data)
+    if program.byte() % 2:
+        check_written(read_musicxml(written(data[1:], "file.mxl")))
+        return
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+        if program.byte() % 2:
+            packed.writestr("META-INF/container.xml", CONTAINER)
+        names = ("s.musicxml", "../../s.musicxml", "/etc/s.xml", "s.txt")
+        packed.writestr(names[program.byte() % 4], data[8:] * (1 + 8 * (program.byte() % 8)))
+    whole = bytearray(archive.getvalue())
+    for _ in range(program.byte() % 4):
+        whole[program.byte() * 257 % len(whole)] ^= program.byte()
+    check_written(read_musicxml(written(bytes(whole), "file.mxl")))

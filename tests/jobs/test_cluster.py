@@ -1,0 +1,242 @@
+"""Jobs on a cluster: a real scheduler, and workers that are processes of their own."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import some_jobs
+from clusters import Processes, cluster_in, wait_until
+
+import yehu_server
+from yehu_server.errors import YehuError
+from yehu_server.jobs import cluster as clusters
+from yehu_server.jobs import there
+from yehu_server.jobs.address import scheduler_address
+from yehu_server.jobs.cluster import Cluster
+
+pytest.importorskip("distributed")
+
+
+@pytest.fixture(autouse=True)
+def _as_it_is_now() -> None:
+    """Code may be edited while tests run: a test has what is there when it starts."""
+    there.identity.cache_clear()
+
+
+@pytest.fixture(scope="module")
+def processes(tmp_path_factory) -> Processes:
+    with cluster_in(tmp_path_factory.mktemp("cluster")) as found:
+        yield found
+
+
+@pytest.fixture
+def own(tmp_path) -> Processes:
+    """A cluster of one test, which may break it; with no worker yet."""
+    with cluster_in(tmp_path, 0) as found:
+        yield found
+
+
+def ends(cluster: Cluster, perform, tasks) -> dict:
+    return {event.job: event for event in cluster.perform_all(perform, tasks)}
+
+
+# ---------------------------------------------------------------- jobs
+
+
+def test_each_task_is_done_once_and_by_others(processes):
+    with Cluster(str(processes.file)) as cluster:
+        found = ends(cluster, some_jobs.double, range(60))
+        assert [found[job].result for job in range(60)] == list(range(0, 120, 2))
+        where = ends(cluster, some_jobs.fall, [0] * 20)
+    pids = {worker.pid for worker in processes.workers}
+    assert {event.result for event in where.values()} <= pids
+
+
+def test_tasks_are_taken_as_workers_are_free(processes):
+    taken = []
+
+    def tasks():
+        for number in range(200):
+            taken.append(number)
+            yield number
+
+    with Cluster(str(processes.file)) as cluster:
+        events = cluster.perform_all(some_jobs.double, tasks())
+        next(events)
+        assert len(taken) < 100
+        assert len(list(events)) == 199
+
+
+def test_a_job_whose_worker_dies_is_done_by_another(own, tmp_path):
+    own.add_worker()
+    own.add_worker()
+    wait_until(lambda: workers_of(own) == 2)
+    with Cluster(str(own.file)) as cluster:
+        found = ends(cluster, some_jobs.fall, [tmp_path / "tried", *range(10)])
+    left = [worker.pid for worker in own.workers if worker.poll() is None]
+    assert len(left) == 1
+    assert found[0].result == left[0]
+    assert not any(event.died for event in found.values())
+
+
+def workers_of(processes: Processes) -> int:
+    return processes.log.read_text().count("Registered to")
+
+
+def test_a_job_that_kills_every_worker_is_given_up(tmp_path):
+    few = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}
+    with cluster_in(tmp_path, 2, **few) as processes:
+        wait_until(lambda: workers_of(processes) == 2)
+        with Cluster(str(processes.file)) as cluster:
+            [event] = cluster.perform_all(some_jobs.fall, [-1])
+    assert event.died == "killed on 1 workers"
+
+
+def test_a_job_that_raises_is_told(processes):
+    with Cluster(str(processes.file)) as cluster:
+        [event] = cluster.perform_all(some_jobs.double, [None])
+    assert event.died.startswith("ended by TypeError")
+
+
+def test_what_is_set_up_is_set_up_once_in_each_process_and_by_one_at_a_time(own, tmp_path):
+    own.add_worker()
+    own.add_worker()
+    wait_until(lambda: workers_of(own) == 2)
+    with Cluster(str(own.file), some_jobs.SetUp(tmp_path)) as cluster:
+        where = ends(cluster, some_jobs.slow, [0.05] * 40)
+    pids = {event.result for event in where.values()}
+    assert pids == {worker.pid for worker in own.workers}
+    times = sorted(
+        tuple(map(float, file.read_text().split())) for file in tmp_path.glob("set-up-*")
+    )
+    assert len(times) == len(pids)
+    assert times[0][1] <= times[1][0]
+
+
+def test_a_worker_that_comes_later_works_too(own):
+    own.add_worker()
+    with Cluster(str(own.file)) as cluster:
+        events = cluster.perform_all(some_jobs.slow, [0.2] * 60)
+        pids = {next(events).result}
+        late = own.add_worker()
+        pids |= {event.result for event in events}
+    assert late.pid in pids
+
+
+# ---------------------------------------------------------------- what is no cluster
+
+
+@pytest.fixture
+def copy(tmp_path) -> Path:
+    """A folder with another version of the package: what a worker needs of it, and a change."""
+    package = Path(yehu_server.__file__).parent
+    other = tmp_path / "other" / "yehu_server"
+    shutil.copytree(package / "jobs", other / "jobs")
+    for name in ("__init__", "errors", "files", "code_key"):
+        shutil.copy(package / f"{name}.py", other)
+    return other.parent
+
+
+def test_a_worker_of_another_version_is_refused_in_one_line(own, copy):
+    own.add_worker(PYTHONPATH=str(copy))
+    with pytest.raises(YehuError, match=r"tcp://.* has yehu-server .*: install the same") as error:
+        Cluster(str(own.file)).__enter__()
+    assert "\n" not in str(error.value)
+
+
+def test_a_worker_of_another_version_that_comes_later_is_refused(own, copy):
+    own.add_worker()
+    with Cluster(str(own.file)) as cluster:
+        events = cluster.perform_all(some_jobs.slow, [0.2] * 200)
+        next(events)
+        own.add_worker(PYTHONPATH=f"{copy}:{own.environment['PYTHONPATH']}")
+        with pytest.raises(YehuError, match="came later has yehu-server"):
+            list(events)
+
+
+def test_workers_without_the_package_are_told(own, tmp_path):
+    (tmp_path / "yehu_server").mkdir()
+    (tmp_path / "yehu_server" / "__init__.py").touch()
+    own.add_worker(PYTHONPATH=str(tmp_path))
+    with pytest.raises(YehuError, match="yehu-server is not installed there"):
+        Cluster(str(own.file)).__enter__()
+
+
+def test_a_scheduler_without_workers_is_told(own, monkeypatch):
+    monkeypatch.setattr(clusters, "CONNECT_S", 1.0)
+    with pytest.raises(YehuError, match="the scheduler has no workers"):
+        Cluster(str(own.file)).__enter__()
+
+
+def test_no_scheduler_is_told(monkeypatch):
+    monkeypatch.setattr(clusters, "CONNECT_S", 1.0)
+    with pytest.raises(YehuError, match=r"tcp://127\.0\.0\.1:9: no Dask scheduler answers there"):
+        Cluster("127.0.0.1:9").__enter__()
+
+
+def test_a_scheduler_that_is_lost_is_told(own, monkeypatch):
+    monkeypatch.setattr(clusters, "CONNECT_S", 1.0)
+    own.add_worker()
+    wait_until(lambda: workers_of(own) == 1)
+    with Cluster(str(own.file)) as cluster:
+        events = cluster.perform_all(some_jobs.slow, [0.05] * 1000)
+        next(events)
+        own.scheduler.kill()
+        with pytest.raises(YehuError, match="the scheduler is lost"):
+            list(events)
+
+
+def test_without_dask_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(YehuError, match=r"pip install yehu-server\[cluster\]"):
+        Cluster("127.0.0.1")
+
+
+@pytest.mark.parametrize(
+    ("text", "address"),
+    [
+        ("host", "tcp://host:8786"),
+        ("10.0.0.1:99", "tcp://10.0.0.1:99"),
+        ("tls://a.b.c:8786", "tls://a.b.c:8786"),
+        ("tcp://[::1]:5", "tcp://[::1]:5"),
+    ],
+)
+def test_an_address_is_completed(text, address):
+    assert scheduler_address(text) == address
+
+
+@pytest.mark.parametrize("text", ["", "a b", "http://x", "host:0", "host:70000", "a:b:c", "tcp://"])
+def test_what_is_no_address_is_refused(text):
+    with pytest.raises(YehuError, match="is not the address of a scheduler"):
+        scheduler_address(text)
+
+
+def test_a_file_that_is_no_schedulers_is_refused(tmp_path):
+    for text in ("", "{}", "[]", '{"address": 5}', '{"address": "a b"}'):
+        (tmp_path / "a.json").write_text(text)
+        with pytest.raises(YehuError, match="scheduler"):
+            scheduler_address(str(tmp_path / "a.json"))
+    with pytest.raises(YehuError, match="No such file"):
+        scheduler_address(str(tmp_path / "none.json"))
+
+
+def test_a_lock_keeps_processes_apart(tmp_path, monkeypatch):
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    program = (
+        "import sys; from pathlib import Path; from yehu_server.jobs.there import one_at_a_time\n"
+        "Path(sys.argv[1], 'wants').touch()\n"
+        "with one_at_a_time(): Path(sys.argv[1], 'has').touch()"
+    )
+    with there.one_at_a_time():
+        other = subprocess.Popen([sys.executable, "-c", program, str(tmp_path)])
+        wait_until((tmp_path / "wants").exists)
+        time.sleep(0.2)
+        assert not (tmp_path / "has").exists()
+    assert other.wait(timeout=60) == 0
+    assert (tmp_path / "has").exists()

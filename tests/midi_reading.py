@@ -1,0 +1,20 @@
+"""Files of bytes as the reader of MIDI files has them, for tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from yehu_server.score.score import Score
+from yehu_server.score.smf.reader import read_score
+
+
+def read_file(folder: Path, data: bytes) -> Score:
+    """The score of a file of these bytes, which is written into the folder."""
+    path = folder / "tune.mid"
+    path.write_bytes(data)
+    return read_score(path)
+
+
+def told(score: Score) -> list[tuple[float, list[int]]]:
+    """Its messages with their times."""
+    return [(event.time_s, event.message.bytes()) for event in score.events]

@@ -1,0 +1,70 @@
+"""Presets of sounds and of rooms, alone and together."""
+
+import pytest
+
+from yehu_server.errors import PresetError
+from yehu_server.params.table import find
+from yehu_server.playing.presets import MOST_TOGETHER, Presets, is_name
+
+ROOMS = ("dry", "study", "courtyard", "hall")
+OF_A_ROOM = {"/room/size", "/room/decay", "/room/damping", "/room/level", "/body/width"}
+
+
+@pytest.fixture
+def presets(own_presets) -> Presets:
+    return Presets(own_presets)
+
+
+def test_a_room_leaves_the_bow_as_it_is_and_a_bow_the_room(presets):
+    for name in presets.names():
+        addresses = set(presets.load(name).values)
+        assert addresses == OF_A_ROOM if name in ROOMS else not addresses & OF_A_ROOM
+
+
+def test_the_study_is_the_room_that_there_is_without_a_preset(presets):
+    values = presets.load("study").values
+    assert values == {address: find(address).default for address in OF_A_ROOM}
+
+
+def test_a_bow_and_a_room_go_together(presets):
+    bow, room = presets.load("sul-tasto"), presets.load("hall")
+    both = presets.find("sul-tasto+hall")
+    assert both.name == "sul-tasto+hall"
+    assert both.values == {**bow.values, **room.values}
+    assert presets.find_file("sul-tasto+hall").stem == "sul-tasto"
+
+
+def test_of_presets_together_the_last_one_holds(presets):
+    assert presets.load("hall+dry").values == presets.load("dry").values
+
+
+def test_presets_of_the_players_own_go_together_with_others(presets):
+    presets.own.mkdir(parents=True, exist_ok=True)
+    file = presets.own / "cave.toml"
+    file.write_text(
+        'version = 1\n[values]\n"/room/decay" = 6\n"/room/dcay" = 1\n', encoding="utf-8"
+    )
+    try:
+        both = presets.load("hall+mine/cave")
+    finally:
+        file.unlink()
+    assert both.values["/room/decay"] == 6.0
+    assert both.values["/room/size"] == 25.0
+    assert both.unknown == ("/room/dcay",)
+
+
+@pytest.mark.parametrize("wrong", ["hall+", "+hall", "hall++dry", "hall+cellar", "hall+../x"])
+def test_a_name_that_is_none_is_told(presets, wrong):
+    with pytest.raises(PresetError):
+        presets.find(wrong)
+
+
+def test_so_many_presets_do_not_go_together(presets):
+    with pytest.raises(PresetError, match="at most 8 go together"):
+        presets.load("+".join(["hall"] * (MOST_TOGETHER + 1)))
+
+
+def test_a_path_with_a_plus_is_a_path():
+    assert not is_name("some+folder/preset.toml")
+    assert not is_name("a+b.toml")
+    assert is_name("sul-tasto+hall")

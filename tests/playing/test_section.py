@@ -1,0 +1,465 @@
+"""A section passes wishes on to its players: notes one by one, as they begin, all else to all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import mido
+import numpy as np
+import pytest
+from hands import RATE, ideal
+
+from yehu_server.params.table import ENGINE, SLOT, TABLE, find
+from yehu_server.player import wishes as kinds
+from yehu_server.player.rows import ROW
+from yehu_server.playing.binds import Bind
+from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.section import Section, section_wishes
+from yehu_server.playing.section_people import section_makes
+from yehu_server.playing.section_timing import Together
+from yehu_server.playing.style import Style
+from yehu_server.playing.wishes import Key, Wishes
+
+LATEST = round(0.040 * RATE)
+BEAT = 24000  # frames
+CHORD = (76, 72, 67)
+
+
+class Posted(NamedTuple):
+    """A wish that an instrument was told."""
+
+    kind: int
+    frame: int
+    index: int
+    value: float
+    other: float
+
+
+class Told:
+    """An instrument that only keeps what it is told."""
+
+    def __init__(self, seed: int = 0) -> None:
+        self.rate, self.seed, self.frame = RATE, seed, 0
+        self.rests: list[tuple[int, int]] = []
+        self.all: list[Posted] = []
+        self.sounding_pitch = np.nan
+
+    def frames(self, ms: float) -> int:
+        return round(ms * 1e-3 * self.rate)
+
+    @property
+    def posted(self) -> int:
+        return len(self.all)
+
+    def post(self, kind, *, frame=None, index=0, value=0.0, other=0.0) -> bool:
+        self.all.append(Posted(kind, frame, index, value, other))
+        return True
+
+    def meters(self):
+        return {"pitch": self.sounding_pitch, "drained": 0, "next_frame": 0}
+
+    def of(self, *chosen: int) -> list[Posted]:
+        """What it was told, of some kinds, in the order of fulfilment."""
+        return sorted((w for w in self.all if w.kind in chosen), key=lambda wish: wish.frame)
+
+    def begun(self) -> list[tuple[float, int]]:
+        """Keys and frames of the notes begun."""
+        return [(wish.value, wish.frame) for wish in self.of(kinds.BEGIN)]
+
+    def settled(self) -> list[float]:
+        """The keys that it holds once all is fulfilled."""
+        held: dict[float, None] = {}
+        for wish in self.of(kinds.BEGIN, kinds.END):
+            held.pop(wish.value, None)
+            if wish.kind == kinds.BEGIN:
+                held[wish.value] = None
+        return list(held)
+
+    def value(self, address: str) -> float:
+        """What it was last told of a parameter."""
+        told = [w for w in self.of(*kinds_of_settings) if TABLE[w.index].address == address]
+        return told[-1].value if told else find(address).default
+
+
+kinds_of_settings = (kinds.WRITE, kinds.HOLD, kinds.EXPRESS)
+
+
+def section(people: int) -> SimpleNamespace:
+    told = [Told() for _ in range(people)]
+    return SimpleNamespace(told=told, wishes=Section(told))
+
+
+@pytest.fixture
+def ten() -> SimpleNamespace:
+    return section(10)
+
+
+@pytest.fixture
+def four() -> SimpleNamespace:
+    return section(4)
+
+
+def on(to, *keys, frame, values=None):
+    for key in keys:
+        to.wishes.note_on(Key(0, key), values, frame=frame)
+
+
+def off(to, *keys, frame):
+    to.wishes.notes_off([Key(0, key) for key in keys], frame=frame)
+
+
+def test_one_instrument_needs_no_section():
+    assert type(section_wishes(Style(), [Told()])) is Wishes
+    assert type(section_wishes(Style(), [Told(), Told()])) is Section
+
+
+def test_all_play_a_line_and_nobody_begins_early_or_too_late(four):
+    for beat in range(40):
+        on(four, 67 + beat % 5, frame=beat * BEAT)
+        off(four, 67 + beat % 5, frame=beat * BEAT + BEAT // 2)
+    frames = np.array([[frame for _, frame in told.begun()] for told in four.told])
+    late = frames - BEAT * np.arange(40)
+    assert late.shape == (4, 40)
+    assert late.min() == 0
+    assert 0 < late.max() <= LATEST
+    assert late[:, 1:].std(axis=0).min() > 0.0
+    assert not any(told.settled() for told in four.told)
+
+
+def test_a_new_stroke_stays_one_in_every_player(four):
+    timing = Together(4, RATE, seed=0)
+    expected = [timing.onset(beat * BEAT) for beat in range(60)]
+    for beat in range(60):
+        on(four, 67, frame=beat * BEAT)
+        off(four, 67, frame=(beat + 1) * BEAT)
+    for number, told in enumerate(four.told):
+        acts = told.of(kinds.BEGIN, kinds.END)
+        assert [wish.kind for wish in acts] == [kinds.BEGIN, kinds.END] * 60
+        late = [w.frame - BEAT * beat for beat, w in enumerate(acts[::2])]
+        assert late == [each[number] for each in expected]
+        gaps = [b.frame - a.frame for a, b in zip(acts[1::2], acts[2::2], strict=False)]
+        assert gaps == [0] * 59  # no player stops between the notes
+
+
+def test_a_slur_stays_one_in_every_player(four):
+    for beat in range(60):
+        on(four, 67 + beat % 2, frame=beat * BEAT)
+        off(four, 68 - beat % 2, frame=beat * BEAT + 100)
+    for told in four.told:
+        acts = told.of(kinds.BEGIN, kinds.END)[1:]
+        assert [wish.kind for wish in acts[:20]] == [kinds.BEGIN, kinds.END] * 10
+
+
+def test_a_note_ends_after_it_began_however_short(four):
+    for beat in range(40):
+        on(four, 67, frame=beat * BEAT)
+        off(four, 67, frame=beat * BEAT + 48)
+    for told in four.told:
+        acts = [wish.kind for wish in told.of(kinds.BEGIN, kinds.END)]
+        assert acts == [kinds.BEGIN, kinds.END] * 40
+
+
+def test_a_note_ends_after_it_began_though_a_later_one_was_asked_for_before(four):
+    for beat in range(0, 80, 2):
+        on(four, 67, frame=beat * BEAT)
+        on(four, 69, frame=(beat + 1) * BEAT)
+        off(four, 67, frame=beat * BEAT + 48)
+        off(four, 69, frame=(beat + 2) * BEAT - 4800)
+    for told in four.told:
+        acts = [w.kind for w in told.of(kinds.BEGIN, kinds.END) if w.value == 67]
+        assert acts == [kinds.BEGIN, kinds.END] * 40
+
+
+def test_a_chord_is_divided_from_the_top_each_player_in_one_stroke(ten):
+    on(ten, *CHORD, frame=BEAT)
+    assert [told.settled() for told in ten.told] == [[76]] * 4 + [[72]] * 3 + [[67]] * 3
+    for told in ten.told:  # the notes of one stroke begin at one frame
+        assert len({wish.frame for wish in told.of(kinds.BEGIN, kinds.END)}) == 1
+
+
+def test_keys_struck_within_a_moment_are_a_chord(ten):
+    on(ten, 67, frame=BEAT)
+    on(ten, 72, frame=BEAT + 500)
+    on(ten, 76, frame=BEAT + 1000)
+    assert [told.settled() for told in ten.told] == [[76]] * 4 + [[72]] * 3 + [[67]] * 3
+
+
+@pytest.mark.parametrize(("apart_ms", "together"), [(29.0, 2), (31.0, 4), (40.0, 4)])
+def test_keys_thirty_milliseconds_apart_are_a_line(four, apart_ms, together):
+    on(four, 67, frame=BEAT)
+    on(four, 72, frame=BEAT + round(1e-3 * apart_ms * RATE))
+    assert [told.settled()[-1] for told in four.told].count(72) == together
+
+
+def test_there_may_be_more_notes_than_players():
+    two = section(2)
+    on(two, 65, *CHORD, frame=0)
+    assert [told.settled() for told in two.told] == [[76], [72]]
+    off(two, 65, *CHORD, frame=BEAT)
+    assert not any(told.settled() for told in two.told)
+
+
+def test_keys_that_overlap_are_no_chord_but_a_line(four):
+    on(four, 67, frame=0)
+    on(four, 69, frame=BEAT)
+    assert all(told.settled() == [67, 69] for told in four.told)
+    off(four, 69, frame=2 * BEAT)  # back to the key that is still held
+    assert all(told.settled() == [67] for told in four.told)
+
+
+def test_players_whose_note_ends_rest_and_the_others_play_on(ten):
+    on(ten, *CHORD, frame=0)
+    off(ten, 76, frame=BEAT)
+    assert [told.settled() for told in ten.told] == [[]] * 4 + [[72]] * 3 + [[67]] * 3
+    off(ten, 72, 67, frame=2 * BEAT)
+    for told in ten.told:
+        assert told.of(kinds.END)[-1].other == 0.0  # or its player would wait for another end
+        assert told.settled() == []
+
+
+def test_one_voice_moves_on_while_the_other_is_held(four):
+    on(four, 76, 67, frame=0)
+    off(four, 76, frame=BEAT)
+    on(four, 74, frame=BEAT)
+    assert [told.settled() for told in four.told] == [[74]] * 2 + [[67]] * 2
+    off(four, 74, 67, frame=2 * BEAT)
+    on(four, 72, frame=2 * BEAT)
+    assert all(told.settled() == [72] for told in four.told)
+
+
+def test_a_note_has_its_own_expression_in_a_chord(four):
+    address = "/playing/pressure"
+    on(four, 76, frame=0, values={address: 0.6})
+    on(four, 67, frame=0, values={address: 0.2})
+    assert [told.value(address) for told in four.told] == [0.6, 0.6, 0.2, 0.2]
+
+
+def test_a_key_that_sounds_again_has_its_expression_again(four):
+    address = "/playing/pressure"
+    on(four, 67, frame=0, values={address: 0.6})
+    on(four, 69, frame=BEAT, values={address: 0.2})
+    four.wishes.notes_off([Key(0, 69)], {address: 0.6}, frame=2 * BEAT)
+    for told in four.told:
+        express, end = [w for w in told.all if w.kind in (kinds.EXPRESS, kinds.END)][-2:]
+        assert (express.value, end.kind, end.frame) == (0.6, kinds.END, express.frame)
+
+
+def test_without_variation_all_begin_at_once(four):
+    four.wishes.write("/playing/variation", 0.0)
+    on(four, 67, frame=BEAT)
+    assert [told.begun() for told in four.told] == [[(67, BEAT)]] * 4
+
+
+def test_a_seed_begins_the_onsets_anew(four):
+    for begin in (0, 20 * BEAT):
+        four.wishes.write("/engine/seed", 5.0, frame=begin)
+        for beat in range(10):
+            on(four, 67, frame=begin + beat * BEAT)
+            off(four, 67, frame=begin + beat * BEAT + BEAT // 2)
+    frames = np.array([[frame for _, frame in told.begun()] for told in four.told])
+    assert np.array_equal(frames[:, 10:] - 20 * BEAT, frames[:, :10])
+
+
+MPE = Mapping("mpe", (Bind("bend", "/playing/bend"), Bind("cc 1", "/playing/vibrato")), mpe=True)
+
+
+def test_in_mpe_each_note_of_a_chord_is_bent_by_itself(four):
+    midi = MidiPlayer(four.wishes, MPE)
+    for channel, note in ((1, 76), (2, 67)):
+        midi.receive(mido.Message("note_on", note=note, channel=channel), frame=0)
+    midi.receive(mido.Message("pitchwheel", pitch=8191, channel=1), frame=BEAT)
+    upper, lower = four.told[:2], four.told[2:]
+    assert all(told.value("/playing/bend") == 48.0 for told in upper)
+    assert not any(told.value("/playing/bend") for told in lower)
+    midi.receive(mido.Message("pitchwheel", pitch=-8192, channel=2), frame=BEAT + 10)
+    assert all(told.value("/playing/bend") == 48.0 for told in upper)
+    assert all(told.value("/playing/bend") == -48.0 for told in lower)
+    midi.receive(mido.Message("control_change", control=1, value=127), frame=BEAT + 20)
+    assert all(told.value("/playing/vibrato") == 100.0 for told in four.told)
+
+
+def test_on_one_channel_a_chord_is_bent_as_a_whole(four):
+    midi = MidiPlayer(four.wishes, replace(MPE, mpe=False))
+    for note in CHORD:
+        midi.receive(mido.Message("note_on", note=note), frame=0)
+    midi.receive(mido.Message("pitchwheel", pitch=8191), frame=BEAT)
+    assert all(told.value("/playing/bend") == 2.0 for told in four.told)
+
+
+def test_keys_struck_soon_after_one_that_has_ended_are_no_chord(four):
+    on(four, 67, frame=BEAT)
+    off(four, 67, frame=BEAT + 480)
+    on(four, 72, frame=BEAT + 960)
+    assert all(told.settled() == [72] for told in four.told)
+
+
+def test_what_is_set_during_a_note_is_not_undone_as_a_late_player_begins(four):
+    address = "/playing/dynamics"
+    for beat in range(20):
+        on(four, 67, frame=beat * BEAT, values={address: 0.5})
+        four.wishes.write(address, 0.9, frame=beat * BEAT + 10)
+        off(four, 67, frame=beat * BEAT + BEAT // 2)
+        assert all(told.value(address) == 0.9 for told in four.told)
+
+
+def test_settings_reach_all_with_what_is_a_players_own(four):
+    four.wishes.write("/playing/vibrato", 30.0)
+    assert all(told.value("/playing/vibrato") == 30.0 for told in four.told)
+    four.wishes.write("/output/gain", -3.0)
+    assert four.wishes.value("/output/gain") == -3.0
+    assert four.told[2].value("/output/gain") == pytest.approx(-3.0 - 10.0 * np.log10(4.0))
+    four.wishes.write("/room/pan", 0.1)
+    assert np.mean([told.value("/room/pan") for told in four.told]) == pytest.approx(0.1)
+    four.wishes.write("/engine/seed", 5.0)
+    assert len({told.value("/engine/seed") for told in four.told}) == 4
+
+
+def test_a_setting_is_there_from_the_first_sample_in_every_player(four):
+    four.wishes.start_with("/output/gain", 2.0)
+    for told in four.told:
+        jump = told.of(kinds.RAMP)[-1]
+        assert ENGINE[jump.index].address == "/output/gain"
+        assert (jump.frame, jump.other) == (0, 0.0)
+        assert jump.value == told.value("/output/gain") == pytest.approx(2.0 - 6.0206)
+    alone = Told()
+    Wishes(alone).start_with("/output/gain", 2.0)
+    assert alone.all[-1] == Posted(kinds.RAMP, None, SLOT["/output/gain"], 2.0, 0.0)
+
+
+def test_fewer_and_more_may_play_but_not_more_than_there_are(four):
+    assert four.wishes.value("/playing/section") == 4.0
+    on(four, 67, frame=0)
+    assert four.wishes.write("/playing/section", 2.0, frame=BEAT) == 2.0
+    assert [told.settled() for told in four.told] == [[67]] * 2 + [[]] * 2
+    assert four.told[0].value("/output/gain") == pytest.approx(-10.0 * np.log10(2.0))
+    on(four, 69, frame=2 * BEAT)
+    assert [told.settled() for told in four.told] == [[67, 69]] * 2 + [[]] * 2
+    off(four, 67, 69, frame=3 * BEAT)
+    assert four.wishes.write("/playing/section", 16.0, frame=4 * BEAT) == 4.0
+    on(four, 72, frame=5 * BEAT)
+    assert all(told.settled() == [72] for told in four.told)
+    assert Wishes(Told()).write("/playing/section", 16.0) == 1.0
+
+
+def test_a_gain_that_is_held_stays_so_as_players_rest(four):
+    four.wishes.write("/output/gain", -5.0, hold=True)
+    four.wishes.write("/playing/section", 1.0)
+    last = [w for w in four.told[0].all if w.index == ROW["/output/gain"]][-1]
+    assert (last.kind, last.value) == (kinds.HOLD, -5.0)
+
+
+def test_the_finger_of_those_who_play_the_last_key_slides(four):
+    on(four, 76, frame=0)
+    on(four, 67, frame=0)
+    four.wishes.slide(68.0, frame=BEAT)
+    assert [len(told.of(kinds.SLIDE)) for told in four.told] == [0, 0, 1, 1]
+    off(four, 76, 67, frame=2 * BEAT)
+    four.wishes.slide(70.0, frame=3 * BEAT)
+    assert all(told.of(kinds.SLIDE)[-1].value == 70.0 for told in four.told)
+
+
+def test_the_pitch_is_that_of_the_first_who_plays(four):
+    assert four.wishes.pitch is None
+    four.told[2].sounding_pitch = 67.0
+    assert four.wishes.pitch == 67.0
+
+
+def test_notes_that_ended_with_the_audio_process_are_forgotten(four):
+    on(four, *CHORD, frame=0)
+    for told in four.told:
+        told.rests.append((10, 20))
+    before = [len(told.of(kinds.END)) for told in four.told]
+    off(four, *CHORD, frame=BEAT)
+    assert [len(told.of(kinds.END)) for told in four.told] == before
+
+
+def test_a_panic_comes_after_the_notes_that_were_wished_before_it(four):
+    for beat in range(20):
+        on(four, 67, frame=beat * BEAT)
+        four.wishes.notes_off([Key(0, 67)], frame=beat * BEAT + 5)
+        four.wishes.stop_sound(frame=beat * BEAT + 5, is_panic=True)
+        for told in four.told:
+            assert told.of(kinds.BEGIN, kinds.END, kinds.STOP)[-1].kind == kinds.STOP
+
+
+def played(style: Style, people: int, block: int, seconds: float = 1.5) -> np.ndarray:
+    """The sound of each player of a chord and a line."""
+    makes = section_makes(style, RATE, ideal(), people=people)
+    instruments = [make(None) for make in makes]
+    midi = style.midi(section_wishes(style, instruments))
+    events = [(0.1, "note_on", 67), (0.1, "note_on", 74), (0.6, "note_off", 67)]
+    events += [(0.6, "note_off", 74), (0.6, "note_on", 70), (1.1, "note_off", 70)]
+    frames = round(seconds * RATE)
+    sounds = np.zeros((people, frames), np.float32)
+    for begin in range(0, frames, block):
+        while events and events[0][0] * RATE < begin + block:
+            at, kind, note = events.pop(0)
+            midi.receive(mido.Message(kind, note=note, velocity=80), frame=round(at * RATE))
+        for instrument, sound in zip(instruments, sounds, strict=True):
+            instrument.process(sound[begin : begin + block])
+    return sounds
+
+
+def test_the_same_wishes_give_the_same_samples_in_blocks_of_any_size():
+    style = replace(Style(seed=9), start=(("/playing/section", 2.0),))
+    sounds = played(style, 2, 4096)
+    assert np.array_equal(sounds, played(style, 2, 100))
+    level = np.sqrt((sounds[:, round(0.3 * RATE) : round(0.5 * RATE)] ** 2).mean(axis=1))
+    assert level.min() > 1e-3  # both play their notes of the chord
+    assert not np.array_equal(sounds[0], sounds[1])
+    assert np.abs(sounds[:, round(1.4 * RATE) :]).max() < 0.05 * np.abs(sounds).max()
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_note_hangs_whatever_is_played(seed):
+    random = np.random.default_rng(seed)
+    told = [Told() for _ in range(random.integers(2, 7))]
+    style = replace(Style(), start=(("/playing/section", float(len(told))),))
+    wishes = section_wishes(style, told)
+    midi = style.midi(wishes)
+    frame = 0
+    for number in range(400):
+        frame += int(random.choice([0, 0, 100, 1500, 6000, 20000]))
+        kind = random.choice(["note_on", "note_on", "note_off", "control_change"])
+        channel, note = int(random.integers(2)), int(random.integers(65, 72))
+        if kind == "control_change":
+            control = int(random.choice([1, 11, 64, 64, 120, 123]))
+            fields = {"control": control, "value": int(random.choice([0, 60, 127]))}
+        else:
+            fields = {"note": note, "velocity": int(random.integers(0, 127))}
+        midi.receive(mido.Message(str(kind), channel=channel, **fields), frame=frame)
+        if number % 50 == 49:
+            wishes.write("/playing/section", float(random.integers(1, 7)), frame=frame)
+        if number % 10 == 9:
+            held = {key.note for key in wishes.held()}
+            assert all(set(each.settled()) <= held for each in told)
+    midi.end_all(frame=frame)
+    assert not any(each.settled() for each in told)
+
+
+def power(sound: np.ndarray) -> float:
+    """The power of a chord and a line, of their steady parts."""
+    steady = [sound[round(at * RATE) : round((at + 0.25) * RATE)] for at in (0.3, 0.8)]
+    return sum(float((part.astype(float) ** 2).sum()) for part in steady)
+
+
+def test_players_add_up_as_people_do_and_not_as_copies_of_one():
+    style = replace(Style(seed=2), start=(("/playing/section", 8.0),))
+    sounds = played(style, 8, 4096)
+    powers = sum(power(sound) for sound in sounds)
+    assert 0.4 * powers < power(sounds.sum(axis=0)) < 2.5 * powers  # copies: 8 times
+
+
+def test_a_reset_lets_all_play_that_played_at_the_start():
+    told = [Told() for _ in range(4)]
+    style = replace(Style(), start=(("/playing/section", 4.0),))
+    wishes = section_wishes(style, told)
+    midi = style.midi(wishes)
+    wishes.write("/playing/section", 1.0, frame=10)
+    midi.begin_again(frame=20)
+    assert wishes.value("/playing/section") == 4.0
+    wishes.note_on(Key(0, 67), frame=BEAT)
+    assert all(each.settled() == [67] for each in told)

@@ -1,0 +1,169 @@
+"""Players of a section have instruments of one maker, seats and random numbers of their own."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hands import ideal
+
+from yehu_server.physics.quantities import Quantities
+from yehu_server.physics.radiation import response
+from yehu_server.player.calibration import wave_speed
+from yehu_server.playing.section_people import (
+    DISTANCE,
+    GAIN,
+    MODE,
+    PAN,
+    SEED,
+    SIZE,
+    TUNED_CENTS,
+    own_value,
+    section_makes,
+    section_size,
+    vary,
+)
+from yehu_server.playing.style import Style
+
+SEEDS = range(20)
+
+
+def own(address, value, people):
+    return [own_value(address, value, number, people) for number in range(people)]
+
+
+@pytest.mark.parametrize("people", [2, 3, 8, 16])
+def test_a_section_has_the_power_of_one_player(people):
+    gains = own(GAIN, -6.0, people)
+    assert sum(10.0 ** (0.1 * gain) for gain in gains) == pytest.approx(10.0**-0.6)
+
+
+@pytest.mark.parametrize("people", [2, 3, 8, 16])
+@pytest.mark.parametrize("place", [-1.0, -0.2, 0.0, 0.9, 1.0])
+def test_players_sit_beside_each_other_around_the_place_of_the_part(people, place):
+    pans = own(PAN, place, people)
+    assert -1.0 <= min(pans) < max(pans) <= 1.0
+    assert all(left < right for left, right in pairwise(pans))
+    side = 0.5 * (pans[-1] - pans[0])
+    assert side == pytest.approx(min(0.06 * (people - 1), 0.35))
+    assert np.mean(pans) == pytest.approx(min(max(place, side - 1.0), 1.0 - side))
+
+
+def test_players_sit_in_two_rows_about_as_loud_as_at_the_distance_of_the_part():
+    distances = own(DISTANCE, 4.0, 8)
+    assert len(set(distances)) == 2
+    assert min(distances) < 4.0 < max(distances)
+    power = np.mean([(4.0 / distance) ** 2 for distance in distances])
+    assert abs(10.0 * np.log10(power)) < 0.25
+
+
+@pytest.mark.parametrize("people", range(2, 17))
+def test_both_sides_of_a_section_are_as_far_away(people):
+    distances = own(DISTANCE, 4.0, people)
+    assert distances == distances[::-1]
+    assert len(set(distances)) == (1 if people == 2 else 2)
+
+
+def test_one_player_sits_and_plays_as_the_part():
+    assert [own_value(a, 0.3, 0, 1) for a in (GAIN, PAN, DISTANCE)] == [0.3] * 3
+
+
+def test_players_have_seeds_of_their_own():
+    seeds = own(SEED, 65535.0, 16)
+    assert seeds[0] == 65535.0
+    assert len(set(seeds)) == 16
+    assert all(0.0 <= seed < 65536.0 for seed in seeds)
+    assert not set(seeds) & {*own(SEED, 0.0, 16), *own(SEED, 1.0, 16)}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_instruments_of_one_maker_are_in_tune_with_each_other(seed):
+    calibration, base = ideal(), Quantities()
+    tuned, own = vary(calibration, base, seed)
+    for string in (0, 1):
+        speeds = [
+            wave_speed(of.tuned(quantities), string)
+            for of, quantities in ((calibration, base), (tuned, own))
+        ]
+        assert abs(1200.0 * np.log2(speeds[1] / speeds[0])) <= TUNED_CENTS * 1.001
+
+
+def test_strings_hair_and_rosin_differ_within_the_tolerances_of_one_maker():
+    base = Quantities()
+    others = [vary(ideal(), base, seed)[1] for seed in range(200)]
+
+    def check(values: list[float], measured: float, tolerance: float) -> None:
+        ratios = np.array(values) / measured
+        assert abs(ratios - 1.0).max() <= tolerance
+        # As far apart as evenly spread values are.
+        assert ratios.std() == pytest.approx(tolerance / np.sqrt(3.0), rel=0.2)
+
+    for name in ("string_1", "string_2"):
+        strings, measured = [getattr(own, name) for own in others], getattr(base, name)
+        for quantity, tolerance in (("rho", 0.02), ("E", 0.05), ("sigma_0", 0.1), ("sigma_1", 0.1)):
+            values = [getattr(string, quantity) for string in strings]
+            check(values, getattr(measured, quantity), tolerance)
+    for quantity in ("mu_C", "mu_S"):
+        check([getattr(own.bow, quantity) for own in others], getattr(base.bow, quantity), 0.03)
+    assert len({own.bow.hair for own in others}) > 190
+
+
+def test_each_player_of_a_section_has_an_instrument_and_sides_of_their_own():
+    style = Style(seed=3)
+    made = [make(None) for make in section_makes(style, 44100.0, ideal(), people=4)]
+    alone = style.instrument(44100.0, ideal())
+    assert made[0].quantities == alone.quantities  # the first has the measured one
+    bodies = [instrument.quantities.body for instrument in made]
+    assert len({body.frequency_hz for body in bodies}) == 4
+    assert len({instrument.quantities.bow.hair for instrument in made}) == 4
+    turns = [tuple(instrument._rig["seat"]["sides"]["c_1"][0]) for instrument in made]
+    assert len(set(turns)) == 4
+    assert turns[0] == tuple(alone._rig["seat"]["sides"]["c_1"][0])
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_bodies_are_passive_and_their_modes_within_the_tolerances(seed):
+    _, own = vary(ideal(), Quantities(), seed)
+    body, measured = own.body, Quantities().body
+    assert min(*body.mass, *body.damping) > 0.0
+    ratio = np.array(body.frequency_hz) / measured.frequency_hz
+    assert abs(ratio - 1.0).max() <= (1.0 + SIZE) * (1.0 + MODE) - 1.0
+    assert ratio.std() <= MODE
+    for (*_, a1, a2), (*_, before) in zip(body.sections, measured.sections, strict=True):
+        assert a2 == pytest.approx(before)  # decays as quickly
+        assert a1 * a1 < 4.0 * a2 < 4.0
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_bodies_radiate_about_alike(seed):
+    _, own = vary(ideal(), Quantities(), seed)
+    hertz = np.geomspace(300.0, 8000.0, 400)
+    of_measured, of_own = (
+        abs(response(np.array(body.sections), np.array([body.direct_gain]), 44100.0, hertz)) ** 2
+        for body in (Quantities().body, own.body)
+    )
+    assert abs(10.0 * np.log10(of_own.mean() / of_measured.mean())) < 2.0
+    assert abs(10.0 * np.log10(of_own / of_measured)).mean() > 0.3  # and yet not the same
+
+
+def test_a_mapping_preset_or_setting_asks_for_players():
+    assert section_size(Style()) == 1
+    assert section_size(Style(start=(("/playing/section", 4.0),))) == 4
+    assert section_size(Style(settings=(("/playing/section", 8.0),))) == 8
+
+
+def test_a_part_of_one_player_is_the_instrument_of_its_style():
+    style = Style(seed=3)
+    out = []
+    for make in (
+        section_makes(style, 44100.0, ideal(), people=1)[0],
+        lambda memory: style.instrument(44100.0, ideal(), memory=memory),
+    ):
+        instrument = make(None)
+        wishes = style.wishes(instrument)
+        wishes.draw(0.2, 0.6, frame=0)
+        out.append(np.zeros(4410, np.float32))
+        instrument.process(out[-1])
+    assert np.abs(out[0]).max() > 1e-3
+    assert np.array_equal(*out)

@@ -1,0 +1,143 @@
+"""Onsets of a section follow the law by which players correct their asynchronies."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from yehu_server.playing.section_timing import (
+    ERROR_MS,
+    GAIN_HI,
+    GAIN_LO,
+    SHARE,
+    Together,
+)
+
+SCRIPTS = Path(__file__).parents[2] / "scripts"
+RATE = 48000.0
+HALF_A_SECOND = 24000
+USUAL = 0.25  # of /playing/variation
+
+
+@pytest.fixture
+def measures(monkeypatch):
+    """The measures of scripts/section.py."""
+    monkeypatch.syspath_prepend(SCRIPTS)
+    from measures import section_time
+
+    return section_time
+
+
+def onsets(timing: Together, notes: int, step: int = HALF_A_SECOND):
+    """How late each player is (ms) for each note."""
+    return np.array([timing.onset(step * note) for note in range(notes)]) * 1e3 / RATE
+
+
+@pytest.mark.parametrize("people", [2, 4, 8])
+def test_gains_and_errors_are_found_again_by_regression(measures, people):
+    timing = Together(people, RATE, seed=3)
+    gains, error = measures.fit(onsets(timing, 3000))
+    assert np.mean(gains) == pytest.approx(np.mean(timing.gains), abs=0.02)
+    if people > 2:  # of two, only the sum of the gains shows
+        assert gains == pytest.approx(timing.gains, abs=0.03)
+    assert error == pytest.approx(ERROR_MS * USUAL, rel=0.05)
+
+
+def test_the_regression_finds_gains_that_are_known(measures):
+    random = np.random.default_rng(1)
+    gains, late = np.array([0.1, 0.3, 0.2]), np.zeros((4000, 3))
+    for number, now in enumerate(late[:-1]):
+        corrected = [now[i] - gains[i] * sum(now[i] - other for other in now) for i in range(3)]
+        beat = random.normal(0.0, 50.0)  # moves, too
+        late[number + 1] = corrected + random.normal(0.0, 5.0, 3) + beat
+    found, error = measures.fit(late)
+    assert found == pytest.approx(gains, abs=0.03)
+    assert error == pytest.approx(5.0, rel=0.05)
+
+
+def test_four_players_correct_a_quarter_of_each_asynchrony():
+    gains = [gain for seed in range(200) for gain in Together(4, RATE, seed).gains]
+    assert np.mean(gains) == pytest.approx(0.25, abs=0.01)
+    assert GAIN_LO / 4 <= min(gains) < max(gains) <= GAIN_HI / 4
+
+
+def test_of_eight_who_sit_there_four_who_play_correct_a_quarter_each():
+    gains = []
+    for seed in range(200):
+        timing = Together(8, RATE, seed)
+        timing.playing = 4
+        gains += timing.gains
+    assert len(gains) == 4 * 200
+    assert np.mean(gains) == pytest.approx(0.25, abs=0.01)
+
+
+def test_players_err_by_fourteen_milliseconds_at_most():
+    varied, most = (Together(4, RATE, seed=3) for _ in range(2))
+    varied.variation, most.variation = 0.4, 1.0
+    # 0.4 of 36 ms is more than 14 already.
+    assert np.array_equal(onsets(varied, 50), onsets(most, 50))
+    apart = []
+    for seed in range(4000):  # first onsets, where nobody has anything to correct
+        duo = Together(2, RATE, seed)
+        duo.variation = 1.0
+        apart.append(onsets(duo, 1).max())
+    # The median of how far two normal numbers are apart, which the bound of 40 ms leaves alone.
+    assert np.median(apart) == pytest.approx(0.6745 * np.sqrt(2.0) * 14.0, rel=0.05)
+
+
+@pytest.mark.parametrize("people", [1, 2, 8, 16])
+def test_nobody_is_early_or_too_late_and_somebody_is_on_time(people):
+    late = onsets(Together(people, RATE, seed=5), 1000)
+    assert late.min(axis=1) == pytest.approx(0.0)
+    assert late.max() <= 40.0
+
+
+def test_players_do_not_drift_apart_in_ten_minutes():
+    late = onsets(Together(8, RATE, seed=1), 1200)
+    by_minute = late.reshape(10, 120, 8).std(axis=2).mean(axis=1)
+    assert by_minute.max() / by_minute.min() < 1.25
+    means = late.reshape(10, 120, 8).mean(axis=1)
+    assert means.max() < 25.0
+
+
+def test_in_quick_notes_nobody_is_late_for_more_than_half_of_one():
+    step = 2400  # 50 ms
+    late = onsets(Together(8, RATE, seed=2), 500, step)[1:]
+    assert late.max() == pytest.approx(1e3 * SHARE * step / RATE)
+
+
+def test_a_note_ends_as_late_as_the_next_begins():
+    timing = Together(4, RATE, seed=0)
+    timing.onset(0)
+    ends = timing.release(HALF_A_SECOND)
+    assert max(ends) > 0
+    assert timing.onset(HALF_A_SECOND) == ends
+    assert timing.release(HALF_A_SECOND) == ends  # asked for after the next note has begun
+
+
+def test_without_variation_all_begin_together():
+    timing = Together(8, RATE, seed=0)
+    timing.variation = 0.0
+    assert onsets(timing, 50).max() == 0.0
+
+
+def test_a_seed_gives_the_same_onsets_again():
+    timing = Together(4, RATE, seed=7)
+    first = onsets(timing, 20)
+    timing.begin(7)
+    assert np.array_equal(onsets(timing, 20), first)
+    timing.begin(8)
+    assert not np.array_equal(onsets(timing, 20), first)
+
+
+def test_who_rests_is_not_waited_for(measures):
+    timing = Together(8, RATE, seed=4)
+    onsets(timing, 10)
+    timing.playing = 4
+    late = onsets(timing, 3000)
+    assert not late[:, 4:].any()
+    gains, _ = measures.fit(late[1:, :4])
+    assert gains.mean() == pytest.approx(np.mean(timing.gains), abs=0.03)
+    assert len(timing.gains) == 4

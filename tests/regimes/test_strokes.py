@@ -1,0 +1,133 @@
+"""Whole strokes in one compiled call."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from yehu_server.regimes.judge import FINDING, judge
+from yehu_server.regimes.names import HELMHOLTZ, REGIMES, UNBOWED
+from yehu_server.regimes.strokes import find
+from yehu_server.simulation import simulate
+from yehu_server.sweeps.study import study_of
+
+DATA = {
+    "duration": 0.15,
+    "stroke": {"string": 1, "note": 75, "speed": 0.2, "acceleration": 20.0, "noise": 0.05},
+    "vary": {"force": [0.06, 0.5, 0.8, 6.0], "position": [0.1, 0.16], "seed": [0, 1]},
+}
+
+
+def batch(data=DATA):
+    study = study_of(data)
+    index = np.stack(np.unravel_index(np.arange(np.prod(study.shape)), study.shape), axis=1)
+    return study, index, study.bow.strokes(study.axes, index)
+
+
+@pytest.fixture(scope="module")
+def findings():
+    return find(*batch()[2])
+
+
+def test_strokes_find_the_same_in_any_order_and_number_to_the_bit(findings):
+    _, _, (models, rests, strokes, hands) = batch()
+    order = np.random.default_rng(1).permutation(len(strokes))
+    again = np.zeros_like(findings)
+    for part in np.array_split(order, 3):
+        again[part] = find(models, rests, strokes[part], hands)
+    for name in FINDING.names:  # by bytes, in which NaN is the same as NaN
+        assert again[name].tobytes() == findings[name].tobytes()
+
+
+def test_a_stroke_is_judged_as_its_simulation(findings):
+    study, index, _ = batch()
+    helmholtz = np.flatnonzero(findings["regime"] == HELMHOLTZ)
+    assert len(helmholtz) >= 4
+    for at in helmholtz[:2]:
+        gesture = study.bow.gesture(study.axes, index[at].tolist())
+        run = simulate(gesture).arrays
+        sound = run["pressure"], gesture.sample_rate, 440.0 * 2 ** (6 / 12)
+        finding = judge(run["relative_velocity"], run["bow_velocity"], *sound)
+        assert finding.regime == REGIMES[HELMHOLTZ]
+        # The model is chaotic, and controls differ by rounding.
+        assert finding.pitch_hz == pytest.approx(float(findings["pitch_hz"][at]), rel=0.003)
+        assert finding.level_db == pytest.approx(float(findings["level_db"][at]), abs=1.5)
+
+
+def test_the_pitch_is_that_of_the_note(findings):
+    pitches = findings["pitch_hz"][findings["regime"] == HELMHOLTZ]
+    cents = 1200 * np.log2(pitches / (440.0 * 2 ** (6 / 12)))
+    assert np.abs(cents).max() < 50.0
+
+
+def test_another_seed_is_another_bow(findings):
+    by_seed = findings["level_db"].reshape(4, 2, 2)
+    assert (by_seed[..., 0] != by_seed[..., 1]).all()
+    none = DATA | {"stroke": DATA["stroke"] | {"noise": 0.0}}
+    even = find(*batch(none)[2])["level_db"].reshape(4, 2, 2)
+    assert (even[..., 0] == even[..., 1]).all()
+
+
+def test_a_lifted_bow_is_told():
+    gesture = {"duration": 0.1, "pluck": {"string": 1, "amplitude": 0.001}}
+    data = {"gesture": gesture, "vary": {"bow_force": [0.0, 0.5]}}
+    assert find(*batch(data)[2])["regime"][0] == UNBOWED
+
+
+def test_schellengs_limits_bracket_helmholtz_motion():
+    """Between them it holds; far beyond them it does not. On the F string, away from its modes."""
+    from yehu_server.sweeps.limits import limits_of
+
+    base = {"duration": 0.3, "stroke": {"string": 1, "note": 75, "acceleration": 10.0}}
+    for beta in (0.13, 0.16, 0.2):
+        place = base | {"vary": {"position": [beta]}}
+        limits = limits_of(study_of(place), {})
+        middle = (limits.lower * limits.upper) ** 0.5
+        forces = [limits.lower / 5, middle, limits.upper * 5]
+        study = place | {"vary": {"position": [beta], "force": forces}}
+        light, usual, heavy = find(*batch(study)[2])["regime"] == HELMHOLTZ
+        assert usual
+        assert not light
+        assert not heavy
+
+
+def test_schellengs_limits_are_his_formulas():
+    from yehu_server.sweeps.limits import limits_of
+
+    stroke = {"string": 2, "note": 79, "speed": 0.25, "position": 0.11}
+    limits = limits_of(study_of({"stroke": stroke, "vary": {"seed": [0]}}), {})
+    assert limits.beta == pytest.approx(0.11)
+    assert limits.frequency_hz == pytest.approx(440.0 * 2 ** (10 / 12))
+    # Wave impedance of the C string 0.209 kg/s; coefficients of friction 1.0207 and 0.5071.
+    assert limits.upper == pytest.approx(2 * 0.209 * 0.25 / (0.11 * 0.5136), rel=0.02)
+
+
+PRINT = """
+import numpy as np
+from yehu_server.regimes.strokes import find
+from yehu_server.sweeps.study import study_of
+study = study_of({"duration": 0.04, "vary": {"force": [0.4]},
+                  "stroke": {"string": 2, "note": 89, "acceleration": 100.0}})
+found = find(*study.bow.strokes(study.axes, np.zeros((1, 1), int)))
+print([float(found[name][0]) for name in found.dtype.names])
+"""
+
+
+def test_plain_python_finds_what_compiled_code_finds():
+    plain, compiled = (
+        subprocess.run(
+            [sys.executable, "-c", PRINT],
+            env=os.environ | {"NUMBA_DISABLE_JIT": word},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for word in ("1", "0")
+    )
+    numbers = [json.loads(text.replace("nan", "NaN")) for text in (plain, compiled)]
+    assert numbers[0] == pytest.approx(numbers[1], rel=1e-3, nan_ok=True)

@@ -1,0 +1,60 @@
+"""Rooms, compiled: what they answer to sound, apart from any instrument."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from yehu_server.jit import compiled_exactly
+from yehu_server.physics.layout import new_record
+from yehu_server.stage.record import EVERY
+from yehu_server.stage.room import ROOM, furnish, prepare_room, reverberate
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of a room."""
+
+    size: float = 5.0
+    decay: float = 0.4
+    damping: float = 0.4
+
+
+@compiled_exactly
+def _run(room: Any, first: int, asked: Any, level: Any, sound: Any, heard: Any) -> None:
+    for n in range(sound.shape[0]):
+        if (first + n) % EVERY == 0:
+            furnish(room[0], asked[n, 0], asked[n, 1], asked[n, 2])
+        reverberate(room[0], first + n, level[n], sound[n, 0], sound[n, 1])
+        heard[n, 0], heard[n, 1] = room[0].left, room[0].right
+
+
+class Room:
+    """A room that stands open, so that what enters it is heard in full."""
+
+    def __init__(self, rate: float, asked: Asked) -> None:
+        self.rate, self.asked = rate, asked
+        self.record = new_record(ROOM)
+        prepare_room(self.record[0], rate)
+        self.frame = 0
+        self.hear(np.zeros((round(0.5 * rate), 2)))
+
+    def hear(self, sound: Any, asked: Any = None, level: Any = 1.0) -> Any:
+        """What the room gives to sound that enters it, at both ears [shape=(frames, 2)]."""
+        frames = len(sound)
+        if asked is None:
+            asked = (self.asked.size, self.asked.decay, self.asked.damping)
+        rows = np.ascontiguousarray(np.broadcast_to(np.asarray(asked, float), (frames, 3)))
+        levels = np.ascontiguousarray(np.broadcast_to(np.asarray(level, float), frames))
+        heard = np.zeros((frames, 2))
+        _run(self.record, self.frame, rows, levels, np.ascontiguousarray(sound, float), heard)
+        self.frame += frames
+        return heard
+
+    def response(self, seconds: float, left: float = 1.0, right: float = 1.0) -> Any:
+        """What the room gives to an impulse at its two sides [shape=(frames, 2)]."""
+        sound = np.zeros((round(seconds * self.rate), 2))
+        sound[0] = left, right
+        return self.hear(sound)

@@ -1,0 +1,118 @@
+"""Ensemble files: what they say, and what is wrong with them, by line."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from commands import is_one_line
+from hypothesis import given
+from hypothesis import strategies as st
+
+from yehu_server.errors import EnsembleError
+from yehu_server.score.ensemble_file import read_ensemble
+
+ROOT = Path(__file__).resolve().parents[2]
+PART = "[[part]]\nchannel = 1\n"
+
+
+@pytest.fixture
+def read(tmp_path):
+    def run(text: str | bytes):
+        path = tmp_path / "band.toml"
+        path.write_bytes(text.encode() if isinstance(text, str) else text)
+        return read_ensemble(path)
+
+    return run
+
+
+def test_what_a_part_leaves_out_is_left_open(read):
+    (part,) = read(PART).parts
+    assert part.channel == 0
+    left_open = (part.track, part.preset, part.seed, part.pan, part.distance, part.gain_db)
+    assert left_open == (None, None, None, None, None, 0.0)
+
+
+def test_files_are_found_beside_it_and_names_stay_names(read, tmp_path):
+    text = f'{PART}mapping = "mine.toml"\npreset = "tremolo"\ninstrument = "slack.json"\n'
+    (part,) = read(text).parts
+    assert part.mapping == str(tmp_path / "mine.toml")
+    assert (part.preset, part.instrument) == ("tremolo", tmp_path / "slack.json")
+
+
+def test_the_example_of_the_documentation_is_one(read):
+    text = (ROOT / "docs" / "ensemble.md").read_text(encoding="utf-8")
+    ensemble = read(text.partition("```toml\n")[2].partition("```")[0])
+    assert [part.channel for part in ensemble.parts] == [0, 1]
+    assert ensemble.room[0] == ("/room/size", 9.0)
+
+
+def test_a_room_has_values_or_a_name(read):
+    assert read(f"[room]\nsize = 8\nlevel = 0.3\n{PART}").room == (
+        ("/room/size", 8.0),
+        ("/room/level", 0.3),
+    )
+    assert read(f'room = "hall"\n{PART}').room_name == "hall"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "error"),
+    [
+        ("[[part]]\nchannel = 17\n", 2, "part 1: channel: expected 1 to 16, got 17"),
+        ("[[part]]\nchannel = 0\n", 2, "channel: expected 1 to 16"),
+        (f"{PART}track = 1.5\n", 3, "track: expected 1 to"),
+        (f"{PART}\n[[part]]\nname = 'x'\n", 4, "part 2: needs a channel or a track"),
+        (f"[room]\ndecay = 2.0\n{PART}", 1, "room: needs a size in metres"),
+        (f"[room]\nsize = 0.1\n{PART}", 2, "room: /room/size: 0.1 is not within"),
+        (f"[room]\nsize = 9\npan = 1\n{PART}", 3, "room: unknown entry 'pan'"),
+        (f"room = 3\n{PART}", 1, "room: expected a table"),
+        (f"rooms = 3\n{PART}", 1, "unknown entry 'rooms'"),
+        (f"{PART}place = 3\n", 3, "part 1: unknown entry 'place'"),
+        (f"{PART}pan = 2\n", 3, "/room/pan: 2 is not within"),
+        (f"{PART}distance = 'far'\n", 3, "/room/distance"),
+        (f"{PART}gain = 60\n", 3, "/output/gain"),
+        (f"{PART}section = 17\n", 3, "section: expected 1 to 16, got 17"),
+        (f"{PART}seed = -1\n", 3, "seed: expected 0 to 65535"),
+        (f'{PART}set = {{ "/no" = 1 }}\n', 3, "set: "),
+        (f'{PART}set = {{ "/finger/1/press" = 1 }}\n', 3, "moved by the player"),
+        (f"{PART}set = 3\n", 3, "set: expected a table"),
+        (PART * 17, 33, "17 parts: a stage has room for 1 to 16"),
+        ("part = []\n", 1, "0 parts"),
+        ("part = 3\n", 1, "write each part as [[part]]"),
+        ("[[part]\n", 1, "not an ensemble file"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_line(read, text, line, error):
+    with pytest.raises(EnsembleError, match=re.escape(f"band.toml:{line}: ")) as raised:
+        read(text)
+    assert error in str(raised.value)
+    assert is_one_line(f"{raised.value}\n")
+
+
+@pytest.mark.parametrize("text", ["", b"\xff\xfe", "about = 'nobody'\n", b"\0"])
+def test_a_file_without_parts_is_refused(read, text):
+    with pytest.raises(EnsembleError):
+        read(text)
+
+
+VALUES = st.one_of(
+    st.integers(), st.floats(), st.text(max_size=5).map(repr), st.just("[]"), st.just("{}")
+)
+
+
+@given(
+    st.lists(
+        st.tuples(st.sampled_from(["channel", "track", "pan", "set", "seed", "name"]), VALUES),
+        max_size=6,
+    )
+)
+def test_any_values_give_parts_or_one_line(tmp_path_factory, pairs):
+    path = tmp_path_factory.getbasetemp() / "any.toml"
+    lines = "".join(f"{name} = {value}\n" for name, value in pairs)
+    path.write_text(f"[[part]]\n{lines}", encoding="utf-8", errors="replace")
+    try:
+        told = f"{len(read_ensemble(path).parts)} part"
+    except EnsembleError as error:
+        told = str(error)
+    assert told == "1 part" or (path.name in told and is_one_line(f"{told}\n"))

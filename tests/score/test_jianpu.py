@@ -1,0 +1,293 @@
+"""Jianpu as text: notes, rhythm, repeats, and agreement with jianpu-ly."""
+
+from __future__ import annotations
+
+import json
+import re
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from yehu_server.errors import ScoreError
+from yehu_server.score.jianpu.reader import MOST_BYTES, parse_jianpu, read_jianpu
+from yehu_server.score.score_notes import notes_of
+from yehu_server.score.smf.reader import read_score
+from yehu_server.score.written.notated import Note, Written
+from yehu_server.score.written.performed import performed
+
+ROOT = Path(__file__).resolve().parents[2]
+JUDGED = json.loads(Path(__file__).with_name("judged_jianpu.json").read_text(encoding="utf-8"))
+
+
+def written(text: str) -> Written:
+    return parse_jianpu(text.encode())
+
+
+def notes(text: str) -> list[Note]:
+    return list(written(text).parts[0].notes)
+
+
+def pitches(text: str) -> list[float]:
+    return [note.pitch for note in notes(text)]
+
+
+def lengths(text: str) -> list[float]:
+    return [float(note.length) for note in notes(text)]
+
+
+# ---------------------------------------------------------------- agreement
+
+
+@pytest.mark.parametrize("name", JUDGED)
+def test_notes_are_those_that_jianpu_ly_and_lilypond_write_as_midi(name):
+    score = written(JUDGED[name]["text"])
+    found = sorted(
+        [float(note.beat), float(note.length), note.pitch]
+        for part in score.parts
+        for note in part.notes
+    )
+    assert [note[2] for note in found] == [note[2] for note in JUDGED[name]["notes"]]
+    for mine, theirs in zip(found, JUDGED[name]["notes"], strict=True):
+        # their ticks are a 384th of a quarter
+        assert mine[:2] == pytest.approx(theirs[:2], abs=1 / 380)
+    assert not score.unknown
+    assert not score.warnings
+
+
+def test_the_example_tune_has_the_notes_of_its_midi_file():
+    midi = read_score(ROOT / "examples" / "shi_bei_jiu.mid")
+    score = read_jianpu(ROOT / "examples" / "shi_bei_jiu.jianpu")
+    assert not score.unknown
+    assert not score.warnings
+    there, here = notes_of(midi), score.parts[0].notes
+    assert [note.pitch for note in here] == [note.key for note in there]
+    assert [float(note.beat) for note in here] == [note.beat for note in there]
+    played = notes_of(performed(score))
+    for mine, theirs in zip(played, there, strict=True):
+        assert mine.start_s == pytest.approx(theirs.start_s, abs=1e-5)
+        # between strokes the MIDI file leaves 14 ticks, after a phrase 30
+        assert mine.length_s == pytest.approx(theirs.length_s, abs=0.045)
+
+
+# ---------------------------------------------------------------- beyond jianpu-ly's MIDI
+
+
+def test_da_capo_ends_at_fine():
+    assert pitches("4/4 R{ 1 1 1 1 } Fine 2 2 2 2 DC") == [60.0] * 8 + [62.0] * 4 + [60.0] * 4
+
+
+def test_after_da_capo_the_last_ending_is_played_at_once():
+    played = pitches("4/4 R{ 1 - - - } A{ 2 - - - | 3 - - - } Fine 4 - - - DC")
+    assert played == [60.0, 62.0, 60.0, 64.0, 65.0, 60.0, 64.0]
+
+
+def test_dal_segno_begins_at_the_sign_and_ends_at_fine():
+    text = "4/4 1 - - - Segno 2 - - - Fine 3 - - - DS"
+    assert pitches(text) == [60.0, 62.0, 64.0, 62.0]
+
+
+def test_only_the_first_of_several_da_capos_is_played():
+    score = written("4/4 1 - - - DC 2 - - - DC")
+    assert [note.pitch for note in score.parts[0].notes] == [60.0, 60.0, 62.0]
+    assert len(score.warnings) == 1
+
+
+def test_notes_may_be_written_with_their_dashes_slurs_and_bar_lines():
+    score = written("4/4 (1--- 2)|3 -- 4~|4 1 1|")
+    assert [float(note.length) for note in score.parts[0].notes] == [4, 1, 3, 2, 1, 1]
+    (slur,) = score.parts[0].spans
+    assert (slur.name, slur.begin, slur.end) == ("slur", 0, 4)
+
+
+def test_the_highest_note_of_a_chord_is_played_and_that_is_told():
+    score = written("OctavesAfter 135 1'35 5,")
+    assert [note.pitch for note in score.parts[0].notes] == [67.0, 72.0, 55.0]
+    assert "chords, of which the highest note is played" in score.warnings[0]
+
+
+def test_octave_marks_between_figures_belong_as_said():
+    assert pitches("OctavesBefore 1'3") == [76.0]
+    assert pitches("OctavesAfter 1'3") == [72.0]
+    assert pitches("'1'3") == [76.0]
+    assert pitches("1,3,") == [52.0]
+    score = written("1'3")
+    assert score.parts[0].notes[0].pitch == 72.0
+    assert any("octave marks between" in warning for warning in score.warnings)
+
+
+def test_octave_marks_that_all_stand_on_one_side_are_not_doubtful():
+    for text in ("1,3,", ",1,3", ",135'"):
+        assert all("octave marks" not in warning for warning in written(text).warnings)
+
+
+def test_octave_moves_do_not_move_chords_and_grace_notes():
+    (note,) = notes("> g[3] 1")
+    assert note.pitch == 72.0
+    assert [grace.pitch for grace in note.before] == [64.0]
+    assert pitches("> 13") == [64.0]
+
+
+def test_a_tie_between_different_notes_is_told_and_left_out():
+    score = written("1 ~ 2")
+    assert len(score.parts[0].notes) == 2
+    assert any("ties between different notes" in warning for warning in score.warnings)
+
+
+def test_a_rest_of_bars_lasts_as_the_metre_has_it():
+    assert [note.beat for note in notes("3/4 1 - - R*4 2 - -")] == [0, 15]
+
+
+def test_a_pickup_is_bar_0():
+    score = written("3/4,4 5 1 1 1 2 2 2")
+    assert [score.place(note.beat)[0] for note in score.parts[0].notes] == [
+        "0", "1", "1", "1", "2", "2", "2",
+    ]  # fmt: skip
+
+
+def test_bar_lines_that_do_not_fit_the_metre_are_told_with_their_place():
+    score = written("2/4 1 1 |\n1 1 1 |")
+    assert score.warnings == ("bar lines do not fit the metre (first at line 2, column 7)",)
+    assert not written("1 1 1 | 1 |").warnings  # no metre is written
+
+
+def test_notes_that_cross_a_bar_line_are_told():
+    (warning,) = written("2/4 1 1. 1 q1").warnings
+    assert warning == "notes cross a bar line (first at line 1, column 7)"
+
+
+def test_bars_are_counted_through_repeats_as_they_are_played():
+    assert not written("2/4 R3{ 1 } 1 | 1 1 |").warnings
+    assert not written("3/4 R{ 1 1 } A{ 1 | 1 } 1 1 1 |").warnings
+
+
+def test_two_or_four_notes_fill_the_time_of_three_or_six():
+    assert lengths("2[ q1 q2 ] 4[ q1 q2 q3 q4 ]") == [0.75] * 6
+
+
+def test_movements_follow_each_other_and_parts_sound_together():
+    score = written("4/4 1 - - - NextPart 3 - - - NextScore 2/4 5 - NextPart 6 -")
+    assert [[(note.beat, note.pitch) for note in part.notes] for part in score.parts] == [
+        [(0, 60.0), (4, 67.0)],
+        [(0, 64.0), (4, 69.0)],
+    ]
+    assert not score.warnings
+    assert "parts differ in length" in written("1 NextPart 1 -").warnings
+
+
+def test_titles_and_names_of_parts_are_kept():
+    score = written("title=二泉映月\ninstrument=Yehu\n1 NextPart\ninstrument=Erhu\n1")
+    assert score.title == "二泉映月"
+    assert [part.name for part in score.parts] == ["Yehu", "Erhu"]
+
+
+def test_tempi_are_in_quarters():
+    score = written("4=60 1 8=120 1 4.=40 1 2=45 1")
+    assert [(tempo.beat, tempo.quarters_per_minute) for tempo in score.tempi] == [
+        (0, 60.0), (2 - 1, 60.0), (2, 60.0), (3, 90.0),
+    ]  # fmt: skip
+
+
+def test_chinese_punctuation_is_read_as_plain():
+    text = "1\uff1dF \uff11 \uff12\uff0c \uff13\u2019 \u266f\uff11"  # of full width
+    assert pitches(text) == [65.0, 55.0, 81.0, 66.0]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "gb18030"])
+def test_texts_of_any_usual_encoding_are_read(encoding):
+    score = parse_jianpu("title=十杯酒\n1 2 3".encode(encoding))
+    assert score.title == "十杯酒"
+    assert len(score.warnings) == (encoding == "gb18030")
+
+
+def test_lyrics_comments_and_lilypond_code_are_no_notes():
+    text = "1 2 % 3\nL: 5 5 5\nH:\n一 二\n三\n\nLP:\n1 2 3\n:LP\n3\nchords=c2. g:7\n%% tempo: 4=90"
+    score = written(text)
+    assert [note.pitch for note in score.parts[0].notes] == [60.0, 62.0, 64.0]
+    assert dict(score.unknown) == {"LP:": 1, "chords=": 1}
+    assert score.tempi[0].quarters_per_minute == 90.0
+
+
+def examples_in_the_documentation() -> list[str]:
+    """What docs/jianpu.md says that one may write."""
+    page = (ROOT / "docs" / "jianpu.md").read_text(encoding="utf-8")
+    tables = page.partition("## What is not understood")[0]
+    rows = [line for line in tables.splitlines() if line.startswith("| ")]
+    codes = [code for row in rows for code in re.findall(r"`([^`]+)`|<code>(.+?)</code>", row)]
+    found = [(plain or html).replace("&#124;", "|") for plain, html in codes]
+    return [text for text in found if not text.startswith("--")]
+
+
+@pytest.mark.parametrize("text", examples_in_the_documentation())
+def test_what_the_documentation_shows_is_understood(text):
+    mode = "mode=" if re.fullmatch("[a-z]+u", text) else ""
+    assert not written(f"1\n{mode}{text}\n1 1").unknown
+
+
+# ---------------------------------------------------------------- what cannot be read
+
+
+def test_words_that_are_not_understood_are_counted_by_name():
+    score = written('1 wibble 2 wibble 3 souyin \\wobble ^"mumble" x')
+    assert dict(score.unknown) == {"wibble": 2, "souyin": 1, "\\wobble": 1, '^"mumble"': 1}
+    assert any("percussion" in warning for warning in score.warnings)
+
+
+def test_not_more_than_some_words_are_named():
+    score = written("1 " + " ".join(f"w{chr(0x4E00 + number)}" for number in range(150)))
+    assert len(score.unknown) == 101
+    assert score.unknown["other words"] == 50
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("1 2\n R{ 3", "line 2, column 2: has no } that ends it"),
+        ("1 }", "line 1, column 3: } without a {"),
+        ("1 A{ 2 }", "line 1, column 3: A{ belongs after the } of a repeat"),
+        ("3[ q1 q1", "line 1, column 1: has no ] that ends it"),
+        ("1''''' 1", None),
+        ("1=B >>> 7'''", "line 1, column 9: 7''' is beyond any instrument"),
+        ("1 >>>>> 1", "line 1, column 3: the base octave is too far"),
+        ("4=9999 1", "line 1, column 1: a tempo of 9999 is not within 5 to 1000"),
+        ("2/4,1 1", "line 1, column 1: the pickup is longer than the bar"),
+        ("R*99999 1", "line 1, column 1: a rest of more than 1000 bars"),
+        ("R999{ 1 }", "line 1, column 1: more than 100 times"),
+        ("R{ " * 9, "column 25: more than 8 repeats within each other"),
+        ("R100{ " * 4 + "1 " + "} " * 4, "with its repeats, has more than"),
+        ("hello world", "has no notes of jianpu"),
+        ("", "has no notes of jianpu"),
+        ("1\0", "is not text"),
+        ("99[ 1 ]", "more than 64 notes in a tuplet"),
+    ],
+)
+def test_what_cannot_be_read_is_refused_with_its_place(text, reason):
+    if reason is None:  # five octave marks are no note
+        assert dict(written(text).unknown) == {"1'''''": 1}
+        return
+    with pytest.raises(ScoreError) as refused:
+        written(text)
+    assert reason in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_errors_name_the_file(tmp_path):
+    empty = tmp_path / "empty.jianpu"
+    empty.touch()
+    with pytest.raises(ScoreError, match=r"empty.jianpu: is empty"):
+        read_jianpu(empty)
+    with pytest.raises(ScoreError, match=r"none.jianpu: cannot be read"):
+        read_jianpu(tmp_path / "none.jianpu")
+    large = tmp_path / "large.jianpu"
+    large.write_bytes(b"1 " * MOST_BYTES)
+    with pytest.raises(ScoreError, match=r"large.jianpu: larger than 1024 KiB"):
+        read_jianpu(large)
+    wrong = tmp_path / "wrong.jianpu"
+    wrong.write_bytes(b"1 }")
+    with pytest.raises(ScoreError, match=r"wrong.jianpu: line 1, column 3"):
+        read_jianpu(wrong)
+
+
+def test_beats_are_exact():
+    last = notes("3[ q1 q1 q1 ] " * 1000)[-1]
+    assert last.end == Fraction(1000)

@@ -1,0 +1,125 @@
+"""Two-four notation of Chaozhou, and gongche notation."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from yehu_server.errors import ScoreError
+from yehu_server.score.jianpu.characters import living
+from yehu_server.score.jianpu.ersipu import read_ersipu
+from yehu_server.score.jianpu.reader import parse_jianpu
+from yehu_server.score.written.notated import Note
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "huo_wu.jianpu"
+DO = 65.0  # F4
+
+
+def notes(text: str) -> list[Note]:
+    score = parse_jianpu(text.encode())
+    assert not score.unknown
+    assert not score.warnings
+    return list(score.parts[0].notes)
+
+
+def steps(text: str) -> list[float]:
+    """Semitones above F4."""
+    return [round(note.pitch - DO, 6) for note in notes(text)]
+
+
+def test_the_seven_characters_are_sol_la_do_re_mi_sol_la_in_f():
+    assert steps("二 三 四 五 六 七 八") == [-5, -3, 0, 2, 4, 7, 9]
+
+
+def test_a_written_key_holds_for_characters_too():
+    assert [note.pitch for note in notes("1=D 四 1")] == [62.0, 62.0]
+
+
+def test_lengths_octaves_and_marks_are_those_of_jianpu():
+    first, second = notes("q.五, s四' \\upbow")
+    assert (first.pitch - DO, first.length) == (-10.0, Fraction(3, 4))
+    assert (second.pitch - DO, second.length) == (12.0, Fraction(1, 4))
+    assert second.marks[0].name == "up-bow"
+
+
+def test_characters_in_one_word_follow_each_other():
+    assert [(note.pitch - DO, float(note.length)) for note in notes("q四五六")] == [
+        (0.0, 0.5), (2.0, 0.5), (4.0, 0.5),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("mode", "three", "six"),
+    [
+        ("轻六", -3.0, 4.0),
+        ("重六", -1.5, 5.3),
+        ("重三六调", -1.5, 5.3),
+        ("轻三重六", -3.0, 5.3),
+        ("zhong-liu", -1.5, 5.3),
+        ("活五", -1.5, 5.3),
+    ],
+)
+def test_the_mode_says_which_of_three_and_six_is_heavy(mode, three, six):
+    assert steps(f"mode={mode}\n三 六") == [three, six]
+    assert steps(f"调={mode}\n三 六") == [three, six]
+
+
+def test_a_sign_before_a_character_goes_over_the_mode():
+    assert steps("mode=轻六\n重三 三 重六") == [-1.5, -3.0, 5.3]
+    assert steps("mode=重六\n轻三 三 轻六") == [-3.0, -1.5, 4.0]
+
+
+def test_light_notes_and_all_others_stay_where_they_are():
+    assert not any(note.contour for note in notes("mode=重六\n二 三 四 五 六 七 八"))
+
+
+def test_the_living_five_is_raised_and_slides_up_from_re():
+    (note,) = notes("mode=活五\n五 - - -")
+    assert note.pitch - DO == 2.75
+    times, depths = zip(*note.contour, strict=True)
+    assert note.pitch + depths[0] - DO == 2.0  # from re
+    assert max(depths) > 0.2  # past its pitch
+    assert depths[-1] == 0.0
+    turns = [one for one, other in pairwise(depths) if one * other < 0]
+    assert len(turns) >= 4  # unstable
+    assert times == tuple(sorted(times))
+    (alone,) = notes("活五 - - -")  # in any mode
+    assert alone == note
+
+
+def test_only_five_and_the_heavy_three_live_in_that_mode():
+    lives = [bool(note.contour) for note in notes("mode=活五\n二 三 四 五 六 七 八 轻三")]
+    assert lives == [False, True, False, True, False, False, False, False]
+
+
+@pytest.mark.parametrize("quarters", [Fraction(1, 16), Fraction(1, 3), Fraction(1), Fraction(999)])
+@pytest.mark.parametrize("character", ["三", "五"])
+def test_a_living_note_of_any_length_has_few_points_in_order(character, quarters):
+    points = living(character, quarters)
+    assert 3 <= len(points) <= 70
+    times = [time for time, _ in points]
+    assert times == sorted(set(times))
+    assert (times[0], times[-1]) == (0.0, 1.0)
+
+
+def test_a_mode_that_nobody_knows_is_named():
+    score = parse_jianpu("mode=活六\n四".encode())
+    assert dict(score.unknown) == {"mode=活六": 1}
+
+
+def test_gongche_characters_are_read_where_that_is_said():
+    assert steps("notation=工尺谱\n合 四 一 上 尺 工 凡 六 五 乙 仩") == [
+        -5, -3, -1, 0, 2, 4, 5, 7, 9, 11, 12,
+    ]  # fmt: skip
+    with pytest.raises(ScoreError, match="line 2, column 3: there is no 八 in this notation"):
+        parse_jianpu("notation=工尺谱\n上 八".encode())
+
+
+def test_the_example_is_understood_whole():
+    score = read_ersipu(EXAMPLE)
+    assert not score.unknown
+    assert not score.warnings
+    assert sum(bool(note.contour) for note in score.parts[0].notes) >= 6

@@ -1,0 +1,171 @@
+"""Marks of jianpu: each on its note, at its beat."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server.score.jianpu.marks import AHEAD, COMMANDS, FINGERING, TEXTS, Act
+from yehu_server.score.jianpu.reader import parse_jianpu
+from yehu_server.score.written.notated import MARKS, SIGNS, SPANS, Mark, Part, Sign, Span
+
+
+def part(text: str) -> Part:
+    score = parse_jianpu(text.encode())
+    assert not score.unknown
+    assert not score.warnings
+    return score.parts[0]
+
+
+def signs(text: str) -> list[tuple[float, str]]:
+    return [(float(sign.beat), sign.name) for sign in part(text).signs]
+
+
+def test_every_word_means_something_that_a_score_can_say():
+    for action in (*COMMANDS.values(), *FINGERING.values(), *AHEAD.values(), *TEXTS.values()):
+        if action.act is Act.MARK:
+            assert action.name in MARKS
+        elif action.act is Act.SIGN:
+            assert action.name in SIGNS
+        elif action.act is Act.HAIRPIN:
+            assert action.name in SPANS
+
+
+@pytest.mark.parametrize(
+    ("word", "mark"),
+    [
+        ("\\upbow", Mark("up-bow")),
+        ("^\\downbow", Mark("down-bow")),
+        ("\\staccato", Mark("staccato")),
+        ("-.", Mark("staccato")),
+        ("->", Mark("accent")),
+        ("-^", Mark("marcato")),
+        ("\\fermata", Mark("fermata")),
+        ("\\trill", Mark("trill")),
+        ("\\mordent", Mark("mordent")),
+        ("\\prall", Mark("inverted-mordent")),
+        ("\\turn", Mark("turn")),
+        ("Fr=0", Mark("finger", 0)),
+        ("Fr=3", Mark("finger", 3)),
+        ("Fr=内", Mark("inner-string")),
+        ("\\2", Mark("outer-string")),
+        ("harmonic", Mark("harmonic")),
+        ("up", Mark("slide-in-up")),
+        ("Fr=down", Mark("slide-in-down")),
+        ("tilde", Mark("vibrato")),
+    ],
+)
+def test_a_mark_belongs_to_the_note_before_it(word, mark):
+    first, second, third = part(f"1 2 {word} 3").notes
+    assert second.marks == (mark,)
+    assert not first.marks
+    assert not third.marks
+    assert part(f"1 - {word}").notes[0].marks == (mark,)
+
+
+def test_slides_and_glissandi_are_written_before_their_note():
+    first, second, third = part("slideUp 1 2 slideDown 3").notes
+    assert [note.marks for note in (first, second, third)] == [
+        (Mark("slide-in-up"),),
+        (),
+        (Mark("slide-in-down"),),
+    ]
+    assert part("1 glis 2 - 5").spans == (Span("glissando", 1, 3),)
+    assert part("1 2 \\glissando 5").spans == (Span("glissando", 1, 2),)
+
+
+def test_a_returning_slide_leaves_its_note_and_comes_back():
+    (note,) = part("3 - bend").notes
+    shares, steps = zip(*note.contour, strict=True)
+    assert shares == tuple(sorted(shares))
+    assert (steps[0], min(steps), steps[-1]) == (0.0, -2.0, 0.0)
+
+
+def test_tremolo_is_three_strokes_through_the_stem():
+    assert part("1/// -").notes[0].marks == (Mark("tremolo", 3.0),)
+
+
+def test_a_tremolo_between_two_notes_is_both_in_turns_under_one_bow():
+    played = part("1///5 - 2")
+    assert [note.pitch for note in played.notes[:4]] == [60.0, 67.0, 60.0, 67.0]
+    assert len(played.notes) == 17
+    assert played.spans == (Span("slur", 0, played.notes[15].beat),)
+
+
+def test_grace_notes_stand_before_and_after_with_their_lengths():
+    (note,) = part("g[#4d5] 1 ['1s2]g").notes
+    assert [(grace.pitch, float(grace.length)) for grace in note.before] == [
+        (66.0, 0.25),
+        (67.0, 0.125),
+    ]
+    assert [(grace.pitch, float(grace.length)) for grace in note.after] == [
+        (72.0, 0.25),
+        (62.0, 0.25),
+    ]
+
+
+def test_a_length_holds_for_one_grace_note():
+    (note,) = part("g[d45] 1").notes
+    assert [float(grace.length) for grace in note.before] == [0.125, 0.25]
+
+
+def test_of_grace_notes_that_sound_together_the_highest_is_played():
+    (note,) = part("g[1&3&5d2] 1").notes
+    assert [grace.pitch for grace in note.before] == [67.0, 62.0]
+
+
+def test_harmonics_hold_between_their_words():
+    assert [bool(note.marks) for note in part("1 Harm: 2 3 :Harm 4").notes] == [
+        False, True, True, False,
+    ]  # fmt: skip
+
+
+def test_dynamics_hold_from_the_note_before_them():
+    assert signs("1 \\p 2 3 - \\f 4 \\sfz") == [(0, "p"), (3, "f"), (4, "sfz")]
+
+
+def test_a_hairpin_ends_at_its_end_or_at_the_next_dynamic():
+    assert part("1 \\< 2 3 \\! 4").spans == (Span("crescendo", 0, 2),)
+    assert part("1 2 \\> 3 - - \\p").spans == (Span("diminuendo", 1, 4),)
+    assert part("1 \\< 2 \\> 3 - \\!").spans == (Span("crescendo", 0, 1), Span("diminuendo", 1, 3))
+
+
+def test_texts_pluck_and_bow():
+    assert signs('1 ^"pizz." 2 _"arco" 3') == [(0, "pizz"), (1, "arco")]
+    assert signs('1 ^"拨弦" 2 ^"拉弦" 3 ^"外"') == [(0, "pizz"), (1, "arco"), (2, "outer-string")]
+    assert signs('1 ^"sul pont." 2') == [(0, "sul-ponticello")]
+
+
+def test_a_ritardando_ends_at_the_next_tempo():
+    score = parse_jianpu('4=90 1 1 ^"渐慢" 1 1 4=60 1'.encode())
+    assert score.parts[0].spans == (Span("ritardando", 1, 4),)
+    score = parse_jianpu('4=90 1 1 ^"rit." 1 1 ^"原速" 1'.encode())
+    assert score.parts[0].spans == (Span("ritardando", 1, 3),)
+    assert [(tempo.beat, tempo.quarters_per_minute) for tempo in score.tempi] == [(0, 90), (3, 90)]
+    (span,) = parse_jianpu(b'1 ^"rit." ' + b"1 " * 40).parts[0].spans
+    assert span.end - span.begin == 8  # without an end, two bars
+
+
+def test_slurs_may_lie_within_each_other():
+    spans = part("1( 2( 3) 4)").spans
+    assert {(span.begin, span.end) for span in spans} == {(0, 3), (1, 2)}
+
+
+def test_slurs_without_an_end_are_told():
+    assert parse_jianpu(b"1 ( 2").warnings == ("slurs without an end left out",)
+    assert parse_jianpu(b"1 2 )").warnings == ("ends of slurs that did not begin left out",)
+
+
+def test_a_fermata_on_a_rest_stops_the_time():
+    played = part("1 0 \\fermata 1")
+    assert played.signs == (Sign(1, "fermata"),)
+
+
+def test_marks_within_a_repeat_come_each_time():
+    assert [note.marks for note in part("R{ 1 \\upbow 2 }").notes] == [
+        (Mark("up-bow"),), (), (Mark("up-bow"),), (),
+    ]  # fmt: skip
+
+
+def test_words_of_the_page_are_silent():
+    text = 'OnePage NoBarNums NoIndent WithStaff 1 letterA \\bar "|." [( 2 )] \\( 3 \\)'
+    assert len(part(text).notes) == 3

@@ -1,0 +1,54 @@
+"""Living notes and slides of jianpu as they sound."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pitch import frame_pitch
+
+from yehu_server.rendering import Options, Performance
+from yehu_server.score.jianpu.reader import parse_jianpu
+from yehu_server.score.written.notated import Written
+from yehu_server.score.written.performed import performed
+
+RATE = 44100
+
+
+def sound(text: str) -> tuple[Written, np.ndarray]:
+    """A score, and what is heard of it, without the player's own vibrato."""
+    written = parse_jianpu(text.encode())
+    performance = Performance(performed(written), Options(tail_s=0.0, is_dry=True, is_mono=True))
+    return written, np.concatenate(list(performance.blocks()))
+
+
+def heard(samples: np.ndarray, at_s: float) -> float:
+    """The MIDI note that sounds about a time."""
+    middle, half = round(at_s * RATE), RATE // 50
+    return 69.0 + 12.0 * np.log2(frame_pitch(samples[middle - half : middle + half], RATE) / 440.0)
+
+
+def test_a_living_five_sounds_as_its_gesture_moves():
+    written, samples = sound("4=60 四 活五 - - - 六")
+    note = written.parts[0].notes[1]
+    shares, steps = zip(*note.contour, strict=True)
+    for at_s in np.arange(1.2, 4.9, 0.1):
+        # the finger follows within 25 ms
+        near = [
+            note.pitch + np.interp((at_s - 1.0 + late) / 4.0, shares, steps)
+            for late in (-0.025, 0.0, 0.025)
+        ]
+        assert min(near) - 0.2 < heard(samples, at_s) < max(near) + 0.2, at_s
+    assert heard(samples, 5.5) == pytest.approx(69.0, abs=0.15)
+
+
+def test_a_slide_up_begins_below_its_note_and_comes_to_it():
+    _, samples = sound("1=F 4=60 1 slideUp 3 - 1")
+    assert 67.0 < heard(samples, 1.06) < 68.8
+    assert heard(samples, 1.5) == pytest.approx(69.0, abs=0.15)
+
+
+def test_a_slide_there_and_back_dips_by_two_semitones():
+    _, samples = sound("1=F 4=60 3 - bend 3")
+    assert heard(samples, 0.6) == pytest.approx(69.0, abs=0.15)
+    assert heard(samples, 1.2) == pytest.approx(67.0, abs=0.4)
+    assert heard(samples, 1.8) == pytest.approx(69.0, abs=0.15)

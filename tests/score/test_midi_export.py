@@ -1,0 +1,91 @@
+"""A written score as a MIDI file: its notes, tempi and bars, and the controllers of `keyboard`."""
+
+from __future__ import annotations
+
+import io
+from fractions import Fraction
+
+import mido
+import pytest
+
+from yehu_server.score.midi_export import BEND_RANGE, TICKS, midi_file
+from yehu_server.score.score import Metre
+from yehu_server.score.score_notes import notes_of
+from yehu_server.score.smf.reader import read_score
+from yehu_server.score.written.notated import Mark, Note, Part, Sign, Span, Tempo, Written
+from yehu_server.score.written.performed import performed
+
+
+def note(beat, length, pitch, *marks) -> Note:
+    return Note(Fraction(beat), Fraction(length), float(pitch), marks)
+
+
+@pytest.fixture
+def export(tmp_path):
+    """Write a score as MIDI; the score as played, as read again, the file, and what is lost."""
+
+    def run(*notes, **more):
+        tempi = (Tempo(Fraction(0), 90.0), Tempo(Fraction(2), 72.0))
+        metres = (Metre(0.0, 4.0), Metre(4.0, 3.0))
+        part = Part("violin", notes, more.pop("spans", ()), more.pop("signs", ()))
+        written = Written((part,), tempi, metres, title="Tune")
+        played = performed(written)
+        data, lost = midi_file(written, played)
+        path = tmp_path / "out.mid"
+        path.write_bytes(data)
+        return played, read_score(path), mido.MidiFile(file=io.BytesIO(data)), lost
+
+    return run
+
+
+def controls(file, control) -> list[int]:
+    return [m.value for m in file if m.type == "control_change" and m.control == control]
+
+
+def test_the_notes_read_again_are_those_that_are_played(export):
+    played, again, _, lost = export(
+        note(0, 2, 67), note(2, 2, 69, Mark("trill", 2.0)), note(4, 3, 71, Mark("fermata"))
+    )
+    assert not again.warnings
+    assert not lost
+    for one, other in zip(notes_of(played), notes_of(again), strict=True):
+        assert (one.key, one.velocity) == (other.key, other.velocity)
+        assert other.start_s == pytest.approx(one.start_s, abs=2e-3)
+        assert other.end_s == pytest.approx(one.end_s, abs=2e-3)
+
+
+def test_bars_and_beats_line_up_with_the_score(export):
+    _, again, file, _ = export(*(note(n, 1, 67) for n in range(7)))
+    assert [each.beat for each in notes_of(again)] == list(range(7))
+    assert file.ticks_per_beat == TICKS
+    signatures = [
+        (m.numerator, m.denominator) for m in file.tracks[0] if m.type == "time_signature"
+    ]
+    assert signatures == [(4, 4), (3, 4)]
+    assert [track.name for track in file.tracks] == ["Tune", "violin"]
+
+
+def test_settings_become_the_controllers_of_keyboard(export):
+    signs = (Sign(Fraction(1), "pizz"), Sign(Fraction(2), "arco"))
+    _, _, file, lost = export(*(note(n, 1, 67 + n) for n in range(4)), signs=signs)
+    assert controls(file, 67) == [127, 0]
+    assert lost == {"/body/gain": 1}
+
+
+def test_bends_and_slides_are_in_the_file(export):
+    _, again, file, _ = export(
+        note(0, 2, 67, Mark("slide-in-up")),
+        note(2, 2, 72),
+        spans=(Span("portamento", Fraction(0), Fraction(2)),),
+    )
+    wheel = [m.pitch for m in file if m.type == "pitchwheel"]
+    assert wheel[0] == round(-2 / BEND_RANGE * 8191)
+    assert wheel[-1] == 0
+    assert controls(file, 6) == [BEND_RANGE]
+    assert controls(file, 65) == [127, 0]
+    assert notes_of(again)[1].start_s < 2 * 60 / 90
+
+
+def test_what_midi_cannot_say_is_counted(export):
+    *_, lost = export(note(0, 2, 67, Mark("up-bow")), note(2, 2, 69, Mark("up-bow")))
+    assert lost == {"/playing/direction": 1}

@@ -1,0 +1,163 @@
+"""Every fault of MIDI files: what becomes of it, what is said, and where mido agrees."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import mido
+import pytest
+from midi_faults import AGREES, CASES, DIFFERS, REFUSES, UNASKED, Case
+from pages import ROOT, page
+
+from yehu_server.errors import ScoreError
+from yehu_server.score import duration
+from yehu_server.score.score import Score
+from yehu_server.score.smf import chunks, faults, reader, wrapper
+from yehu_server.score.smf.faults import DamagedError
+from yehu_server.score.smf.reader import read_score
+
+PAGE = "docs/midi_files.md"
+ROW = re.compile(r"^\| `([a-z0-9-]+)` \| (?:.+?) \| (.*?) \|$", re.MULTILINE)
+each_case = pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+playable = pytest.mark.parametrize(
+    "case", [case for case in CASES if case.hears is not None], ids=lambda case: case.name
+)
+
+
+@pytest.fixture
+def written(tmp_path):
+    def to_file(data: bytes) -> Path:
+        path = tmp_path / "tune.mid"
+        path.write_bytes(data)
+        return path
+
+    return to_file
+
+
+def notes_of(score: Score) -> tuple[tuple[float, int], ...]:
+    return tuple(
+        (pytest.approx(event.time_s), event.message.note)
+        for event in score.events
+        if event.message.type == "note_on" and event.message.velocity > 0
+    )
+
+
+@each_case
+def test_a_fault_has_the_outcome_that_is_written_of_it(case: Case, written):
+    path = written(case.data)
+    if case.hears is None:
+        with pytest.raises(ScoreError) as refusal:
+            read_score(path)
+        assert str(refusal.value) == f"{path}: {case.says}"
+    else:
+        score = read_score(path)
+        assert case.hears == notes_of(score)
+        assert "; ".join(score.warnings) == case.says
+
+
+def test_the_page_tells_what_is_said_of_each_fault():
+    rows = dict(ROW.findall(page(PAGE).text))
+    assert rows == {case.name: f"`{case.says}`" if case.says else "nothing" for case in CASES}
+
+
+def test_the_page_has_the_bounds_of_the_code():
+    for phrase in (
+        f"longer than {duration.MAX_DURATION_H:g} hours",
+        f"larger than {reader.MAX_BYTES // 2**20} MiB",
+        f"more than {chunks.MAX_EVENTS:,} events",
+        f"{chunks.MAX_TRACKS:,} tracks",
+        f"{chunks.MAX_CHUNKS:,} chunks",
+        f"the first {wrapper.JUNK_BYTES // 1024} kB",
+        f"{faults.MOST_KINDS} kinds",
+        f"{reader.MAX_REST_S} seconds",
+    ):
+        assert phrase in page(PAGE).flat, phrase
+
+
+@playable
+def test_strict_refuses_what_is_warned_of_and_nothing_else(case: Case, written):
+    path = written(case.data)
+    if not case.says:
+        assert case.hears == notes_of(read_score(path, strict=True))
+        return
+    with pytest.raises(DamagedError) as refusal:
+        read_score(path, strict=True)
+    words = re.fullmatch(
+        rf"{re.escape(str(path))}: .*, at byte (\d+): refused by --strict", str(refusal.value)
+    )
+    assert words
+    assert int(words[1]) == min(map(int, re.findall(r"at byte (\d+)", case.says)))
+
+
+@each_case
+def test_every_byte_that_is_told_is_in_the_file(case: Case):
+    assert all(int(at) <= len(case.data) for at in re.findall(r"at byte (\d+)", case.says))
+
+
+# ---------------------------------------------------------------- another reader
+
+
+def by_mido(path: Path) -> list[list[tuple[float, list[int]]]]:
+    """The channel messages of each song with their times, by mido."""
+    file = mido.MidiFile(path)
+    songs = [[track] for track in file.tracks] if file.type == 2 else [file.tracks]
+    told = []
+    for tracks in songs:
+        now, messages = 0.0, []
+        for message in mido.MidiFile(type=1, ticks_per_beat=file.ticks_per_beat, tracks=tracks):
+            now += message.time
+            if hasattr(message, "channel"):
+                messages.append((now, message.bytes()))
+        told.append(messages)
+    return told
+
+
+def by_us(path: Path, songs: int) -> list[list[tuple[float, list[int]]]]:
+    scores = [read_score(path, song=song + 1, max_duration_h=1000.0) for song in range(songs)]
+    return [
+        [(pytest.approx(event.time_s), event.message.bytes()) for event in score.events]
+        for score in scores
+    ]
+
+
+def made_by_mido(case: Case, path: Path) -> str:
+    try:
+        told = by_mido(path)
+    except Exception:  # noqa: BLE001 - of any kind: mido has no errors of its own
+        return REFUSES
+    try:
+        ours = by_us(path, len(told))
+    except ScoreError:
+        return AGREES if not any(told) else DIFFERS
+    if case.hears is not None and len(case.hears) > sum(map(begun, ours)):
+        return DIFFERS  # the rest is in songs that mido has not found
+    return AGREES if told == ours else DIFFERS
+
+
+def begun(messages: list[tuple[float, list[int]]]) -> int:
+    return sum(0x90 <= status < 0xA0 and velocity > 0 for _, (status, _, velocity) in messages)
+
+
+@pytest.mark.parametrize(
+    "case", [case for case in CASES if case.mido != UNASKED], ids=lambda case: case.name
+)
+def test_mido_agrees_message_for_message_where_it_is_said_to(case: Case, written):
+    assert made_by_mido(case, written(case.data)) == case.mido
+
+
+# ---------------------------------------------------------------- the corpus
+
+
+def test_the_corpus_is_written_with_what_is_expected(tmp_path):
+    command = [sys.executable, ROOT / "tests" / "midi_faults.py", tmp_path]
+    subprocess.run(command, check=True)
+    expected = json.loads((tmp_path / "expected.json").read_text("utf-8"))
+    assert {path.stem for path in tmp_path.glob("*.mid")} == set(expected)
+    assert {case.name: case.says for case in CASES} == {
+        name: case["says"] for name, case in expected.items()
+    }
+    assert len(expected) == len(CASES)

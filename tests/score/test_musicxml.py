@@ -1,0 +1,465 @@
+"""What MusicXML says, mark by mark; and files that are damaged or made to harm."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from musicxml_text import (
+    HEAD,
+    articulation,
+    attributes,
+    barline,
+    dynamics,
+    grace,
+    note,
+    ornament,
+    score,
+    slur,
+    technical,
+    tempo,
+    wedge,
+    words,
+)
+
+from yehu_server.errors import ScoreError
+from yehu_server.score.musicxml.file import DEEPEST, MOST_ELEMENTS, MOST_XML_BYTES
+from yehu_server.score.musicxml.reader import read_musicxml
+from yehu_server.score.musicxml.words import meaning_of
+from yehu_server.score.written.notated import MARKS, SPANS, Mark
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "marks.musicxml"
+FOUR = "".join(note(name, 1) for name in ("G4", "A4", "B4", "C5"))
+CONTAINER = '<container><rootfiles><rootfile full-path="{}"/></rootfiles></container>'
+
+
+@pytest.fixture
+def read(tmp_path):
+    """Read a text, or bytes, as a file."""
+
+    def run(text, name="tune.musicxml"):
+        path = tmp_path / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return read_musicxml(path)
+
+    return run
+
+
+def marks_of(written, number=0) -> list[tuple[str, float | None]]:
+    return [(mark.name, mark.value) for mark in written.parts[0].notes[number].marks]
+
+
+def spans_of(written) -> list[tuple[str, float, float]]:
+    return [(span.name, float(span.begin), float(span.end)) for span in written.parts[0].spans]
+
+
+def signs_of(written) -> list[tuple[str, float]]:
+    return [(sign.name, float(sign.beat)) for sign in written.parts[0].signs]
+
+
+# -- marks --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("notation", "name", "value"),
+    [
+        (articulation("staccato"), "staccato", None),
+        (articulation("strong-accent"), "marcato", None),
+        (articulation("detached-legato"), "portato", None),
+        (articulation("scoop"), "slide-in-up", None),
+        (articulation("plop"), "slide-in-down", None),
+        (articulation("doit"), "slide-out-up", None),
+        (articulation("falloff"), "slide-out-down", None),
+        (articulation("breath-mark"), "breath", None),
+        (technical("up-bow"), "up-bow", None),
+        (technical("down-bow"), "down-bow", None),
+        (technical("open-string"), "open-string", None),
+        (technical("fingering", "3"), "finger", 3.0),
+        (technical("string", "1"), "outer-string", None),
+        (technical("string", "2"), "inner-string", None),
+        (technical("snap-pizzicato"), "snap-pizzicato", None),
+        (technical("harmonic"), "harmonic", None),
+        ("<fermata/>", "fermata", None),
+        (ornament("trill-mark"), "trill", 2.0),
+        (ornament("mordent"), "mordent", 1.0),
+        (ornament("inverted-mordent"), "inverted-mordent", 2.0),
+        ("<ornaments><tremolo>3</tremolo></ornaments>", "tremolo", 3.0),
+        ('<ornaments><tremolo type="unmeasured">0</tremolo></ornaments>', "tremolo", None),
+    ],
+)
+def test_marks_are_understood(read, notation, name, value):
+    written = read(score(note("C5", 4, notation)))
+    assert marks_of(written) == [(name, value)]
+    assert not written.unknown
+
+
+@pytest.mark.parametrize(
+    ("fifths", "name", "other"),
+    [
+        (0, "E4", 1.0),
+        (0, "F4", 2.0),
+        (1, "E4", 2.0),
+        (-1, "A4", 1.0),
+        (-3, "D4", 1.0),
+        (7, "B4", 2.0),
+    ],
+)
+def test_a_trill_goes_to_the_next_note_of_the_key(read, fifths, name, other):
+    sharp = name.replace("B4", "A#4") if fifths == 7 else name  # B# is a semitone above A##
+    written = read(score(attributes(fifths=fifths) + note(sharp, 4, ornament("trill-mark"))))
+    assert marks_of(written) == [("trill", other)]
+
+
+def test_the_trill_of_a_transposing_part_is_as_wide_as_written(read):
+    flat = "<transpose><chromatic>-2</chromatic></transpose>"
+    written = read(score(attributes(more=flat) + note("E5", 4, ornament("trill-mark"))))
+    assert written.parts[0].notes[0].pitch == 74.0
+    assert marks_of(written) == [("trill", 1.0)]
+
+
+def test_an_accidental_over_a_trill_counts(read):
+    marks = "<ornaments><trill-mark/><accidental-mark>flat</accidental-mark></ornaments>"
+    assert marks_of(read(score(note("G4", 4, marks)))) == [("trill", 1.0)]
+
+
+def test_what_is_not_understood_is_counted_and_named(read):
+    text = score(
+        note("G4", 1, ornament("schleifer"))
+        + note("A4", 1, ornament("schleifer"))
+        + note("B4", 1, technical("bend", "<bend-alter>1</bend-alter>"))
+        + note(
+            "C5",
+            1,
+            "<articulations><other-articulation>swoosh</other-articulation></articulations>",
+        )
+        + words("with a smile")
+    )
+    assert read(text).unknown == {
+        "schleifer": 2,
+        "bend": 1,
+        "other-articulation swoosh": 1,
+        'words "with a smile"': 1,
+    }
+
+
+def test_a_wavy_line_carries_a_trill_on(read):
+    start = '<ornaments><trill-mark/><wavy-line type="start"/></ornaments>'
+    stop = '<ornaments><wavy-line type="stop"/></ornaments>'
+    written = read(score(note("G4", 2, start) + note("A4", 2, stop)))
+    assert ("trill", 0.0, 2.0) in spans_of(written)
+
+
+def test_a_tremolo_over_two_notes_is_a_trill_of_both_on_one_bow(read):
+    start, stop = (
+        f'<ornaments><tremolo type="{kind}">3</tremolo></ornaments>' for kind in ("start", "stop")
+    )
+    written = read(score(note("G4", 2, start) + note("B4", 2, stop)))
+    assert [marks_of(written, n) for n in (0, 1)] == [[("trill", 4.0)], [("trill", -4.0)]]
+    assert spans_of(written) == [("slur", 0.0, 2.0)]
+
+
+def test_grace_notes_belong_to_the_note_after_them_or_before_them(read):
+    written = read(
+        score(
+            grace("A4") + note("G4", 2) + grace("C5", ' steal-time-previous="50"') + note("D5", 2),
+            note("E5", 4) + grace("D5") + grace("E5"),
+        )
+    )
+    notes = written.parts[0].notes
+    assert [[small.pitch for small in each.before] for each in notes] == [[69.0], [], []]
+    assert [[small.pitch for small in each.after] for each in notes] == [[72.0], [], [74.0, 76.0]]
+
+
+# -- spans and directions -----------------------------------------------------------------------
+
+
+def test_slurs_glissandos_and_hairpins_have_their_notes(read):
+    written = read(
+        score(
+            wedge("crescendo")
+            + note("G4", 1, slur("start"))
+            + note("A4", 1)
+            + note("B4", 1, slur("stop"), '<glissando type="start" number="2"/>')
+            + wedge("stop")
+            + note("E5", 1, '<glissando type="stop" number="2"/>')
+        )
+    )
+    assert spans_of(written) == [
+        ("slur", 0.0, 2.0),
+        ("crescendo", 0.0, 3.0),
+        ("glissando", 2.0, 3.0),
+    ]
+
+
+def test_a_slur_that_begins_where_another_ends_is_a_second_one(read):
+    both = note("A4", 1, slur("start"), slur("stop"))
+    written = read(
+        score(note("G4", 1, slur("start")) + both + note("B4", 1) + note("C5", 1, slur("stop")))
+    )
+    assert spans_of(written) == [("slur", 0.0, 1.0), ("slur", 1.0, 3.0)]
+
+
+def test_a_slur_within_a_repeat_is_there_each_time(read):
+    bar = note("G4", 2, slur("start")) + note("A4", 2, slur("stop")) + barline(repeat="backward")
+    assert spans_of(read(score(bar))) == [("slur", 0.0, 2.0), ("slur", 4.0, 6.0)]
+
+
+def test_cresc_in_words_lasts_to_the_next_dynamic(read):
+    written = read(score(dynamics("p") + words("cresc.") + FOUR, dynamics("f") + FOUR))
+    assert spans_of(written) == [("crescendo", 0.0, 4.0)]
+    assert signs_of(written) == [("p", 0.0), ("f", 4.0)]
+
+
+def test_rit_lasts_to_a_tempo_which_brings_the_tempo_back(read):
+    written = read(score(tempo(90) + FOUR, words("rit.") + FOUR, words("a tempo") + FOUR))
+    assert spans_of(written) == [("ritardando", 4.0, 8.0)]
+    assert [(float(each.beat), each.quarters_per_minute) for each in written.tempi] == [
+        (0.0, 90.0),
+        (8.0, 90.0),
+    ]
+
+
+def test_a_metronome_mark_counts_in_its_unit(read):
+    mark = (
+        "<direction><direction-type><metronome><beat-unit>eighth</beat-unit><beat-unit-dot/>"
+        "<per-minute>80</per-minute></metronome></direction-type></direction>"
+    )
+    assert read(score(mark + FOUR)).tempi[0].quarters_per_minute == 60.0
+
+
+@pytest.mark.parametrize(("how", "beat"), [("", 0.0), (' sound="yes"', 1.0)])
+def test_a_direction_stands_where_its_offset_says_and_sounds_there_if_told(read, how, beat):
+    direction = (
+        "<direction><direction-type><dynamics><f/></dynamics></direction-type>"
+        f'<offset{how}>12</offset><sound tempo="70"/></direction>'
+    )
+    written = read(score(direction + FOUR))
+    assert signs_of(written) == [("f", 1.0)]
+    assert [float(each.beat) for each in written.tempi] == [beat]
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "name"),
+    [
+        ("pizz.", "sign", "pizz"),
+        ("Arco", "sign", "arco"),
+        ("sul pont.", "sign", "sul-ponticello"),
+        ("sul tasto", "sign", "sul-tasto"),
+        ("flautando", "sign", "flautando"),
+        ("ord.", "sign", "ordinary"),
+        ("拨弦", "sign", "pizz"),
+        ("外弦", "sign", "outer-string"),
+        ("poco a poco cresc.", "hairpin", "crescendo"),
+        ("dim.", "hairpin", "diminuendo"),
+        ("poco rit.", "change", "ritardando"),
+        ("D.C. al Fine", "jump", "dacapo"),
+        ("D.S. al Coda", "jump", "dalsegno"),
+        ("To Coda", "jump", "tocoda"),
+        ("Fine", "jump", "fine"),
+        ("a tempo", "back", ""),
+        ("Allegro ma non troppo", "tempo", ""),
+        ("sempre pp", "sign", "pp"),
+    ],
+)
+def test_words_have_a_meaning(text, kind, name):
+    meaning = meaning_of(text)
+    assert (meaning.kind, meaning.name) == (kind, name)
+
+
+@pytest.mark.parametrize(
+    "text", ["dolce", "", "con sord.", "bow to the audience", "primo", "x" * 300]
+)
+def test_other_words_have_none(text):
+    assert meaning_of(text) is None
+
+
+# -- what a score is made of --------------------------------------------------------------------
+
+
+def test_title_bars_and_metre_are_those_of_the_score(read):
+    written = read(
+        score(attributes(3, 4) + note("C5", 1), note("D5", 3), note("E5", 3), title="Upbeat")
+    )
+    assert written.title == "Upbeat"
+    assert [written.place(each.beat) for each in written.parts[0].notes] == [
+        ("1", 0),
+        ("2", 0),
+        ("3", 0),
+    ]
+    assert written.metres[-1].beat == 1.0
+    assert written.metres[-1].quarters == 3.0
+
+
+def test_a_rest_that_is_longer_than_its_bar_fills_the_bar(read):
+    assert read(score(note("r", 8), FOUR)).parts[0].notes[0].beat == 4
+
+
+def test_lower_notes_of_chords_are_counted(read):
+    written = read(score(note("F4", 4) + note("+C5", 4)))
+    assert [each.pitch for each in written.parts[0].notes] == [72.0]
+    assert "chords" in written.warnings[0]
+
+
+def test_voices_are_parts_of_their_own(read):
+    back = "<backup><duration>48</duration></backup>"
+    written = read(score(note("C5", 4) + back + note("F4", 4, voice=2)))
+    assert [part.name for part in written.parts] == ["P1", "P1, voice 2"]
+
+
+def test_bars_in_parts_and_parts_in_bars_are_the_same_score(read):
+    partwise = score(FOUR, note("G4", 4))
+    bars = [
+        f'<measure number="{n}"><part id="P1">{content}</part></measure>'
+        for n, content in ((1, attributes() + FOUR), (2, note("G4", 4)))
+    ]
+    timewise = f"{HEAD}<score-timewise>{''.join(bars)}</score-timewise>"
+    assert read(timewise).parts[0].notes == read(partwise).parts[0].notes
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "iso-8859-1"])
+def test_any_usual_encoding_is_read(read, encoding):
+    text = score(FOUR, title="Dvořák" if encoding != "iso-8859-1" else "Fauré", before="")
+    data = f'<?xml version="1.0" encoding="{encoding}"?>{text}'.encode(encoding)
+    assert read(data).title in ("Dvořák", "Fauré")
+
+
+def test_an_interrupted_ending_does_not_play_for_ever(read):
+    bar = barline(location="left", ending="1 start") + FOUR + barline(repeat="backward")
+    assert len(read(score(bar)).parts[0].notes) == 4
+
+
+# -- archives -----------------------------------------------------------------------------------
+
+
+def packed(files: dict[str, str | bytes], compression=zipfile.ZIP_DEFLATED) -> bytes:
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", compression) as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return data.getvalue()
+
+
+@pytest.mark.parametrize("name", ["tune.musicxml", "folder/tune.xml", "../../../etc/tune.xml"])
+def test_the_container_names_the_score(read, name):
+    data = packed(
+        {"META-INF/container.xml": CONTAINER.format(name), "a.xml": "<no/>", name: score(FOUR)}
+    )
+    assert len(read(data, "tune.mxl").parts[0].notes) == 4
+
+
+def test_an_archive_without_a_container_has_its_only_score(read):
+    assert len(read(packed({"x.xml": score(FOUR)}), "tune.mxl").parts[0].notes) == 4
+
+
+@pytest.mark.parametrize(
+    ("files", "reason"),
+    [
+        ({"readme.txt": "no"}, "without a score"),
+        ({"bomb.xml": b" " * (MOST_XML_BYTES + 1)}, "larger than"),
+        ({"META-INF/container.xml": b" " * (1 << 20), "x.xml": "<x/>"}, "larger than"),
+        ({f"{n}.txt": "" for n in range(1001)}, "more than 1000 files"),
+    ],
+    ids=["no score", "bomb", "large container", "many files"],
+)
+def test_an_archive_made_to_harm_is_refused(read, files, reason):
+    with pytest.raises(ScoreError, match=reason):
+        read(packed(files), "tune.mxl")
+
+
+def test_a_damaged_archive_is_refused(read):
+    whole = packed({"x.xml": score(FOUR)})
+    for cut in (10, len(whole) // 2, len(whole) - 5):
+        with pytest.raises(ScoreError, match="archive"):
+            read(whole[:cut], "tune.mxl")
+    with pytest.raises(ScoreError, match="archive"):
+        read(packed({"x.xml": score(FOUR)}, zipfile.ZIP_BZIP2), "tune.mxl")
+
+
+# -- files made to harm -------------------------------------------------------------------------
+
+TENFOLD = "".join(f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' for n in range(1, 10))
+LAUGHS = f'<!DOCTYPE x [<!ENTITY l0 "ha">{TENFOLD}'
+MANY_TIMES = '<barline><repeat direction="backward" times="100"/></barline>'
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "is empty"),
+        ("hello", "no XML"),
+        ("<score-partwise>", "no XML"),
+        ("<html/>", "no MusicXML"),
+        (f"{LAUGHS}]><score-partwise>&l9;</score-partwise>", "entities"),
+        ('<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/passwd">]><x>&a;</x>', "entities"),
+        ("<a>" * (DEEPEST + 1), "deeper"),
+        ("<score-partwise>" + "<a/>" * MOST_ELEMENTS + "</score-partwise>", "elements"),
+        (score(attributes() + note("G4", 1e6)), "longer"),
+        ('<?xml version="1.0" encoding="ebcdic-moon"?><x/>', "no XML"),
+    ],
+    ids=["empty", "text", "cut", "html", "laughs", "file", "deep", "many", "long", "encoding"],
+)
+def test_a_file_that_is_no_score_is_refused_in_one_line(read, text, reason):
+    with pytest.raises(ScoreError, match=reason) as refusal:
+        read(text)
+    assert "tune.musicxml: " in str(refusal.value)
+    assert str(refusal.value).isprintable()
+
+
+def test_a_document_type_is_not_fetched(read):
+    text = score(FOUR, before='<!DOCTYPE score-partwise SYSTEM "http://127.0.0.1:1/x.dtd">')
+    assert read(text).parts[0].notes
+
+
+@pytest.mark.parametrize(
+    "bars",
+    [
+        [FOUR + MANY_TIMES.replace("100", "999999999")] * 300,
+        [barline(location="left", repeat="forward") + FOUR * 50 + MANY_TIMES] * 3,
+        [note("r", 4) + MANY_TIMES] * 300,
+    ],
+)
+def test_repeats_cannot_make_a_small_file_endless(read, bars):
+    with pytest.raises(ScoreError, match="with its repeats"):
+        read(score(*bars))
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-5", "1e300", "", "abc", "9" * 5000])
+def test_numbers_beyond_reason_are_left_out(read, value):
+    text = score(FOUR).replace("<duration>12</duration>", f"<duration>{value}</duration>", 1)
+    written = read(text.replace("<divisions>12</divisions>", f"<divisions>{value}</divisions>"))
+    assert all(each.length > 0 for part in written.parts for each in part.notes)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(ScoreError, match=r"none\.mxl: cannot be read \(no such file"):
+        read_musicxml(tmp_path / "none.mxl")
+
+
+def test_notes_that_overlap_in_a_voice_are_cut(read):
+    back = "<backup><duration>24</duration></backup>"
+    notes = read(score(note("G4", 4) + back + note("A4", 2))).parts[0].notes
+    assert [(each.beat, each.length, each.pitch) for each in notes] == [
+        (Fraction(0), Fraction(2), 67.0),
+        (Fraction(2), Fraction(2), 69.0),
+    ]
+
+
+def test_marks_of_tied_notes_are_those_of_the_whole(read):
+    tied = note("G4", 2, '<tied type="start"/>', articulation("accent"), more='<tie type="start"/>')
+    end = note("G4", 2, '<tied type="stop"/>', "<fermata/>", more='<tie type="stop"/>')
+    (whole,) = read(score(tied + end)).parts[0].notes
+    assert whole.length == 4
+    assert whole.marks == (Mark("accent"), Mark("fermata"))
+
+
+def test_the_example_has_every_mark_that_musicxml_can_write(read):
+    written = read(EXAMPLE.read_bytes())
+    marks = {mark.name for each in written.parts[0].notes for mark in each.marks}
+    # Words say what is plucked or shaken, and an arpeggio is nothing for a fiddle.
+    assert set(MARKS) - marks == {"pizzicato", "arpeggio", "vibrato"}
+    assert {span.name for span in written.parts[0].spans} == set(SPANS) - {"trill", "accelerando"}
+    assert not written.unknown
+    assert not written.warnings

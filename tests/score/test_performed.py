@@ -1,0 +1,453 @@
+"""Marks of a written score become notes, loudness and settings of bow and fingers."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+
+from yehu_server.errors import ScoreError
+from yehu_server.params.table import find
+from yehu_server.score.phrasing import phrased
+from yehu_server.score.score_notes import notes_of
+from yehu_server.score.setting import Setting
+from yehu_server.score.written.mark_settings import PLACES, QUICK_TREMOLO
+from yehu_server.score.written.notated import (
+    DYNAMICS,
+    MARKS,
+    Grace,
+    Mark,
+    Note,
+    Part,
+    Sign,
+    Span,
+    Tempo,
+    Written,
+)
+from yehu_server.score.written.performed import CHANNELS, performed
+
+QUARTER_S = 0.5
+STEADY = (Tempo(Fraction(0), 120.0),)
+
+
+def note(beat, length, pitch, *marks, **more) -> Note:
+    named = tuple(mark if isinstance(mark, Mark) else Mark(mark) for mark in marks)
+    return Note(Fraction(beat), Fraction(length), float(pitch), named, **more)
+
+
+def span(name, begin, end, value=None) -> Span:
+    return Span(name, Fraction(begin), Fraction(end), value)
+
+
+def sign(beat, name, value=None) -> Sign:
+    return Sign(Fraction(beat), name, value)
+
+
+def play(*notes, spans=(), signs=(), tempi=STEADY):
+    return performed(Written((Part("", notes, tuple(spans), tuple(signs)),), tempi))
+
+
+def settings(score, address) -> list[tuple[float, float | None]]:
+    """When a parameter is set, and to what; None where it is put back."""
+    return [
+        (round(event.time_s, 6), event.message.value)
+        for event in score.events
+        if isinstance(event.message, Setting) and event.message.address == address
+    ]
+
+
+def expressions(score) -> list[tuple[float, int]]:
+    return [
+        (event.time_s, event.message.value)
+        for event in score.events
+        if event.message.type == "control_change" and event.message.control == 11
+    ]
+
+
+FOUR = [note(n, 1, 67 + 2 * n) for n in range(4)]
+
+
+def four(number, *marks) -> list[Note]:
+    """Four quarters; one of them has marks."""
+    return [note(n, 1, 67 + 2 * n, *(marks if n == number else ())) for n in range(4)]
+
+
+# -- time ---------------------------------------------------------------------------------------
+
+
+def test_plain_notes_sound_for_their_full_length_at_the_tempo():
+    score = play(*FOUR)
+    assert [(each.start_s, each.end_s, each.key) for each in notes_of(score)] == [
+        (n * QUARTER_S, (n + 1) * QUARTER_S, 67 + 2 * n) for n in range(4)
+    ]
+    assert {event.message.type for event in score.events} == {"note_on", "note_off"}
+    assert score.duration_s == 4 * QUARTER_S
+
+
+def test_a_tempo_holds_from_its_beat_on():
+    score = play(*FOUR, tempi=(Tempo(Fraction(0), 120.0), Tempo(Fraction(2), 60.0)))
+    assert [each.start_s for each in notes_of(score)] == [0.0, 0.5, 1.0, 2.0]
+
+
+@pytest.mark.parametrize(("name", "share"), [("ritardando", 0.7), ("accelerando", 1.25)])
+def test_a_change_of_tempo_is_gradual_and_complete_at_its_end(name, share):
+    notes = [note(n, 1, 67) for n in range(12)]
+    starts = [each.start_s for each in notes_of(play(*notes, spans=[span(name, 0, 8)]))]
+    steps = [b - a for a, b in pairwise(starts)]
+    assert steps[:8] == sorted(steps[:8], reverse=share > 1.0)
+    assert len({round(step, 6) for step in steps[:8]}) == 8
+    assert steps[8:] == pytest.approx([QUARTER_S / share] * 3)
+
+
+def test_a_fermata_holds_its_note_and_lets_all_parts_wait():
+    notes = (note(0, 1, 67), note(1, 1, 69, "fermata"), note(2, 1, 71))
+    other = (note(0, 3, 60), note(3, 1, 62))
+    parts = (Part("", notes), Part("", other))
+    score = performed(Written(parts, STEADY))
+    held = [each for each in notes_of(score) if each.key == 69]
+    assert held[0].length_s == pytest.approx(1.8 * QUARTER_S)
+    assert [each.start_s for each in notes_of(score) if each.key == 62] == [
+        pytest.approx(3.8 * QUARTER_S)
+    ]
+
+
+def test_a_caesura_is_a_silence():
+    before, after = notes_of(play(*four(1, "caesura")))[1:3]
+    assert before.length_s == pytest.approx(QUARTER_S)
+    assert after.start_s - before.end_s == pytest.approx(0.4)
+
+
+# -- strokes ------------------------------------------------------------------------------------
+
+
+def test_slurred_notes_overlap_and_others_do_not():
+    notes = notes_of(play(*FOUR, spans=[span("slur", 1, 2)]))
+    overlaps = [one.end_s > other.start_s for one, other in pairwise(notes)]
+    assert overlaps == [False, True, False]
+
+
+def test_two_slurs_in_a_row_are_two_strokes():
+    notes = notes_of(play(*FOUR, spans=[span("slur", 0, 1), span("slur", 2, 3)]))
+    assert [one.end_s > other.start_s for one, other in pairwise(notes)] == [True, False, True]
+
+
+def test_a_repeated_note_under_a_slur_goes_on_in_the_same_direction():
+    score = play(note(0, 1, 67), note(1, 1, 67), spans=[span("slur", 0, 1)])
+    notes = notes_of(score)
+    assert notes[0].end_s <= notes[1].start_s
+    directions = settings(score, "/playing/direction")
+    assert directions[0][0] == 0.0
+    assert {value for _, value in directions[:-1]} == {1.0}
+
+
+@pytest.mark.parametrize(
+    ("mark", "share"),
+    [("staccato", 0.5), ("staccatissimo", 0.3), ("spiccato", 0.35), ("tenuto", 1.0)],
+)
+def test_short_marks_shorten(mark, share):
+    notes = notes_of(play(*four(1, mark)))
+    assert notes[1].length_s == pytest.approx(share * QUARTER_S)
+    assert notes[2].start_s == 2 * QUARTER_S
+
+
+@pytest.mark.parametrize(("mark", "value"), [("up-bow", -1.0), ("down-bow", 1.0)])
+def test_the_direction_of_a_bow_is_for_its_note_alone(mark, value):
+    assert settings(play(*four(1, mark)), "/playing/direction") == [(0.5, value), (1.0, None)]
+
+
+@pytest.mark.parametrize(
+    ("marks", "address", "value"),
+    [
+        (["pizzicato"], "/playing/pizzicato", 1.0),
+        (["tremolo"], "/playing/tremolo", QUICK_TREMOLO),
+        ([Mark("tremolo", 2)], "/playing/tremolo", 8.0),
+        ([Mark("vibrato", 40.0)], "/playing/vibrato", 40.0),
+        ([Mark("vibrato", 0.0)], "/playing/phrasing", 0.0),
+        (["inner-string"], "/playing/string", 1.0),
+        (["outer-string"], "/playing/string", 2.0),
+    ],
+)
+def test_a_mark_sets_its_parameter_and_puts_it_back(marks, address, value):
+    assert settings(play(*four(2, *marks)), address) == [(1.0, value), (1.5, None)]
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_the_place_of_the_bow_holds_until_it_is_taken_back(name):
+    score = play(*FOUR, signs=[sign(1, name), sign(3, "ordinary")])
+    for address, value in PLACES[name].items():
+        assert settings(score, address) == [(0.5, value), (1.5, None)]
+
+
+def test_staccato_as_a_word_shortens_all_notes_but_slurred_ones():
+    signs = [sign(0, "staccato"), sign(3, "non-staccato")]
+    notes = notes_of(play(*FOUR, signs=signs, spans=[span("slur", 1, 2)]))
+    assert [round(each.length_s / QUARTER_S, 1) for each in notes] == [0.5, 1.0, 1.0, 1.0]
+
+
+def test_legato_as_a_word_slurs_all_notes():
+    notes = notes_of(play(*FOUR, signs=[sign(0, "legato"), sign(2, "non-legato")]))
+    overlaps = [one.end_s > other.start_s for one, other in pairwise(notes)]
+    assert overlaps == [True, True, False]
+
+
+def test_pizzicato_holds_until_arco():
+    score = play(*FOUR, signs=[sign(1, "pizz"), sign(2, "arco")])
+    assert settings(score, "/playing/pizzicato") == [(0.5, 1.0), (1.0, None)]
+
+
+def test_what_the_last_note_set_is_put_back_too():
+    score = play(*four(3, "pizzicato"))
+    assert settings(score, "/playing/pizzicato")[-1][1] is None
+    assert score.duration_s >= score.events[-1].time_s
+
+
+@pytest.mark.parametrize("finger", [None, 0.0])
+def test_an_open_string_at_its_pitch_is_played_open(finger):
+    mark = Mark("open-string") if finger is None else Mark("finger", finger)
+    assert settings(play(note(0, 1, 72, mark)), "/playing/string")[0] == (0.0, 2.0)
+
+
+def test_a_finger_on_the_pitch_of_the_open_string_asks_for_the_other():
+    score = play(note(0, 1, 72, Mark("finger", 4.0)))
+    assert settings(score, "/playing/string")[0] == (0.0, 1.0)
+
+
+# -- loudness -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", DYNAMICS)
+def test_dynamics_are_velocities(name):
+    notes = notes_of(play(*FOUR, signs=[sign(1, name)]))
+    assert [each.velocity for each in notes] == [80, *[DYNAMICS[name]] * 3]
+
+
+def test_a_forced_note_is_loud_alone():
+    notes = notes_of(play(*FOUR, signs=[sign(0, "p"), sign(1, "fp")]))
+    assert [each.velocity for each in notes] == [50, 96, 50, 50]
+
+
+def test_accents_are_louder_by_their_strength():
+    velocities = [
+        notes_of(play(*four(1, mark)))[1].velocity
+        for mark in ("unstress", "stress", "accent", "marcato")
+    ]
+    assert velocities == sorted(velocities)
+    assert velocities[0] < 80 < velocities[1]
+
+
+def test_a_hairpin_leads_to_the_dynamic_after_it():
+    score = play(
+        *FOUR,
+        note(4, 1, 67),
+        signs=[sign(0, "p"), sign(4, "f")],
+        spans=[span("crescendo", 0, 4)],
+    )
+    velocities = [each.velocity for each in notes_of(score)]
+    assert velocities == sorted(velocities)
+    assert velocities[-1] == 96
+    assert velocities[1] == pytest.approx(50 + 46 * 2 / 4, abs=1)  # its end is its loudest moment
+
+
+def test_a_long_note_swells_under_a_hairpin():
+    score = play(note(0, 8, 67), signs=[sign(0, "p")], spans=[span("crescendo", 0, 8)])
+    _, *swell = [value for _, value in expressions(score)]  # the first is that of the part
+    assert swell == sorted(swell)
+    assert notes_of(score)[0].velocity == 70  # p, and 20 steps more: its loudest moment
+    below_db = 20 * 18 / 126
+    assert swell[0] == pytest.approx(127 * 10 ** (-below_db / 40), abs=1)
+    assert swell[-1] >= 126
+
+
+def test_a_note_ends_as_loud_as_the_next_begins_in_a_hairpin():
+    score = play(*FOUR, spans=[span("diminuendo", 0, 4)])
+    before = [value for time, value in expressions(score) if time < 2 * QUARTER_S][-1]
+    step_db = 40.0 * (1 - before / 127) / 2.3  # of the expression, near its top
+    velocities = [each.velocity for each in notes_of(score)]
+    assert step_db == pytest.approx((velocities[1] - velocities[2]) * 18 / 126, abs=0.35)
+
+
+def test_marked_loudness_is_not_phrased_over():
+    bare, marked = play(*FOUR), play(*FOUR, signs=[sign(0, "mf")])
+    assert {each.velocity for each in notes_of(phrased(bare, 1.0))} != {80}
+    assert {each.velocity for each in notes_of(phrased(marked, 1.0))} == {80}
+
+
+@pytest.mark.parametrize("marks", [["down-bow"], ["staccato"]])
+def test_marked_bows_get_no_more_slurs(marks):
+    quick = [note(Fraction(n, 4), Fraction(1, 4), 67 + 2 * (n % 3)) for n in range(8)]
+    marked = [note(0, Fraction(1, 4), 67, *marks), *quick[1:]]
+
+    def slurs(score):
+        notes = notes_of(phrased(score, 1.0))
+        return sum(one.end_s > other.start_s for one, other in pairwise(notes))
+
+    assert slurs(play(*quick)) > 0
+    assert slurs(play(*marked)) == 0
+
+
+# -- fingers ------------------------------------------------------------------------------------
+
+
+def test_a_trill_holds_its_note_and_taps_the_other_under_one_bow():
+    main, *taps = notes_of(play(note(0, 4, 67, Mark("trill", 1.0))))
+    assert (main.key, main.start_s, main.end_s) == (67, 0.0, 2.0)
+    assert {tap.key for tap in taps} == {68}
+    assert 10 <= len(taps) <= 16
+    assert all(main.start_s < tap.start_s < tap.end_s < main.end_s for tap in taps)
+
+
+def test_a_trill_goes_on_under_its_wavy_line():
+    score = play(*FOUR, spans=[span("trill", 0, 1, 2.0)])
+    keys = [each.key for each in notes_of(score)]
+    assert keys.count(69) > 2  # taps, and the second note
+    assert keys.count(71) > 2
+    assert keys.count(75) == 0
+
+
+@pytest.mark.parametrize(
+    ("mark", "keys"),
+    [
+        (Mark("mordent", 1.0), [67, 66]),
+        (Mark("inverted-mordent", 2.0), [67, 69]),
+        (Mark("turn", 2.0), [67, 69, 66]),
+        (Mark("inverted-turn", 2.0), [67, 66, 69]),
+    ],
+)
+def test_ornaments_tap_their_notes_while_the_own_is_held(mark, keys):
+    notes = notes_of(play(note(0, 2, 67, mark)))
+    assert [each.key for each in notes] == keys
+    assert all(each.end_s < notes[0].end_s for each in notes[1:])
+
+
+def test_grace_notes_take_their_time_from_their_note():
+    graces = (Grace(65.0), Grace(69.0))
+    notes = notes_of(
+        play(note(0, 1, 65), note(1, 1, 67, before=graces), note(2, 1, 67, after=graces))
+    )
+    assert [each.key for each in notes] == [65, 65, 69, 67, 67, 65, 69]
+    starts = [each.start_s for each in notes]
+    assert starts == sorted(starts)
+    assert starts[1] == QUARTER_S
+    assert starts[3] < 1.5 * QUARTER_S
+    assert notes[-1].end_s == pytest.approx(3 * QUARTER_S)
+    assert notes[1].end_s > notes[2].start_s  # on one bow
+
+
+def test_a_grace_note_of_the_same_pitch_does_not_end_its_note():
+    small, own = notes_of(play(note(0, 2, 67, before=(Grace(67.0),))))
+    assert small.end_s == own.start_s
+    assert own.end_s == 2 * QUARTER_S
+
+
+def test_a_note_between_the_keys_is_bent_there():
+    score = play(note(0, 1, 66.75), note(1, 1, 69))
+    assert [each.key for each in notes_of(score)] == [67, 69]
+    assert settings(score, "/playing/bend") == [(0.0, -0.25), (0.5, None)]
+
+
+@pytest.mark.parametrize(
+    ("mark", "first", "last"),
+    [
+        ("slide-in-up", -2.0, 0.0),
+        ("slide-in-down", 2.0, 0.0),
+        ("slide-out-up", 0.0, 2.0),
+        ("slide-out-down", 0.0, -2.0),
+    ],
+)
+def test_slides_bend_into_a_note_or_out_of_it(mark, first, last):
+    bends = settings(play(*four(1, mark)), "/playing/bend")
+    assert bends[0] == (0.5, first)
+    assert bends[-2][1] == pytest.approx(last)
+    assert bends[-2][0] < 1.0
+    assert bends[-1] == (1.0, None)
+
+
+def test_a_contour_is_followed():
+    contour = ((0.0, 0.0), (0.5, 3.0), (1.0, 1.0))
+    bends = settings(play(note(0, 4, 67, contour=contour)), "/playing/bend")
+    at = dict(bends)
+    assert at[1.0] == pytest.approx(3.0)
+    assert at[0.5] == pytest.approx(1.5)
+    assert bends[-2][1] == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_portamento_is_there_soon_after_the_beat():
+    score = play(*FOUR, spans=[span("portamento", 1, 2)])
+    begin = notes_of(score)[2].start_s
+    slide_s = settings(score, "/playing/portamento_time")[0][1] / 1e3
+    assert begin < 1.0 < begin + slide_s < 1.1
+    assert settings(score, "/playing/portamento")[0] == (pytest.approx(begin), 1.0)
+
+
+def test_a_glissando_slides_through_most_of_its_note_and_arrives_on_the_beat():
+    score = play(note(0, 4, 67), note(4, 1, 79), spans=[span("glissando", 0, 4)])
+    begin = notes_of(score)[1].start_s
+    slide_s = settings(score, "/playing/portamento_time")[0][1] / 1e3
+    assert slide_s == pytest.approx(0.7 * 4 * QUARTER_S)
+    assert begin + slide_s == pytest.approx(4 * QUARTER_S)
+
+
+def test_a_harmonic_touches_the_node_of_an_open_string():
+    score = play(note(0, 1, 84, "harmonic"), note(1, 1, 67))
+    assert [each.key for each in notes_of(score)] == [72, 67]
+    touched = [
+        number
+        for number, event in enumerate(score.events)
+        if getattr(event.message, "address", "") == "/finger/4/press"
+    ]
+    struck = [n for n, event in enumerate(score.events) if event.message.type == "note_on"]
+    assert struck[0] < touched[0] < touched[1] < struck[1]  # lifted before the next note
+    assert not score.warnings
+
+
+def test_a_harmonic_that_does_not_speak_is_told():
+    score = play(note(0, 1, 80, "harmonic"))
+    assert [each.key for each in notes_of(score)] == [80]
+    assert "harmonic" in score.warnings[0]
+
+
+# -- all of it ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", MARKS)
+def test_every_mark_changes_what_is_played_or_says_nothing_about_it(name):
+    silent = {"finger", "open-string", "tenuto", "arpeggio"}  # of this note
+    plain, marked = play(*FOUR), play(*four(1, name))
+    same = [*map(str, marked.events)] == [*map(str, plain.events)]
+    assert same == (name in silent)
+
+
+@pytest.mark.parametrize("name", MARKS)
+def test_settings_are_within_the_range_of_their_parameters(name):
+    for value in (None, 0.0, 1.0, 5.0, -1e9, 1e9):
+        score = play(*four(1, Mark(name, value)))
+        for event in score.events:
+            if isinstance(event.message, Setting) and event.message.value is not None:
+                param = find(event.message.address)
+                assert param.lo <= event.message.value <= param.hi
+
+
+def test_each_part_has_a_channel_and_none_is_percussion():
+    parts = tuple(Part(str(n), (note(0, 1, 67),)) for n in range(20))
+    score = performed(Written(parts))
+    assert {event.message.channel for event in score.events} == set(CHANNELS)
+    assert 9 not in CHANNELS
+    assert "20 parts" in score.warnings[0]
+
+
+def test_marks_that_were_not_understood_are_told_with_their_count():
+    score = performed(Written((Part("", tuple(FOUR)),), unknown={"squiggle": 2, "blob": 1}))
+    assert score.warnings == ("not understood: squiggle (2 times)", "not understood: blob")
+
+
+def test_a_score_without_notes_is_refused():
+    with pytest.raises(ScoreError, match="no note"):
+        performed(Written((Part("", ()),)))
+
+
+def test_a_score_of_too_many_moves_is_refused():
+    # Each note a slide as long as an hour.
+    notes = [note(10 * n, 10, 67, contour=((0.0, 0.0), (1.0, 12.0))) for n in range(300)]
+    with pytest.raises(ScoreError, match="moves"):
+        play(*notes, tempi=(Tempo(Fraction(0), 5.0),))

@@ -1,0 +1,52 @@
+"""Jobs for tests of processes: functions that another process can find by their name."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+
+def double(task, tell):
+    tell(0.5, 1.0)
+    return 2 * task
+
+
+def fall(task, tell):
+    """Die at -1; at a path, die at the first time only."""
+    del tell
+    if task == -1:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if isinstance(task, Path) and not task.exists():
+        task.touch()
+        os._exit(3)
+    return os.getpid()
+
+
+def hold(task, tell):
+    """Hold a file as long as it is not interrupted."""
+    del tell
+    try:
+        task.touch()
+        time.sleep(600.0)
+    finally:
+        task.unlink()
+
+
+def slow(task, tell):
+    """Take some seconds; tell who did."""
+    del tell
+    time.sleep(task)
+    return os.getpid()
+
+
+class SetUp:
+    """Writes when it began and ended, to a file of each process."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def __call__(self):
+        began = time.monotonic()
+        time.sleep(0.3)
+        with (self.folder / f"set-up-{os.getpid()}").open("a") as file:
+            file.write(f"{began} {time.monotonic()}\n")

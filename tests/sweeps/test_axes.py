@@ -1,0 +1,63 @@
+"""What a study varies."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server.errors import ParameterError
+from yehu_server.sweeps.axes import axis_from, axis_of
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "values"),
+    [
+        ("bow_force=0.1,2", "bow_force", (0.1, 2.0)),
+        ("controls.bow_force=-1e-1", "controls.bow_force", (-0.1,)),
+        ("instrument.bow.epsilon_0=1e4:3e4:3", "instrument.bow.epsilon_0", (1e4, 2e4, 3e4)),
+        ("force=0.1:10:3:log", "force", (0.1, 1.0, 10.0)),
+        ("bow_force=-0.1:-10:3:log", "bow_force", (-0.1, -1.0, -10.0)),
+    ],
+)
+def test_an_axis_is_a_name_and_values(text, name, values):
+    axis = axis_of(text)
+    assert axis.name == name
+    assert axis.values == pytest.approx(values)
+
+
+def test_a_word_is_a_value():
+    axis = axis_of("instrument.bow.friction=elasto-plastic,thermal")
+    assert axis.values == ("elasto-plastic", "thermal")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["force", "=1", "force=", "force=1:2", "force=1:2:1", "a..b=1", "x=1:2:z", "x=0:2:5:log",
+     "x=1:2:5:cubic", "x=1:2:5:log:6", "x=1:inf:4", "x=1:2:1000001"],
+)  # fmt: skip
+def test_what_is_no_axis_is_refused_in_a_line(text):
+    with pytest.raises(ParameterError) as error:
+        axis_of(text)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [3, [], {"from": 1}, {"from": 1, "to": 2, "steps": 2.5}, {"from": 1, "to": 2, "step": 3},
+     {"from": "a", "to": 2, "steps": 3}, [True], [[1]]],
+)  # fmt: skip
+def test_what_is_no_axis_of_a_study_is_refused(entry):
+    with pytest.raises(ParameterError, match="vary force"):
+        axis_from("force", entry)
+
+
+def test_halving_steps_keeps_the_values_that_were_there():
+    axis = axis_of("force=0.03:5:9:log")
+    fine = axis.refined(2)
+    assert len(fine.values) == 33
+    assert fine.values[::4] == pytest.approx(axis.values)
+    assert fine.values[-1] == 5.0
+
+
+def test_a_list_cannot_be_refined():
+    with pytest.raises(ParameterError, match="cannot be refined"):
+        axis_of("note=65,67").refined(1)

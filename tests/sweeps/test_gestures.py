@@ -1,0 +1,106 @@
+"""Gestures that are varied."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from yehu_server.errors import ParameterError
+from yehu_server.regimes.judge import judge
+from yehu_server.regimes.names import REGIMES
+from yehu_server.simulation import simulate
+from yehu_server.sweeps.running import sweep
+from yehu_server.sweeps.study import study_of
+
+GESTURE = {
+    "duration": 0.15,
+    "controls": {
+        "bow_force": [[0, 0.0], [0.02, 0.7]],
+        "bow_velocity": [[0, 0.0], [0.03, 0.2]],
+        "finger_position": 0.1,
+        "press_force": 1.5,
+    },
+}
+
+
+def study(**vary):
+    return study_of({"gesture": GESTURE, "vary": vary})
+
+
+def test_a_curve_keeps_its_shape_and_another_entry_is_set():
+    varied = study(bow_force=[-1.4], press_force=[2.0])
+    gesture = varied.bow.gesture(varied.axes, [0, 0])
+    assert gesture.controls["bow_force"] == ((0.0, 0.0), (0.02, pytest.approx(-1.4)))
+    assert gesture.controls["press_force"] == ((0.0, 2.0),)
+    assert GESTURE["controls"]["bow_force"] == [[0, 0.0], [0.02, 0.7]]
+
+
+def test_an_acceleration_is_from_rest_to_the_speed_of_the_gesture():
+    varied = study(bow_acceleration=[4.0], bow_velocity=[0.3])
+    gesture = varied.bow.gesture(varied.axes, [0, 0])
+    assert gesture.controls["bow_velocity"] == ((0.0, 0.0), (pytest.approx(0.075), 0.3))
+
+
+@pytest.mark.parametrize(
+    "vary",
+    [
+        {"bow_force": [0.4, -0.4, 0.7]},
+        {"controls.bow_velocity": [0.1, 0.25], "instrument.bow.mu_S": [0.9, 1.0]},
+        {"bow_acceleration": [3.0, 12.0], "bow_position": [0.25, 0.27]},
+        {"duration": [0.12, 0.15], "sample_rate": [44100, 48000]},
+    ],
+    ids=",".join,
+)
+def test_a_stroke_is_the_gesture_that_simulate_runs(vary):
+    varied = study(**vary)
+    result = sweep(varied, workers=2)
+    assert len(result) == np.prod(varied.shape)
+    models, rests, strokes, _ = varied.bow.strokes(varied.axes, result.index)
+    for at in range(len(result)):
+        gesture = varied.bow.gesture(varied.axes, result.index[at].tolist())
+        run = simulate(gesture).arrays
+        sound = run["pressure"], gesture.sample_rate, float(strokes["frequency_hz"][at])
+        finding = judge(run["relative_velocity"], run["bow_velocity"], *sound)
+        assert REGIMES[result.columns["regime"][at]] == finding.regime
+        # To the sample: what is before has not had the time to drift apart.
+        assert result.columns["first_slip_s"][at] == pytest.approx(
+            finding.first_slip_s, abs=2.5 / gesture.sample_rate
+        )
+    assert len(models) == len(rests)
+
+
+def test_the_note_of_a_gesture_is_that_of_its_string_and_finger():
+    varied = study(bow_force=[0.5, -0.5], finger_position=[0.1, 0.15])
+    strokes = varied.bow.strokes(varied.axes, np.array([[0, 0], [0, 1], [1, 0], [1, 1]]))[2]
+    # c / 2 (x_c - x_f) of each string, without stiffness; [Yehu] table 1.
+    speeds = [
+        (50.61 / (1250 * np.pi * 0.55e-3**2)) ** 0.5,
+        (64.29 / (1350 * np.pi * 0.4e-3**2)) ** 0.5,
+    ]
+    expected = [c / (2 * (0.3 - x)) for c in speeds for x in (0.1, 0.15)]
+    assert strokes["frequency_hz"] == pytest.approx(expected)
+
+
+def test_an_open_string_has_no_finger():
+    open_string = {"gesture": {"duration": 0.1, "controls": {"bow_velocity": 0.2}}}
+    varied = study_of(open_string | {"vary": {"bow_force": [0.5]}})
+    strokes = varied.bow.strokes(varied.axes, np.array([[0]]))[2]
+    assert strokes["frequency_hz"][0] == pytest.approx(345, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("vary", "wrong"),
+    [
+        ({"bow_force": [0.1, 99.0]}, "bow_force: 99.0 is not within"),
+        ({"bow_farce": [1.0]}, "unknown name 'bow_farce'"),
+        ({"instrument.bow.nothing": [1.0]}, "unknown quantity 'nothing'"),
+        ({"duration.x": [1.0]}, "no such entry"),
+        ({"duration": [0.01]}, "too short to judge"),
+        ({"bow_acceleration": [0.0]}, "bow_acceleration: 0.0 is not within"),
+        ({"finger_position": [0.1, 0.39]}, "is not between the loop"),
+        ({"bow_force": ["much"]}, "bow_force"),
+    ],
+)
+def test_what_cannot_be_varied_is_told(vary, wrong):
+    with pytest.raises(ParameterError, match=wrong):
+        study(**vary)

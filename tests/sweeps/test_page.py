@@ -1,0 +1,73 @@
+"""The page of a result, and what it is made of."""
+
+from __future__ import annotations
+
+import base64
+import shutil
+import subprocess
+import zlib
+
+import numpy as np
+import pytest
+
+from yehu_server.sweeps.colours import plane_of
+from yehu_server.sweeps.page import facts_of, write_page
+from yehu_server.sweeps.picture import edges, periods_of
+
+CHROMIUM = shutil.which("chromium")
+
+
+def test_the_plane_has_the_force_upright():
+    assert plane_of({"force": 5, "position": 4}) == ("position", "force")
+    assert plane_of({"note": 3, "force": 5, "acceleration": 4}) == ("acceleration", "force")
+    assert plane_of({"note": 3, "force": 5}) == ("note", "force")
+    assert plane_of({"seed": 3, "position": 2, "force": 5}) == ("position", "force")
+    assert plane_of({"speed": 3, "force": 5, "position": 4}) == ("position", "force")
+    assert plane_of({"force": 5}) == ("force", None)
+
+
+def test_a_page_has_every_regime_in_its_place(result):
+    facts = facts_of(result, "position", "force")
+    column = facts["columns"][0]
+    cells = np.frombuffer(zlib.decompress(base64.b64decode(column["data"])), np.uint8)
+    assert (cells.reshape(9, 5) == result.grid("regime")).all()
+    assert [column["regimes"][k] for k in (2, 6)] == ["helmholtz", "raucous"]
+
+
+def test_a_page_has_levels_to_a_step(result):
+    column = next(
+        c for c in facts_of(result, "position", "force")["columns"] if c["label"] == "level"
+    )
+    cells = np.frombuffer(zlib.decompress(base64.b64decode(column["data"])), np.uint8)
+    shown = column["low"] + column["step"] * cells.reshape(9, 5)
+    assert np.abs(shown - result.grid("level_db")).max() <= 0.51 * column["step"]
+
+
+def test_periods_count_from_the_first_slip(result):
+    periods = periods_of(result)
+    assert np.isfinite(periods).any()
+    assert periods[np.isfinite(periods)].min() >= 0.0
+    assert periods[np.isfinite(periods)].max() < 0.1 * 523.25 * 1.1
+
+
+def test_edges_lie_between_the_values():
+    assert edges(np.array([1.0, 2.0, 3.0]), log=False) == pytest.approx([0.5, 1.5, 2.5, 3.5])
+    assert edges(np.array([1.0, 4.0]), log=True) == pytest.approx([0.5, 2.0, 8.0])
+
+
+def test_a_title_is_text_and_no_code(tmp_path, result):
+    write_page(result, tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "<h1>A short study of &lt;C5&gt;</h1>" in text
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs chromium")
+def test_a_browser_draws_the_page_from_the_file_alone(tmp_path, result):
+    write_page(result, tmp_path / "page.html")
+    command = [
+        CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=4000",
+        f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", f"file://{tmp_path}/page.html",
+    ]  # fmt: skip
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    assert '<li><span style="background: rgb(47, 143, 91);"></span>helmholtz</li>' in done.stdout
+    assert "upper (whole) and lower" in done.stdout

@@ -1,0 +1,79 @@
+"""Which points are computed, on regions that are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from yehu_server.sweeps.refining import coarse_points, fill, finer_points
+
+LEVELS = 3
+STEPS = 8
+
+
+def disc(shape):
+    """1 within a circle, 0 outside."""
+    x, y = np.meshgrid(*(np.linspace(-1, 1, length) for length in shape), indexing="ij")
+    return (x**2 + y**2 < 0.55).astype(np.uint8)
+
+
+def refined(truth, refine=(0, 1), levels=LEVELS):
+    """The points that are computed of a field whose values are known."""
+    flat = truth.reshape(-1)
+    known = coarse_points(truth.shape, refine, levels)
+    for halved in range(levels):
+        more = finer_points(truth.shape, refine, levels, halved, known, flat[known])
+        assert not set(more) & set(known)
+        known = np.union1d(known, more)
+    return known
+
+
+def test_the_coarse_grid_has_every_so_many_points():
+    assert coarse_points((5, 9), (1,), 2).tolist() == [
+        r * 9 + c for r in range(5) for c in (0, 4, 8)
+    ]
+    assert len(coarse_points((5, 9), (), 0)) == 45
+
+
+def test_a_border_is_found_to_the_finest_step():
+    truth = disc((65, 65))
+    known = refined(truth)
+    assert (
+        fill(truth.shape, (0, 1), LEVELS, known, truth.reshape(-1)[known]) == truth
+    ).mean() == 1.0
+    assert len(known) < 0.4 * truth.size
+
+
+def test_a_region_of_one_kind_is_not_refined():
+    truth = np.zeros((17, 17), np.uint8)
+    assert len(refined(truth)) == 3 * 3
+    assert (
+        fill(truth.shape, (0, 1), LEVELS, refined(truth), np.full(9, 7)).tolist() == [[7] * 17] * 17
+    )
+
+
+def test_an_axis_that_is_not_refined_has_maps_of_its_own():
+    truth = np.stack([disc((33, 33)), np.zeros((33, 33), np.uint8)])
+    known = refined(truth, refine=(1, 2))
+    own = known[known >= 33 * 33]
+    assert len(own) == 5 * 5
+    values = truth.reshape(-1)[known]
+    assert (fill(truth.shape, (1, 2), LEVELS, known, values) == truth).mean() > 0.995
+
+
+def test_one_axis_is_halved_like_an_interval():
+    truth = (np.arange(65) >= 23).astype(np.uint8)
+    known = refined(truth, refine=(0,))
+    assert len(known) == 9 + LEVELS
+    assert {22, 23} <= set(known.tolist())
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_what_was_not_computed_is_as_the_point_below(axis):
+    shape = [5, 5]
+    known = coarse_points(shape, (axis,), 2)
+    values = np.arange(len(known))
+    filled = fill(shape, (axis,), 2, known, values)
+    along = np.moveaxis(filled, axis, 0)
+    assert (along[:4] == along[0]).all()
+    assert (along[4] != along[0]).all()

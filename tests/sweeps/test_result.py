@@ -1,0 +1,79 @@
+"""The file of a sweep."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.sweeps.result import COLUMNS, Result
+
+
+def same(one, other):
+    assert one.meta == other.meta
+    assert list(one.axes) == list(other.axes)
+    assert np.array_equal(one.numbers, other.numbers)
+    for name in COLUMNS:
+        assert one.columns[name].tobytes() == other.columns[name].tobytes()
+
+
+def test_a_file_holds_all_of_a_result(tmp_path, result):
+    result.save(tmp_path / "mine.npz")
+    same(Result.load(tmp_path / "mine.npz"), result)
+
+
+def test_a_zarr_store_holds_the_same(tmp_path, result):
+    pytest.importorskip("zarr")
+    result.save(tmp_path / "mine.zarr")
+    same(Result.load(tmp_path / "mine.zarr"), result)
+    result.save(tmp_path / "mine.zarr")
+    same(Result.load(tmp_path / "mine.zarr"), result)
+    with pytest.raises(ScoreError):
+        Result.load(tmp_path / "none.zarr")
+
+
+def test_a_grid_has_every_point_where_it_was_computed(result):
+    grid = result.grid("pitch_hz")
+    assert grid.shape == (9, 5) == result.shape
+    there = grid[tuple(result.index.T)]
+    assert there.tobytes() == result.columns["pitch_hz"].tobytes()
+    with pytest.raises(ParameterError, match="unknown column 'pitch'"):
+        result.grid("pitch")
+
+
+def test_xarray_has_names_values_and_units(result):
+    pytest.importorskip("xarray")
+    data = result.to_xarray()
+    assert data["pitch_hz"].dims == ("force", "position")
+    assert data["pitch_hz"].attrs["units"] == "Hz"
+    assert int(data["computed"].sum()) == len(result)
+    at = data.sel(force=5.0, position=0.06)
+    assert int(at["regime"]) == result.grid("regime")[-1, 0]
+
+
+def test_a_result_names_its_study_and_makes_it_again(result):
+    study = result.study()
+    assert study.shape == result.shape
+    assert result.meta["study"]["about"] == "A short study of <C5>"
+    assert "folder" not in result.meta["study"]
+
+
+@pytest.mark.parametrize("cut", [0, 10, 400])
+def test_a_damaged_file_is_told_in_a_line(tmp_path, result, cut):
+    result.save(tmp_path / "mine.npz")
+    whole = (tmp_path / "mine.npz").read_bytes()
+    (tmp_path / "mine.npz").write_bytes(whole[:cut])
+    with pytest.raises(ScoreError, match=r"mine\.npz: is not the result of a sweep"):
+        Result.load(tmp_path / "mine.npz")
+
+
+def test_another_npz_is_no_result(tmp_path, result):
+    np.savez(tmp_path / "other.npz", a=np.zeros(3))
+    with pytest.raises(ScoreError, match="is not the result"):
+        Result.load(tmp_path / "other.npz")
+    arrays = result.arrays() | {"numbers": result.numbers + 10**6}
+    np.savez(tmp_path / "off.npz", **arrays)
+    with pytest.raises(ScoreError, match="is not the result"):
+        Result.load(tmp_path / "off.npz")
+    with pytest.raises(ScoreError, match="No such file"):
+        Result.load(tmp_path / "none.npz")

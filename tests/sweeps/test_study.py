@@ -1,0 +1,90 @@
+"""Files of studies."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.files import shipped_folder
+from yehu_server.sweeps.study import read_study, study_from_text, study_of
+
+STUDIES = sorted((shipped_folder("examples") / "studies").glob("*.toml"))
+
+
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
+def test_a_shipped_study_can_be_run(path):
+    study = read_study(path)
+    assert study.data["about"]
+    assert 100 < study.coarse < 10_000
+
+
+def test_the_shipped_studies_are_those_of_the_page():
+    assert {path.stem for path in STUDIES} == {
+        "schelleng", "guettler", "force_limits", "press", "place", "tension",
+    }  # fmt: skip
+
+
+def test_a_study_is_the_same_from_its_text(data):
+    study = study_of(data())
+    again = study_from_text(study.as_text())
+    assert again.axes == study.axes
+    assert again.as_text() == study.as_text()
+
+
+@pytest.mark.parametrize(
+    ("more", "wrong"),
+    [
+        ({"strokes": {}}, "unknown name 'strokes'"),
+        ({"stroke": {"froce": 1}}, "unknown name 'froce'"),
+        ({"stroke": {"note": 64}}, "note: 64 is not within 65"),
+        ({"stroke": {"string": 2, "note": 70}}, "not within 72 to 96, which are on string 2"),
+        ({"stroke": {"string": 1.5}}, "not a whole number"),
+        ({"stroke": {"force": "much"}}, "expected a number"),
+        ({"stroke": 3}, "expected a table"),
+        ({"vary": {}}, "nothing is varied"),
+        ({"vary": {"force": [0.1, 99.0]}}, "force: 99 is not within"),
+        ({"vary": {"instrument": {"bow": {"mu": [1.0]}}}}, "unknown quantity 'mu'"),
+        ({"vary": {"instrument": {"bow": {"mu_S": [1.0, 0.1]}}}}, "mu_S must not be below"),
+        ({"refine": {"axes": ["speed"], "levels": 1}}, "refine axes: expected some of"),
+        ({"refine": {"axes": ["force"], "levels": 9}}, "refine levels: expected 0 to 8"),
+        ({"refine": {"axes": ["force"], "border": "wolf"}}, "'wolf' is not one of"),
+        ({"duration": 0.01}, "duration: 0.01 s is not within"),
+        ({"duration": 0.035}, "too short to judge"),
+        ({"sample_rate": 8000}, "8000"),
+        ({"instrument": {"string_3": {}}}, "unknown quantity 'string_3'"),
+        ({"gesture": {"duration": 0.1}}, "belongs into the gesture"),
+    ],
+)
+def test_what_is_wrong_in_a_study_is_told_in_a_line(data, more, wrong):
+    with pytest.raises(ParameterError, match=wrong) as error:
+        study_of(data() | {"refine": {}} | more)
+    assert "\n" not in str(error.value)
+
+
+def test_a_study_without_a_name_that_is_known_is_refused_at_once(data):
+    with pytest.raises(ParameterError, match="expected a table"):
+        study_of([data()])
+
+
+@pytest.mark.parametrize("text", ["about = ", "[[[", "\x00"])
+def test_what_is_no_toml_is_told(tmp_path, text):
+    (tmp_path / "wrong.toml").write_text(text)
+    with pytest.raises(ScoreError, match="not a study"):
+        read_study(tmp_path / "wrong.toml")
+
+
+def test_a_study_may_name_a_gesture_file(tmp_path):
+    (tmp_path / "mine.json").write_text('{"duration": 0.1, "controls": {"bow_velocity": 0.2}}')
+    (tmp_path / "mine.toml").write_text('gesture = "mine.json"\n[vary]\nbow_force = [0.3, 0.6]\n')
+    study = read_study(tmp_path / "mine.toml")
+    assert study.shape == (2,)
+    assert study.bow.gesture(study.axes, [1]).controls["bow_force"] == ((0.0, 0.6),)
+    (tmp_path / "mine.json").unlink()
+    with pytest.raises(ParameterError, match="No such file"):
+        read_study(tmp_path / "mine.toml")
+
+
+def test_too_many_strokes_are_refused_before_any(data):
+    many = {name: {"from": 0.1, "to": 0.2, "steps": 90_000} for name in ("force", "position")}
+    with pytest.raises(ParameterError, match="strokes are more than"):
+        study_of(data(vary=many, refine={}))

@@ -1,0 +1,239 @@
+"""``yehu-server dataset``: labelled sounds, the same each time."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+from clusters import cluster_in, wait_until
+from commands import COMMAND
+
+from yehu_server.dataset import making
+from yehu_server.dataset.description import read_description
+from yehu_server.files import shipped_folder
+from yehu_server.jobs import there
+
+COUNT = 40
+TEXT = """\
+count = 40
+seed = 5
+[split]
+train = 3
+test = 1
+[draw]
+duration = 0.1
+bow_force = { from = 0.1, to = 2.0 }
+[keep]
+every = 100
+signals = ["relative_velocity"]
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory) -> Path:
+    """A folder with a description, and the data set of it, made on two cores."""
+    folder = tmp_path_factory.mktemp("dataset")
+    (folder / "d.toml").write_text(TEXT)
+    process = start(folder / "d.toml", "-o", folder / "out", "--jobs", 2)
+    out, err = process.communicate(timeout=300)
+    assert (process.returncode, err) == (0, "")
+    assert "40 made, 0 up to date, 0 failed" in out
+    return folder
+
+
+def start(*words: object) -> subprocess.Popen:
+    texts = [sys.executable, "-c", COMMAND, "dataset", *map(str, words)]
+    return subprocess.Popen(texts, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def lines(out: Path) -> list[dict]:
+    return [json.loads(line) for line in (out / "manifest.jsonl").read_text().splitlines()]
+
+
+def files(out: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(out)): path.read_bytes()
+        for path in out.rglob("*")
+        if path.is_file() and ".yehu-server" not in path.parts
+    }
+
+
+# ---------------------------------------------------------------- what is there
+
+
+def test_the_manifest_tells_all_files_and_their_hashes(made):
+    found = files(made / "out")
+    told = lines(made / "out")
+    assert [line["number"] for line in told] == list(range(COUNT))
+    assert set(found) == {line[name] for line in told for name in ("file", "arrays")} | {
+        "manifest.jsonl"
+    }
+    for line in told:
+        assert line["hash"] == hashlib.sha256(found[line["file"]]).hexdigest()
+        assert line["arrays_hash"] == hashlib.sha256(found[line["arrays"]]).hexdigest()
+        assert line["file"].startswith(f"{line['split']}/")
+        assert 0.1 <= line["drawn"]["bow_force"] <= 2.0
+
+
+def test_sound_and_arrays_are_of_one_stroke(made):
+    line = lines(made / "out")[3]
+    sound, rate = soundfile.read(made / "out" / line["file"])
+    arrays = np.load(made / "out" / line["arrays"])
+    assert (len(sound), rate) == (4410, 44100)
+    assert arrays["bow_force"].max() == pytest.approx(line["drawn"]["bow_force"])
+    assert len(arrays["bow_force"]) == len(arrays["time"]) == 45
+    assert arrays["signal_relative_velocity"].shape == (4410,)
+    assert len(arrays["regime"]) == len(arrays["regime_time"]) == 5
+
+
+def test_splits_have_their_shares(made):
+    description = read_description(made / "d.toml")
+    splits = [description.split(number) for number in range(4000)]
+    assert splits.count("train") / 4000 == pytest.approx(0.75, abs=0.03)
+
+
+# ---------------------------------------------------------------- the same each time
+
+
+def test_one_core_makes_the_same_bytes_as_two(made, command, tmp_path):
+    assert command("dataset", made / "d.toml", "-o", tmp_path / "one", "--jobs", 1)[0] == 0
+    assert files(tmp_path / "one") == files(made / "out")
+
+
+def test_a_larger_data_set_begins_alike_and_only_the_rest_is_made(made, command, tmp_path):
+    words = ("dataset", made / "d.toml", "-o", tmp_path / "some")
+    command(*words, "--count", 16)
+    few = lines(tmp_path / "some")
+    _, out, _ = command(*words)
+    assert "24 made, 16 up to date, 0 failed" in out
+    assert lines(tmp_path / "some") == lines(made / "out")
+    assert lines(tmp_path / "some")[:16] == few
+
+
+def test_another_seed_makes_other_sounds(made, command, tmp_path):
+    (tmp_path / "d.toml").write_text(TEXT.replace("seed = 5", "seed = 6"))
+    command("dataset", tmp_path / "d.toml", "-o", tmp_path / "out", "--count", 4)
+    ours = {line["hash"] for line in lines(tmp_path / "out")}
+    assert ours.isdisjoint({line["hash"] for line in lines(made / "out")})
+
+
+def test_another_entry_changes_no_other_draw(made):
+    description = read_description(made / "d.toml")
+    (made / "more.toml").write_text(TEXT.replace("[keep]", "stop = { from = 0, to = 5 }\n[keep]"))
+    other = read_description(made / "more.toml")
+    assert [description.draw(n, "bow_force") for n in range(9)] == [
+        other.draw(n, "bow_force") for n in range(9)
+    ]
+
+
+def test_a_sound_that_is_gone_or_changed_is_made_again(made, command, tmp_path):
+    words = ("dataset", made / "d.toml", "-o", tmp_path / "out")
+    command(*words)
+    before = files(tmp_path / "out")
+    assert before == files(made / "out")
+    (tmp_path / "out" / lines(tmp_path / "out")[0]["file"]).unlink()
+    (tmp_path / "out" / lines(tmp_path / "out")[39]["arrays"]).write_bytes(b"")
+    _, out, _ = command(*words)
+    assert "24 made, 16 up to date" in out  # in parts of sixteen
+    assert files(tmp_path / "out") == before
+
+
+@pytest.mark.parametrize("signum", [signal.SIGTERM, signal.SIGKILL])
+def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum):
+    (tmp_path / "d.toml").write_text(TEXT.replace("duration = 0.1", "duration = 1.0"))
+    words = (tmp_path / "d.toml", "-o", tmp_path / "out")
+    process = start(*words, "--jobs", 1)
+    hidden = tmp_path / "out" / ".yehu-server"
+    wait_until(lambda: process.poll() is not None or list(hidden.glob("sounds-*.json")))
+    process.send_signal(signum)
+    _, err = process.communicate(timeout=60)
+    if signum == signal.SIGTERM:
+        assert process.returncode == 130
+        assert "sounds are in" in err
+    code, out, _ = command("dataset", *words)
+    assert code == 0
+    assert "16 up to date" in out or "32 up to date" in out
+    whole = files(tmp_path / "out")
+    command("dataset", tmp_path / "d.toml", "-o", tmp_path / "whole")
+    assert whole == files(tmp_path / "whole")
+
+
+# ---------------------------------------------------------------- on a cluster
+
+
+def test_a_cluster_makes_the_same_bytes(made, command, tmp_path):
+    pytest.importorskip("distributed")
+    there.identity.cache_clear()
+    with cluster_in(tmp_path) as processes:
+        words = ("dataset", made / "d.toml", "-o", tmp_path / "out", "--dask", processes.file)
+        code, _, err = command(*words)
+    assert (code, err) == (0, "")
+    assert files(tmp_path / "out") == files(made / "out")
+
+
+def test_sounds_travel_where_the_folder_is_not_seen(made, tmp_path):
+    description = replace(read_description(made / "d.toml"), count=2)
+    [part] = making.parts_of(description, tmp_path / "out", "key")
+    far = replace(part, folder=Path("/nowhere/at/all"), mark=Path("/nowhere/mark"))
+    told = making.perform(far, lambda _done, _total: None)
+    assert len(told.files) == 4
+    assert list(making.received(part, told)) == lines(made / "out")[:2]
+    for name, data in files(tmp_path / "out").items():
+        assert data == files(made / "out")[name]
+    assert making.sorted_out([part]) == ([], lines(made / "out")[:2])
+
+
+# ---------------------------------------------------------------- what goes wrong
+
+
+def test_sounds_that_cannot_be_made_are_told_and_the_others_made(command, tmp_path):
+    draw = "[draw]\nnotes = {choose = [1, 32]}\nlength = 19\n"  # 32 notes would last too long
+    (tmp_path / "d.toml").write_text(f'kind = "notes"\ncount = 4\nseed = 3\n{draw}')
+    description = read_description(tmp_path / "d.toml")
+    failing = sum(description.draw(number, "notes") == 32 for number in range(4))
+    assert 0 < failing < 4
+    code, out, err = command("dataset", tmp_path / "d.toml", "-o", tmp_path / "out")
+    assert code == 1
+    assert len(err.splitlines()) == failing
+    assert "longer than 600" in err.splitlines()[0]
+    assert f"{4 - failing} made, 0 up to date, {failing} failed" in out
+    assert sum("error" in line for line in lines(tmp_path / "out")) == failing
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong"),
+    [
+        (("none.toml", "-o", "out"), "none.toml: No such file"),
+        (("bad.toml", "-o", "out"), "bad.toml: "),
+        (("d.toml", "-o", "full"), "is not empty, and is no data set"),
+        (("d.toml", "-o", "file"), "is a file; name a folder"),
+        (("d.toml", "-o", "none/out"), "does not exist"),
+        (("d.toml", "-o", "out", "--count", "0"), "0 is not 1 or more"),
+        (("d.toml", "-o", "out", "--dask", "a b"), "is not the address"),
+        (("d.toml", "-o", "out", "--dask", "x", "--jobs", "1"), "--jobs is for this machine"),
+    ],
+    ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
+)
+def test_a_wrong_call_gets_one_line_and_makes_nothing(refused, tmp_path, monkeypatch, words, wrong):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "d.toml").write_text(TEXT)
+    (tmp_path / "bad.toml").write_text("count = [")
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "mine").touch()
+    (tmp_path / "file").touch()
+    assert wrong in refused("dataset", *words)
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_example_can_be_read():
+    description = read_description(shipped_folder("examples") / "dataset.toml")
+    assert description.count == 1000
+    assert {description.split(number) for number in range(100)} == {"train", "valid", "test"}

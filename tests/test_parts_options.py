@@ -1,0 +1,122 @@
+"""Options of serve for several parts."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server import cli
+from yehu_server.cli.config import parse
+from yehu_server.cli.part_options import MOST
+from yehu_server.cli.serve_options import options_of
+from yehu_server.control.midi_routes import Route
+from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.errors import YehuError
+
+
+def served(*words: str):
+    return options_of(parse(["serve", *words], cli._parser()))
+
+
+def test_there_are_as_many_parts_as_a_stage_has_room_for():
+    assert MOST == MOST_PARTS
+    assert len(served("--parts", "16").parts) == 16
+
+
+def test_by_default_one_plays_in_a_room():
+    options = served()
+    assert len(options.parts) == 1
+    assert options.has_room
+    assert options.midi.routes == []
+    assert not served("--dry").has_room
+
+
+def test_each_part_has_its_own_mapping_preset_and_settings():
+    options = served(
+        *("--parts", "3", "--mapping", "wind", "--preset", "flautando"),
+        *("--set", "/playing/volume=0.5", "--part-set", "3=/room/pan=-0.25"),
+        *("--part-mapping", "2=mpe"),
+    )
+    first, second, third = (part.style for part in options.parts)
+    assert [style.mapping.name for style in (first, second, third)] == ["wind", "mpe", "wind"]
+    assert second.mapping.mpe
+    assert first.start == second.start == third.start != ()
+    volume = ("/playing/volume", 0.5)
+    assert first.settings == second.settings == (volume,)
+    assert third.settings == (volume, ("/room/pan", -0.25))
+
+
+def test_inputs_are_given_to_parts():
+    options = served("--parts", "2", "--part", "1=keystep", "--part", "2=:3", "--part", "1=breath")
+    assert options.midi.routes == [Route(0, "keystep"), Route(1, "", 2), Route(0, "breath")]
+
+
+def test_a_file_has_the_parts_too(tmp_path):
+    path = tmp_path / "serve.toml"
+    path.write_text(
+        "parts = 2\npart-mapping = { 2 = 'mpe' }\npart-set = ['2=/room/pan=0.5']\n"
+        "[part]\n1 = 'keystep'\n2 = 'seaboard'\n"
+    )
+    options = served("--config", str(path))
+    assert options.midi.routes == [Route(0, "keystep"), Route(1, "seaboard")]
+    assert options.parts[1].style.mapping.name == "mpe"
+    assert options.parts[1].style.settings == (("/room/pan", 0.5),)
+
+
+def test_each_part_follows_the_files_of_its_mapping():
+    options = served("--parts", "2", "--watch", "--part-mapping", "2=wind")
+    assert [part.reread().name for part in options.parts] == ["keyboard", "wind"]
+
+
+def test_mpe_is_of_the_parts_without_a_mapping_of_their_own():
+    options = served("--parts", "2", "--mpe", "--part-mapping", "2=wind")
+    assert [part.style.mapping.mpe for part in options.parts] == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--part", "2=keys"], "--part 2=keys: no part 2: there is only part 1"),
+        (["--parts", "3", "--part", "4=keys"], "no part 4: there are parts 1 to 3"),
+        (["--parts", "3", "--part", "0=keys"], "no part 0: there are parts 1 to 3"),
+        (["--parts", "2", "--part", "1=keys:17"], "a MIDI channel is 1 to 16"),
+        (["--parts", "2", "--part", "1=keys", "--part", "2=keys"], "named twice (1=keys)"),
+        (["--parts", "2", "--part-mapping", "3=wind"], "--part-mapping 3=wind: no part 3"),
+        (["--parts", "2", "--part-preset", "3=x"], "--part-preset 3=x: no part 3"),
+        (["--parts", "2", "--part-set", "3=/room/pan=0"], "no part 3"),
+        (["--parts", "2", "--part-mapping", "2=nothing"], "part 2: no mapping 'nothing'"),
+        (["--parts", "2", "--part-preset", "2=nothing"], "part 2: no preset 'nothing'"),
+        (["--parts", "2", "--part-set", "2=/room/size=9"], "one for all parts: /yehu/room/size"),
+        (["--parts", "2", "--part-set", "2=/room/pan=9"], "9 is not within -1 to 1"),
+        (["--parts", "2", *["--part-mapping", "2=wind"] * 2], "part 2 has two"),
+        (
+            ["--parts", "2", "--part-mapping", "2=mpe", "--part", "2=keys:3"],
+            "--part 2=keys:3: MPE takes all channels",
+        ),
+        (["--parts", "9", "--set", "/playing/section=2"], "18 players"),
+    ],
+)
+def test_what_parts_cannot_have_is_one_line(words, reason):
+    with pytest.raises(YehuError) as error:
+        served(*words)
+    assert reason in str(error.value)
+    assert len(str(error.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--parts", "17"], "17 parts: a stage has 1 to 16"),
+        (["--parts", "0"], "0 parts"),
+        (["--parts", "many"], "many"),
+        (["--part", "keystep"], "'keystep': expected N=..."),
+        (["--part", "1="], "expected N=..."),
+        (["--part", "x=keys"], "expected N=..."),
+    ],
+)
+def test_what_is_no_part_is_one_line(words, reason, capsys):
+    with pytest.raises(SystemExit) as ended:
+        served(*words)
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert reason in said
+    assert len(said.splitlines()) == 1

@@ -1,0 +1,215 @@
+"""``yehu-server render FOLDER --dask``: a folder on a cluster of workers."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Self
+
+import pytest
+from clusters import cluster_in, wait_until
+from commands import COMMAND, is_one_line
+from scores import midi_file, notes
+
+from yehu_server.jobs import there
+from yehu_server.jobs.event import Event
+
+pytest.importorskip("distributed")
+
+DRY = ("--dry", "--mono", "--tail", "0")
+SCORES = 8
+SETTINGS = '{"bow": {"epsilon_0": 30000.0}}'
+
+
+@pytest.fixture(autouse=True)
+def _as_it_is_now() -> None:
+    """Code may be edited while tests run: a test has what is there when it starts."""
+    there.identity.cache_clear()
+
+
+def tune(path: Path, note: int, seconds: float = 0.2) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    midi_file(path, notes((0.0, seconds, note, 90)))
+
+
+def made(out: Path) -> dict[str, bytes]:
+    """All results, and the manifest."""
+    return {
+        str(path.relative_to(out)): path.read_bytes()
+        for path in out.rglob("*")
+        if path.is_file() and ".yehu-server" not in path.parts
+    }
+
+
+def start(*words: object) -> subprocess.Popen:
+    texts = [sys.executable, "-c", COMMAND, *map(str, words)]
+    return subprocess.Popen(texts, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+@pytest.fixture
+def songs(tmp_path) -> Path:
+    """A folder of scores, one of them broken, and what becomes of them on this machine."""
+    for number in range(SCORES):
+        tune(tmp_path / "in" / f"{number % 2}" / f"{number}.mid", 66 + number)
+    (tmp_path / "in" / "broken.mid").write_bytes(b"MThd")
+    return tmp_path
+
+
+@pytest.fixture
+def alone(songs, command) -> dict[str, bytes]:
+    code, _, _ = command("render", songs / "in", "-o", songs / "alone", *DRY, "--jobs", 1)
+    assert code == 1
+    return made(songs / "alone")
+
+
+# ---------------------------------------------------------------- a real cluster
+
+
+def test_a_worker_that_is_killed_changes_nothing_of_the_results(songs, alone, tmp_path):
+    tune(songs / "in" / "0" / "long.mid", 70, seconds=20.0)
+    with cluster_in(tmp_path) as processes:
+        wait_until(lambda: processes.log.read_text().count("Registered to") == 2)
+        run = start("render", songs / "in", "-o", songs / "out", *DRY, "--dask", processes.file)
+        records = songs / "out"
+        wait_until(lambda: run.poll() is not None or len(list(records.rglob("*.wav.json"))) > 1)
+        processes.workers[0].kill()
+        _, err = run.communicate(timeout=300)
+        assert processes.workers[1].poll() is None
+    assert err == "yehu-server: broken.mid: has a damaged header at byte 0\n"
+    assert run.returncode == 1
+    found = made(songs / "out")
+    assert len(found.pop("0/long.wav")) > 20 * 44100 * 3
+    lines = found.pop("manifest.jsonl").decode().splitlines()
+    others = [line for line in lines if "long" not in line]
+    assert others == alone.pop("manifest.jsonl").decode().splitlines()
+    assert len(lines) == SCORES + 2
+    assert found == alone
+    assert not list((songs / "out").rglob("*.part"))
+
+
+def test_the_same_command_goes_on_without_the_cluster(songs, alone, tmp_path, command):
+    words = ("render", songs / "in", "-o", songs / "out", *DRY)
+    with cluster_in(tmp_path, 1) as processes:
+        assert command(*words, "--dask", processes.file)[0] == 1
+    code, out, _ = command(*words)
+    assert code == 1
+    assert f"0 rendered, {SCORES} up to date, 1 failed (1 as before" in out
+    assert made(songs / "out") == alone
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong"),
+    [
+        (("in", "-o", "out", "--dask", "a b"), "is not the address of a scheduler"),
+        (("in", "-o", "out", "--dask", "none.json"), "No such file"),
+        (("in", "-o", "out", "--dask", "x", "--jobs", "2"), "--jobs is for this machine"),
+        (("in/0/0.mid", "-o", "a.wav", "--dask", "x"), "--dask is for a folder"),
+    ],
+    ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
+)
+def test_a_wrong_call_gets_one_line_and_makes_nothing(songs, refused, monkeypatch, words, wrong):
+    monkeypatch.chdir(songs)
+    assert wrong in refused("render", *words)
+    assert not (songs / "out").exists()
+
+
+# ---------------------------------------------------------------- workers that see no folder
+
+
+class Elsewhere:
+    """A cluster on whose machines the folders are not there.
+
+    Parameters
+    ----------
+    seen : bool
+        What its workers said when they were asked.
+    """
+
+    def __init__(self, folder: Path, *, seen: bool) -> None:
+        self._folder, self._seen = folder, seen
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def ask(self, question, *arguments):
+        answer = question(*arguments)
+        return {"tcp://worker": self._seen if isinstance(answer, bool) else answer}
+
+    def perform_all(self, perform, tasks):
+        for job, task in enumerate(list(tasks)):
+            away = self._folder.with_name("away")
+            self._folder.rename(away)
+            try:
+                result = perform(task, lambda _done, _total: None)
+            finally:
+                away.rename(self._folder)
+            yield Event(job, 1.0, result=result)
+
+
+@pytest.mark.parametrize("seen", [False, True])
+def test_scores_and_sounds_travel_where_workers_do_not_see_them(
+    songs, alone, command, monkeypatch, seen, tmp_path_factory
+):
+    home = tmp_path_factory.mktemp("home") / "songs"
+    shutil.copytree(songs / "in", home / "in")
+    monkeypatch.setattr("yehu_server.jobs.cluster.Cluster", lambda *_: Elsewhere(home, seen=seen))
+    code, _, err = command("render", home / "in", "-o", home / "out", *DRY, "--dask", "x")
+    assert code == 1
+    assert err == "yehu-server: broken.mid: has a damaged header at byte 0\n"
+    assert made(home / "out") == alone
+    code, out, _ = command("render", home / "in", "-o", home / "out", *DRY)
+    assert f"0 rendered, {SCORES} up to date, 1 failed" in out
+
+
+def test_a_file_of_the_users_own_is_not_replaced_by_what_has_travelled(songs, command, monkeypatch):
+    monkeypatch.setattr(
+        "yehu_server.jobs.cluster.Cluster", lambda *_: Elsewhere(songs / "in", seen=False)
+    )
+    own = songs / "out" / "0" / "0.wav"
+    own.parent.mkdir(parents=True)
+    own.write_bytes(b"my own")
+    code, _, err = command("render", songs / "in", "-o", songs / "out", *DRY, "--dask", "x")
+    assert code == 1
+    assert "0/0.mid: exists; --overwrite replaces it" in err.replace(f"{own}: ", "")
+    assert own.read_bytes() == b"my own"
+
+
+def test_settings_that_a_worker_does_not_have_are_named(songs, refused, monkeypatch):
+    class Without(Elsewhere):
+        def ask(self, question, *arguments):
+            answers = super().ask(question, *arguments)
+            lost = dict.fromkeys(arguments[0], "")
+            return {"tcp://worker": lost} if isinstance(answers["tcp://worker"], dict) else answers
+
+    monkeypatch.setattr(
+        "yehu_server.jobs.cluster.Cluster", lambda *_: Without(songs / "in", seen=False)
+    )
+    (songs / "i.json").write_text(SETTINGS)
+    words = ("render", songs / "in", "-o", songs / "out", *DRY, "--dask", "x")
+    line = refused(*words, "--instrument", songs / "i.json")
+    assert is_one_line(line)
+    assert "i.json: the worker tcp://worker does not have this file" in line
+
+
+def test_paths_hold_on_other_machines_and_names_stay_names(tmp_path, monkeypatch):
+    from yehu_server.cli import _parser
+    from yehu_server.cli.folder_far import absolute
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.toml").touch()
+    (tmp_path / "wind").touch()
+    words = ["render", "in", "-o", "out", "--mapping", "m.toml", "--preset", "a/b.toml"]
+    found = absolute(_parser().parse_args([*words, "--tuning", "chaozhou", "--ensemble"]))
+    assert found.midi == [tmp_path / "in"]
+    assert (found.output, found.mapping) == (tmp_path / "out", str(tmp_path / "m.toml"))
+    assert found.preset == str(tmp_path / "a" / "b.toml")
+    assert (found.tuning, found.ensemble) == (Path("chaozhou"), Path())
+    named = absolute(_parser().parse_args(["render", "in", "-o", "o", "--mapping", "wind"]))
+    assert named.mapping == "wind"
+    mine = absolute(_parser().parse_args(["render", "in", "-o", "o", "--preset", "mine/x+hall"]))
+    assert mine.preset == "mine/x+hall"

@@ -1,0 +1,284 @@
+"""``yehu-server render --ensemble``: each channel or track a yehu, and the stems of the mix."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import mido
+import numpy as np
+import pytest
+import soundfile
+from scores import midi_file, notes
+
+from yehu_server.engine.ensemble import Ensemble
+from yehu_server.playing.style import Style
+from yehu_server.rendering import Options, Part, Performance
+from yehu_server.rendering.cores import Cores
+from yehu_server.score.parts import part_of
+from yehu_server.score.smf.reader import read_score
+
+QUIET = ("--gain-db", -20)  # the limiter does nothing
+FLOAT = ("--subtype", "float")
+
+
+def line(channel: int, first: int) -> list[tuple[float, mido.Message]]:
+    """A few notes on a channel."""
+    return notes(*((0.25 * n, 0.22, first + n, 70 + 9 * n) for n in range(4)), channel=channel)
+
+
+def tracks_file(path: Path, *tracks: list[tuple[float, mido.Message]]) -> Path:
+    """Write a file of several tracks."""
+    file = mido.MidiFile(type=1, ticks_per_beat=500)
+    for messages in tracks:
+        track, now = file.add_track(), 0
+        for time, message in sorted(messages, key=lambda pair: pair[0]):
+            track.append(message.copy(time=round(1000 * time) - now))
+            now = round(1000 * time)
+    file.save(path)
+    return path
+
+
+@pytest.fixture
+def trio(tmp_path) -> Path:
+    messages = [*line(1, 67), *line(2, 72), *line(5, 76), *line(10, 60)]
+    return midi_file(tmp_path / "trio.mid", messages)
+
+
+@pytest.fixture
+def play(command, tmp_path):
+    """Render with `--json`; return the summary, the samples, and those of the stems."""
+
+    def run(*words: object) -> tuple[dict, np.ndarray, list[np.ndarray]]:
+        target = tmp_path / "out.wav"
+        code, out, err = command("render", *words, "-o", target, *FLOAT, "--json")
+        assert code == 0, err
+        summary = json.loads(out)
+        return summary, read(target), [read(Path(stem)) for stem in summary["stems"]]
+
+    return run
+
+
+def read(path: Path) -> np.ndarray:
+    return soundfile.read(path, dtype="float32")[0]
+
+
+def test_each_channel_but_percussion_is_a_yehu_with_a_place_and_chance_of_its_own(play, trio):
+    summary, _, _ = play(trio, "--ensemble")
+    parts = summary["parts"]
+    assert [part["name"] for part in parts] == ["channel 1", "channel 2", "channel 5"]
+    assert [part["channels"] for part in parts] == [{"1": 4}, {"2": 4}, {"5": 4}]
+    assert [part["seed"] for part in parts] == [0, 1, 2]
+    assert [part["gain_db"] for part in parts] == pytest.approx(3 * [-4.77], abs=0.01)
+    pans = [part["pan"] for part in parts]
+    assert pans[0] < 0.0 == pans[1] < pans[2]
+    assert (summary["notes_played"], summary["percussion_notes"]) == (12, 4)
+    assert summary["lost_states"] == 0
+
+
+def test_the_report_has_a_line_for_each_part(command, trio, tmp_path):
+    code, out, _ = command("render", trio, "-o", tmp_path / "out.wav", "--ensemble")
+    assert code == 0
+    lines = out.splitlines()
+    assert lines[2] == "channel 2: 4 notes, middle, 2.0 m"
+    assert lines[3].startswith("channel 5: 4 notes, ")
+    assert lines[4] == "channel 10 is percussion: 4 notes not played; --channel 10 plays them"
+
+
+@pytest.mark.parametrize(
+    "words", [(), ("--gain-db", 24), ("--normalize",), ("--mono",), ("--dry",)]
+)
+def test_the_mix_is_the_sum_of_its_stems(play, trio, tmp_path, words):
+    summary, mix, stems = play(trio, "--ensemble", "--stems", tmp_path / "stems", *words)
+    assert len(stems) == 3 + ("--dry" not in words)
+    assert np.abs(mix).max() > 0.1
+    np.testing.assert_allclose(np.sum(stems, axis=0), mix, atol=1e-6)
+    if "--normalize" in words:
+        assert np.abs(mix).max() == pytest.approx(10.0 ** (-1.0 / 20.0), abs=1e-4)
+    names = [Path(stem).name for stem in summary["stems"]]
+    assert names[1] == "02-channel-2.wav"
+
+
+def test_a_part_sounds_as_it_does_alone_with_its_seed(play, trio, tmp_path):
+    (tmp_path / "middle.toml").write_text(
+        "[[part]]\nchannel = 1\n[[part]]\nchannel = 2\npan = 0.0\nseed = 7\n", encoding="utf-8"
+    )
+    ensemble = ("--ensemble", tmp_path / "middle.toml", "--stems", tmp_path / "stems")
+    _, _, stems = play(trio, *ensemble, *QUIET, "--dry", "--tail", 0.5)
+    _, alone, _ = play(trio, "--channel", 2, "--seed", 7, *QUIET, "--dry", "--tail", 0.5)
+    assert np.abs(alone).max() > 0.005
+    np.testing.assert_array_equal(stems[1], alone)
+
+
+@pytest.fixture
+def parts(trio) -> list[Part]:
+    score = read_score(trio)
+    return [Part(part_of(score, channel), style=Style(seed=channel)) for channel in (0, 1, 4)]
+
+
+def test_any_number_of_cores_and_any_block_give_the_samples_of_the_callback(parts, monkeypatch):
+    def sound(**how: object) -> np.ndarray:
+        return np.concatenate([*Performance(parts, Options(tail_s=0.3, **how)).blocks()])
+
+    by_cores = [sound(jobs=1), sound(jobs=2), sound(jobs=3, block=500)]
+    monkeypatch.setattr(Cores, "process", in_turn)
+    in_callback = sound(jobs=1)
+    assert np.abs(in_callback).max() > 0.1
+    for samples in by_cores:
+        np.testing.assert_array_equal(samples, in_callback)
+
+
+def in_turn(cores: Cores, out: np.ndarray) -> None:
+    Ensemble.process(cores._ensemble, out)
+
+
+def test_the_order_of_the_other_parts_changes_a_part_by_nothing(parts):
+    def stem(order: list[Part], of: int) -> np.ndarray:
+        options = Options(tail_s=0.1, is_dry=True)
+        performance = Performance(order, options, has_stems=True)
+        return np.concatenate([performance.stems[of].copy() for _ in performance.blocks()])
+
+    # Its level on the way to the limiter, which is that of the first part, is not reached.
+    quiet = [Part(each.score, style=each.style, gain_db=-20.0) for each in parts]
+    np.testing.assert_array_equal(stem(quiet, 0), stem(quiet[::-1], 2))
+
+
+def test_a_section_is_one_part_with_one_stem(play, trio, tmp_path):
+    (tmp_path / "two.toml").write_text(
+        "[[part]]\nchannel = 1\nsection = 3\n[[part]]\nchannel = 2\n", encoding="utf-8"
+    )
+    words = ("--ensemble", tmp_path / "two.toml", "--stems", tmp_path / "stems", *QUIET)
+    summary, mix, stems = play(trio, *words)
+    assert [part["people"] for part in summary["parts"]] == [3, 1]
+    assert [part["notes_played"] for part in summary["parts"]] == [4, 4]
+    assert len(stems) == 3
+    np.testing.assert_allclose(np.sum(stems, axis=0), mix, atol=1e-6)
+    # It is not the sound of its first player, three times.
+    _, _, (first, *_) = play(trio, "--channel", 1, *QUIET, "--stems", tmp_path / "one", "--tail", 1)
+    assert not np.allclose(stems[0][:20000], first[:20000], atol=1e-3)
+
+
+def test_players_of_sections_count_among_those_who_have_room(refused, trio, tmp_path):
+    words = ("render", trio, "-o", tmp_path / "out.wav", "--set", "/playing/section=6")
+    assert "18 players, of all parts and sections: at most 16" in refused(*words, "--ensemble")
+
+
+# ---------------------------------------------------------------- tracks
+
+
+def test_by_track_each_track_with_notes_is_a_part_whatever_its_channel(play, tmp_path):
+    score = tracks_file(tmp_path / "two.mid", [], line(1, 67), line(10, 40), line(1, 74))
+    summary, _, _ = play(score, "--ensemble", "--by", "track")
+    assert [part["name"] for part in summary["parts"]] == ["track 2", "track 4"]
+    assert [part["notes_played"] for part in summary["parts"]] == [4, 4]
+    assert len(play(score, "--ensemble")[0]["parts"]) == 1
+
+
+def test_controllers_in_a_track_without_notes_reach_those_who_play_on_their_channel(play, tmp_path):
+    fade = (0.0, mido.Message("control_change", channel=1, control=7, value=0))
+    score = tracks_file(tmp_path / "conducted.mid", [fade], line(1, 67), line(2, 74))
+    words = ("--ensemble", "--by", "track", "--stems", tmp_path / "stems", "--dry")
+    _, _, (first, second) = play(score, *words)
+    assert np.abs(first).max() > 0.05
+    assert np.abs(second[4410:]).max() < 1e-4
+
+
+def test_more_tracks_than_a_stage_has_room_for_are_refused(refused, tmp_path):
+    many = tracks_file(tmp_path / "many.mid", *(line(1 + n % 9, 67) for n in range(17)))
+    words = ("render", many, "-o", tmp_path / "out.wav", "--ensemble", "--by", "track")
+    assert "17 tracks have notes: a stage has room for 16 parts" in refused(*words)
+
+
+# ---------------------------------------------------------------- ensemble files
+
+FILE = """\
+[room]
+size = 12.0
+decay = 1.0
+
+[[part]]
+name = "low / inner"
+channel = 2
+pan = -0.25
+distance = 3.0
+gain = -3.0
+seed = 5
+preset = "pizzicato"
+mapping = "wide.toml"
+instrument = "slack.toml"
+set = { "/playing/variation" = 0.0 }
+
+[[part]]
+channel = 5
+"""
+
+
+def test_an_ensemble_file_says_who_plays_what_where_and_on_which_instrument(play, trio, tmp_path):
+    (tmp_path / "band.toml").write_text(FILE, encoding="utf-8")
+    (tmp_path / "wide.toml").write_text('base = "wind"\nname = "wide"\n', encoding="utf-8")
+    (tmp_path / "slack.toml").write_text("[string_1]\nT = 45.0\n", encoding="utf-8")
+    words = ("--ensemble", tmp_path / "band.toml", "--stems", tmp_path / "stems")
+    summary, _, _ = play(trio, *words, "--gain-db", 0)
+    low, other = summary["parts"]
+    place = {
+        name: low[name] for name in ("name", "pan", "distance_m", "gain_db", "seed", "mapping")
+    }
+    assert place == {
+        "name": "low / inner", "pan": -0.25, "distance_m": 3.0, "gain_db": -3.0, "seed": 5,
+        "mapping": "wide",
+    }  # fmt: skip
+    assert low["preset"].endswith("pizzicato.toml")
+    assert (other["name"], other["seed"], other["distance_m"]) == ("channel 5", 1, 2.0)
+    assert Path(summary["stems"][0]).name == "01-low---inner.wav"
+
+
+def test_channels_that_nobody_plays_are_told(command, trio, tmp_path):
+    (tmp_path / "solo.toml").write_text("[[part]]\nchannel = 2\n", encoding="utf-8")
+    words = ("render", trio, "-o", tmp_path / "out.wav", "--ensemble", tmp_path / "solo.toml")
+    code, _, err = command(*words)
+    assert code == 0
+    assert "no part plays channel 1, 5" in err
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("[[part]]\nchannel = 3\n", "band.toml:1: channel 3 has no notes in the score"),
+        ('[[part]]\nchannel = 1\n\n[[part]]\nchannel = 2\npreset = "no"\n', ":4: no preset 'no'"),
+        ('[[part]]\nchannel = 1\nmapping = "no"\n', ":1: "),
+        ('[[part]]\nchannel = 1\ninstrument = "no.toml"\n', ":1: "),
+        ('room = "pizzicato"\n[[part]]\nchannel = 1\n', "band.toml:1: pizzicato: not a room"),
+    ],
+)
+def test_what_an_ensemble_file_names_must_be_there(refused, trio, tmp_path, text, error):
+    (tmp_path / "band.toml").write_text(text, encoding="utf-8")
+    words = ("render", trio, "-o", tmp_path / "out.wav", "--ensemble", tmp_path / "band.toml")
+    assert error in refused(*words)
+    assert not (tmp_path / "out.wav").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (("--by", "track"), "--by track is for --ensemble"),
+        (("--ensemble", "band.toml", "--by", "track"), "names channels and tracks itself"),
+        (("--ensemble", "other.mid"), "name MIDI files before --ensemble"),
+        (("--ensemble", "missing.toml"), "missing.toml: No such file"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused(refused, trio, tmp_path, words, error):
+    assert error in refused("render", trio, "-o", tmp_path / "out.wav", *words)
+
+
+def test_stems_replace_no_file_that_was_not_rendered(refused, trio, tmp_path):
+    stems = tmp_path / "stems"
+    stems.mkdir()
+    (stems / "room.wav").write_bytes(b"something of mine")
+    words = ("render", trio, "-o", tmp_path / "out.wav", "--ensemble", "--stems", stems)
+    assert "room.wav: exists; --overwrite replaces it" in refused(*words)
+    assert [each.name for each in stems.iterdir()] == ["room.wav"]
+
+
+def test_stems_do_not_overwrite_the_mix(refused, trio, tmp_path):
+    words = ("render", trio, "-o", tmp_path / "room.wav", "--ensemble", "--stems", tmp_path)
+    assert "-o and stem room.wav would write to the same file" in refused(*words)

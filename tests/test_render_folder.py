@@ -1,0 +1,385 @@
+"""``yehu-server render FOLDER``: a folder of scores to a folder of sounds."""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import soundfile
+from commands import COMMAND, is_one_line
+from scores import midi_file, notes
+
+from yehu_server.audio.file import is_rendered
+from yehu_server.cli import _parser, folder_records, folder_tasks, render_one
+from yehu_server.errors import OutputError
+from yehu_server.jobs.event import Event
+
+DRY = ("--dry", "--mono", "--tail", 0)  # in little time
+ODD = ("with space.mid", "line\nbreak.mid", os.fsdecode(b"no\xffutf-8.mid"), "x/y.mid", "x/Y.kar")
+
+
+def tune(path: Path, note: int = 67, seconds: float = 0.1) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    made = midi_file(path.with_name("made.mid_"), notes((0.0, seconds, note, 90)))
+    made.rename(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def once(tmp_path_factory):
+    """A folder of scores, two of them broken, and what becomes of it on two cores."""
+    folder = tmp_path_factory.mktemp("folder")
+    for number, name in enumerate(ODD):
+        tune(folder / "in" / name, 66 + number)
+    (folder / "in" / "empty.mid").touch()
+    (folder / "in" / "broken.mid").write_bytes(b"MThd")
+    words = ["render", folder / "in", "-o", folder / "out", *DRY, "--jobs", 2, "--json"]
+    process = start(*words)
+    out, err = process.communicate(timeout=300)
+    return folder, process.returncode, out, err
+
+
+@pytest.fixture
+def folder(once, tmp_path) -> Path:
+    """A copy of that folder, of its own."""
+    shutil.copytree(once[0], tmp_path / "f", symlinks=True)
+    return tmp_path / "f"
+
+
+def start(*words: object, code: str = COMMAND, **options) -> subprocess.Popen:
+    texts = [sys.executable, "-c", code, *map(str, words)]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(texts, **{**pipes, **options})
+
+
+def manifest(out: Path) -> dict[str, dict]:
+    lines = (out / "manifest.jsonl").read_text().splitlines()
+    return {line["file"]: line for line in map(json.loads, lines)}
+
+
+def sounds(out: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(out)): path.read_bytes() for path in out.rglob("*.wav")}
+
+
+def times(out: Path) -> dict[Path, int]:
+    return {path: path.stat().st_mtime_ns for path in out.rglob("*.wav")}
+
+
+def leavings(out: Path) -> list[Path]:
+    """What is half made."""
+    return [path for path in out.rglob("*") if path.suffix == ".part"]
+
+
+# ---------------------------------------------------------------- a whole folder
+
+
+def test_all_scores_are_rendered_and_the_broken_ones_told(once):
+    folder, code, out, err = once
+    assert code == 1
+    assert sorted(err.splitlines()) == [
+        "yehu-server: broken.mid: has a damaged header at byte 0",
+        "yehu-server: empty.mid: is empty",
+    ]
+    assert set(sounds(folder / "out")) == {
+        "with space.wav",
+        "line\nbreak.wav",
+        os.fsdecode(b"no\xffutf-8.wav"),
+        "x/y.wav",
+        "x/Y.kar.wav",
+    }
+    lines = manifest(folder / "out")
+    assert list(lines) == sorted([*ODD, "empty.mid", "broken.mid"])
+    assert sorted(map(str, map(json.loads, out.splitlines()))) == sorted(map(str, lines.values()))
+    assert not leavings(folder / "out")
+
+
+def test_the_manifest_tells_what_became_of_each(once):
+    lines = manifest(once[0] / "out")
+    line = lines["with space.mid"]
+    sound, rate = soundfile.read(once[0] / "out" / line["output"])
+    assert line["duration_s"] == len(sound) / rate
+    assert line["peak"] == pytest.approx(abs(sound).max(), abs=1e-6)
+    assert (line["notes"], line["out_of_range"], line["warnings"]) == (1, 0, [])
+    assert lines["empty.mid"] == {"file": "empty.mid", "error": "is empty"}
+
+
+def test_each_sound_is_that_of_the_score_rendered_alone(once, command, tmp_path):
+    alone = tmp_path / "alone.wav"
+    assert command("render", once[0] / "in" / "x" / "Y.kar", "-o", alone, *DRY)[0] == 0
+    assert alone.read_bytes() == (once[0] / "out" / "x" / "Y.kar.wav").read_bytes()
+
+
+def test_one_process_makes_the_same_bytes_as_two(folder, command):
+    command("render", folder / "in", "-o", folder / "other", *DRY, "--jobs", 1)
+    assert sounds(folder / "other") == sounds(folder / "out")
+    names = [each / "manifest.jsonl" for each in (folder / "out", folder / "other")]
+    assert names[0].read_bytes() == names[1].read_bytes()
+
+
+# ---------------------------------------------------------------- again
+
+
+def test_what_is_up_to_date_is_not_rendered_again(folder, command):
+    before, told = times(folder / "out"), (folder / "out" / "manifest.jsonl").read_bytes()
+    for name in ("empty.mid", "broken.mid"):
+        (folder / "in" / name).unlink()
+    code, out, err = command("render", folder / "in", "-o", folder / "out", *DRY)
+    assert (code, err) == (0, "")
+    assert "0 rendered, 5 up to date, 0 failed" in out
+    assert times(folder / "out") == before
+    kept = [line for line in told.splitlines() if b"error" not in line]
+    assert (folder / "out" / "manifest.jsonl").read_bytes().splitlines() == kept
+
+
+def test_only_what_changed_is_rendered_again(folder, command):
+    before = times(folder / "out")
+    tune(folder / "in" / "x" / "y.mid", 75)
+    (folder / "out" / "with space.wav").unlink()
+    code, out, _ = command("render", folder / "in", "-o", folder / "out", *DRY)
+    assert code == 1
+    assert "2 rendered, 3 up to date, 2 failed" in out
+    after = times(folder / "out")
+    changed = {path.name for path in before if after[path] != before[path]}
+    assert changed == {"y.wav", "with space.wav"}
+
+
+def test_another_option_or_version_renders_all_again(monkeypatch):
+    def key(*words: object) -> str:
+        return folder_records.base_key(_parser().parse_args(["render", "in", "-o", "out", *words]))
+
+    same = [key(), key("--quiet"), key("--json"), key("--jobs", "1"), key("--overwrite")]
+    assert len(set(same)) == 1
+    other = [("--dry",), ("--rate", "48000"), ("--seed", "1"), ("--set", "/bow/side=1")]
+    keys = {key(*words) for words in other} | {key()}
+    monkeypatch.setattr("yehu_server.__version__", "x")
+    assert len(keys | {key()}) == len(other) + 2
+
+
+def test_a_changed_mapping_renders_again(tmp_path, command):
+    tune(tmp_path / "in" / "a.mid")
+    mapping = tmp_path / "m.toml"
+    mapping.write_text('base = "keyboard"\n')
+    words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY, "--mapping", mapping)
+    for text, told in (
+        ('base = "keyboard"\n', "1 rendered, 0 up"),
+        ('base = "keyboard"\n', "0 rendered, 1 up"),
+        ('base = "keyboard"\n[start]\n"/playing/pressure" = 0.9\n', "1 rendered, 0 up"),
+    ):
+        mapping.write_text(text)
+        code, out, err = command(*words)
+        assert code == 0, err
+        assert told in out
+
+
+def test_a_file_of_the_users_own_is_not_replaced(folder, command):
+    own = folder / "out" / "with space.wav"
+    own.write_bytes(b"my own")
+    code, _, err = command("render", folder / "in", "-o", folder / "out", *DRY)
+    assert code == 1
+    assert "with space.mid: exists; --overwrite replaces it" in err
+    assert own.read_bytes() == b"my own"
+    command("render", folder / "in", "-o", folder / "out", *DRY, "--overwrite")
+    assert is_rendered(own)
+
+
+def test_a_score_that_failed_is_told_again_and_tried_again_only_where_something_changed(
+    folder, command, monkeypatch
+):
+    tried = []
+    perform = folder_tasks.perform
+    monkeypatch.setattr(
+        "yehu_server.jobs.workers.perform_all",
+        lambda _, tasks, __: (
+            tried.append(task.entry.name) or Event(job, 1.0, result=perform(task, print))
+            for job, task in enumerate(tasks)
+        ),
+    )
+    words = ("render", folder / "in", "-o", folder / "out", *DRY)
+    code, out, err = command(*words)
+    assert (code, tried) == (1, [])
+    assert "broken.mid: has a damaged header at byte 0" in err
+    assert "0 rendered, 5 up to date, 2 failed (2 as before; --overwrite tries again)" in out
+    assert manifest(folder / "out")["empty.mid"] == {"file": "empty.mid", "error": "is empty"}
+    command(*words, "--overwrite")
+    assert tried == ["broken.mid", "empty.mid"]
+    tune(folder / "in" / "broken.mid")
+    code, out, err = command(*words)
+    assert tried[2:] == ["broken.mid"]
+    assert "1 rendered, 5 up to date, 1 failed (1 as before" in out
+    command(*words[:-2], "--tail", "1")
+    assert len(tried) == 3 + 7
+
+
+def test_a_failure_that_is_not_the_scores_is_tried_again(folder, command):
+    own = folder / "out" / "x" / "y.wav"
+    own.write_bytes(b"my own")
+    words = ("render", folder / "in", "-o", folder / "out", *DRY)
+    assert "3 failed (2 as before" in command(*words)[1]
+    own.unlink()
+    assert "1 rendered, 4 up to date, 2 failed" in command(*words)[1]
+
+
+# ---------------------------------------------------------------- interrupted
+
+
+def wait_until(is_so) -> None:
+    deadline = time.monotonic() + 120.0
+    while not is_so():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+def children(process: subprocess.Popen) -> list[int]:
+    """The processes that render."""
+    all_of_them = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    return [
+        int(each)
+        for each in all_of_them
+        if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
+    ]
+
+
+def is_at_second(process: subprocess.Popen, out: Path) -> bool:
+    """Whether a first score is whole, and another one is being made."""
+    assert process.poll() is None
+    return (out / ".yehu-server" / "a.wav.json").exists() and bool(leavings(out))
+
+
+@pytest.fixture
+def long(tmp_path) -> Path:
+    """A folder with a score that takes long, between two that do not."""
+    tune(tmp_path / "in" / "a.mid")
+    tune(tmp_path / "in" / "b.mid", seconds=3000.0)
+    tune(tmp_path / "in" / "c.mid")
+    return tmp_path
+
+
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_an_interrupted_folder_goes_on_where_it_was(long, command, signum):
+    handled = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);" + COMMAND
+    words = ("render", long / "in", "-o", long / "out", *DRY, "--jobs", 1)
+    process = start(*words, code=handled)
+    wait_until(lambda: is_at_second(process, long / "out"))
+    process.send_signal(signum)
+    _, err = process.communicate(timeout=60)
+    wait_until(lambda: not leavings(long / "out"))
+    if signum != signal.SIGKILL:
+        assert process.returncode == 130
+        assert is_one_line(err)
+        assert "1 of 3 scores are in" in err
+        assert list(manifest(long / "out")) == ["a.mid"]
+    before = times(long / "out")
+    tune(long / "in" / "b.mid")
+    code, out, err = command(*words)
+    assert (code, err) == (0, "")
+    assert "2 rendered, 1 up to date, 0 failed" in out
+    assert times(long / "out").items() >= before.items()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_a_process_that_is_killed_takes_no_other_score_with_it(long):
+    process = start("render", long / "in", "-o", long / "out", *DRY, "--jobs", 1)
+    for _ in range(2):
+        wait_until(lambda: is_at_second(process, long / "out"))
+        before = leavings(long / "out")
+        os.kill(children(process)[0], signal.SIGKILL)
+        wait_until(lambda before=before: leavings(long / "out") != before)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert err == "yehu-server: b.mid: the process that rendered it was killed by signal 9\n"
+    assert set(sounds(long / "out")) == {"a.wav", "c.wav"}
+    assert not leavings(long / "out")
+
+
+# ---------------------------------------------------------------- a full disk
+
+
+def test_a_full_disk_ends_all_of_it(tmp_path, monkeypatch):
+    def full(*_):
+        reason = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        raise OutputError("x: cannot write: No space left on device") from reason
+
+    from yehu_server.batch.tree import Entry
+
+    monkeypatch.setattr(render_one, "rendered", full)
+    arguments = argparse.Namespace(overwrite=False, format=None, output=tmp_path / "out")
+    entry = Entry("a.mid", tmp_path / "a.mid", tmp_path / "out" / "a.wav")
+    done = folder_tasks.perform(folder_tasks.Task(arguments, entry, None, ""), print)
+    assert done.is_full
+    assert done.line["error"] == "x: cannot write: No space left on device"
+
+
+def test_a_file_that_is_too_large_for_the_disk_is_told(tmp_path):
+    tune(tmp_path / "in" / "a.mid")
+    tune(tmp_path / "in" / "b.mid", seconds=3.0)
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));"
+    process = start("render", tmp_path / "in", "-o", tmp_path / "out", *DRY, code=limit + COMMAND)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert err == "yehu-server: b.mid: cannot write: File too large\n"
+    assert set(sounds(tmp_path / "out")) == {"a.wav"}
+    assert not leavings(tmp_path / "out")
+
+
+# ---------------------------------------------------------------- wrong calls
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong"),
+    [
+        (("in", "-o", "-"), "a folder is rendered to a folder"),
+        (("in", "-o", "file"), "file: is a file; name a folder"),
+        (("in", "-o", "x.wav"), "in: is a folder, which is rendered to a folder, not to x.wav"),
+        (("in", "-o", "none/out"), "does not exist"),
+        (("in", "in/a.mid", "-o", "out"), "in: is a folder; name it alone"),
+        (("in", "-o", "out", "--stems", "s"), "--stems is for one score"),
+        (("in", "-o", "out", "--format", "raw"), "--format raw is for"),
+        (("in", "-o", "out", "--format", "flac", "--subtype", "float"), "cannot hold float"),
+        (("in", "-o", "out", "--rate", "1"), "rate"),
+        (("in", "-o", "out", "--mapping", "none.toml"), "none.toml"),
+        (("bare", "-o", "out"), "bare: has no scores"),
+        (("in", "-o", "taken"), "is no manifest of yehu-server; move it away"),
+    ],
+    ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
+)
+def test_a_wrong_call_gets_one_line_and_makes_nothing(refused, tmp_path, monkeypatch, words, wrong):
+    monkeypatch.chdir(tmp_path)
+    tune(tmp_path / "in" / "a.mid")
+    for name in ("bare", "taken"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "file").touch()
+    (tmp_path / "taken" / "manifest.jsonl").write_text("mine\n")
+    assert wrong in refused("render", *words)
+    assert not list(tmp_path.rglob("*.wav"))
+    assert (tmp_path / "taken" / "manifest.jsonl").read_text() == "mine\n"
+
+
+def test_a_link_in_a_circle_is_told_and_is_no_failure(tmp_path, command):
+    tune(tmp_path / "in" / "a.mid")
+    (tmp_path / "in" / "round").symlink_to(tmp_path / "in")
+    code, out, err = command("render", tmp_path / "in", "-o", tmp_path / "in" / "out", *DRY)
+    assert code == 0
+    assert err == "yehu-server: round: a link back to a folder it is in\n"
+    assert "1 rendered" in out
+
+
+def test_an_output_without_permission_is_refused(refused, tmp_path, monkeypatch):
+    tune(tmp_path / "in" / "a.mid")
+    (tmp_path / "out").mkdir()
+
+    def denied(*_, **__):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr("pathlib.Path.mkdir", denied)
+    assert "cannot write: Permission denied" in refused(
+        "render", tmp_path / "in", "-o", tmp_path / "out", *DRY
+    )

@@ -1,0 +1,163 @@
+"""``yehu-server render`` in a shell pipeline: a score comes in, its sound goes out."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+from commands import COMMAND, is_one_line
+from scores import midi_file, notes
+
+from yehu_server.cli.render_pipe import BROKEN_PIPE
+
+DRY = ("--dry", "--tail", "0")  # in little time
+
+
+@pytest.fixture
+def tune(tmp_path) -> Path:
+    return midi_file(tmp_path / "tune.mid", notes((0.0, 0.2, 67, 90), (0.2, 0.1, 69, 90)))
+
+
+def piped(*words: object, given: bytes = b"", code: str = COMMAND) -> subprocess.CompletedProcess:
+    """Run a command in a process of its own; what it writes, as bytes."""
+    texts = [sys.executable, "-c", code, *map(str, words)]
+    return subprocess.run(texts, input=given, capture_output=True, timeout=120, check=False)
+
+
+@pytest.fixture
+def alone(tune, command, tmp_path) -> np.ndarray:
+    """The same, rendered to a file."""
+    assert command("render", tune, "-o", tmp_path / "x.wav", *DRY, "--subtype", "float")[0] == 0
+    return soundfile.read(tmp_path / "x.wav", dtype="float32")[0]
+
+
+def test_raw_samples_are_those_of_the_file_and_nothing_else(tune, alone):
+    done = piped("render", tune, "-o", "-", "--format", "raw", *DRY)
+    assert done.returncode == 0
+    assert np.array_equal(np.frombuffer(done.stdout, "<f4").reshape(-1, 2), alone)
+    assert b"standard output: 0.3 s" in done.stderr
+
+
+@pytest.mark.parametrize("subtype", ["16", "24", "float"])
+def test_a_wav_stream_has_a_length_that_is_not_known_and_can_be_read(tune, alone, subtype):
+    done = piped("render", "-", "-o", "-", "--subtype", subtype, *DRY, given=tune.read_bytes())
+    assert done.returncode == 0, done.stderr
+    assert done.stdout[:4] == b"RIFF"
+    assert done.stdout[4:8] == b"\xff" * 4
+    assert struct.pack("<I", 0xFFFFFFFF) == done.stdout[done.stdout.index(b"data") + 4 :][:4]
+    sound, rate = soundfile.read(io.BytesIO(done.stdout), dtype="float32")
+    assert rate == 44100
+    assert sound.shape == alone.shape
+    assert np.abs(sound - alone).max() < 2.0 ** (-14 if subtype == "16" else -22)
+
+
+def test_a_program_that_reads_strictly_from_a_pipe_reads_it(tune, tmp_path):
+    sound = tmp_path / "sound"
+    sound.write_bytes(piped("render", tune, "-o", "-", "--mono", *DRY).stdout)
+    import wave
+
+    with wave.open(str(sound)) as file:
+        assert (file.getnchannels(), file.getsampwidth(), file.getframerate()) == (1, 3, 44100)
+        frames = len(file.readframes(10**6)) // 3
+    assert frames == round(0.3 * 44100)
+
+
+def test_normalized_sound_can_be_piped(tune):
+    done = piped("render", tune, "-o", "-", "--format", "raw", "--normalize", *DRY)
+    peak = np.abs(np.frombuffer(done.stdout, "<f4")).max()
+    assert peak == pytest.approx(10.0 ** (-1.0 / 20.0), rel=1e-6)
+
+
+def test_the_summary_goes_to_the_errors(tune):
+    done = piped("render", tune, "-o", "-", "--json", *DRY)
+    assert json.loads(done.stderr)["notes_played"] == 2
+    assert piped("render", tune, "-o", "-", "--quiet", *DRY).stderr == b""
+
+
+def test_a_reader_that_has_had_enough_ends_it_quietly(tmp_path):
+    tune = midi_file(tmp_path / "long.mid", notes((0.0, 600.0, 67, 90)))
+    words = [sys.executable, "-c", COMMAND, "render", str(tune), "-o", "-", "--format", "raw"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert len(process.stdout.read(1000)) == 1000
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait(timeout=60) == BROKEN_PIPE
+
+
+def test_a_full_disk_behind_the_output_is_told(tune, tmp_path):
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096));"
+    words = [sys.executable, "-c", limit + COMMAND, "render", str(tune), "-o", "-", *DRY]
+    with (tmp_path / "sound").open("wb") as full:
+        done = subprocess.run(
+            words, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False
+        )
+    assert done.returncode == 2
+    assert is_one_line(done.stderr)
+    assert "standard output: cannot write: File too large" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "given", "wrong"),
+    [
+        (("-", "-o", "x.wav"), b"", "standard input: is empty"),
+        (("-", "-o", "x.wav"), b"hello\n" * 999, "standard input: is not a MIDI file"),
+        (("-", "-", "-o", "x.wav"), b"", "standard input can be read once only"),
+        (("-", "-o", "-", "--format", "flac"), b"", "a flac file cannot be piped"),
+        (("-", "-o", "x.wav", "--format", "raw"), b"", "--format raw is for -o -"),
+    ],
+    ids=str,
+)
+def test_a_wrong_pipe_gets_one_line(tmp_path, words, given, wrong):
+    done = piped(
+        "render", *words, given=given, code=f"import os; os.chdir({str(tmp_path)!r});" + COMMAND
+    )
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert wrong in done.stderr.decode()
+    assert is_one_line(done.stderr.decode())
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_input_without_end_is_refused(tmp_path):
+    limit = "import yehu_server.score.smf.reader as smf; smf.MAX_BYTES = 2**20;"
+    with Path("/dev/zero").open("rb") as endless:
+        words = [
+            sys.executable,
+            "-c",
+            limit + COMMAND,
+            "render",
+            "-",
+            "-o",
+            str(tmp_path / "x.wav"),
+        ]
+        done = subprocess.run(
+            words, stdin=endless, capture_output=True, text=True, timeout=60, check=False
+        )
+    assert done.returncode == 2
+    assert "standard input: larger than 1 MiB" in done.stderr
+
+
+def test_sound_does_not_go_to_a_terminal(tune):
+    ours, theirs = os.openpty()
+    words = [sys.executable, "-c", COMMAND, "render", str(tune), "-o", "-"]
+    done = subprocess.run(
+        words, stdout=theirs, stderr=subprocess.PIPE, text=True, timeout=60, check=False
+    )
+    os.close(theirs)
+    os.close(ours)
+    assert done.returncode == 2
+    assert "standard output is a terminal" in done.stderr
+
+
+def test_a_file_may_be_called_by_a_dash(tune, tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    tune.rename(tmp_path / "-")
+    assert command("render", "./-", "-o", "./x", *DRY)[0] == 0
+    assert (tmp_path / "x").exists()

@@ -1,0 +1,180 @@
+"""``yehu-server render --plot``: a picture of what was rendered."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scores import midi_file, notes
+
+from yehu_server.plot.asked import asked_pitch
+from yehu_server.plot.watch import COLUMNS, Watch
+
+DRY = ("--dry", "--tail", 0)  # in little time
+RATE = 44100.0
+
+
+@pytest.fixture
+def tune(tmp_path) -> Path:
+    return midi_file(tmp_path / "tune.mid", notes((0.0, 0.3, 67, 90), (0.3, 0.3, 72, 90)))
+
+
+def watched(sound: np.ndarray, duration_s: float, size: int = 1000, voices: int = 1) -> Watch:
+    watch = Watch(RATE, duration_s, voices)
+    for at in range(0, len(sound), size):
+        watch.take(sound[at : at + size], [69.0] * voices)
+    return watch
+
+
+def sine(hz: float, level: float, seconds: float) -> np.ndarray:
+    return level * np.sin(2.0 * np.pi * hz * np.arange(round(seconds * RATE)) / RATE)
+
+
+# ---------------------------------------------------------------- what is gathered
+
+
+def test_level_peak_pitch_and_spectrum_of_a_sine():
+    watch = watched(sine(440.0, 0.1, 1.0), 1.0)
+    middle = slice(10, -10)
+    assert watch.levels_db[middle] == pytest.approx(-20.0 - 3.01, abs=0.3)
+    assert watch.peaks_db[middle] == pytest.approx(-20.0, abs=0.1)
+    assert watch.pitches[middle] == pytest.approx(69.0, abs=0.02)
+    column = watch.spectra_db[:, 50]
+    assert column.argmax() * watch.row_hz == pytest.approx(440.0, abs=0.6 * watch.row_hz)
+    assert column.max() == pytest.approx(-20.0, abs=1.5)
+
+
+def test_a_click_is_where_it_was():
+    sound = np.zeros(round(RATE))
+    sound[round(0.5 * RATE)] = 1.0
+    watch = watched(sound, 1.0)
+    assert watch.times_s[watch.levels_db.argmax()] == pytest.approx(0.5, abs=0.025)  # half a window
+    assert watch.times_s[watch.peaks_db.argmax()] == pytest.approx(0.5, abs=0.01)
+
+
+def test_the_end_is_measured_too():
+    watch = watched(sine(440.0, 0.1, 0.5), 0.5)
+    watch.finish()
+    assert watch.times_s[-1] == pytest.approx(0.5, abs=0.011)
+    assert watch.duration_s == 0.5
+
+
+@pytest.mark.parametrize("size", [1, 64, 44100])
+def test_the_pieces_do_not_matter(size):
+    sound = np.random.default_rng(1).normal(0.0, 0.1, (4410, 2))
+    one, other = watched(sound, 0.1), watched(sound, 0.1, size)
+    assert np.array_equal(one.levels_db, other.levels_db)
+    assert np.array_equal(one.spectra_db, other.spectra_db)
+
+
+def test_a_long_score_has_no_more_columns_than_a_picture():
+    watch = Watch(1000.0, 3600.0, 2)
+    for _ in range(3600):
+        watch.take(np.zeros((1000, 2)), (None, 60.0))
+    assert 0.9 * COLUMNS < len(watch.times_s) <= COLUMNS
+    assert math.isnan(watch.asked[1][0, 0])
+    assert watch.asked[1][0, 1] == 60.0
+
+
+# ---------------------------------------------------------------- what is drawn
+
+mpl = pytest.importorskip("matplotlib")
+
+
+def test_a_picture_is_drawn_beside_the_sound_which_is_the_same(tune, command, tmp_path):
+    for name, words in (("a", ()), ("b", ("--plot", tmp_path / "b.png"))):
+        code, _, err = command("render", tune, "-o", tmp_path / f"{name}.wav", *words, *DRY)
+        assert (code, err) == (0, "")
+    assert (tmp_path / "a.wav").read_bytes() == (tmp_path / "b.wav").read_bytes()
+    from matplotlib.image import imread
+
+    pixels = imread(tmp_path / "b.png")
+    assert pixels.shape[:2] == (990, 1540)
+    assert len(np.unique(pixels.reshape(-1, pixels.shape[2]), axis=0)) > 100
+
+
+def test_the_same_rendering_has_the_same_picture_which_it_may_replace(tune, command, tmp_path):
+    words = ("render", tune, "-o", tmp_path / "a.wav", "--plot", tmp_path / "a.png", *DRY)
+    command(*words)
+    before = (tmp_path / "a.png").read_bytes()
+    (tmp_path / "a.png").write_bytes(before + b"\0")
+    with mpl.rc_context({"font.size": 20.0, "axes.facecolor": "red"}):
+        assert command(*words)[0] == 0
+    assert (tmp_path / "a.png").read_bytes() == before
+
+
+def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
+    from yehu_server.rendering import Options, Performance
+    from yehu_server.score.smf.reader import read_score
+
+    options = Options(is_dry=True, is_mono=True, tail_s=0.0, block=512)
+    performance = Performance(read_score(tune), options)
+    watch = Watch(RATE, 0.6, 1)
+    for samples in performance.blocks():
+        watch.take(samples, [asked_pitch(player.instruments[0]) for player in performance.players])
+    times, asked = watch.asked
+    for note, first, last in ((67.0, 0.02, 0.28), (72.0, 0.32, 0.58)):
+        within = (times > first) & (times < last)
+        assert asked[within, 0] == pytest.approx(note)
+        heard = watch.pitches[(watch.times_s > last - 0.1) & (watch.times_s < last - 0.03)]
+        assert np.nanmedian(heard) == pytest.approx(note, abs=0.3)
+
+
+def test_each_part_of_an_ensemble_is_asked_for_its_own_pitch(tune):
+    from yehu_server.rendering import Options, Part, Performance
+    from yehu_server.score.smf.reader import read_score
+
+    options = Options(is_dry=True, tail_s=0.0, block=512)
+    performance = Performance([Part(read_score(tune)), Part(read_score(tune))], options)
+    next(iter(performance.blocks()))
+    assert [asked_pitch(each.instruments[0]) for each in performance.players] == [67.0, 67.0]
+
+
+def test_what_is_no_picture_of_ours_is_not_replaced(tune, refused, tmp_path):
+    picture = tmp_path / "a.png"
+    picture.write_bytes(b"\x89PNG of mine")
+    words = ("render", tune, "-o", tmp_path / "a.wav", "--plot", picture)
+    assert "a.png: exists; --overwrite replaces it" in refused(*words)
+    assert not (tmp_path / "a.wav").exists()
+
+
+@pytest.mark.parametrize(
+    ("plot", "wrong"),
+    [
+        ("a.jpg", "a picture is a .png file"),
+        ("none/a.png", "does not exist"),
+        ("-", "nothing is written to standard output"),
+    ],
+)
+def test_a_wrong_name_gets_one_line(tune, refused, tmp_path, monkeypatch, plot, wrong):
+    monkeypatch.chdir(tmp_path)
+    assert wrong in refused("render", tune, "-o", "a.wav", "--plot", plot)
+
+
+def test_where_matplotlib_is_missing_the_extra_is_named(tune, refused, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for source in (tune, tmp_path):
+        err = refused("render", source, "-o", tmp_path / "a", "--plot", tmp_path / "a.png")
+        assert "install yehu-server[plots]" in err
+
+
+def test_a_folder_has_a_folder_of_pictures(tmp_path, command):
+    (tmp_path / "in" / "x").mkdir(parents=True)
+    midi_file(tmp_path / "in" / "x" / "a.mid", notes((0.0, 0.1, 67, 90)))
+    words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY)
+    pictures = ("--plot", tmp_path / "pictures")
+    for more, told in (
+        ((), "1 rendered, 0 up"),
+        (pictures, "1 rendered, 0 up"),
+        (pictures, "0 rendered, 1 up"),
+    ):
+        code, out, err = command(*words, *more)
+        assert (code, err) == (0, "")
+        assert told in out
+    picture = tmp_path / "pictures" / "x" / "a.png"
+    picture.unlink()
+    assert "1 rendered" in command(*words, *pictures)[1]
+    assert picture.exists()

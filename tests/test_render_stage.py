@@ -1,0 +1,100 @@
+"""``yehu-server render`` on its stage: two channels, a room, and neither."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import mido
+import numpy as np
+import pytest
+import soundfile
+from scores import midi_file, notes
+from sound import rms
+
+from yehu_server.analysis.level import a_weighted_db
+
+RATE = 44100
+MOST_CHANGE_DB = 1.0  # of the loudness, by the usual room
+HALL = 'version = 1\n[values]\n"/room/size" = 20.0\n"/room/decay" = 2.0\n"/room/level" = 0.6\n'
+
+
+@pytest.fixture
+def tune(tmp_path) -> Path:
+    score = notes((0.0, 0.4, 67, 80), (0.4, 0.4, 72, 90), (0.8, 0.6, 76, 70))
+    return midi_file(tmp_path / "tune.mid", score)
+
+
+@pytest.fixture
+def play(command, tmp_path):
+    """Render to float samples; return what the file has [shape=(frames,) or (frames, 2)]."""
+
+    def run(*words: object) -> np.ndarray:
+        target = tmp_path / "out.wav"
+        code, _, err = command("render", *words, "-o", target, "--subtype", "float")
+        assert code == 0, err
+        return soundfile.read(target)[0]
+
+    return run
+
+
+def test_a_rendering_is_stereo_and_in_a_room_that_rings_on(play, tune):
+    sound, dry = play(tune, "--tail", 1), play(tune, "--tail", 1, "--dry")
+    assert sound.shape[1] == dry.shape[1] == 2
+    left, right = sound.T
+    assert rms(left - right) > 0.05 * rms(left)
+    difference = (sound - dry).mean(axis=1)[int(1.45 * RATE) : int(1.6 * RATE)]
+    assert rms(difference) > 0.001  # after the last note
+
+
+def test_dry_has_the_same_on_both_sides_which_is_the_sound_of_one_channel(play, tune):
+    left, right = play(tune, "--dry").T
+    np.testing.assert_array_equal(left, right)
+    np.testing.assert_array_equal(left, play(tune, "--dry", "--mono"))
+
+
+def test_mono_is_the_mean_of_both_sides(play, tune):
+    mono, both = play(tune, "--mono", "--tail", 1), play(tune, "--tail", 1)
+    assert mono.ndim == 1
+    np.testing.assert_allclose(mono, both.mean(axis=1), atol=1e-7)
+
+
+def test_the_usual_room_leaves_the_loudness_as_it_is(play, tune):
+    loudness = [
+        np.mean([a_weighted_db(side[: int(1.4 * RATE)], RATE) for side in sound.T])
+        for sound in (play(tune), play(tune, "--dry"))
+    ]
+    assert abs(loudness[0] - loudness[1]) < MOST_CHANGE_DB
+
+
+def test_pan_of_midi_is_the_place_of_the_player(play, tmp_path):
+    to_left = (0.0, mido.Message("control_change", control=10, value=20))
+    score = midi_file(tmp_path / "left.mid", [to_left, *notes((0.1, 0.8, 70, 80))])
+    left, right = play(score, "--dry").T
+    assert rms(left) > 1.5 * rms(right)
+
+
+def test_a_room_is_a_preset_that_may_be_joined_with_a_sound(play, tune, tmp_path):
+    (tmp_path / "hall.toml").write_text(HALL, encoding="utf-8")
+    end = int(1.9 * RATE)
+    for sound in ((), ("--preset", "pizzicato")):
+        words = (tune, "--tail", 2, *sound)
+        in_hall = play(*words, "--room", tmp_path / "hall.toml")
+        assert rms(in_hall[end:]) > 10.0 * rms(play(*words)[end:])
+
+
+def test_what_is_no_room_is_refused(refused, tune, tmp_path):
+    words = ("render", tune, "-o", tmp_path / "out.wav")
+    assert "pizzicato: not a room: it sets" in refused(*words, "--room", "pizzicato")
+    assert "no preset 'barn'" in refused(*words, "--room", "barn")
+    assert "--dry has no room" in refused(*words, "--room", "pizzicato", "--dry")
+
+
+def test_one_player_has_stems_too(command, tune, tmp_path):
+    words = ("-o", tmp_path / "out.wav", "--stems", tmp_path / "stems", "--json")
+    code, out, _ = command("render", tune, *words)
+    assert code == 0
+    stems = [Path(stem) for stem in json.loads(out)["stems"]]
+    assert [stem.name for stem in stems] == ["01-tune.wav", "room.wav"]
+    mix, *parts = (soundfile.read(path)[0] for path in (tmp_path / "out.wav", *stems))
+    np.testing.assert_allclose(sum(parts), mix, atol=3 * 2.0**-23)

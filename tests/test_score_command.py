@@ -1,0 +1,91 @@
+"""``yehu-server score``: what was understood of a written score; and rendering one."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from musicxml_text import dynamics, note, score, slur, technical, tempo, words
+
+from yehu_server.score.score_notes import notes_of
+from yehu_server.score.smf.reader import read_score
+
+BARS = (
+    tempo(90)
+    + dynamics("p")
+    + note("G4", 1, technical("up-bow"))
+    + note("A4", 1.5)
+    + note("C5", 1.5),
+    words("with a smile") + note("F+4", 2, slur("start")) + note("G4", 2, slur("stop")),
+)
+
+
+@pytest.fixture
+def tune(tmp_path):
+    path = tmp_path / "tune.musicxml"
+    path.write_text(score(*BARS, title="A tune"), encoding="utf-8")
+    return path
+
+
+def test_a_score_is_shown_note_by_note(command, tune):
+    code, out, err = command("score", "show", tune)
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[0] == "A tune"
+    assert "bar 1: 90 quarters a minute" in lines
+    assert "part 1: P1, channel 1, 5 notes" in lines
+    rows = [
+        line.split() for line in lines if line[:5].strip().isdigit() or line.startswith("       ")
+    ]
+    assert rows[0] == ["1", "1", "G4", "1", "[p],", "up-bow"]
+    assert rows[2] == ["3", "1/2", "C5", "1", "1/2"]
+    assert rows[3][:4] == ["2", "1", "F#4-50", "2"]
+    assert lines[-1] == 'not understood: words "with a smile"'
+
+
+def test_a_score_is_shown_as_json(command, tune):
+    shown = json.loads(command("score", "show", tune, "--json")[1])
+    assert shown["title"] == "A tune"
+    assert shown["unknown"] == {'words "with a smile"': 1}
+    notes = shown["parts"][0]["notes"]
+    assert [each["pitch"] for each in notes] == [67.0, 69.0, 72.0, 65.5, 67.0]
+    assert notes[0]["marks"] == [["up-bow", None]]
+    assert shown["parts"][0]["spans"] == [["slur", 4.0, 6.0, None]]
+
+
+def test_what_is_played_is_written_as_midi(command, refused, tune, tmp_path):
+    target = tmp_path / "out.mid"
+    words = ("score", "show", tune, "--export-midi", target)
+    code, _, err = command(*words)
+    assert code == 0
+    assert "/playing/direction" in err
+    assert [each.key for each in notes_of(read_score(target))] == [67, 69, 72, 66, 67]
+    assert "exists" in refused(*words)
+    assert command(*words, "--overwrite")[0] == 0
+    same = ("score", "show", target, "--export-midi", target)
+    assert "is no written score" in refused(*same)
+
+
+def test_a_score_is_not_overwritten_by_its_export(refused, tune):
+    before = tune.read_bytes()
+    line = refused("score", "show", tune, "--export-midi", tune, "--overwrite")
+    assert "would overwrite an input" in line
+    assert tune.read_bytes() == before
+
+
+@pytest.mark.parametrize("text", ["", "<html/>", "<score-partwise/>"])
+def test_a_score_that_cannot_be_read_is_refused_in_one_line(refused, tmp_path, text):
+    path = tmp_path / "bad.musicxml"
+    path.write_text(text, encoding="utf-8")
+    if text != "<score-partwise/>":
+        assert "bad.musicxml" in refused("score", "show", path)
+    assert "bad.musicxml" in refused("render", path, "-o", tmp_path / "out.wav")
+    assert not (tmp_path / "out.wav").exists()
+
+
+def test_a_score_is_rendered_and_its_unknown_marks_are_told(command, tune, tmp_path):
+    code, out, err = command("render", tune, "-o", tmp_path / "out.wav", "--json")
+    assert code == 0
+    assert json.loads(out)["notes_played"] == 5
+    assert 'not understood: words "with a smile"' in err
+    assert command("render", tune, "-o", tmp_path / "b.wav", "--strict")[0] == 1

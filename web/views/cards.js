@@ -1,0 +1,34 @@
+/** Presets as cards to choose from. */
+
+/** @typedef {import('../interfaces.js').Player} Player */
+
+import { make } from "../elements.js";
+import { sayOr } from "../words.js";
+
+/**
+ * @param {Player} player
+ * @param {{name: string, about: string, program: number | null}[]} presets
+ * @param {() => string} name of all of them, for screen readers
+ */
+export function makeCards(player, presets, name) {
+  const cards = presets.sort(byProgram).map((preset) => {
+    const card = make("button", { type: "button", "aria-pressed": "false" }, [
+      make("span", {}, [() => sayOr(`preset.${preset.name}`, preset.name)]),
+      make("small", {}, [() => sayOr(`preset.${preset.name}.about`, preset.about)]),
+    ]);
+    card.addEventListener("click", () => {
+      player.applyPreset(preset.name);
+      for (const one of cards) one.setAttribute("aria-pressed", String(one === card));
+    });
+    return card;
+  });
+  return make("div", { class: "cards", role: "group", "aria-label": name }, cards);
+}
+
+/**
+ * @param {{program: number | null}} one
+ * @param {{program: number | null}} other
+ */
+function byProgram(one, other) {
+  return (one.program ?? Infinity) - (other.program ?? Infinity);
+}

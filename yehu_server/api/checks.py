@@ -1,0 +1,117 @@
+"""Arguments as users give them, checked: numbers, paths, parameters."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping
+from numbers import Real
+from pathlib import Path
+from typing import Any
+
+from yehu_server.errors import ParameterError
+from yehu_server.params.table import find
+from yehu_server.physics.quantities import Quantities, override, read_quantities
+
+PathLike = str | os.PathLike[str]
+
+
+def number(value: Any, name: str, lo: float = -math.inf, hi: float = math.inf) -> float:
+    """Return a number, also one of NumPy, as a float.
+
+    Raises
+    ------
+    ParameterError
+        Where it is none, not finite, or out of range.
+    """
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise ParameterError(f"{name}: expected a number, got {value!r}")
+    found = float(value)
+    if not math.isfinite(found):
+        raise ParameterError(f"{name}: {found} is not finite")
+    if not lo <= found <= hi:
+        raise ParameterError(f"{name}: {found:g} is not within {lo:g} to {hi:g}")
+    return found
+
+
+def whole(value: Any, name: str, lo: float, hi: float) -> int:
+    """Return a whole number, also one of NumPy; see `number`."""
+    found = number(value, name, lo, hi)
+    if found != int(found):
+        raise ParameterError(f"{name}: expected a whole number, got {value!r}")
+    return int(found)
+
+
+def setting(address: Any, value: Any) -> tuple[str, float]:
+    """Return an address of the parameter table, and a value within its range.
+
+    Raises
+    ------
+    ParameterError
+        Where there is no such parameter, or the value is out of its range.
+    """
+    if not isinstance(address, str):
+        raise ParameterError(f"{address!r}: expected an address, such as '/playing/vibrato'")
+    param = find(address)
+    found = number(value, address)
+    if param.accept(found) != found:
+        raise ParameterError(f"{address}: {found:g} is not within {param.range_text}")
+    return address, found
+
+
+def settings_of(settings: Mapping[str, float] | None) -> tuple[tuple[str, float], ...]:
+    """Return addresses and values, checked; see `setting`."""
+    if settings is not None and not isinstance(settings, Mapping):
+        raise ParameterError(
+            "settings: expected addresses and values, such as {'/body/blend': 0.5}"
+        )
+    return tuple(setting(address, value) for address, value in (settings or {}).items())
+
+
+def quantities_of(instrument: Quantities | Mapping[str, Any] | PathLike | None) -> Quantities:
+    """Return the physical quantities of an instrument.
+
+    Parameters
+    ----------
+    instrument : Quantities, mapping, path or None
+        A mapping of quantities to change, or an instrument file (docs/physics.md); None: the
+        measured instrument.
+
+    Raises
+    ------
+    ParameterError
+        Where it is something else, or a quantity is unknown or out of range.
+    """
+    if instrument is None:
+        return Quantities()
+    if isinstance(instrument, Quantities):
+        return instrument
+    if isinstance(instrument, Mapping):
+        return override(Quantities(), instrument)
+    return read_quantities(path_of(instrument, "instrument"))
+
+
+def path_of(value: Any, name: str) -> Path:
+    """Return a path.
+
+    Raises
+    ------
+    ParameterError
+        Where it is none.
+    """
+    if not isinstance(value, str | os.PathLike):
+        raise ParameterError(f"{name}: expected a path, got {type(value).__name__}")
+    return Path(value)
+
+
+def name_of(value: Any, what: str) -> str:
+    """Return the name, or the path as text, of something shipped or of the user's own.
+
+    Raises
+    ------
+    ParameterError
+        Where it is neither.
+    """
+    if not isinstance(value, str | os.PathLike):
+        raise ParameterError(f"{what}: expected a name or a path, not {value!r}")
+    return os.fspath(value)

@@ -1,0 +1,389 @@
+"""The instrument for Python: wishes or controls in, arrays of sound and signals out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from yehu_server.api.checks import PathLike, number, setting, whole
+from yehu_server.api.compiling import get_ready
+from yehu_server.api.observing import Run, curves_of
+from yehu_server.api.pitches import pitch_of, playable
+from yehu_server.api.styles import make_of
+from yehu_server.engine.ensemble import Ensemble
+from yehu_server.engine.instrument import Instrument as Engine
+from yehu_server.errors import ParameterError, YehuError
+from yehu_server.params.spec import Place
+from yehu_server.params.table import find
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.wishes import Key
+from yehu_server.simulation import Simulation
+
+Array = Any
+
+LONGEST_S = 3600.0  # computed at once
+CHANNEL = 0
+
+
+class Instrument:
+    """A yehu and its player, whose time goes on only while it computes sound.
+
+    It plays notes as the live instrument does (`note_on`, `slide`, `set`), or the bow is drawn by
+    hand (`draw`, or `controls` of `play`). `play` computes the sound, `record` every signal too.
+
+    Parameters
+    ----------
+    sample_rate : float
+        Hz, 22050 to 192000. 44100, 48000 and 96000 are calibrated; others take some seconds, once.
+    instrument : mapping, path or Quantities, optional
+        Physical quantities to change, such as ``{"string_1": {"T": 49.0}}``, or an instrument file
+        (docs/physics.md); by default the measured instrument.
+    preset : str or path, optional
+        A sound to begin with (presets/README.md), such as ``"flautando"``; several are joined by a
+        plus.
+    settings : mapping, optional
+        Values of parameters (docs/parameters.md) that are held, by address.
+    stereo : bool
+        Sound to left and right, in the room; by default one channel without a room.
+    a4 : float
+        Reference pitch (Hz), 390 to 480.
+    tuning : path, optional
+        A Scala scale, or the name of a shipped one; by default equal temperament.
+    practice : path, optional
+        How notes are bowed: a file of ``yehu-server practise``.
+    seed : int
+        Seed of the small variation between notes.
+
+    Raises
+    ------
+    YehuError
+        Where an option is wrong, or the quantities make no stable model.
+
+    Examples
+    --------
+    >>> import yehu_server as yehu
+    >>> fiddle = yehu.Instrument(settings={"/playing/vibrato": 20.0})
+    >>> fiddle.note_on("A4", velocity=90)
+    >>> first = fiddle.play(0.5)
+    >>> fiddle.slide("C5")
+    >>> then = fiddle.play(0.5)
+    >>> first.shape, first.dtype, fiddle.time
+    ((22050,), dtype('float32'), 1.0)
+    """
+
+    def __init__(
+        self,
+        sample_rate: float = 44100,
+        *,
+        instrument: Quantities | Mapping[str, Any] | PathLike | None = None,
+        preset: PathLike | None = None,
+        settings: Mapping[str, float] | None = None,
+        stereo: bool = False,
+        a4: float = 440.0,
+        tuning: PathLike | None = None,
+        practice: PathLike | None = None,
+        seed: int = 0,
+    ) -> None:
+        make = make_of(
+            sample_rate,
+            instrument,
+            preset=preset,
+            settings=settings,
+            a4=a4,
+            tuning=tuning,
+            practice=practice,
+            seed=seed,
+        )
+        get_ready(plays=True)
+        self._rate, self._style = make.sample_rate, make.style
+        self._channels = 2 if stereo else 1
+        calibration = calibration_for(float(self._rate), make.quantities, a4=self._style.a4)
+
+        def build(memory: Any = None) -> Engine:
+            return self._style.instrument(
+                float(self._rate), calibration, make.quantities, memory=memory
+            )
+
+        self._stage: Ensemble | Engine
+        if stereo:
+            self._stage = Ensemble([build])
+            self._engine = self._stage.first
+        else:
+            self._stage = self._engine = build()
+        self._begin()
+
+    def __repr__(self) -> str:
+        return f"<yehu_server.Instrument at {self._rate} Hz, {self.time:g} s played>"
+
+    @property
+    def sample_rate(self) -> int:
+        """Sample rate (Hz)."""
+        return self._rate
+
+    @property
+    def quantities(self) -> Quantities:
+        """The physical quantities of the instrument, as it is tuned."""
+        return self._engine.quantities
+
+    @property
+    def time(self) -> float:
+        """Seconds played since the beginning."""
+        return self._engine.frame / self._rate
+
+    @property
+    def pitch(self) -> float | None:
+        """The pitch that is played (fractional MIDI note); None in silence."""
+        return self._wishes.pitch
+
+    # -- notes ---------------------------------------------------------------------------------
+
+    def note_on(
+        self, note: str | float, velocity: float = 80.0, *, at: float | None = None
+    ) -> None:
+        """Begin a note: slurred where another still sounds, else with a new stroke of the bow.
+
+        Parameters
+        ----------
+        note : str or float
+            Such as ``"A4"``, ``"F#5+25"`` (cents) or 69; F4 (65) to F6 (89).
+        velocity : float
+            How hard it is struck, 0 to 127 as in MIDI.
+        at : float, optional
+            When (s since the beginning); by default now.
+
+        Raises
+        ------
+        ParameterError
+            Where one is out of range, or the time is over.
+        """
+        pitch = playable(note)
+        struck = number(velocity, "velocity", 0.0, 127.0) / 127.0
+        values = {"/playing/velocity": struck}
+        self._wishes.note_on(Key(CHANNEL, pitch), values, frame=self._frame(at))
+        self._check()
+
+    def note_off(self, note: str | float | None = None, *, at: float | None = None) -> None:
+        """End a note, by default all; of those still held, the last one sounds again.
+
+        Raises
+        ------
+        ParameterError
+            Where it is no note, or the time is over.
+        """
+        ending = self._wishes.held() if note is None else [Key(CHANNEL, pitch_of(note))]
+        self._wishes.notes_off(ending, frame=self._frame(at))
+        self._check()
+
+    def slide(self, note: str | float, *, at: float | None = None) -> None:
+        """Slide the finger to a pitch: that of the sounding note, or of a bow drawn by hand."""
+        self._wishes.slide(playable(note), frame=self._frame(at))
+        self._check()
+
+    def bend(self, semitones: float, *, at: float | None = None) -> None:
+        """Hold the finger away from its note, by up to 48 semitones; 0 puts it back."""
+        self.set("/playing/bend", semitones, at=at)
+
+    # -- parameters ----------------------------------------------------------------------------
+
+    def set(
+        self, address: str, value: float, *, glide: float = 0.0, at: float | None = None
+    ) -> None:
+        """Set a parameter (docs/parameters.md), such as ``"/playing/bow_position"``.
+
+        One of bow or fingers, such as ``"/bow/force"``, is taken from the player until the next
+        note or `release`.
+
+        Parameters
+        ----------
+        value : float
+            In its unit, within its range.
+        glide : float
+            Least time (s) of the moves of bow and fingers that follow.
+        at : float, optional
+            When (s since the beginning); by default now.
+
+        Raises
+        ------
+        ParameterError
+            Where there is no such parameter, or the value is out of range.
+        """
+        address, found = setting(address, value)
+        glide_ms = 1e3 * number(glide, "glide", 0.0, LONGEST_S)
+        self._wishes.write(address, found, frame=self._frame(at), glide_ms=glide_ms)
+        self._check()
+
+    def hold(self, address: str, value: float, *, at: float | None = None) -> None:
+        """Set a parameter and keep it there, whatever notes do, until `release`; see `set`."""
+        self._wishes.write(*setting(address, value), frame=self._frame(at), hold=True)
+        self._check()
+
+    def get(self, address: str) -> float:
+        """Return the value that a parameter has, or moves to.
+
+        Raises
+        ------
+        ParameterError
+            Where there is no such parameter.
+        """
+        return self._wishes.value(find(address).address)
+
+    def release(self, *, at: float | None = None) -> None:
+        """Return all that was set directly or held to the player."""
+        self._wishes.release(frame=self._frame(at))
+        self._check()
+
+    # -- by hand -------------------------------------------------------------------------------
+
+    def draw(self, speed: float, force: float, *, at: float | None = None) -> None:
+        """Draw the bow by hand, on the string of the last `slide`, until `lift`.
+
+        Parameters
+        ----------
+        speed : float
+            m/s, -2 to 2; the sign is the direction.
+        force : float
+            N, 0 to 5.
+        """
+        speed = setting("/bow/speed", speed)[1]
+        force = setting("/bow/force", force)[1]
+        self._wishes.draw(speed, force, frame=self._frame(at))
+        self._check()
+
+    def lift(self, *, at: float | None = None) -> None:
+        """Lift a bow drawn by hand."""
+        self._wishes.lift(frame=self._frame(at))
+        self._check()
+
+    def pluck(self, force: float, position: float = 0.3, *, at: float | None = None) -> None:
+        """Pull a string aside and let it go.
+
+        Parameters
+        ----------
+        force : float
+            N, -5 to 5; above 0 the inner string (F4), below the outer (C5).
+        position : float
+            Distance from the bridge as a share of the sounding length, 0.05 to 0.9.
+        """
+        self.set("/pluck/position", position, at=at)
+        self.set("/pluck/force", force, at=at)
+
+    # -- sound ---------------------------------------------------------------------------------
+
+    def play(self, seconds: float, *, controls: Mapping[str, Any] | None = None) -> Array:
+        """Compute the next sound.
+
+        Parameters
+        ----------
+        seconds : float
+            How much, up to an hour.
+        controls : mapping, optional
+            Parameters that move meanwhile, by address: a number, or an array of values, equally
+            spaced from the beginning to the end of this sound, with straight lines between. They
+            are followed every 64 samples. Those of bow and fingers are taken from the player.
+
+        Returns
+        -------
+        ndarray [shape=(frames,), or (frames, 2) in stereo, float32]
+            Full scale is 1.
+
+        Raises
+        ------
+        ParameterError
+            Where an argument is wrong.
+
+        Examples
+        --------
+        >>> import numpy as np, yehu_server as yehu
+        >>> fiddle = yehu.Instrument()
+        >>> bow = {"/bow/side": 1.0, "/bow/speed": np.linspace(0.0, 0.3, 50), "/bow/force": 0.7}
+        >>> sound = fiddle.play(0.5, controls=bow)
+        >>> bool(np.abs(sound).max() > 0.01)
+        True
+        """
+        frames = self._frames(seconds)
+        run = Run(self._engine, self._stage, self._wishes, curves_of(controls))
+        sound = run.sound(frames, self._channels)
+        self._check()
+        return sound
+
+    def record(
+        self, seconds: float, *, controls: Mapping[str, Any] | None = None, strings_every: int = 0
+    ) -> Simulation:
+        """Compute the next sound, and keep every force, velocity and displacement.
+
+        Parameters
+        ----------
+        seconds, controls
+            As of `play`.
+        strings_every : int
+            Keep the shapes of both strings every so many samples; 0 for never.
+
+        Returns
+        -------
+        Simulation
+            With the arrays of `simulate` and ``sound``. Those of fingers have a column for each of
+            four: ``finger_position``, ``press_force``, ``finger_displacement`` [shape=(frames, 4)],
+            ``contact_force`` [shape=(frames, 4, 2)].
+
+        Raises
+        ------
+        ParameterError
+            Where an argument is wrong, or the arrays would take more than 8 GiB.
+
+        Examples
+        --------
+        >>> import yehu_server as yehu
+        >>> fiddle = yehu.Instrument()
+        >>> fiddle.note_on("G4")
+        >>> run = fiddle.record(0.2, strings_every=100)
+        >>> run.arrays["bow_force"].shape, run.arrays["string_1"].shape[0]
+        ((8820,), 89)
+        """
+        frames = self._frames(seconds)
+        every = whole(strings_every, "strings_every", 0, 2**31)
+        run = Run(self._engine, self._stage, self._wishes, curves_of(controls))
+        found = run.signals(frames, self._channels, every)
+        self._check()
+        return found
+
+    def stop(self) -> None:
+        """End all notes, and let all sound fade within 5 ms; time and parameters stay."""
+        self._wishes.notes_off(self._wishes.held())
+        self._wishes.stop_sound(is_panic=True)
+
+    def reset(self) -> None:
+        """Begin anew: at time 0, with the settings that it was made with."""
+        self._stage.reset()
+        self._begin()
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        """Give all parameters the values that preset and settings begin with."""
+        self._dropped = 0
+        self._wishes = self._style.wishes(self._engine)
+        for address, value in self._style.start:
+            if find(address).place is Place.ENGINE:
+                self._engine.write(address, value, ramp_ms=0.0)
+            self._wishes.write(address, value)
+        for address, value in self._style.settings:
+            self._wishes.start_with(address, value)
+
+    def _frame(self, at: float | None) -> int | None:
+        if at is None:
+            return None
+        frame = round(number(at, "at") * self._rate)
+        if frame < self._engine.frame:
+            raise ParameterError(f"at: {at:g} s is over; the instrument is at {self.time:g} s")
+        return frame
+
+    def _frames(self, seconds: float) -> int:
+        return round(number(seconds, "seconds", 0.0, LONGEST_S) * self._rate)
+
+    def _check(self) -> None:
+        """Tell of wishes that were lost."""
+        dropped = self._engine.dropped_events
+        if dropped > self._dropped:
+            self._dropped = dropped
+            raise YehuError("too many wishes wait to be played: play some of them first")

@@ -1,0 +1,109 @@
+"""Notes as users list them, made a score."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import mido
+import numpy as np
+
+from yehu_server.api.checks import number
+from yehu_server.api.pitches import pitch_of
+from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.score.duration import MAX_DURATION_H
+from yehu_server.score.score import Score, ScoreEvent
+from yehu_server.score.setting import Setting
+
+BEND = "/playing/bend"
+LONGEST_S = 3600.0 * MAX_DURATION_H
+
+
+class Note(NamedTuple):
+    """A note to `render`.
+
+    Parameters
+    ----------
+    pitch : str or float
+        Such as ``"A4"``, ``"F#5+25"`` (cents) or 69.5.
+    start : float
+        When it begins (s).
+    duration : float
+        How long it lasts (s). A note that begins before another ends is slurred to it.
+    velocity : float
+        How hard it is struck, 1 to 127, as in MIDI; rounded.
+
+    Examples
+    --------
+    >>> import yehu_server as yehu
+    >>> yehu.Note("A4", 0.0, 0.5)
+    Note(pitch='A4', start=0.0, duration=0.5, velocity=80.0)
+    """
+
+    pitch: str | float
+    start: float
+    duration: float
+    velocity: float = 80.0
+
+
+def score_of(notes: Iterable[Any] | Any) -> Score:
+    """Make a score of notes: rows of pitch, start, duration and, if wanted, velocity.
+
+    Parameters
+    ----------
+    notes : iterable of `Note`, of tuple, or ndarray [shape=(notes, 3 or 4)]
+
+    Raises
+    ------
+    ScoreError
+        Where there are none.
+    ParameterError
+        Naming the note that is wrong.
+    """
+    try:
+        rows = list(notes)
+    except TypeError:
+        kind = type(notes).__name__
+        raise ParameterError(f"score: expected the path of a file, or notes, not {kind}") from None
+    found = [_note(place, row) for place, row in enumerate(rows)]
+    if not found:
+        raise ScoreError("there are no notes")
+    found.sort(key=lambda note: note[1])
+    is_bent = any(pitch != round(pitch) for pitch, *_ in found)
+    events: list[tuple[float, int, ScoreEvent]] = []
+
+    def add(time_s: float, rank: int, message: Any) -> None:
+        events.append((time_s, rank, ScoreEvent(time_s, message)))
+
+    last = 0.0
+    for number_of, (pitch, start, duration, velocity) in enumerate(found):
+        key, end = round(pitch), start + duration
+        # Where the next note has the same key, it ends this one.
+        again = [other[1] for other in found[number_of + 1 :] if round(other[0]) == key]
+        if again and again[0] < end:
+            end = again[0]
+        if is_bent:
+            add(start, 1, Setting(BEND, pitch - key))
+        add(start, 2, mido.Message("note_on", note=key, velocity=velocity))
+        add(end, 0, mido.Message("note_off", note=key))
+        last = max(last, end)
+    events.sort(key=lambda each: each[:2])
+    return Score(tuple(event for *_, event in events), last, "notes")
+
+
+def _note(place: int, row: Any) -> tuple[float, float, float, int]:
+    """Check a row."""
+    if isinstance(row, str) or not isinstance(row, tuple | list | np.ndarray):
+        raise ParameterError(f"note {place}: expected pitch, start and duration, not {row!r}")
+    if not 3 <= len(row) <= len(Note._fields):
+        raise ParameterError(f"note {place}: expected pitch, start, duration, and maybe velocity")
+    try:
+        note = Note(*row)
+        return (
+            pitch_of(note.pitch),
+            number(note.start, "start", 0.0, LONGEST_S),
+            number(note.duration, "duration", 1e-3, LONGEST_S),
+            round(number(note.velocity, "velocity", 1.0, 127.0)),
+        )
+    except ParameterError as error:
+        raise ParameterError(f"note {place}: {error}") from None

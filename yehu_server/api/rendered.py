@@ -1,0 +1,274 @@
+"""Scores and notes to sound, as arrays."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from yehu_server.api.checks import PathLike, number, path_of, whole
+from yehu_server.api.compiling import get_ready
+from yehu_server.api.notes import Note, score_of
+from yehu_server.api.playback import Player, write_sound
+from yehu_server.api.styles import make_of
+from yehu_server.errors import ParameterError
+from yehu_server.physics.quantities import Quantities
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.mapping import DEFAULT
+from yehu_server.plot.asked import asked_pitch
+from yehu_server.rendering import Options, Performance, Summary
+from yehu_server.rendering.levelled import NORMALIZED_PEAK
+from yehu_server.rendering.summary import summary_of
+from yehu_server.report import FATE, counted
+from yehu_server.score.phrasing import is_fingered, phrased
+from yehu_server.score.reading import read_any
+from yehu_server.score.score import Score
+
+Array = Any
+
+BLOCK = 512  # frames between two readings of the pitch that is asked for; the sound is the same
+PHRASING = 0.5  # of files, as of the command
+LONGEST_TAIL_S = 600.0
+GAIN_DB = (-60.0, 24.0)
+
+
+@dataclass(frozen=True)
+class Rendering:
+    """A sound that was rendered.
+
+    In a notebook it shows itself as a player.
+
+    Attributes
+    ----------
+    sound : ndarray [shape=(frames, 2) or, in mono, (frames,); float32]
+        Left and right; full scale is 1.
+    sample_rate : int
+        Hz.
+    name : str
+        Of the score.
+    warnings : tuple of str
+        What was wrong in the file, or could not be played as written.
+    summary : Summary
+        Counts and levels, such as ``notes_played`` and ``peak``.
+    asked : tuple of ndarray
+        Times (s), and the pitch that the player was asked for (fractional MIDI note; NaN in
+        silence).
+    a4 : float
+        Reference pitch (Hz).
+    """
+
+    sound: Array
+    sample_rate: int
+    name: str
+    warnings: tuple[str, ...]
+    summary: Summary
+    asked: tuple[Array, Array]
+    a4: float = 440.0
+
+    def __repr__(self) -> str:
+        return f"<yehu_server.Rendering of {self.name}, {self.duration:.2f} s>"
+
+    @property
+    def duration(self) -> float:
+        """How long the sound lasts (s)."""
+        return len(self.sound) / self.sample_rate
+
+    def save(self, path: PathLike, *, subtype: str = "24") -> None:
+        """Write a sound file, WAV or FLAC by its ending; it replaces what is there.
+
+        Parameters
+        ----------
+        subtype : "16", "24" or "float"
+            Format of the samples.
+
+        Raises
+        ------
+        OutputError
+            Where it cannot be written; what was there stays.
+
+        Examples
+        --------
+        >>> import yehu_server as yehu
+        >>> yehu.render([("A4", 0.0, 0.2)]).save("a4.flac")
+        """
+        write_sound(self.sound, self.sample_rate, path_of(path, "path"), subtype)
+
+    def _repr_html_(self) -> str:
+        return Player(self.sound, self.sample_rate)._repr_html_()
+
+
+@dataclass(frozen=True)
+class _Written:
+    """The length and level of a sound."""
+
+    frames: int
+    peak: float
+    rms: float
+
+
+def render(
+    score: PathLike | Iterable[Note | Sequence[Any]] | Array,
+    *,
+    sample_rate: float = 44100,
+    instrument: Quantities | Mapping[str, Any] | PathLike | None = None,
+    preset: PathLike | None = None,
+    settings: Mapping[str, float] | None = None,
+    phrasing: float | None = None,
+    dry: bool = False,
+    mono: bool = False,
+    normalize: bool = False,
+    gain_db: float | None = None,
+    tail: float | None = None,
+    a4: float = 440.0,
+    tuning: PathLike | None = None,
+    mapping: PathLike = DEFAULT,
+    practice: PathLike | None = None,
+    out_of_range: str = "transpose",
+    channels: Iterable[int] | None = None,
+    song: int | None = None,
+    seed: int = 0,
+    progress: Callable[[float, float], None] | None = None,
+) -> Rendering:
+    """Play a score, and return its sound; the same arguments give the same sound.
+
+    ``yehu-server render`` plays ensembles, and writes long sounds to a file as they are played.
+
+    Parameters
+    ----------
+    score : path, or iterable of notes
+        A file of MIDI, MusicXML or jianpu; or notes: `Note`, rows of pitch, start (s), duration (s)
+        and, if wanted, velocity, or an array of such rows.
+    sample_rate, instrument, preset, settings, a4, tuning, practice, seed
+        As of `Instrument`. Rooms are presets too: ``preset="hall"``.
+    phrasing : float
+        How much plain notes are shaped, 0 to 1; by default 0.5 for files and 0 for notes.
+    dry : bool
+        Without a room.
+    mono : bool
+        One channel, the mean of both.
+    normalize : bool
+        Scale the sound to a peak of -1 dB of full scale.
+    gain_db : float, optional
+        Gain before the limiter, -60 to 24; by default that of the preset, else 0.
+    tail : float, optional
+        Seconds after the end of the score; by default until it is quiet, at most 5.
+    mapping : str
+        What controllers of a MIDI file move: the name of a mapping, or a file.
+    out_of_range : "transpose", "clamp" or "skip"
+        What happens to notes outside F4 to F6.
+    channels : iterable of int, optional
+        The MIDI channels to play, 1 to 16; by default all but 10.
+    song : int, optional
+        The song of a file that has several; by default one after another.
+    progress : callable, optional
+        Called with the seconds done and those of the score.
+
+    Returns
+    -------
+    Rendering
+
+    Raises
+    ------
+    YehuError
+        Where a file cannot be read, or an argument is wrong.
+
+    Examples
+    --------
+    >>> import yehu_server as yehu
+    >>> tune = yehu.render([("A4", 0.0, 0.4), ("C5", 0.4, 0.4, 100)], preset="flautando", dry=True)
+    >>> tune.summary.notes_played, tune.sound.ndim
+    (2, 2)
+    """
+    make = make_of(
+        sample_rate,
+        instrument,
+        preset=preset,
+        settings=settings,
+        a4=a4,
+        tuning=tuning,
+        practice=practice,
+        seed=seed,
+        mapping=mapping,
+        out_of_range=out_of_range,
+    )
+    is_file = isinstance(score, str) or hasattr(score, "__fspath__")
+    if phrasing is None:
+        usual = PHRASING if is_file else 0.0
+        phrasing = dict(make.style.settings).get("/playing/phrasing", usual)
+    share = number(phrasing, "phrasing", 0.0, 1.0)
+    options = Options(
+        rate=make.sample_rate,
+        channels=_channels(channels),
+        tail_s=None if tail is None else number(tail, "tail", 0.0, LONGEST_TAIL_S),
+        gain_db=None if gain_db is None else number(gain_db, "gain_db", *GAIN_DB),
+        style=make.style,
+        quantities=make.quantities,
+        block=BLOCK,
+        is_dry=bool(dry),
+        is_mono=bool(mono),
+    )
+    number_of_song = None if song is None else whole(song, "song", 1, 1 << 16)
+    read = read_any(path_of(score, "score"), song=number_of_song) if is_file else score_of(score)
+    score = phrased(read, share)
+    options = replace(options, phrasing=0.0 if is_fingered(score) else share)
+    get_ready(plays=True)
+    calibration = calibration_for(float(options.rate), options.quantities, a4=options.style.a4)
+    options = replace(options, calibration=calibration)
+    sound, asked, summary = _played(score, replace(options, normalize=bool(normalize)), progress)
+    warnings = (*score.warnings, *_remarks(summary))
+    return Rendering(sound, options.rate, score.name, warnings, summary, asked, options.style.a4)
+
+
+def _played(
+    score: Score, options: Options, progress: Callable[[float, float], None] | None
+) -> tuple[Array, tuple[Array, Array], Summary]:
+    """Play a score; return its sound, the pitches that were asked for, and a summary."""
+    start = time.perf_counter()
+    performance = Performance(score, options)
+    blocks, times, pitches, frames = [], [], [], 0
+    for samples in performance.blocks():
+        blocks.append(samples)
+        frames += len(samples)
+        asked = asked_pitch(performance.instrument)
+        times.append(frames / options.rate)
+        pitches.append(np.nan if asked is None else asked)
+        if progress is not None:
+            progress(frames / options.rate, performance.score_frames / options.rate)
+    empty = np.zeros((0,) if options.is_mono else (0, 2), np.float32)
+    sound = np.concatenate(blocks) if blocks else empty
+    peak = float(np.abs(sound).max(initial=0.0))
+    if options.normalize and peak > 0.0:
+        sound *= np.float32(NORMALIZED_PEAK / peak)
+        peak = float(np.abs(sound).max())
+    rms = float(np.sqrt(np.mean(np.square(sound, dtype=np.float64)))) if sound.size else 0.0
+    elapsed_s = time.perf_counter() - start
+    written = _Written(frames, peak, rms)
+    summary = summary_of(performance, written, options.rate, elapsed_s)
+    return sound, (np.array(times), np.array(pitches)), summary
+
+
+def _remarks(summary: Summary) -> list[str]:
+    """Tell what was not played as it is written."""
+    lines = []
+    if summary.percussion_notes:
+        lines.append(
+            f"channel 10 is percussion: {counted(summary.percussion_notes, 'note')} left out"
+        )
+    if summary.notes_out_of_range:
+        notes = counted(summary.notes_out_of_range, "note")
+        lines.append(f"{notes} outside F4 to F6, {FATE[summary.policy]}")
+    if summary.lost_states:
+        lines.append(f"the state was lost and set to rest: {counted(summary.lost_states, 'time')}")
+    return lines
+
+
+def _channels(channels: Any) -> frozenset[int] | None:
+    """Return MIDI channels counted from 0."""
+    if channels is None:
+        return None
+    if isinstance(channels, str) or not isinstance(channels, Iterable):
+        raise ParameterError(f"channels: expected numbers, such as [1, 2], not {channels!r}")
+    return frozenset(whole(channel, "channels", 1, 16) - 1 for channel in channels)

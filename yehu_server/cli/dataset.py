@@ -1,0 +1,192 @@
+"""``yehu-server dataset``: labelled sounds for learners."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import secrets
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.arguments import (
+    add_command,
+    add_folder,
+    add_reporting,
+    progress_bar,
+    warn_of_compiling,
+)
+from yehu_server.cli.cluster_options import add_cluster
+from yehu_server.cli.converters import positive
+from yehu_server.cli.terminal import tell, warn
+from yehu_server.errors import OutputError, ParameterError
+
+if TYPE_CHECKING:
+    from yehu_server.dataset.making import Part
+
+SOUNDING = ("playing", "dataset")  # folders of code, beside what is compiled
+
+EXAMPLES = """\
+examples:
+  yehu-server dataset examples/dataset.toml -o strokes
+  yehu-server dataset examples/dataset.toml -o strokes --count 100000 --dask tcp://10.0.0.1:8786
+
+The format of descriptions, and what is written, is described in docs/dataset.md.
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = add_command(
+        commands,
+        "dataset",
+        run=run,
+        help="make labelled sounds for learners, with all hidden forces, from a description",
+        description="Make labelled sounds for learners, drawn by chance as a description tells: "
+        "with the forces, positions and velocities behind them, and the regime of the string.",
+        epilog=EXAMPLES,
+    )
+    parser.add_argument(
+        "description", type=Path, metavar="DESCRIPTION.toml", help="what is drawn, and how"
+    )
+    add_folder(parser)
+    parser.add_argument(
+        "--count", type=positive, metavar="N", help="number of sounds, in place of the file's"
+    )
+    parser.add_argument("--jobs", type=positive, metavar="N", help="number of cores (default: all)")
+    add_cluster(parser)
+    add_reporting(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command; return the exit code: 1 where some sounds failed."""
+    from yehu_server.batch import kept
+    from yehu_server.batch.manifest import check_manifest
+    from yehu_server.dataset import making
+    from yehu_server.dataset.description import read_description
+
+    if arguments.dask is not None and arguments.jobs is not None:
+        raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
+    description = read_description(arguments.description)
+    description = replace(description, count=arguments.count or description.count)
+    folder: Path = arguments.output.absolute()
+    _check_folder(folder)
+    with _performing(arguments, description.rate) as performing, kept.alone_in(folder):
+        check_manifest(folder)
+        kept.clear_work([folder])
+        parts = making.parts_of(description, folder, _key(description.key))
+        left, lines = making.sorted_out(parts)
+        current = len(lines)
+        try:
+            with (
+                progress_bar(arguments, "making", "sounds") as progress,
+                contextlib.closing(making.make_all(left, performing(folder))) as made,
+            ):
+                for done, more in made if left else ():
+                    lines += more
+                    progress(done, description.count - current)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(
+                f"{len(lines)} of {description.count} sounds are in {folder}; "
+                "the same command goes on"
+            ) from None
+        finally:
+            kept.clear_work([folder])
+            making.write_lines(folder, lines)
+    return _report(arguments, lines, current)
+
+
+def _check_folder(folder: Path) -> None:
+    """Refuse a folder with other things in it.
+
+    Raises
+    ------
+    OutputError
+        Where there are some.
+    """
+    from yehu_server.batch.kept import HIDDEN
+
+    try:
+        is_other = any(folder.iterdir()) and not (folder / HIDDEN).is_dir()
+    except FileNotFoundError:
+        if folder.parent.is_dir():
+            return
+        raise OutputError(f"{folder}: the folder {folder.parent} does not exist") from None
+    except NotADirectoryError:
+        raise OutputError(f"{folder}: is a file; name a folder") from None
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror}") from error
+    if is_other:
+        raise OutputError(f"{folder}: is not empty, and is no data set; name a new folder")
+
+
+def _key(description: str) -> str:
+    """Key of description and code."""
+    import yehu_server
+    from yehu_server.code_key import key_of
+    from yehu_server.jit import source_hash
+
+    package = Path(yehu_server.__file__).parent
+    code = [
+        path for name in ("playing", "dataset") for path in sorted((package / name).glob("*.py"))
+    ]
+    return key_of([*code, package / "simulation.py"], source_hash(), description)
+
+
+@contextlib.contextmanager
+def _performing(arguments: argparse.Namespace, rate: float) -> Iterator[Any]:
+    """Yield a function of the folder that yields what does all parts: here, or on a cluster."""
+    from yehu_server.dataset.making import set_up
+
+    if arguments.dask is None:
+        warn_of_compiling(arguments)
+        set_up(rate)
+        yield lambda _folder: partial(_on_cores, arguments.jobs)
+        return
+    from yehu_server.jobs.cluster import Cluster
+
+    with Cluster(arguments.dask, partial(set_up, rate), warn) as cluster:
+        yield lambda folder: partial(_on_cluster, cluster, folder)
+
+
+def _on_cores(jobs: int | None, parts: Sequence[Part]) -> Any:
+    from yehu_server.dataset.making import perform
+    from yehu_server.jobs.workers import perform_all
+
+    return perform_all(perform, parts, min(jobs or os.cpu_count() or 1, len(parts)))
+
+
+def _on_cluster(cluster: Any, folder: Path, parts: Sequence[Part]) -> Iterator[Any]:
+    from yehu_server.batch.kept import HIDDEN
+    from yehu_server.dataset.making import perform
+
+    mark = folder / HIDDEN / f"seen-{secrets.token_hex(8)}"
+    mark.touch()
+    try:
+        yield from cluster.perform_all(perform, (replace(part, mark=mark) for part in parts))
+    finally:
+        mark.unlink(missing_ok=True)
+
+
+def _report(arguments: argparse.Namespace, lines: Sequence[dict[str, Any]], current: int) -> int:
+    failed = [line for line in lines if "error" in line]
+    for line in failed:
+        warn(f"{line['file']}: {line['error']}")
+    made = len(lines) - len(failed) - current
+    regimes: dict[str, int] = {}
+    for line in lines:
+        if "labels" in line:
+            regime = line["labels"]["regime"]
+            regimes[regime] = regimes.get(regime, 0) + 1
+    if arguments.json:
+        found = {"made": made, "up_to_date": current, "failed": len(failed), "regimes": regimes}
+        print(json.dumps(found))
+    elif not arguments.quiet:
+        counts = f"{made} made, {current} up to date, {len(failed)} failed"
+        kinds = ", ".join(f"{count} {name}" for name, count in sorted(regimes.items()))
+        tell(f"{arguments.output}: {counts} ({kinds})")
+    return 1 if failed else 0

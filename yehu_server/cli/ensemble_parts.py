@@ -1,0 +1,226 @@
+"""Who plays what in ``render --ensemble``: channels, tracks, or the parts of an ensemble file."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from yehu_server.cli.stage_options import BY_MIDI, Values, is_of_room, room_of
+from yehu_server.cli.terminal import warn
+from yehu_server.errors import EnsembleError, ParameterError, YehuError
+
+if TYPE_CHECKING:
+    from yehu_server.physics.quantities import Quantities
+    from yehu_server.playing.style import Style
+    from yehu_server.rendering import Part
+    from yehu_server.score.ensemble_file import EnsembleFile, PartEntry
+    from yehu_server.score.score import Score
+
+SECTION = "/playing/section"
+
+
+@dataclass(frozen=True)
+class Players:
+    """The parts of an ensemble, and what concerns all of them.
+
+    Attributes
+    ----------
+    files : tuple of Path
+        All files that they were read from.
+    percussion_notes : int
+        Of channel 10, played by nobody.
+    """
+
+    parts: tuple[Part, ...]
+    files: tuple[Path, ...] = ()
+    percussion_notes: int = 0
+
+
+def players_of(
+    arguments: argparse.Namespace,
+    scores: Sequence[Score],
+    style: Style,
+    quantities: Quantities,
+    phrasing: float,
+) -> Players:
+    """Give each part of some scores, which are played one after another, a player.
+
+    Parameters
+    ----------
+    style, quantities, phrasing
+        Of all players, where an ensemble file does not say otherwise.
+
+    Raises
+    ------
+    YehuError
+        Where there are too many parts, or what a file names is not there.
+    """
+    from yehu_server.playing.parts import seated
+
+    room: Values = ()
+    ensemble = None
+    files: list[Path] = []
+    parts: list[Part] = []
+    spare = 0
+    if arguments.ensemble == BY_MIDI:
+        entries, spare = _entries(arguments, scores), _percussion(arguments, scores)
+    else:
+        from yehu_server.score.ensemble_file import read_ensemble
+
+        ensemble = read_ensemble(arguments.ensemble)
+        _check_played(ensemble, scores)
+        entries, room = list(ensemble.parts), _room(ensemble, style)
+        files.append(ensemble.path)
+    styles = seated([_style(entry, style, room) for entry in entries])
+    for entry, own in zip(entries, styles, strict=True):
+        instrument = quantities
+        if entry.instrument is not None:
+            instrument = _instrument(entry)
+            files.append(entry.instrument)
+        files += own.files
+        part = _part(entry, scores, instrument, phrasing, arguments)
+        seed = own.seed if entry.seed is None else entry.seed
+        gain_db = _gain_db(own, entry, len(entries), arguments)
+        parts.append(replace(part, style=replace(own, seed=seed), gain_db=gain_db))
+    if ensemble is not None:
+        _warn_of_unplayed(ensemble, scores)
+    return Players(tuple(parts), tuple(files), spare)
+
+
+def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[PartEntry]:
+    """Name a part for each channel or track with notes."""
+    from yehu_server.engine.rig import MOST_PARTS
+    from yehu_server.playing.messages import PERCUSSION
+    from yehu_server.score.ensemble_file import PartEntry
+    from yehu_server.score.parts import channels_with_notes, tracks_with_notes
+
+    if arguments.by == "track":
+        found = [
+            PartEntry("", name=f"track {track}", track=track) for track in tracks_with_notes(scores)
+        ]
+    else:
+        chosen = arguments.channel or [each for each in range(16) if each != PERCUSSION]
+        found = [
+            PartEntry("", name=f"channel {channel + 1}", channel=channel)
+            for channel in channels_with_notes(scores)
+            if channel in chosen
+        ]
+    if len(found) > MOST_PARTS:
+        raise ParameterError(
+            f"{len(found)} tracks have notes: a stage has room for {MOST_PARTS} parts; "
+            "an ensemble file chooses some (docs/ensemble.md)"
+        )
+    return found or [PartEntry("", name="nobody", channel=0)]
+
+
+def _percussion(arguments: argparse.Namespace, scores: Sequence[Score]) -> int:
+    from yehu_server.score.parts import percussion_notes
+
+    has_own_count = arguments.channel is not None or arguments.by == "track"
+    return 0 if has_own_count else percussion_notes(scores)
+
+
+def _check_played(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
+    """Refuse parts that have nothing to play."""
+    from yehu_server.score.parts import has_notes, part_of
+
+    for entry in ensemble.parts:
+        if not has_notes([part_of(score, entry.channel, entry.track) for score in scores]):
+            channel = "" if entry.channel is None else f"channel {entry.channel + 1}"
+            track = "" if entry.track is None else f"track {entry.track}"
+            what = " of ".join(filter(None, (channel, track)))
+            raise EnsembleError(f"{entry.where}: {what} has no notes in the score")
+
+
+def _warn_of_unplayed(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
+    """Tell which channels no part plays, where all parts are channels."""
+    from yehu_server.playing.messages import PERCUSSION
+    from yehu_server.score.parts import channels_with_notes
+
+    if any(entry.track is not None for entry in ensemble.parts):
+        return
+    played = {entry.channel for entry in ensemble.parts} | {PERCUSSION}
+    if left := [each for each in channels_with_notes(scores) if each not in played]:
+        channels = ", ".join(str(each + 1) for each in left)
+        warn(f"{ensemble.path}: no part plays channel {channels}")
+
+
+def _room(ensemble: EnsembleFile, style: Style) -> Values:
+    if ensemble.room_name is None:
+        return ensemble.room
+    try:
+        return room_of(ensemble.room_name, style.presets)
+    except YehuError as error:
+        raise EnsembleError(f"{ensemble.room_where}: {error}") from error
+
+
+def _style(entry: PartEntry, style: Style, room: Values) -> Style:
+    """The style of a part: that of all, with its own mapping, preset, settings and place."""
+    from yehu_server.playing.mapping import load
+
+    try:
+        if entry.mapping is not None:
+            style = replace(style, mapping=load(entry.mapping))
+        if entry.preset is not None:
+            file, preset = style.presets.find_file(entry.preset), style.presets.find(entry.preset)
+            kept = (pair for pair in style.start if is_of_room(pair[0]))  # of --room
+            style = replace(style, preset=file, start=(*preset.values.items(), *kept))
+    except YehuError as error:
+        raise EnsembleError(f"{entry.where}: {error}") from error
+    own = dict(entry.settings)
+    settings = (pair for pair in style.settings if pair[0] not in own)
+    place = {"/room/pan": entry.pan, "/room/distance": entry.distance, SECTION: entry.section}
+    start = ((address, float(value)) for address, value in place.items() if value is not None)
+    return replace(style, start=(*style.start, *room, *start), settings=(*settings, *own.items()))
+
+
+def _instrument(entry: PartEntry) -> Quantities:
+    from yehu_server.physics.quantities import read_quantities
+
+    try:
+        return read_quantities(entry.instrument or Path())
+    except YehuError as error:
+        raise EnsembleError(f"{entry.where}: {error}") from error
+
+
+def _part(
+    entry: PartEntry,
+    scores: Sequence[Score],
+    quantities: Quantities,
+    phrasing: float,
+    arguments: argparse.Namespace,
+) -> Part:
+    """The part of an entry, before its player has a seat."""
+    from yehu_server.rendering import Part
+    from yehu_server.score.parts import part_of
+    from yehu_server.score.phrasing import is_fingered, phrased
+    from yehu_server.score.score import concatenate
+
+    own = [part_of(score, entry.channel, entry.track) for score in scores]
+    score = concatenate([phrased(each, phrasing) for each in own])
+    channels = frozenset({entry.channel}) if entry.channel is not None else None
+    if channels is None and arguments.channel is not None:
+        channels = frozenset(arguments.channel)
+    return Part(
+        score,
+        name=entry.name or _name(entry),
+        channels=channels,
+        phrasing=0.0 if is_fingered(score) else phrasing,
+        quantities=quantities,
+    )
+
+
+def _name(entry: PartEntry) -> str:
+    return f"channel {entry.channel + 1}" if entry.channel is not None else f"track {entry.track}"
+
+
+def _gain_db(style: Style, entry: PartEntry, parts: int, arguments: argparse.Namespace) -> float:
+    """The gain of a part: as asked for, or so that all are about as loud together as one alone."""
+    gain_db: float | None = arguments.gain_db
+    if gain_db is None:
+        gain_db = dict(style.start).get("/output/gain", 0.0) - 10.0 * math.log10(parts)
+    return gain_db + entry.gain_db

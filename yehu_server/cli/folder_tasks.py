@@ -1,0 +1,203 @@
+"""One score of a folder to render, in whatever process, and what became of it."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import errno
+import io
+import logging
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.errors import OutputError, ScoreError, YehuError
+
+if TYPE_CHECKING:
+    from yehu_server.batch.tree import Entry
+    from yehu_server.jobs.event import Tell
+
+log = logging.getLogger(__name__)
+
+Line = dict[str, Any]
+
+FULL = (errno.ENOSPC, errno.EDQUOT)
+BLOCK = 1 << 16  # frames of a file that are read again at a time
+
+
+@dataclass(frozen=True)
+class Task:
+    """A score to render, for another process.
+
+    Attributes
+    ----------
+    arguments : Namespace
+        Those of the command.
+    picture : Path, optional
+        Where the picture of it goes.
+    key : str
+        Of all that the result depends on, beside files of settings.
+    seconds : float
+        How long it lasts, as far as that is known from an earlier run; else 0.
+    """
+
+    arguments: argparse.Namespace
+    entry: Entry
+    picture: Path | None
+    key: str
+    seconds: float = 0.0
+
+    @property
+    def results(self) -> tuple[Path, ...]:
+        """The files to make."""
+        return (self.entry.target, *(() if self.picture is None else (self.picture,)))
+
+
+@dataclass(frozen=True)
+class Done:
+    """What became of a task: its line of the manifest, and whether the disk was full.
+
+    Attributes
+    ----------
+    read : tuple of Path
+        The files of settings that the sound was made from.
+    """
+
+    line: Line
+    is_full: bool = False
+    read: tuple[Path, ...] = ()
+
+
+def perform(task: Task, tell: Tell) -> Done:
+    """Render a score to its place; return what became of it."""
+    entry = task.entry
+    try:
+        return _made(task, tell)
+    except YehuError as error:
+        is_full = any(isinstance(each, OSError) and each.errno in FULL for each in _causes(error))
+        line = {"file": entry.name, "error": _without_path(str(error), entry)}
+        if isinstance(error, ScoreError):
+            _keep_failure(task, line)
+        return Done(line, is_full=is_full)
+    except MemoryError:
+        return Done({"file": entry.name, "error": "not enough memory"})
+    except Exception as error:  # the others have to be rendered
+        log.debug("%s", entry.name, exc_info=True)
+        why = f"cannot be rendered ({type(error).__name__}: {error})"
+        return Done({"file": entry.name, "error": why})
+
+
+def _keep_failure(task: Task, line: Line) -> None:
+    """Keep that a score cannot be played: another try would end alike, unless it is another."""
+    from yehu_server.batch.kept import hash_of, keep_failure, make_folder_for
+
+    found = hash_of(task.entry.source)
+    if not found or not task.key.endswith(found):
+        return
+    with contextlib.suppress(OutputError):
+        make_folder_for(task.entry.target)
+        keep_failure(task.entry.target, task.key, line)
+
+
+def _made(task: Task, tell: Tell) -> Done:
+    from yehu_server.batch import kept
+    from yehu_server.cli.render_one import rendered
+    from yehu_server.cli.render_plot import check_plot
+    from yehu_server.files import check_apart, check_free, check_target, make_folder, why
+
+    entry, asked = task.entry, task.arguments
+    may_replace = replaceable(asked)
+    kept.make_folder_for(entry.target)
+    check_target(entry.target)
+    check_free(entry.target, may_replace)
+    check_apart({"-o": entry.target}, [entry.source])
+    work = kept.work_of(entry.target)
+    if task.picture is not None:
+        make_folder(task.picture.parent)
+        check_plot(task.picture, overwrite=asked.overwrite)
+    own = argparse.Namespace(**vars(asked))
+    own.midi, own.output, own.plot = [entry.source], work, task.picture
+    own.overwrite, own.quiet, own.json, own.jobs = True, True, False, 1
+    own.format = asked.format or "wav"
+    told = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(told):
+            done = rendered(own, tell)
+        summary = done.summary
+        loudness = _loudness(work)
+        line = {
+            "file": entry.name,
+            "output": os.path.relpath(entry.target, asked.output),
+            "hash": kept.hash_of(work),
+            "duration_s": summary.duration_s,
+            "notes": summary.notes_played,
+            "out_of_range": summary.notes_out_of_range,
+            "peak": summary.peak,
+            "loudness_lufs": loudness if math.isfinite(loudness) else None,
+            "warnings": [
+                each.removeprefix("yehu-server: ") for each in told.getvalue().splitlines()
+            ],
+        }
+        check_free(entry.target, may_replace)
+        work.replace(entry.target)
+        read = [path for path in done.read if path != entry.source]
+        read += _programs(asked)
+        kept.keep(entry.target, task.key, read, task.results, line)
+    except YehuError as error:
+        for shown in (str(work), ascii(str(work))):
+            if str(error).startswith(shown):
+                error.args = (str(error).replace(shown, str(entry.target), 1),)
+        raise
+    except OSError as error:
+        raise OutputError(f"{entry.target}: cannot write: {why(error)}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            work.unlink(missing_ok=True)
+    return Done(line, read=tuple(read))
+
+
+def replaceable(arguments: argparse.Namespace) -> Any:
+    """Which older files a result may replace, as of ``files.replacing``."""
+    from yehu_server.audio.file import is_rendered
+    from yehu_server.files import anything
+
+    return anything if arguments.overwrite else is_rendered
+
+
+def _programs(arguments: argparse.Namespace) -> list[Path]:
+    """The presets that programs may select."""
+    from yehu_server.files import shipped_folder
+
+    if not arguments.programs:
+        return []
+    folders = [shipped_folder("presets"), *filter(None, (arguments.presets,))]
+    return sorted(path for each in folders for path in each.glob("*.toml"))
+
+
+def _loudness(path: Path) -> float:
+    import soundfile
+
+    from yehu_server.analysis.loudness import loudness_lufs
+
+    try:
+        with path.open("rb") as data, soundfile.SoundFile(data) as file:  # of any name
+            return loudness_lufs(file.blocks(BLOCK), file.samplerate)
+    except soundfile.LibsndfileError as error:
+        raise OutputError(f"{path}: cannot be read again") from error
+
+
+def _causes(error: BaseException | None) -> Iterator[BaseException]:
+    while error is not None:
+        yield error
+        error = error.__cause__
+
+
+def _without_path(why: str, entry: Entry) -> str:
+    """An error without the name of the file, which is told beside it."""
+    for path in map(str, (entry.source, entry.target)):
+        for shown in (path, ascii(path)):
+            why = why.removeprefix(f"{shown}: ")
+    return why

@@ -1,0 +1,175 @@
+"""Options of serve for several parts: how many, who plays them, and how each is played."""
+
+from __future__ import annotations
+
+import argparse
+import copy
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.converters import whole
+from yehu_server.cli.style_options import mapping_of, style_of
+from yehu_server.cli.terminal import warn
+from yehu_server.errors import ParameterError, YehuError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from yehu_server.control.midi_routes import Route
+    from yehu_server.playing.style import Style
+    from yehu_server.server import PartOptions
+
+MOST = 16  # engine.rig.MOST_PARTS, which takes a second to import
+
+
+def add_parts(group: Any) -> None:
+    """Add the options to a group of a parser."""
+    group.add_argument(
+        "--parts",
+        type=_parts,
+        default=1,
+        metavar="N",
+        help=f"number of players on the stage, each with an instrument, 1 to {MOST} (default: 1)",
+    )
+    group.add_argument(
+        "--part",
+        action="append",
+        type=_numbered,
+        default=[],
+        metavar="N=PORT[:CHANNEL]",
+        help="part N is played from inputs with these words in their name, or one channel of them; "
+        "may be repeated (default: the first input plays part 1, the second part 2, ...)",
+    )
+    group.add_argument(
+        "--part-mapping",
+        action="append",
+        type=_numbered,
+        default=[],
+        metavar="N=FILE",
+        help="mapping of part N (default: that of --mapping); may be repeated",
+    )
+    group.add_argument(
+        "--part-preset",
+        action="append",
+        type=_numbered,
+        default=[],
+        metavar="N=NAME",
+        help="sound that part N starts with (default: that of --preset); may be repeated",
+    )
+    group.add_argument(
+        "--part-set",
+        action="append",
+        type=_numbered,
+        default=[],
+        metavar="N=ADDRESS=VALUE",
+        help="hold a parameter of part N, such as 2=/room/pan=-0.5; may be repeated",
+    )
+    group.add_argument(
+        "--dry", action="store_true", help="no room, and bodies that sound alike to both sides"
+    )
+
+
+def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
+    """The options of all parts.
+
+    Raises
+    ------
+    YehuError
+        Where a value or file is wrong, or a part is not there.
+    """
+    from yehu_server.control.parts import no_part
+    from yehu_server.playing.parts import number_of_instruments
+    from yehu_server.server import PartOptions
+
+    for option in ("part_mapping", "part_preset", "part_set"):
+        for number, text in getattr(arguments, option):
+            if not 1 <= number <= arguments.parts:
+                name = f"--{option.replace('_', '-')} {number}={text}"
+                raise ParameterError(f"{name}: {no_part(number, arguments.parts)}")
+    usual = style_of(arguments, is_live=True)
+    options = []
+    for number in range(1, arguments.parts + 1):
+        own = _own(arguments, number)
+        style = usual if own is None else _style(own, number)
+        reread = partial(mapping_of, own or arguments, is_live=True) if arguments.watch else None
+        options.append(PartOptions(style, reread))
+    number_of_instruments([part.style for part in options])
+    return options
+
+
+def routes_of(arguments: argparse.Namespace, parts: Sequence[PartOptions]) -> list[Route]:
+    """The MIDI inputs that parts are played from, as --part tells.
+
+    Raises
+    ------
+    ParameterError
+        Where one is wrong.
+    """
+    from yehu_server.control.midi_routes import check_routes, route_of
+
+    routes = []
+    for number, text in arguments.part:
+        try:
+            routes.append(route_of(number - 1, text))
+            check_routes(routes, len(parts))
+        except ParameterError as error:
+            raise ParameterError(f"--part {number}={text}: {error}") from error
+        if routes[-1].channel is not None and parts[number - 1].style.mapping.mpe:
+            raise ParameterError(f"--part {number}={text}: MPE takes all channels of its input")
+    return routes
+
+
+def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | None:
+    """The arguments of a part; None where it has none of its own."""
+    mapping, preset, settings = (
+        [text for part, text in given if part == number]
+        for given in (arguments.part_mapping, arguments.part_preset, arguments.part_set)
+    )
+    if not (mapping or preset or settings):
+        return None
+    own = copy.copy(arguments)
+    for option, given in (("mapping", mapping), ("preset", preset)):
+        if len(given) > 1:
+            raise ParameterError(f"--part-{option}: part {number} has two, {', '.join(given)}")
+    if mapping:
+        own.mapping, own.mpe = mapping[0], False
+    if preset:
+        own.preset = preset[0]
+    own.set = [*arguments.set, *settings]
+    return own
+
+
+def _style(own: argparse.Namespace, number: int) -> Style:
+    """The style of a part with arguments of its own."""
+    from yehu_server.control.parts import check_own, group
+    from yehu_server.params.table import assignment, find
+
+    try:
+        style = style_of(own, is_live=True)
+        for part, text in own.part_set:
+            if part == number:
+                check_own(group(part - 1), assignment(text)[0])
+    except YehuError as error:
+        raise type(error)(f"part {number}: {error}") from error
+    shared = [address for address, _ in style.start if find(address).is_shared]
+    if shared and number > 1 and own.part_preset:
+        warn(f"part {number}: {shared[0]} of its preset is one for all parts, and left out")
+    return style
+
+
+# ---------------------------------------------------------------- converters
+
+
+def _parts(text: str) -> int:
+    number = whole(text)
+    if not 1 <= number <= MOST:
+        raise argparse.ArgumentTypeError(f"{number} parts: a stage has 1 to {MOST}")
+    return number
+
+
+def _numbered(text: str) -> tuple[int, str]:
+    """``N=TEXT``."""
+    number, equals, rest = text.partition("=")
+    if not equals or not rest.strip() or not number.strip().isdecimal() or len(number) > 9:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected N=..., N the number of a part")
+    return int(number), rest.strip()

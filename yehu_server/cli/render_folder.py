@@ -1,0 +1,131 @@
+"""``yehu-server render FOLDER -o FOLDER``: all scores of a folder, on all cores or a cluster."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Sequence
+
+from yehu_server.cli.folder_tasks import Line
+from yehu_server.cli.render_pipe import is_piped
+from yehu_server.cli.terminal import tell, warn
+from yehu_server.errors import OutputError, ParameterError, ScoreError
+
+SOUNDS = (".wav", ".wave", ".flac", ".raw")  # which no folder is to be called
+
+
+def is_for_folder(arguments: argparse.Namespace) -> bool:
+    """Whether a folder is to be rendered.
+
+    Raises
+    ------
+    ParameterError
+        Where a folder is named among others, or a cluster is wanted for less.
+    """
+    folders = [path for path in arguments.midi if path != "-" and os.path.isdir(path)]  # noqa: PTH112 - any name
+    if folders and len(arguments.midi) > 1:
+        raise ParameterError(f"{folders[0]}: is a folder; name it alone")
+    if arguments.dask is not None and not folders:
+        raise ParameterError("--dask is for a folder of scores")
+    return bool(folders)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Render a folder; return the exit code: 1 where some of its scores failed."""
+    from yehu_server.batch import kept, manifest
+    from yehu_server.batch.tree import tree_of
+    from yehu_server.cli.folder_records import sorted_out
+    from yehu_server.cli.folder_runs import cluster_of, render_all
+
+    [folder] = arguments.midi
+    form = _check(arguments)
+    tree = tree_of(folder, arguments.output, f".{form}")
+    if not tree.entries and not tree.problems:
+        raise ScoreError(f"{folder}: has no scores")
+    for name, why in tree.skipped:
+        warn(f"{name}: {why}")
+    places = {entry.target.parent for entry in tree.entries}
+    with cluster_of(arguments) as cluster, kept.alone_in(arguments.output):
+        manifest.check_manifest(arguments.output)
+        kept.clear_work(places)
+        lines: list[Line] = [{"file": name, "error": why} for name, why in tree.problems]
+        tasks, current = sorted_out(arguments, tree)
+        lines += current
+        for line in lines * arguments.json:
+            print(manifest.line_of(line))
+        try:
+            if tasks:
+                render_all(arguments, tasks, len(tree.entries), lines, cluster)
+        except KeyboardInterrupt:
+            made = sum("error" not in line for line in lines)
+            raise KeyboardInterrupt(
+                f"{made} of {len(tree.entries)} scores are in {arguments.output}; "
+                "the same command goes on"
+            ) from None
+        finally:
+            kept.clear_work(places)
+            manifest.write_manifest(arguments.output, lines)
+    return _report(arguments, lines, current)
+
+
+def _check(arguments: argparse.Namespace) -> str:
+    """Check the options before any file is looked at; return the format to write."""
+    from yehu_server.audio.file import check_format
+    from yehu_server.cli.stage_options import check_stage
+    from yehu_server.cli.style_options import style_of
+    from yehu_server.physics.grid import check_rate
+    from yehu_server.physics.quantities import read_quantities
+
+    form = arguments.format or "wav"
+    if is_piped(arguments.output):
+        raise OutputError("a folder is rendered to a folder, not to standard output")
+    if not arguments.output.is_dir() and arguments.output.suffix.lower() in SOUNDS:
+        raise OutputError(
+            f"{arguments.midi[0]}: is a folder, which is rendered to a folder, "
+            f"not to {arguments.output.name}"
+        )
+    if arguments.stems is not None:
+        raise ParameterError("--stems is for one score, not for a folder")
+    if form == "raw":
+        raise ParameterError("--format raw is for -o -, not for a folder")
+    if arguments.output.exists() and not arguments.output.is_dir():
+        raise OutputError(f"{arguments.output}: is a file; name a folder")
+    if not os.path.isdir(arguments.output.parent):  # noqa: PTH112 - as it is named
+        raise OutputError(
+            f"{arguments.output}: the folder {arguments.output.parent} does not exist"
+        )
+    if arguments.dask is not None and arguments.jobs is not None:
+        raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
+    check_rate(arguments.rate)
+    check_stage(arguments)
+    check_format(form, arguments.subtype or "24", 1 if arguments.mono else 2)
+    if arguments.instrument is not None:
+        read_quantities(arguments.instrument)
+    style_of(arguments)
+    if arguments.plot is not None:
+        from yehu_server.plot.axes import check_matplotlib
+
+        check_matplotlib("--plot")
+    return str(form)
+
+
+def _report(arguments: argparse.Namespace, lines: Sequence[Line], current: Sequence[Line]) -> int:
+    """Tell of all files at the end; return the exit code.
+
+    Parameters
+    ----------
+    current : sequence of dict
+        The lines of those that were up to date, or had failed before.
+    """
+    failed = sorted((line for line in lines if "error" in line), key=lambda line: line["file"])
+    for line in failed:
+        warn(f"{line['file']}: {line['error']}")
+    if not arguments.json and not arguments.quiet:
+        before = sum("error" in line for line in current)
+        up_to_date = len(current) - before
+        made = len(lines) - len(failed) - up_to_date
+        counts = f"{made} rendered, {up_to_date} up to date, {len(failed)} failed"
+        if before:
+            counts += f" ({before} as before; --overwrite tries again)"
+        tell(f"{arguments.output}: {counts}")
+    return 1 if failed else 0

@@ -1,0 +1,257 @@
+"""One rendering, as the options of ``yehu-server render`` ask for it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.arguments import (
+    check_output,
+    progress_bar,
+    warn_of_compiling,
+)
+from yehu_server.cli.ensemble_parts import Players, players_of
+from yehu_server.cli.render_pipe import (
+    is_piped,
+)
+from yehu_server.cli.render_plot import PLOTTED_BLOCK, check_plot, watch_of, write_plot
+from yehu_server.cli.stage_options import (
+    check_stage,
+    room_of,
+    stem_files,
+)
+from yehu_server.cli.style_options import style_of
+from yehu_server.cli.terminal import warn
+from yehu_server.errors import OutputError
+from yehu_server.files import anything, make_folder
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from yehu_server.playing.style import Style
+    from yehu_server.rendering import Options, Part, PartSummary, Summary
+    from yehu_server.score.score import Score
+
+PHRASING = 0.5  # of files, where nothing else is asked for
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """A rendering: what it was, what --json tells of it, and all files that it was made from."""
+
+    summary: Summary
+    fields: dict[str, Any]
+    read: Sequence[Path]
+
+
+def rendered(
+    arguments: argparse.Namespace, follow: Callable[[float, float], None] | None = None
+) -> Rendered:
+    """Render what the options ask for.
+
+    Parameters
+    ----------
+    follow : callable, optional
+        Called with the seconds done and those of the score, in place of a progress bar.
+
+    Raises
+    ------
+    YehuError
+        Where it fails; no partial file is left.
+    """
+    from yehu_server.engine.warming import warm_up
+    from yehu_server.files import check_apart
+    from yehu_server.physics.grid import check_rate
+    from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.playing.calibration import calibration_key
+    from yehu_server.rendering import Options, render
+
+    check_rate(arguments.rate)
+    check_stage(arguments)
+    style = style_of(arguments)
+    if arguments.room is not None:
+        style = replace(style, start=(*style.start, *room_of(arguments.room, style.presets)))
+    phrasing = arguments.phrasing
+    if phrasing is None:
+        phrasing = dict(style.settings).get("/playing/phrasing", PHRASING)
+    instrument = [] if arguments.instrument is None else [arguments.instrument]
+    outputs = _outputs(arguments)
+    check_apart(outputs, [*arguments.midi, *style.files, *instrument])
+    form = _format(arguments)
+    may_replace = anything if is_piped(arguments.output) else check_output(arguments)
+    _warn_of_own(arguments, style)
+    channels = arguments.channel
+    options = Options(
+        rate=arguments.rate,
+        format_name=form,
+        subtype=arguments.subtype or ("float" if form == "raw" else "24"),
+        channels=frozenset(channels) if channels is not None else None,
+        tail_s=arguments.tail,
+        gain_db=arguments.gain_db,
+        normalize=arguments.normalize,
+        style=style,
+        quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
+        is_dry=arguments.dry,
+        is_mono=arguments.mono,
+        jobs=arguments.jobs,
+    )
+    scores = _scores(arguments)
+    players = _players(arguments, scores, options, phrasing)
+    read = [*arguments.midi, *style.files, *instrument, *players.files]
+    stems = _stems(arguments, options, players, read)
+    for warning in players.parts[0].score.warnings:
+        warn(warning)
+    warn_of_compiling(arguments)
+    warm_up()
+    parts = _calibrated(arguments, players.parts, float(options.rate))
+    key = calibration_key(float(options.rate), options.quantities, style.a4)
+    watch = None
+    if arguments.plot is not None:
+        watch = watch_of(parts, options)
+        options = replace(options, block=PLOTTED_BLOCK)
+    with progress_bar(arguments, "rendering") as progress:
+        summary = render(
+            parts, arguments.output, options, follow or progress, may_replace, stems, watch
+        )
+    if watch is not None:
+        write_plot(watch, arguments.plot, parts, options, overwrite=arguments.overwrite)
+    summary = replace(summary, percussion_notes=summary.percussion_notes + players.percussion_notes)
+    fields = {**_fields(summary, style, stems), "phrasing": phrasing, "calibration": key}
+    return Rendered(summary, fields, read)
+
+
+def _outputs(arguments: argparse.Namespace) -> dict[str, Path]:
+    """The files to write, by their options, beside stems."""
+    outputs = {} if is_piped(arguments.output) else {"-o": arguments.output}
+    if arguments.plot is not None:
+        check_plot(arguments.plot, overwrite=arguments.overwrite)
+        outputs["--plot"] = arguments.plot
+    return outputs
+
+
+def _format(arguments: argparse.Namespace) -> str:
+    """The format to write.
+
+    Raises
+    ------
+    OutputError
+        Where the output cannot have it.
+    """
+    from yehu_server.audio.file import format_of
+    from yehu_server.audio.pipe import check_pipe
+
+    form = str(arguments.format or "")
+    if is_piped(arguments.output):
+        check_pipe(form or "wav")
+        return form or "wav"
+    if form == "raw":
+        raise OutputError(f"{arguments.output}: --format raw is for -o -; use .wav or .flac")
+    return form or format_of(arguments.output)
+
+
+def _players(
+    arguments: argparse.Namespace, scores: Sequence[Score], options: Options, phrasing: float
+) -> Players:
+    """Who plays: one instrument the whole score, or an ensemble."""
+    from yehu_server.score.phrasing import is_fingered, phrased
+    from yehu_server.score.score import concatenate
+
+    if arguments.ensemble is not None:
+        return players_of(arguments, scores, options.style, options.quantities, phrasing)
+    score = concatenate([phrased(each, phrasing) for each in scores])
+    part = options.solo(score)
+    return Players((replace(part, phrasing=0.0 if is_fingered(score) else phrasing),))
+
+
+def _stems(
+    arguments: argparse.Namespace, options: Options, players: Players, read: Sequence[Path]
+) -> list[Path]:
+    """The files of the stems that are asked for; checks that all outputs may be written."""
+    from yehu_server.files import check_apart
+
+    stems = []
+    if arguments.stems is not None:
+        form = "wav" if options.format_name == "raw" else options.format_name
+        is_dry = options.is_dry
+        stems = stem_files(arguments.stems, players.parts, form, is_dry=is_dry)
+        make_folder(arguments.stems)
+        for stem in stems:
+            check_output(arguments, stem)
+    outputs = {**_outputs(arguments), **{f"stem {stem.name}": stem for stem in stems}}
+    check_apart(outputs, read)
+    return stems
+
+
+def _calibrated(arguments: argparse.Namespace, parts: Sequence[Part], rate: float) -> list[Part]:
+    """Give all parts the calibration of their instruments, each measured once."""
+    from yehu_server.playing.calibration import calibration_key
+    from yehu_server.playing.calibrations import calibration_for
+
+    known: dict[str, Any] = {}
+    with progress_bar(arguments, "calibrating", "notes") as progress:
+        for part in parts:
+            a4 = part.style.a4
+            key = calibration_key(rate, part.quantities, a4)
+            if key not in known:
+                known[key] = calibration_for(rate, part.quantities, a4=a4, progress=progress)
+    keys = (calibration_key(rate, part.quantities, part.style.a4) for part in parts)
+    return [replace(part, calibration=known[key]) for part, key in zip(parts, keys, strict=True)]
+
+
+def _fields(summary: Summary, style: Style, stems: Sequence[Path]) -> dict[str, Any]:
+    """What --json tells of a rendering."""
+    fields = dict(vars(summary))
+    fields["channels"] = _by_number(fields.pop("notes_by_channel"))
+    fields["parts"] = [_part_fields(part) for part in summary.parts]
+    fields["stems"] = [*map(str, stems)]
+    fields["policy"] = summary.policy.value
+    fields["mapping"] = {"name": style.mapping.name, "files": [*map(str, style.mapping.files)]}
+    fields["preset"] = None if style.preset is None else str(style.preset)
+    fields["practice"] = "shipped" if style.practice is None else str(style.practice)
+    return fields
+
+
+def _part_fields(part: PartSummary) -> dict[str, Any]:
+    """What --json tells of a part."""
+    fields = dict(vars(part))
+    fields["channels"] = _by_number(fields.pop("notes_by_channel"))
+    return fields
+
+
+def _by_number(notes_by_channel: dict[int, int]) -> dict[str, int]:
+    return {str(channel + 1): notes for channel, notes in notes_by_channel.items()}
+
+
+def _scores(arguments: argparse.Namespace) -> list[Score]:
+    """Read all files.
+
+    Raises
+    ------
+    DamagedError
+        Where --strict refuses one.
+    ScoreError
+        Where one cannot be read, or they last too long together.
+    """
+    from yehu_server.score.duration import check_duration
+    from yehu_server.score.reading import read_any
+
+    longest = arguments.max_duration
+    scores = []
+    for path in arguments.midi:
+        scores.append(
+            read_any(path, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
+        )
+        check_duration(sum(each.duration_s for each in scores), longest, "all scores last")
+    return scores
+
+
+def _warn_of_own(arguments: argparse.Namespace, style: Style) -> None:
+    """Warn where serve would use the user's own mapping of this name."""
+    from yehu_server.playing.mapping import MINE, own_mappings
+
+    own = style.mapping.files[0].stem
+    if (arguments.mapping or own) == own and own in own_mappings() and not arguments.quiet:
+        warn(f"mapping {own}: the shipped one; --mapping {MINE}{own} is your own")

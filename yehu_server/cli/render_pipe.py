@@ -1,0 +1,97 @@
+"""``yehu-server render - -o -``: a score from standard input, sound to standard output."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from yehu_server.cli.terminal import warn
+from yehu_server.errors import ParameterError, ScoreError, YehuError
+
+STDIN = "standard input"  # also the name of its file
+BROKEN_PIPE = 141  # as the shell tells of a program that the signal for it has ended
+CHUNK = 1 << 20
+
+
+def sound_target(text: str) -> Path:
+    """Convert the argument of -o, which may be ``-``."""
+    from yehu_server.audio.pipe import PIPE
+
+    return PIPE if text == "-" else Path(text)
+
+
+def score_source(text: str) -> Path | str:
+    """Convert a score to read: a path, or ``-``, which no path is (``./-`` is)."""
+    return text if text == "-" else Path(text)
+
+
+def is_piped(target: Path) -> bool:
+    """Whether sound goes to standard output."""
+    from yehu_server.audio.pipe import PIPE
+
+    return target is PIPE
+
+
+def shown_target(target: Path) -> Path:
+    """The output as it is told."""
+    return Path("standard output") if is_piped(target) else target
+
+
+@contextlib.contextmanager
+def piped_in(arguments: argparse.Namespace) -> Iterator[None]:
+    """Keep what is on standard input in a file, where that is to be read, for the time of a block.
+
+    Raises
+    ------
+    YehuError
+        Where it is too large, or asked for twice; errors in the block name it as it is.
+    """
+    from yehu_server.score.smf.reader import MAX_BYTES
+
+    asked = [path for path in arguments.midi if path == "-"]
+    if not asked:
+        yield
+        return
+    if len(asked) > 1:
+        raise ParameterError("standard input can be read once only")
+    if sys.stdin is None or sys.stdin.isatty():
+        raise ScoreError("standard input is a terminal; lead a score to it")
+    with tempfile.TemporaryDirectory(prefix="yehu-server-") as folder:
+        path = Path(folder) / STDIN
+        size = 0
+        try:
+            with path.open("wb") as file:
+                while data := os.read(0, CHUNK):
+                    size += len(data)
+                    if size > MAX_BYTES:
+                        raise ScoreError(f"{STDIN}: larger than {MAX_BYTES // 2**20} MiB")
+                    file.write(data)
+        except OSError as error:
+            raise ScoreError(f"{STDIN}: cannot be read: {error.strerror}") from error
+        arguments.midi = [path if each == "-" else each for each in arguments.midi]
+        try:
+            yield
+        except YehuError as error:
+            raise type(error)(str(error).replace(str(path), STDIN)) from error
+
+
+@contextlib.contextmanager
+def quiet_pipe(target: Path) -> Iterator[None]:
+    """End the program quietly where the reader of its sound has gone."""
+    try:
+        yield
+    except BrokenPipeError:
+        if not is_piped(target):
+            raise
+        raise SystemExit(BROKEN_PIPE) from None
+
+
+def tell_beside(text: str) -> None:
+    """Print what would be a result, where standard output has the sound."""
+    for line in text.split("\n"):
+        warn(line)

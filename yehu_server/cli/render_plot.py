@@ -1,0 +1,54 @@
+"""``yehu-server render --plot PNG``: a picture of a rendering."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from yehu_server.plot.watch import Watch
+    from yehu_server.rendering import Options, Part
+
+PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for
+
+
+def check_plot(target: Path, *, overwrite: bool) -> None:
+    """Check that a picture can be drawn and written.
+
+    Raises
+    ------
+    YehuError
+        Where it cannot.
+    """
+    from yehu_server.plot.axes import check_matplotlib
+    from yehu_server.plot.picture import check_picture
+
+    check_matplotlib("--plot")
+    check_picture(target, overwrite=overwrite)
+
+
+def watch_of(parts: Sequence[Part], options: Options) -> Watch:
+    """What gathers the picture of a rendering."""
+    from yehu_server.plot.watch import Watch
+
+    duration_s = max(part.score.duration_s for part in parts)
+    return Watch(float(options.rate), duration_s, len(parts), options.style.a4)
+
+
+def write_plot(
+    watch: Watch, target: Path, parts: Sequence[Part], options: Options, *, overwrite: bool
+) -> None:
+    """Draw and write the picture of a rendering.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written.
+    """
+    from yehu_server.plot.picture import write_picture
+
+    watch.finish()
+    voices = "" if len(parts) == 1 else f"{len(parts)} parts, "
+    title = f"{parts[0].score.name}: {voices}{options.rate / 1000.0:g} kHz"
+    write_picture(watch, target, title, overwrite=overwrite)

@@ -1,0 +1,81 @@
+"""``yehu-server score``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.arguments import add_action, add_command
+from yehu_server.cli.converters import target
+from yehu_server.cli.terminal import tell, warn
+
+if TYPE_CHECKING:
+    from yehu_server.score.written.notated import Written
+
+EXAMPLES = """\
+examples:
+  yehu-server score show tune.musicxml
+  yehu-server score show tune.jianpu --json
+  yehu-server score show tune.mxl --export-midi tune.mid
+
+The marks that are understood are listed in docs/scores.md.
+"""
+
+
+def add_to(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = add_command(
+        commands,
+        "score",
+        help="show what is understood of a written score: MusicXML or jianpu",
+        description="Show what is understood of a written score, and what will be played.",
+        epilog=EXAMPLES,
+    )
+    actions = parser.add_subparsers(
+        title="actions", metavar="ACTION", required=True, prog=parser.prog
+    )
+    show = add_action(actions, "show", _show, "show the notes of a score, and its marks")
+    show.add_argument("score", type=Path, metavar="FILE", help="a file of MusicXML or jianpu")
+    show.add_argument("--json", action="store_true", help="print one JSON object")
+    show.add_argument(
+        "--export-midi",
+        type=target,
+        metavar="OUT.mid",
+        help="write what is played as a MIDI file, and say what that cannot hold",
+    )
+    show.add_argument("--overwrite", action="store_true", help="replace OUT.mid if it exists")
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    from yehu_server.score.reading import read_written
+    from yehu_server.score.written.text import fields_of, lines_of
+
+    written = read_written(arguments.score)
+    if arguments.export_midi is not None:
+        _export(arguments, written)
+    if arguments.json:
+        print(json.dumps(fields_of(written)))
+    else:
+        for line in lines_of(written):
+            tell(line)
+    return 0
+
+
+def _export(arguments: argparse.Namespace, written: Written) -> None:
+    from yehu_server.files import anything, check_apart, nothing, replacing
+    from yehu_server.score.midi_export import midi_file
+    from yehu_server.score.reading import naming
+    from yehu_server.score.written.performed import performed
+
+    output = arguments.export_midi
+    check_apart({"--export-midi": output}, [arguments.score])
+    with naming(arguments.score):
+        score = performed(written)
+    data, lost = midi_file(written, score)
+    with replacing(output, anything if arguments.overwrite else nothing) as partial:
+        partial.write_bytes(data)
+    if lost:
+        told = ", ".join(f"{address} ({count})" for address, count in sorted(lost.items()))
+        warn(f"{output}: MIDI has no controllers for {told}")

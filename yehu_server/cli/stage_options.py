@@ -1,0 +1,118 @@
+"""Options of render about the stage: the room, one channel or two, an ensemble and its stems."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from yehu_server.cli.converters import positive, target
+from yehu_server.errors import ParameterError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from yehu_server.playing.presets import Presets
+    from yehu_server.rendering import Part
+
+Values = tuple[tuple[str, float], ...]  # addresses and values
+
+BY_MIDI = Path()  # --ensemble without a file
+
+
+def add_stage(parser: Any) -> None:
+    """Add the options of a stage: room, channels, ensemble, stems."""
+    group = parser.add_argument_group("the stage")
+    group.add_argument(
+        "--dry",
+        action="store_true",
+        help="no room, and a body that sounds alike to both sides (default: a small, quiet room)",
+    )
+    group.add_argument("--mono", action="store_true", help="write one channel, the mean of both")
+    group.add_argument(
+        "--room", metavar="NAME", help="the room: a preset of rooms, such as hall, or a file"
+    )
+    group.add_argument(
+        "--ensemble",
+        nargs="?",
+        type=_ensemble_file,
+        const=BY_MIDI,
+        metavar="FILE.toml",
+        help="each MIDI channel but 10 a yehu of its own, up to 16; a file tells who plays what "
+        "and sits where",
+    )
+    group.add_argument(
+        "--by",
+        choices=("channel", "track"),
+        default="channel",
+        help="with --ensemble: whether each channel or each track is a part (default: channel)",
+    )
+    group.add_argument(
+        "--stems",
+        type=target,
+        metavar="FOLDER",
+        help="also write what each part, and the room, gives to the mix: 01-NAME.wav ... room.wav",
+    )
+    group.add_argument(
+        "--jobs",
+        type=positive,
+        metavar="N",
+        help="number of cores for an ensemble or a folder (default: all); the sound is the same",
+    )
+
+
+def _ensemble_file(text: str) -> Path:
+    if not text.endswith(".toml"):
+        raise argparse.ArgumentTypeError(
+            f"{text} is no ensemble file, which ends in .toml; name MIDI files before --ensemble"
+        )
+    return Path(text)
+
+
+def check_stage(arguments: argparse.Namespace) -> None:
+    """Refuse options that exclude each other.
+
+    Raises
+    ------
+    ParameterError
+        Where there are some.
+    """
+    if arguments.dry and arguments.room is not None:
+        raise ParameterError("--dry has no room: leave out --room")
+    if arguments.by == "track" and arguments.ensemble is None:
+        raise ParameterError("--by track is for --ensemble")
+    if arguments.by == "track" and arguments.ensemble != BY_MIDI:
+        raise ParameterError("--by track: the ensemble file names channels and tracks itself")
+
+
+def room_of(name: str, presets: Presets) -> Values:
+    """The values of a preset of rooms.
+
+    Raises
+    ------
+    YehuError
+        Where there is no such preset, or it is none of a room alone.
+    """
+    preset = presets.find(name)
+    other = [each for each in preset.values if not is_of_room(each)]
+    if other or not preset.values:
+        what = f"it sets {other[0]}" if other else "it sets nothing"
+        raise ParameterError(f"{name}: not a room: {what}")
+    return tuple(preset.values.items())
+
+
+def is_of_room(address: str) -> bool:
+    """Whether a parameter is one of the room, or how the body sounds in it."""
+    return address.startswith("/room/") or address == "/body/width"
+
+
+def stem_files(folder: Path, parts: Sequence[Part], ending: str, *, is_dry: bool) -> list[Path]:
+    """The files of stems: one for each part, numbered, and one for the room."""
+    names = [f"{number:02}-{_plain(part.name)}" for number, part in enumerate(parts, start=1)]
+    return [folder / f"{name}.{ending}" for name in (*names, *(() if is_dry else ("room",)))]
+
+
+def _plain(name: str) -> str:
+    """A name as part of a file's name: letters, digits, dots and hyphens."""
+    plain = "".join(each if each.isalnum() or each in "._-" else "-" for each in name)
+    return plain[:60].strip("-.") or "part"

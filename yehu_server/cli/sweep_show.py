@@ -1,0 +1,65 @@
+"""``yehu-server sweep show``: draw the result of a sweep."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from yehu_server.cli.arguments import Parser, add_reporting
+from yehu_server.cli.converters import target
+from yehu_server.cli.terminal import tell
+
+DEFAULT = "regime"
+
+
+def add_show(command: Parser) -> None:
+    """Add `sweep show` to the parser of `sweep`."""
+    parser = command.add_word("show", show, "draw the result of a sweep")
+    parser.add_argument("result", type=Path, metavar="FILE", help="the result of a sweep")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=target,
+        metavar="OUT",
+        help="a picture, .png, or a page to browse, .html (default: FILE with .png)",
+    )
+    parser.add_argument(
+        "--column",
+        default=DEFAULT,
+        metavar="NAME",
+        help="what a picture shows, such as helmholtz_s or pitch_hz (default: regime)",
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace OUT, whatever it is")
+    add_reporting(parser)
+
+
+def show(arguments: argparse.Namespace) -> int:
+    """Draw a result; return the exit code.
+
+    Raises
+    ------
+    ParameterError
+        Where the call is wrong.
+    """
+    from yehu_server.errors import ParameterError
+    from yehu_server.files import anything, check_free, check_target, nothing
+    from yehu_server.sweeps.page import write_page
+    from yehu_server.sweeps.picture import draw
+    from yehu_server.sweeps.result import Result
+
+    output = arguments.output or arguments.result.with_suffix(".png")
+    if output.suffix not in {".png", ".html"}:
+        raise ParameterError(f"{output}: name a picture .png, or a page .html")
+    check_target(output)
+    check_free(output, anything if arguments.overwrite else nothing)
+    result = Result.load(arguments.result)
+    if output.suffix == ".png":
+        draw(result, output, arguments.column)
+    else:
+        write_page(result, output)
+    if arguments.json:
+        print(json.dumps({"strokes": len(result), "shape": result.shape, "output": str(output)}))
+    elif not arguments.quiet:
+        tell(f"{output}: {len(result)} strokes")
+    return 0

@@ -1,0 +1,117 @@
+"""Which MIDI input plays which part."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from yehu_server.control.midi_names import is_wanted
+from yehu_server.control.parts import no_part
+from yehu_server.errors import ParameterError
+
+CHANNELS = 16
+_CHANNEL = re.compile(r"(.*):([0-9]+)", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Route:
+    """An input that plays a part.
+
+    `part` and `channel` count from 0; without `words` of its name it is any input, without
+    `channel` all of its channels.
+    """
+
+    part: int
+    words: str = ""
+    channel: int | None = None
+
+    @property
+    def text(self) -> str:
+        """It as the command line has it, without the part."""
+        return self.words if self.channel is None else f"{self.words}:{self.channel + 1}"
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The words, which may stand in any order and case."""
+        return frozenset(self.words.casefold().split())
+
+    def takes(self, port: str, channel: int | None) -> bool:
+        """Whether it has a message of a port: of a channel, or (None) of all."""
+        is_of_channel = None in (self.channel, channel) or self.channel == channel
+        return is_of_channel and is_wanted(port, [self.words])
+
+
+def route_of(part: int, text: str) -> Route:
+    """Read ``PORT[:CHANNEL]``, words of an input's name and a MIDI channel from 1.
+
+    Raises
+    ------
+    ParameterError
+        Where the channel is none, or there is nothing.
+    """
+    found = _CHANNEL.fullmatch(text)
+    words, channel = (found[1], int(found[2][:4]) - 1) if found else (text, None)
+    if channel is not None and not 0 <= channel < CHANNELS:
+        raise ParameterError(f"{text!r}: a MIDI channel is 1 to {CHANNELS}")
+    words = " ".join(words.split())
+    if not words and channel is None:
+        raise ParameterError("expected words of an input's name, a channel (:2), or both (keys:2)")
+    return Route(part, words, channel)
+
+
+def check_routes(routes: Sequence[Route], parts: int) -> None:
+    """Refuse routes to parts that are not there, and inputs that are named twice.
+
+    Raises
+    ------
+    ParameterError
+        Where there are some.
+    """
+    for number, route in enumerate(routes):
+        if not 0 <= route.part < parts:
+            raise ParameterError(no_part(route.part + 1, parts))
+        for other in routes[:number]:
+            is_same_port = route.names == other.names
+            channels = {route.channel, other.channel}
+            if is_same_port and (None in channels or len(channels) == 1):
+                raise ParameterError(_twice(route, other))
+
+
+def _twice(route: Route, other: Route) -> str:
+    wanted, taken = f"{route.part + 1}={route.text}", f"{other.part + 1}={other.text}"
+    return f"{wanted}: this input is named twice ({taken}); parts can share one by its channels"
+
+
+class Router:
+    """Finds the parts that a message of an input is for.
+
+    An input that a route names plays the parts of its routes. Others play the parts that no route
+    has, one each in the order in which they came, and the last of them all further ones.
+    """
+
+    def __init__(self, routes: Sequence[Route], parts: int) -> None:
+        self._routes = tuple(routes)
+        routed = {route.part for route in routes}
+        self._free = [part for part in range(parts) if part not in routed]
+        self._others: dict[str, int] = {}  # part of each input that no route names
+
+    @property
+    def patterns(self) -> list[str]:
+        """Words of the names of inputs that routes ask for."""
+        return list(dict.fromkeys(route.words for route in self._routes if route.words))
+
+    @property
+    def wants_others(self) -> bool:
+        """Whether inputs play that no route names."""
+        return bool(self._free) or any(not route.words for route in self._routes)
+
+    def parts_of(self, port: str, channel: int | None = None) -> list[int]:
+        """The parts that a channel of an input plays; without a channel, those of all."""
+        if any(route.takes(port, None) for route in self._routes):
+            taking = [route.part for route in self._routes if route.takes(port, channel)]
+            return list(dict.fromkeys(taking))
+        if not self._free:
+            return []
+        last = len(self._free) - 1
+        return [self._free[self._others.setdefault(port, min(len(self._others), last))]]

@@ -1,0 +1,239 @@
+"""What is left to chance in a data set: how a value is drawn, and the same one each time.
+
+A draw depends on the seed, the number of the sound and the name of the value alone. So it is the
+same in any order, on any machine and with any library; another entry in the description, or more
+sounds, change no other draw.
+"""
+
+from __future__ import annotations
+
+import bisect
+import hashlib
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import NormalDist
+from typing import Any, Protocol
+
+from yehu_server.errors import ParameterError
+
+MOST_CHOICES = 1000
+
+
+def chance(seed: int, number: int, name: str) -> float:
+    """Draw a number from 0 to below 1, evenly."""
+    digest = hashlib.sha256(f"{seed}/{number}/{name}".encode()).digest()
+    return (int.from_bytes(digest[:8], "big") >> 11) / 2**53
+
+
+class Draw(Protocol):
+    """How a value is drawn."""
+
+    def value(self, share: float) -> float:
+        """The value for a number drawn from 0 to below 1."""
+        ...
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        ...
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all values are whole numbers."""
+        ...
+
+
+@dataclass(frozen=True)
+class Between:
+    """Even from one number to another, by their difference or by their ratio."""
+
+    lo: float
+    hi: float
+    by_ratio: bool = False
+
+    def value(self, share: float) -> float:
+        """The value for a number drawn from 0 to below 1."""
+        if self.by_ratio:
+            return float(self.lo * (self.hi / self.lo) ** share)
+        return self.lo + (self.hi - self.lo) * share
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return self.lo, self.hi
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all values are whole numbers."""
+        return self.lo == self.hi == int(self.lo)
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Each whole number from one to another alike."""
+
+    lo: int
+    hi: int
+
+    def value(self, share: float) -> float:
+        """The value for a number drawn from 0 to below 1."""
+        return float(self.lo + int(share * (self.hi - self.lo + 1)))
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return float(self.lo), float(self.hi)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all values are whole numbers."""
+        return True
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of some numbers, by their weights."""
+
+    values: tuple[float, ...]
+    upto: tuple[float, ...]  # sums of the weights, of 1 in all
+
+    def value(self, share: float) -> float:
+        """The value for a number drawn from 0 to below 1."""
+        place = bisect.bisect_right(self.upto, share)
+        return self.values[min(place, len(self.values) - 1)]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return min(self.values), max(self.values)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all values are whole numbers."""
+        return all(value == int(value) for value in self.values)
+
+
+@dataclass(frozen=True)
+class Normal:
+    """Normally distributed, without what is beyond two ends."""
+
+    mean: float
+    deviation: float
+    lo: float
+    hi: float
+
+    def value(self, share: float) -> float:
+        """The value for a number drawn from 0 to below 1."""
+        normal = NormalDist(self.mean, self.deviation)
+        below, upto = normal.cdf(self.lo), normal.cdf(self.hi)
+        drawn = min(max(below + (upto - below) * share, 1e-12), 1.0 - 1e-12)
+        return min(max(normal.inv_cdf(drawn), self.lo), self.hi)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return self.lo, self.hi
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all values are whole numbers."""
+        return False
+
+
+def draw_of(entry: Any, where: str) -> Draw:
+    """Read how a value is drawn: a number, or a table as docs/dataset.md describes.
+
+    Raises
+    ------
+    ParameterError
+        Naming the entry.
+    """
+    if not isinstance(entry, Mapping):
+        value = number(entry, where)
+        return Between(value, value)
+    names = set(entry)
+    if names <= {"choose", "weights"} and "choose" in names:
+        return _choice(entry, where)
+    if names == {"mean", "deviation", "from", "to"}:
+        mean, deviation, lo, hi = (number(entry[name], f"{where}.{name}") for name in NORMAL)
+        if not (deviation > 0.0 and lo < hi):
+            raise ParameterError(f"{where}: deviation above 0, and from below to")
+        if not NormalDist(mean, deviation).cdf(hi) > NormalDist(mean, deviation).cdf(lo):
+            raise ParameterError(f"{where}: nothing is drawn so far from the mean")
+        return Normal(mean, deviation, lo, hi)
+    if not {"from", "to"} <= names <= {"from", "to", "spacing"}:
+        raise ParameterError(
+            f"{where}: expected a number, {{from, to}}, {{from, to, spacing}}, {{choose}}, "
+            "{choose, weights} or {mean, deviation, from, to}"
+        )
+    lo, hi = number(entry["from"], f"{where}.from"), number(entry["to"], f"{where}.to")
+    if lo > hi:
+        raise ParameterError(f"{where}: from is above to")
+    spacing = entry.get("spacing", "even")
+    if spacing == "whole":
+        if lo != int(lo) or hi != int(hi):
+            raise ParameterError(f"{where}: from and to are whole numbers")
+        return Whole(int(lo), int(hi))
+    if spacing not in ("even", "ratio"):
+        raise ParameterError(f"{where}.spacing: even, ratio or whole")
+    if spacing == "ratio" and lo <= 0.0:
+        raise ParameterError(f"{where}: by ratio, from is above 0")
+    return Between(lo, hi, by_ratio=spacing == "ratio")
+
+
+NORMAL = ("mean", "deviation", "from", "to")
+
+
+def _choice(entry: Mapping[str, Any], where: str) -> Choice:
+    values = numbers(entry["choose"], f"{where}.choose")
+    weights = numbers(entry.get("weights", [1.0] * len(values)), f"{where}.weights")
+    if len(weights) != len(values):
+        raise ParameterError(f"{where}.weights: as many as are to choose from")
+    return Choice(tuple(values), shares_of(weights, f"{where}.weights"))
+
+
+def shares_of(weights: Sequence[float], where: str) -> tuple[float, ...]:
+    """Sums of weights, the last of which is 1.
+
+    Raises
+    ------
+    ParameterError
+        Where they are no weights.
+    """
+    if min(weights) < 0.0 or not sum(weights) > 0.0:
+        raise ParameterError(f"{where}: numbers from 0, not all of them 0")
+    return tuple(total / sum(weights) for total in itertools.accumulate(weights))
+
+
+def number(value: Any, where: str) -> float:
+    """A finite number.
+
+    Raises
+    ------
+    ParameterError
+        Where it is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ParameterError(f"{where}: expected a number, got {value!r}")
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    if not abs(found) < math.inf:
+        raise ParameterError(f"{where}: {value} is not finite")
+    return found
+
+
+def numbers(value: Any, where: str) -> list[float]:
+    """A list of numbers, not empty.
+
+    Raises
+    ------
+    ParameterError
+        Where it is none.
+    """
+    if not isinstance(value, list) or not 0 < len(value) <= MOST_CHOICES:
+        raise ParameterError(f"{where}: expected a list of 1 to {MOST_CHOICES} numbers")
+    return [number(each, where) for each in value]

@@ -1,0 +1,69 @@
+"""The rig: the record of one instrument and its player, in memory that processes may share.
+
+The rigs of all that play together lie one after another; the stage's record comes after the last.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.controls.record import CONTROLS
+from yehu_server.engine.mailbox import HEAP, LINE, MAIL, RING, WAITING
+from yehu_server.engine.output import OUTPUT
+from yehu_server.engine.telemetry import METERS
+from yehu_server.physics.layout import MODEL, STATE
+from yehu_server.player.ear import HEARD
+from yehu_server.player.record import PLAYER
+from yehu_server.player.wishes import WISH
+from yehu_server.stage.record import STAGE
+from yehu_server.stage.seat import SEAT
+
+MOST_PARTS = 16
+
+RIG = np.dtype(
+    [
+        ("parts", np.int64, LINE),  # number of rigs that play together, in the first of them
+        ("model", MODEL),
+        ("state", STATE),
+        ("controls", CONTROLS),
+        ("player", PLAYER),
+        ("heard", np.float64, 2 * HEARD),
+        ("output", OUTPUT),
+        ("mail", MAIL),
+        ("meters", METERS),
+        ("version", np.int64, LINE),
+        ("published", METERS),
+        ("taped", np.int64, LINE),
+        ("ring", WISH, RING),
+        ("heap", WAITING, HEAP),
+        ("reports", WISH, RING),
+        ("seat", SEAT),
+    ],
+    align=True,
+)
+RIG_BYTES = RIG.itemsize
+STAGE_BYTES = STAGE.itemsize
+
+
+def _offset(field: str, inside: str = "") -> int:
+    fields: Any = RIG.fields
+    kind, start = fields[field][:2]
+    return int(start + (kind.fields[inside][1] if inside else 0))
+
+
+def memory_bytes(parts: int) -> int:
+    """Bytes that some instruments and their stage take."""
+    return parts * RIG_BYTES + STAGE_BYTES
+
+
+PARTS_AT = _offset("parts")
+MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
+PLAYER_AT, HEARD_AT = _offset("player"), _offset("heard")
+OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
+VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
+RING_AT, HEAP_AT, REPORTS_AT = _offset("ring"), _offset("heap"), _offset("reports")
+SEAT_AT = _offset("seat")
+POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
+REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")

@@ -1,0 +1,1 @@
+"""Many tasks at a time: on processes of this machine, or on a cluster."""

@@ -1,0 +1,221 @@
+"""The players of a section: each has an instrument, a seat and random numbers of its own.
+
+The first has the measured instrument; those of the others differ as instruments of one maker do.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from yehu_server.engine.instrument import Instrument
+from yehu_server.params.table import find
+from yehu_server.physics.quantities import Body, Quantities, StringQuantities
+from yehu_server.player.calibration import Calibration
+from yehu_server.playing.style import Style
+
+SECTION, SEED = "/playing/section", "/engine/seed"
+GAIN, PAN, DISTANCE = "/output/gain", "/room/pan", "/room/distance"
+OWN = (SEED, GAIN, PAN, DISTANCE)  # what each player has a value of its own of
+SEEDS = 1 << 16
+APART = 7919  # seeds of two players; a prime, so that they meet no other section's soon
+
+# A maker's tolerances, as fractions to either side, by ear. Bodies of one size differ as a whole,
+# by their size, and mode by mode.
+SIZE, MODE, MASS, DAMPING = 0.025, 0.01, 0.05, 0.1
+DENSITY, STIFFNESS, LOSS = 0.02, 0.05, 0.1
+ROSIN = 0.03
+TUNED_CENTS = 1.5  # how well a player tunes
+
+# Seats: in two rows, so far before and behind the part's own distance, alike on both sides; from
+# left to right, neighbours so far apart, all of them no more than to either side of the part's
+# own place.
+FRONT, BACK = 0.87, 1.15
+NEIGHBOUR, TO_EITHER_SIDE = 0.12, 0.35
+
+MOST_HAIRS = 65536
+
+
+def section_size(style: Style) -> int:
+    """How many players a style asks for."""
+    asked = dict(style.mapping.start) | dict(style.start) | dict(style.settings)
+    return round(find(SECTION).accept(asked.get(SECTION, 1.0)))
+
+
+def part_makes(
+    style: Style,
+    rate: float,
+    calibration: Calibration,
+    quantities: Quantities | None = None,
+    *,
+    number: int,
+    is_live: bool = False,
+) -> list[Callable[[Any], Instrument]]:
+    """What makes the instruments of a part: one, or those of a section; see `section_makes`.
+
+    Parameters
+    ----------
+    number : int
+        How many others are on the stage already.
+    """
+    people = section_size(style)
+    if people > 1:
+        return section_makes(style, rate, calibration, quantities, people=people, is_live=is_live)
+
+    def make(memory: Any) -> Instrument:
+        how = {"body": number, "memory": memory, "is_live": is_live}
+        return style.instrument(rate, calibration, quantities, **how)
+
+    return [make]
+
+
+def section_makes(
+    style: Style,
+    rate: float,
+    calibration: Calibration,
+    quantities: Quantities | None = None,
+    *,
+    people: int,
+    is_live: bool = False,
+) -> list[Callable[[Any], Instrument]]:
+    """What makes the instruments of a section, in the memory that each is given.
+
+    One player has the very instrument of ``Style.instrument``.
+
+    Parameters
+    ----------
+    rate : float, Hz
+    quantities : Quantities
+        The first player's instrument as it is before it is tuned.
+    people : int
+        Number of players.
+    """
+    base = quantities or Quantities()
+
+    def maker(number: int) -> Callable[[Any], Instrument]:
+        def make(memory: Any) -> Instrument:
+            seed = round(own_value(SEED, style.seed, number, people))
+            tuned, own = (calibration, base) if number == 0 else vary(calibration, base, seed)
+            return replace(style, seed=seed).instrument(
+                rate,
+                tuned,
+                own,
+                start_values={
+                    address: own_value(address, find(address).default, number, people)
+                    for address in (GAIN, PAN, DISTANCE)
+                },
+                body=seed if number else 0,
+                memory=memory,
+                is_live=is_live,
+            )
+
+        return make
+
+    return [maker(number) for number in range(people)]
+
+
+def own_value(address: str, value: float, number: int, people: int) -> float:
+    """The value that a player has of a parameter, of what their part has.
+
+    All of them together are as loud as one alone.
+
+    Parameters
+    ----------
+    number : int
+        The player, counted from 0.
+    people : int
+        How many of them play.
+    """
+    if address == SEED:
+        return float((round(value) + APART * number) % SEEDS)
+    if people == 1:
+        return value
+    if address == GAIN:
+        return find(GAIN).accept(value - 10.0 * math.log10(people))
+    if address == DISTANCE:
+        from_outside = min(number, people - 1 - number)
+        row = BACK if from_outside % 2 else FRONT
+        return find(DISTANCE).accept(value * (row if people > 2 else 1.0))
+    if address == PAN:
+        side = min(0.5 * NEIGHBOUR * (people - 1), TO_EITHER_SIDE)
+        middle = min(max(value, side - 1.0), 1.0 - side)
+        return middle + side * (2.0 * min(number, people - 1) / (people - 1) - 1.0)
+    return value
+
+
+def vary(
+    calibration: Calibration, quantities: Quantities, seed: int
+) -> tuple[Calibration, Quantities]:
+    """Another instrument of the same maker, tuned by its player.
+
+    The strings' tensions follow their densities, so that it is in tune with the first.
+    """
+    by_chance = np.random.default_rng(seed)
+
+    def factor(tolerance: float) -> float:
+        return 1.0 + float(by_chance.uniform(-tolerance, tolerance))
+
+    strings: list[StringQuantities] = []
+    tensions: list[float] = []
+    for string, tension in zip(quantities.strings, calibration.tensions, strict=True):
+        density, loss = factor(DENSITY), factor(LOSS)
+        tuned = math.exp2(float(by_chance.uniform(-TUNED_CENTS, TUNED_CENTS)) / 600.0)
+        strings.append(
+            replace(
+                string,
+                rho=string.rho * density,
+                E=string.E * factor(STIFFNESS),
+                sigma_0=string.sigma_0 * loss,
+                sigma_1=string.sigma_1 * loss,
+            )
+        )
+        tensions.append(tension * density * tuned)
+    rosin = factor(ROSIN)
+    bow = replace(
+        quantities.bow,
+        mu_C=quantities.bow.mu_C * rosin,
+        mu_S=quantities.bow.mu_S * rosin,
+        hair=float(by_chance.integers(MOST_HAIRS)),
+    )
+    own = replace(
+        quantities,
+        string_1=strings[0],
+        string_2=strings[1],
+        bow=bow,
+        body=_vary_body(quantities.body, factor),
+    )
+    return replace(calibration, tensions=(tensions[0], tensions[1])), own
+
+
+def _vary_body(body: Body, factor: Callable[[float], float]) -> Body:
+    """A body of another size, and with modes of its own."""
+    size = factor(SIZE)
+    return replace(
+        body,
+        frequency_hz=tuple(hertz * size * factor(MODE) for hertz in body.frequency_hz),
+        mass=tuple(mass * factor(MASS) for mass in body.mass),
+        damping=tuple(damping * factor(DAMPING) for damping in body.damping),
+        sections=tuple(_move(section, size * factor(MODE)) for section in body.sections),
+    )
+
+
+def _move(
+    section: tuple[float, float, float, float], factor: float
+) -> tuple[float, float, float, float]:
+    """Move a radiated mode to a frequency times a factor; its amplitude and phase stay."""
+    b0, b1, a1, a2 = section
+    pole = -0.5 * a1 + cmath.sqrt(0.25 * a1 * a1 - a2)
+    residue = (b0 + b1 / pole) / (1.0 - pole.conjugate() / pole)
+    angle = min(abs(cmath.phase(pole)) * factor, 0.99 * math.pi)
+    moved = cmath.rect(abs(pole), math.copysign(angle, cmath.phase(pole)))
+    return (
+        2.0 * residue.real,
+        -2.0 * (residue * moved.conjugate()).real,
+        -2.0 * moved.real,
+        abs(moved) ** 2,
+    )

@@ -1,0 +1,1 @@
+"""How a bowed string moves: the rule that names its regime, and whole strokes judged by it."""

@@ -1,0 +1,1 @@
+"""Read jianpu, numbered notation, and its kin: two-four notation and gongche."""

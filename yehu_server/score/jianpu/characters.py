@@ -1,0 +1,132 @@
+"""Chinese characters as notes: the 二四谱 of Chaozhou, and 工尺谱.
+
+Both are read with the rhythm, octaves and marks of jianpu; their characters are degrees of a scale
+on do. In 二四谱 the characters 三 and 六 are light or heavy, by the mode of the piece or by a sign
+before the character; 五 is living (活五) in one of the modes: raised and slid, a gesture.
+
+Pitches of heavy and living notes differ between players and pieces. Those here are one account
+each; docs/jianpu.md tells which.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import cycle, islice
+
+Contour = tuple[tuple[float, float], ...]
+
+LIGHT, HEAVY, LIVING = "轻", "重", "活"
+WEIGHTS = {LIGHT: LIGHT, "輕": LIGHT, HEAVY: HEAVY, LIVING: LIVING}
+
+SAN, WU, LIU = "三", "五", "六"
+# Semitones above do, light.
+ERSIPU = {"二": -5.0, SAN: -3.0, "四": 0.0, WU: 2.0, LIU: 4.0, "七": 7.0, "八": 9.0}
+# 三 sounds as si, somewhat low; 六 as fa, somewhat high [Zhou]. Unverified: by how much.
+HEAVY_SEMITONES = {SAN: -1.5, LIU: 5.3}
+LIVING_SEMITONES = 2.75  # re, raised by three quarters of a semitone [Xianshi]
+
+GONGCHEPU = {
+    "合": -5.0,
+    **dict.fromkeys("四士", -3.0),
+    "一": -1.0,
+    "上": 0.0,
+    "尺": 2.0,
+    "工": 4.0,
+    "凡": 5.0,
+    "六": 7.0,
+    "五": 9.0,
+    "乙": 11.0,
+    "仩": 12.0,
+    "伬": 14.0,
+    "仜": 16.0,
+}
+
+CHARACTERS = frozenset({*ERSIPU, *GONGCHEPU})
+NOTATIONS = {"二四谱": ERSIPU, "二四譜": ERSIPU, "工尺谱": GONGCHEPU, "工尺譜": GONGCHEPU}
+
+# By ear, of the living five: from re it rises past its pitch, and then wanders about it.
+RISE_QUARTERS, SWING_QUARTERS = Fraction(1, 3), Fraction(1, 2)
+LIVING_FROM, LIVING_PAST = -0.75, 0.25
+LIVING_SWINGS = (-0.45, 0.2, -0.3, 0.3)
+# By ear, of the heavy three in that mode, which turns widely: down, and back.
+TURNING_SWINGS = (-0.5, 0.25)
+MOST_POINTS = 64
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A mode of Chaozhou music: which characters are heavy, and whether 五 lives."""
+
+    heavy: frozenset[str] = frozenset()
+    living: bool = False
+
+
+_LIGHT_SIX = Mode()
+_HEAVY_SIX = Mode(frozenset({SAN, LIU}))
+_LIGHT_THREE_HEAVY_SIX = Mode(frozenset({LIU}))
+_LIVING_FIVE = Mode(frozenset({SAN, LIU}), living=True)
+
+_MODES = {
+    "轻六": _LIGHT_SIX,
+    "轻三六": _LIGHT_SIX,
+    "轻三轻六": _LIGHT_SIX,
+    "qingliu": _LIGHT_SIX,
+    "重六": _HEAVY_SIX,
+    "重三六": _HEAVY_SIX,
+    "重三重六": _HEAVY_SIX,
+    "zhongliu": _HEAVY_SIX,
+    "轻三重六": _LIGHT_THREE_HEAVY_SIX,
+    "qingsanzhongliu": _LIGHT_THREE_HEAVY_SIX,
+    "活五": _LIVING_FIVE,
+    "活三五": _LIVING_FIVE,
+    "huowu": _LIVING_FIVE,
+}
+USUAL_MODE = _LIGHT_SIX
+
+
+def mode_named(name: str) -> Mode | None:
+    """The mode of a name in Chinese or in pinyin, with or without 调 after it."""
+    plain = re.sub(r"[\s-]", "", name).lower().replace("輕", LIGHT)
+    return _MODES.get(re.sub(r"(?:调|調|diao)$", "", plain))
+
+
+def semitones_of(character: str, weight: str, mode: Mode) -> float:
+    """Semitones above do of a character of 二四谱.
+
+    Parameters
+    ----------
+    weight : str
+        LIGHT, HEAVY or LIVING where that is written before it, else empty.
+    """
+    if character == WU and lives(character, weight, mode):
+        return LIVING_SEMITONES
+    heavy = weight in (HEAVY, LIVING) or (not weight and character in mode.heavy)
+    return HEAVY_SEMITONES.get(character, ERSIPU[character]) if heavy else ERSIPU[character]
+
+
+def lives(character: str, weight: str, mode: Mode) -> bool:
+    """Whether a character is played as a living note: 五, and the heavy 三 of that mode."""
+    if weight:
+        return weight == LIVING and character in (SAN, WU)
+    return mode.living and character in (SAN, WU)
+
+
+def living(character: str, quarters: Fraction) -> Contour:
+    """How a living note moves within its length, as `notated.Note.contour`."""
+    swings: tuple[float, ...]
+    if character == SAN:
+        swings, points = TURNING_SWINGS, [(Fraction(0), 0.0)]
+    else:
+        rise = (min(RISE_QUARTERS, quarters / 2), LIVING_PAST)
+        swings, points = LIVING_SWINGS, [(Fraction(0), LIVING_FROM), rise]
+    at = points[-1][0] + SWING_QUARTERS
+    for swing in islice(cycle(swings), MOST_POINTS):
+        if at >= quarters:
+            break
+        points.append((at, swing))
+        at += SWING_QUARTERS
+    if len(points) == 1:  # too short for a whole turn
+        points.append((quarters / 2, swings[0]))
+    return (*((float(time / quarters), depth) for time, depth in points), (1.0, 0.0))

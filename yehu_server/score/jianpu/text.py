@@ -1,0 +1,127 @@
+"""The words of a jianpu text, each with its place: headers, comments and lyrics set apart."""
+
+from __future__ import annotations
+
+import codecs
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from yehu_server.errors import ScoreError
+
+# What Chinese keyboards and word processors write in place of plain signs; one for one, so that
+# columns stay.
+_PLAIN = {
+    **{code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)},
+    **dict.fromkeys((0x2018, 0x2019, 0x2032), ord("'")),
+    **dict.fromkeys((0x2013, 0x2014, 0x2015, 0x2212, 0x2500), ord("-")),
+    0x201A: ord(","),
+    0x3000: ord(" "),
+    0xFEFF: ord(" "),
+    0xFF61: ord("."),
+    0x266D: ord("b"),
+    0x266F: ord("#"),
+}
+
+MOST_SHOWN = 40  # characters of a word in messages
+
+_HEADER = re.compile(r"\s*([^\W\d_]+)\s*=")
+_WORD_SIGNS = {"Fr", "slide"}  # begin with a name and = as headers do, but are words
+_WORD = re.compile(r'[_^-]?"[^"]*"|\S+')
+_TO_BLANK = re.compile(r"\s*(?:[LH]:|chords\s*=)\s*")  # with nothing more: up to an empty line
+_LYRICS = ("L:", "H:")
+_TEMPO_COMMENT = re.compile(r"%%\s*tempo:\s*(\S+)\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A word and its place, counted from 1."""
+
+    text: str
+    line: int
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """A line such as ``title=...``; the name in lower case."""
+
+    name: str
+    value: str
+    line: int
+
+
+def failure(word: Word, reason: str) -> ScoreError:
+    """An error at a word."""
+    return ScoreError(f"line {word.line}, column {word.column}: {reason}")
+
+
+def shown(text: str) -> str:
+    """A word for a message: short and printable."""
+    short = text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
+    return short if short.isprintable() else ascii(short)[1:-1]
+
+
+def decoded(data: bytes) -> tuple[str, str]:
+    """Return the text of a file, and a warning where its encoding was guessed.
+
+    Raises
+    ------
+    ScoreError
+        Where it is no text in UTF-8, UTF-16 or GB 18030.
+    """
+    try:
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            return _text(data.decode("utf-16")), ""
+        return _text(data.decode("utf-8-sig")), ""
+    except UnicodeDecodeError:
+        try:
+            text = _text(data.decode("gb18030"))
+        except UnicodeDecodeError:
+            raise ScoreError("is not text in UTF-8 or GB 18030") from None
+        return text, "is not UTF-8: read as GB 18030"
+
+
+def _text(text: str) -> str:
+    if "\0" in text:
+        raise ScoreError("is not text")
+    return text
+
+
+def words_of(text: str) -> Iterator[Word | Header]:
+    """The words and headers of a text, in order; without comments and lyrics.
+
+    A block of LilyPond code is one word, ``LP:``.
+    """
+    in_code = in_lyrics = False
+    for number, written in enumerate(text.splitlines(), start=1):
+        line = written.translate(_PLAIN)
+        bare = line.strip()
+        if in_code:
+            in_code = not bare.startswith(":LP")
+        elif in_lyrics:
+            in_lyrics = bool(bare)
+        elif bare.startswith(("LP:", "LPH:")):
+            in_code = True
+            yield Word("LP:", number, line.index("LP") + 1)
+        elif _TO_BLANK.fullmatch(line):
+            in_lyrics = True
+            if bare.startswith("chords"):
+                yield Header("chords", "", number)
+        elif not bare.startswith(_LYRICS):
+            yield from _words_in(line, written, number)
+
+
+def _words_in(line: str, written: str, number: int) -> Iterator[Word | Header]:
+    header = _HEADER.match(line)
+    if header and header[1] not in _WORD_SIGNS:
+        yield Header(header[1].lower(), written[header.end() :].strip(), number)
+        return
+    tempo = _TEMPO_COMMENT.fullmatch(line.strip())
+    if tempo:
+        yield Word(tempo[1], number, line.index(tempo[1]) + 1)
+        return
+    for found in _WORD.finditer(line):
+        if found[0].startswith("%"):
+            return
+        yield Word(found[0], number, found.start() + 1)

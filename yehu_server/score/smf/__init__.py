@@ -1,0 +1,1 @@
+"""Read Standard MIDI Files, damaged ones too."""

@@ -1,0 +1,1 @@
+"""What a written score says, and how its marks are played."""

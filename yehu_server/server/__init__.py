@@ -1,0 +1,12 @@
+"""The live server: connects instruments, players, audio output, OSC, MIDI, OSCQuery and the page.
+
+web thread ─> OSC thread ──┐
+             pages process ┤
+                           ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
+              MIDI process ┘                              └─> meters, applied wishes, tape
+"""
+
+from yehu_server.server.options import PartOptions, ServeOptions
+from yehu_server.server.server import Server
+
+__all__ = ["PartOptions", "ServeOptions", "Server"]

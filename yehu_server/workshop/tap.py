@@ -1,0 +1,141 @@
+"""Single taps of a force hammer: cut out of recordings, and looked at for faults."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from yehu_server.errors import MeasurementError
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# What a channel may be; all but the force are responses.
+RESPONSES = ("velocity", "acceleration", "displacement", "pressure")
+QUANTITIES = ("force", *RESPONSES)
+
+HIT = 0.2  # of the largest force in a recording: what is above is a hit
+APART_S = 0.2  # between two taps of one recording; nearer, they are one that bounced
+BEFORE_S, LONGEST_S = 5e-3, 1.0  # kept before the hit, and in all
+OVER = 0.05  # of the peak: the hammer has left
+BOUNCE = 0.1  # of the peak: a force after it has left is another hit
+FLAT, EQUAL = 3, 1e-5  # samples of equal height that a clipped peak has, and how equal
+SHORTEST_S = 0.05  # after the hit: less tells nothing of a body
+
+
+@dataclass(frozen=True)
+class Tap:
+    """One hit of the hammer: force (N), responses in SI units, and the sample rate (Hz)."""
+
+    rate: float
+    force: Floats
+    responses: Mapping[str, Floats]
+    name: str = "tap"
+    faults: tuple[str, ...] = field(default=())
+
+    @property
+    def velocity(self) -> Floats:
+        """Velocity (m/s), where it was measured."""
+        return self.responses["velocity"]
+
+    @property
+    def pressure(self) -> Floats:
+        """Sound pressure (Pa), where it was measured."""
+        return self.responses["pressure"]
+
+
+def cut(rate: float, channels: Mapping[str, Floats], name: str) -> list[Tap]:
+    """Cut a recording of one tap or several into taps.
+
+    Parameters
+    ----------
+    rate : float
+        Sample rate (Hz).
+    channels : mapping
+        ``force`` and responses, each [shape=(samples,)].
+    name : str
+        Of the recording, for messages.
+
+    Raises
+    ------
+    MeasurementError
+        Where there is no hit in it, or something else is measured than hammer and response.
+    """
+    responses = {what: values for what, values in channels.items() if what != "force"}
+    if "force" not in channels or not responses:
+        raise MeasurementError(f"{name}: a tap needs a force and a response, such as velocity")
+    if not all(np.isfinite(values).all() for values in channels.values()):
+        raise MeasurementError(f"{name}: holds a number that is not finite")
+    force = channels["force"] - np.median(channels["force"])
+    hits = _hits(force, rate)
+    if not hits:
+        raise MeasurementError(f"{name}: no hit of the hammer in its force")
+    ends = [*hits[1:], len(force)]
+    taps = []
+    for i, (hit, end) in enumerate(zip(hits, ends, strict=True)):
+        start = max(0, hit - round(BEFORE_S * rate))
+        stop = min(end - round(BEFORE_S * rate) if end < len(force) else end,
+                   start + round(LONGEST_S * rate))  # fmt: skip
+        if stop - hit < SHORTEST_S * rate:
+            continue
+        own = {what: values[start:stop] for what, values in responses.items()}
+        label = name if len(hits) == 1 else f"{name}, tap {i + 1}"
+        taps.append(_looked_at(Tap(rate, force[start:stop], own, label)))
+    if not taps:
+        raise MeasurementError(f"{name}: ends within {SHORTEST_S * 1e3:g} ms of the hit")
+    return taps
+
+
+def _hits(force: Floats, rate: float) -> list[int]:
+    """The first sample of each hit."""
+    size = np.abs(force)
+    peak = size.max(initial=0.0)
+    # A hit stands out of the rest, which is noise: by far, since it lasts for a millisecond.
+    if peak <= 0.0 or peak < 10.0 * np.sqrt(np.mean(np.sort(size)[: len(size) * 9 // 10] ** 2)):
+        return []
+    above = np.flatnonzero(size > HIT * peak)
+    starts = above[np.diff(above, prepend=-round(rate)) > APART_S * rate]
+    return [int(start) for start in starts]
+
+
+def _looked_at(tap: Tap) -> Tap:
+    """The tap with what is wrong with it."""
+    faults = []
+    for what, values in (("force", tap.force), *tap.responses.items()):
+        if is_clipped(values):
+            faults.append(f"its {what} is clipped")
+    if _bounced(tap.force):
+        faults.append("the hammer hit twice")
+    return Tap(tap.rate, tap.force, tap.responses, tap.name, tuple(faults))
+
+
+def is_clipped(values: Floats) -> bool:
+    """Whether a signal has a flat top at its largest value, above or below."""
+    for signed in (values, -values):
+        top = signed.max()
+        flat = signed >= top - EQUAL * abs(top)
+        run = longest = 0
+        for is_flat in flat[max(0, int(flat.argmax()) - 1) :][:4096]:
+            run = run + 1 if is_flat else 0
+            longest = max(longest, run)
+        if top > 0.0 and longest >= FLAT:
+            return True
+    return False
+
+
+def pulse(force: Floats) -> tuple[int, int]:
+    """The first sample of the first hit, and the first at which the hammer has left again."""
+    size = np.abs(force)
+    first = int(np.argmax(size > HIT * size.max()))
+    left = np.flatnonzero(size[first:] < OVER * size.max())
+    return first, first + int(left[0]) if len(left) else len(force)
+
+
+def _bounced(force: Floats) -> bool:
+    size = np.abs(force)
+    first, end = pulse(force)
+    onset = max(0, first - (end - first))  # where the force rises
+    others = np.concatenate([size[:onset], size[end:]])
+    return bool(others.max(initial=0.0) > BOUNCE * size.max())

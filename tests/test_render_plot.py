@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scores import midi_file, notes
 
-from yehu_server.plot.asked import asked_pitch
-from yehu_server.plot.watch import COLUMNS, Watch
+from yehu_server.rendering.asked import asked_pitch
+from yehu_server.rendering.watch import COLUMNS, Watch
 
 DRY = ("--dry", "--tail", 0)  # in little time
 RATE = 44100.0

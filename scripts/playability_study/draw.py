@@ -27,8 +27,8 @@ from tables import write_tables
 
 from yehu_server.analysis.pitch import note_name
 from yehu_server.physics.quantities import measured_body
-from yehu_server.sweeps.colours import COLOURS
-from yehu_server.sweeps.picture import edges
+from yehu_server.plot.cells import edges
+from yehu_server.plot.colours import COLOURS
 
 ROOT = Path(__file__).resolve().parents[2]
 STRINGS = ("F4 string", "C5 string")

@@ -2,7 +2,7 @@
 
     .venv/bin/python scripts/playability_study/keep.py FOLDER
 
-It reads what `run.py` wrote to FOLDER, and writes `maps.npz` beside itself: of each study the
+It reads what `run_study.py` wrote to FOLDER, and writes `maps.npz` beside itself: of each study the
 regimes and the periods to Helmholtz motion on the finest grid, the axes, and Schelleng's limits.
 """
 
@@ -18,7 +18,6 @@ import numpy as np
 from run_study import HERE, ORDER
 
 from yehu_server.sweeps.limits import limits_of
-from yehu_server.sweeps.picture import periods_of
 from yehu_server.sweeps.result import Result
 
 NEVER, MOST = 255, 254  # periods to Helmholtz motion, by bytes
@@ -27,7 +26,7 @@ ALONG = 23  # places at which limits are kept
 
 def kept(result: Result, name: str) -> dict[str, Any]:
     """The arrays that are kept of a study, by names that begin with its own."""
-    periods = periods_of(result)
+    periods = result.onset_periods()
     bytes_ = np.where(np.isfinite(periods), np.clip(np.nan_to_num(periods), 0, MOST), NEVER)
     first, y, x = result.axes
     places = np.unique(np.linspace(0, len(result.axes[x]) - 1, ALONG).astype(int))

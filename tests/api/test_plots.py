@@ -12,6 +12,10 @@ import pytest
 
 import yehu_server as yehu
 from yehu_server import YehuError
+from yehu_server.regimes.judge import FINDING
+from yehu_server.regimes.names import HELMHOLTZ
+from yehu_server.sweeps.result import Result, result_of
+from yehu_server.sweeps.study import study_of
 
 mpl.use("Agg")
 
@@ -19,7 +23,6 @@ import matplotlib.pyplot as plt
 
 RATE = 44100
 BOWED = {"bow_force": [[0, 0], [0.03, 0.7]], "bow_velocity": [[0, 0], [0.03, 0.3]]}
-NAMES = ("silent", "helmholtz", "multiple slip", "octave", "anomalous low", "raucous", "aperiodic")
 
 
 @pytest.fixture(autouse=True)
@@ -33,15 +36,15 @@ def sine(hz: float, seconds: float = 0.5) -> np.ndarray:
     return 0.1 * np.sin(2.0 * np.pi * hz * np.arange(round(seconds * RATE)) / RATE)
 
 
-def result(axes: dict, **grids) -> types.SimpleNamespace:
-    """What a sweep found, as maps see it."""
-    gesture = {"controls": {"bow_velocity": 0.2}}
-    return types.SimpleNamespace(
-        axes={name: np.array(values) for name, values in axes.items()},
-        grid=lambda name: np.array(grids[name]),
-        regimes=NAMES,
-        meta={"gesture": gesture},
-    )
+def result(axes: dict, controls: dict | None = None, **columns) -> Result:
+    """The result of a sweep, with these columns on its grid and nothing in others."""
+    gesture = {"duration": 0.1, "controls": {"bow_velocity": 0.2} | (controls or {})}
+    vary = {name: list(map(float, values)) for name, values in axes.items()}
+    study = study_of({"gesture": gesture, "vary": vary})
+    findings = np.zeros(int(np.prod(study.shape)), FINDING)
+    for name, grid in columns.items():
+        findings[name] = np.ravel(grid)
+    return result_of(study, np.arange(len(findings)), findings)
 
 
 def labels(axes) -> list[str]:
@@ -172,7 +175,7 @@ def test_regimes_are_drawn_where_they_were_found():
     axes = yehu.plot.regimes(found, "bow_velocity", "bow_force")
     (mesh,) = axes.collections
     np.testing.assert_array_equal(mesh.get_array().reshape(3, 2), [[0, 1], [1, 1], [6, 2]])
-    assert labels(axes) == ["silent", "helmholtz", "multiple slip", "aperiodic"]
+    assert labels(axes) == ["unbowed", "silent", "helmholtz", "raucous"]
     assert axes.get_xlim() == pytest.approx((0.05, 0.25))
     plt.figure()
     turned = yehu.plot.regimes(found, "bow_force", "bow_velocity")
@@ -218,21 +221,27 @@ def test_schellengs_limits_are_his_closed_forms():
 
 
 def test_schelleng_counts_bow_positions_from_the_finger():
-    found = result({"bow_position": [0.25, 0.28], "bow_force": [0.1, 1.0]}, regime=[[1, 1]] * 2)
-    found.meta["gesture"]["controls"] |= {"press_force": 1.5, "finger_position": 0.1}
-    (mesh,) = (each for each in yehu.plot.schelleng(found).collections)
+    stopped = {"press_force": 1.5, "finger_position": 0.1}
+    axes = {"bow_position": [0.25, 0.28], "bow_force": [0.1, 1.0]}
+    found = result(axes, stopped, regime=[[1, 1]] * 2)
+    (mesh,) = yehu.plot.schelleng(found).collections
     places = mesh.get_coordinates()[0, :, 0]
     middles = 0.5 * (places[1:] + places[:-1])
     assert middles.tolist() == pytest.approx([0.1, 0.25])  # of 0.2 m
 
 
-def test_guettler_shows_the_time_and_leaves_white_what_never_came():
-    seconds = [[0.02, np.nan], [0.1, 0.05]]
-    found = result({"bow_acceleration": [1.0, 2.0], "bow_force": [0.1, 0.2]}, helmholtz_s=seconds)
+def test_guettler_counts_periods_from_the_first_slip_and_leaves_out_what_never_came():
+    found = result(
+        {"bow_acceleration": [1.0, 2.0], "bow_force": [0.1, 0.2]},
+        helmholtz_s=[[0.03, np.nan], [0.11, 0.06]],
+        first_slip_s=0.01,
+        pitch_hz=[[500.0, 500.0], [500.0, 400.0]],
+        regime=[[HELMHOLTZ, HELMHOLTZ], [0, HELMHOLTZ]],  # one has left it again
+    )
     axes = yehu.plot.guettler(found)
     cells = axes.collections[0].get_array().reshape(2, 2)
-    assert cells.mask.tolist() == [[False, False], [True, False]]
-    assert cells.compressed().tolist() == pytest.approx([20.0, 100.0, 50.0])
+    assert cells.mask.tolist() == [[False, True], [True, False]]
+    assert cells.compressed().tolist() == pytest.approx([10.0, 20.0])
 
 
 # ---------------------------------------------------------------- axes in, axes out

@@ -10,9 +10,9 @@ import zlib
 import numpy as np
 import pytest
 
-from yehu_server.sweeps.colours import plane_of
-from yehu_server.sweeps.page import facts_of, write_page
-from yehu_server.sweeps.picture import edges, periods_of
+from yehu_server.plot.cells import edges, is_log
+from yehu_server.plot.study import plane_of
+from yehu_server.plot.study_page import facts_of, write_page
 
 CHROMIUM = shutil.which("chromium")
 
@@ -44,7 +44,7 @@ def test_a_page_has_levels_to_a_step(result):
 
 
 def test_periods_count_from_the_first_slip(result):
-    periods = periods_of(result)
+    periods = result.onset_periods()
     assert np.isfinite(periods).any()
     assert periods[np.isfinite(periods)].min() >= 0.0
     assert periods[np.isfinite(periods)].max() < 0.1 * 523.25 * 1.1
@@ -53,6 +53,26 @@ def test_periods_count_from_the_first_slip(result):
 def test_edges_lie_between_the_values():
     assert edges(np.array([1.0, 2.0, 3.0]), log=False) == pytest.approx([0.5, 1.5, 2.5, 3.5])
     assert edges(np.array([1.0, 4.0]), log=True) == pytest.approx([0.5, 2.0, 8.0])
+
+
+@pytest.mark.parametrize(
+    ("values", "spread", "log"),
+    [
+        ([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], "", False),
+        ([1.0, 2.0, 4.0], "", True),
+        ([4.0, 1.0, 2.0], "", True),
+        ([1.0, 7.0, 9.0], "", True),
+        ([1.0, 3.0, 4.0], "", False),
+        ([0.0, 1.0, 10.0], "", False),
+        ([1.0, 10.0], "", True),
+        ([1.0, 2.0, 3.0], "log", True),
+        ([1.0, 10.0], "linear", False),
+        ([0.5], "", False),
+        (["a", "b"], "", False),
+    ],
+)
+def test_values_are_drawn_by_logarithms_where_they_have_equal_ratios_or_go_far(values, spread, log):
+    assert is_log(np.array(values), spread) is log
 
 
 def test_a_title_is_text_and_no_code(tmp_path, result):

@@ -18,8 +18,8 @@ from yehu_server.errors import ParameterError
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import DEFAULT
-from yehu_server.plot.asked import asked_pitch
 from yehu_server.rendering import Options, Performance, Summary
+from yehu_server.rendering.asked import asked_pitch
 from yehu_server.rendering.levelled import NORMALIZED_PEAK
 from yehu_server.rendering.summary import summary_of
 from yehu_server.report import FATE, counted

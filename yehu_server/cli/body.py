@@ -109,9 +109,10 @@ def _fit(arguments: argparse.Namespace) -> int:
     # Before NumPy is loaded: threads would only wait for each other, since matrices are small.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from yehu_server.files import check_apart
+    from yehu_server.plot.body import write_picture
+    from yehu_server.plot.png import check_picture
     from yehu_server.workshop import fit
     from yehu_server.workshop.kept import body_file_of, check_ending, check_targets
-    from yehu_server.workshop.picture import check_picture
 
     measurements = [*arguments.measurements, *arguments.radiation]
     outputs = {"-o": arguments.output}
@@ -119,14 +120,14 @@ def _fit(arguments: argparse.Namespace) -> int:
     if body_file_of(arguments.output) != arguments.output:
         outputs["the body file"] = body_file_of(arguments.output)
     if arguments.plot is not None:
-        check_picture(arguments.plot, overwrite=arguments.overwrite)
+        check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
         outputs["--plot"] = arguments.plot
     check_apart(outputs, measurements)
     check_targets(arguments.output, overwrite=arguments.overwrite)
     found = fit(_read(arguments), band_hz=arguments.band, modes=arguments.modes)
     written = found.save(arguments.output, overwrite=arguments.overwrite)
     if arguments.plot is not None:
-        found.picture(arguments.plot, overwrite=arguments.overwrite)
+        write_picture(found, arguments.plot, overwrite=arguments.overwrite)
     _tell(found, as_json=arguments.json)
     if not arguments.json:
         tell(f"written: {', '.join(map(str, written))}")
@@ -148,16 +149,17 @@ def _read(arguments: argparse.Namespace) -> Measurement:
 def _show(arguments: argparse.Namespace) -> int:
     from yehu_server.files import check_apart
     from yehu_server.physics.quantities import BODY_FILE
+    from yehu_server.plot.body import write_picture
+    from yehu_server.plot.png import check_picture
     from yehu_server.workshop.kept import read_fit
-    from yehu_server.workshop.picture import check_picture
 
     path = arguments.body or BODY_FILE
     if arguments.output is not None:
-        check_picture(arguments.output, overwrite=arguments.overwrite)
+        check_picture(arguments.output, "a picture", overwrite=arguments.overwrite)
         check_apart({"-o": arguments.output}, [path])
     found = read_fit(path)
     if arguments.output is not None:
-        found.picture(arguments.output, overwrite=arguments.overwrite)
+        write_picture(found, arguments.output, overwrite=arguments.overwrite)
     _tell(found, as_json=arguments.json)
     return 0
 

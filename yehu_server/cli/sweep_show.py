@@ -30,7 +30,11 @@ def add_show(command: Parser) -> None:
         metavar="NAME",
         help="what a picture shows, such as helmholtz_s or pitch_hz (default: regime)",
     )
-    parser.add_argument("--overwrite", action="store_true", help="replace OUT, whatever it is")
+    parser.add_argument(
+        "--overwrite",
+        action="store_true",
+        help="replace OUT, whatever it is; pictures are replaced anyway",
+    )
     add_reporting(parser)
 
 
@@ -44,18 +48,22 @@ def show(arguments: argparse.Namespace) -> int:
     """
     from yehu_server.errors import ParameterError
     from yehu_server.files import anything, check_free, check_target, nothing
-    from yehu_server.sweeps.page import write_page
-    from yehu_server.sweeps.picture import draw
+    from yehu_server.plot.png import check_picture
+    from yehu_server.plot.study import write_picture
+    from yehu_server.plot.study_page import write_page
     from yehu_server.sweeps.result import Result
 
     output = arguments.output or arguments.result.with_suffix(".png")
     if output.suffix not in {".png", ".html"}:
         raise ParameterError(f"{output}: name a picture .png, or a page .html")
-    check_target(output)
-    check_free(output, anything if arguments.overwrite else nothing)
+    if output.suffix == ".png":
+        check_picture(output, "a picture", overwrite=arguments.overwrite)
+    else:
+        check_target(output)
+        check_free(output, anything if arguments.overwrite else nothing)
     result = Result.load(arguments.result)
     if output.suffix == ".png":
-        draw(result, output, arguments.column)
+        write_picture(result, output, arguments.column, overwrite=arguments.overwrite)
     else:
         write_page(result, output)
     if arguments.json:

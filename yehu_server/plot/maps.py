@@ -9,7 +9,17 @@ import numpy as np
 
 from yehu_server.errors import ParameterError
 from yehu_server.plot.axes import axes_of
-from yehu_server.plot.stroke import Stroke
+from yehu_server.plot.cells import (
+    draw_cells,
+    draw_limits,
+    is_log,
+    limit_lines,
+    regime_colours,
+    regime_patches,
+)
+from yehu_server.plot.colours import LABELS
+from yehu_server.sweeps.limits import limits_of
+from yehu_server.sweeps.result import Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,36 +27,21 @@ if TYPE_CHECKING:
 Array = Any
 At = Mapping[str, float]
 
-COLOURS = {
-    "unbowed": "#ffffff",
-    "silent": "#ececec",
-    "helmholtz": "#3f9b57",
-    "multiple slip": "#b5dba0",
-    "octave": "#4a86c5",
-    "anomalous low": "#d9762b",
-    "raucous": "#f2d35b",
-    "aperiodic": "#8b3a3a",
-}
-FORCE, PLACE, ACCELERATION = "bow_force", "bow_position", "bow_acceleration"
-LABELS = {
-    "bow_force": "bow force, N",
-    "bow_velocity": "bow speed, m/s",
-    "bow_position": "bow position, m from the loop",
-    "bow_acceleration": "bow acceleration, m/s²",
-    "press_force": "finger force, N",
-    "finger_position": "finger position, m from the loop",
-}
+# By the names of controls, and of a note's stroke.
+FORCE = ("bow_force", "force")
+PLACE = ("bow_position", "position")
+ACCELERATION = ("bow_acceleration", "acceleration")
+ALONG = 24  # places at which limits are worked out
+PERIODS = "periods from the first slip to Helmholtz motion"
 BESIDE: Any = {
     "loc": "upper left",
     "bbox_to_anchor": (1.0, 1.0),
     "frameon": False,
     "fontsize": "small",
 }
-EQUAL = 1.2  # steps or ratios that differ by less are equal
-MS = 1e3
 
 
-def regimes(sweep: Any, x: str, y: str, *, at: At | None = None, ax: Axes | None = None) -> Axes:
+def regimes(sweep: Result, x: str, y: str, *, at: At | None = None, ax: Axes | None = None) -> Axes:
     """Draw which motion each stroke of a sweep ended in, over two quantities.
 
     Parameters
@@ -75,14 +70,14 @@ def regimes(sweep: Any, x: str, y: str, *, at: At | None = None, ax: Axes | None
     >>> yehu.plot.regimes(found, "bow_velocity", "bow_force").get_ylabel()
     'bow force, N'
     """
-    cells = slice_of(sweep, "regime", x, y, at)
+    cells = map_of(sweep, sweep.grid("regime"), x, y, place_of(sweep, x, y, at))
     axes = axes_of(ax)
-    _draw_regimes(axes, sweep, sweep.axes[x], sweep.axes[y], cells)
-    axes.set(xlabel=LABELS.get(x, x), ylabel=LABELS.get(y, y))
+    _draw(axes, sweep, x, y, cells, **regime_colours(sweep.regimes))
+    axes.legend(handles=regime_patches(sweep.regimes, cells), **BESIDE)
     return axes
 
 
-def schelleng(sweep: Any, *, at: At | None = None, ax: Axes | None = None) -> Axes:
+def schelleng(sweep: Result, *, at: At | None = None, ax: Axes | None = None) -> Axes:
     """Draw Schelleng's diagram: the motion over bow position and force, with his two limits.
 
     Parameters
@@ -110,26 +105,30 @@ def schelleng(sweep: Any, *, at: At | None = None, ax: Axes | None = None) -> Ax
     >>> yehu.plot.schelleng(found).get_xlabel()
     'bow position β'
     """
-    cells = slice_of(sweep, "regime", PLACE, FORCE, at)
+    x, y = _axis_of(sweep, PLACE), _axis_of(sweep, FORCE)
+    place = place_of(sweep, x, y, at)
+    cells = map_of(sweep, sweep.grid("regime"), x, y, place)
     axes = axes_of(ax)
-    forces = np.asarray(sweep.axes[FORCE])
-    values = dict(at or {}) | {FORCE: float(forces[np.abs(forces).argmax()])}
-    stroke = Stroke(gesture_of(sweep), values)
-    beta = stroke.beta(sweep.axes[PLACE])
-    if beta.min() <= 0.0:
-        raise ParameterError(f"{PLACE}: a Schelleng diagram ends at the bridge")
-    _draw_regimes(axes, sweep, beta, np.abs(forces), cells)
-    ends = axes.get_xlim(), axes.get_ylim()
-    along = np.geomspace(*ends[0], 60)
-    lower, upper = stroke.limits(along)
-    axes.plot(along, upper, "k-", lw=1.6, label="Schelleng's upper limit")
-    axes.plot(along, lower, "k--", lw=1.6, label="Schelleng's lower limit")
-    axes.set(xlim=ends[0], ylim=ends[1], xlabel="bow position β", ylabel=LABELS[FORCE])
-    _add_to_legend(axes)
+    positions, forces = sweep.axes[x], np.abs(sweep.axes[y])
+    order = np.argsort(positions)
+    some = order[np.unique(np.linspace(0, len(order) - 1, ALONG).astype(int))]
+    place[y] = int(forces.argmax())
+    study = sweep.study()
+    limits = [limits_of(study, place | {x: int(each)}) for each in some]
+    betas = np.array([each.beta for each in limits])
+    if betas.min() <= 0.0:
+        raise ParameterError(f"{x}: a Schelleng diagram ends at the bridge")
+    beta = np.interp(positions, positions[some], betas)
+    log = is_log(beta), is_log(forces, spread_of(sweep, y))
+    draw_cells(axes, beta, forces, cells, log=log, **regime_colours(sweep.regimes))
+    ends = axes.get_ylim()
+    draw_limits(axes, betas, (each.lower for each in limits), (each.upper for each in limits))
+    axes.set(ylim=ends, xlabel=LABELS["position"], ylabel=LABELS["force"])
+    axes.legend(handles=[*regime_patches(sweep.regimes, cells), *limit_lines()], **BESIDE)
     return axes
 
 
-def guettler(sweep: Any, *, at: At | None = None, ax: Axes | None = None) -> Axes:
+def guettler(sweep: Result, *, at: At | None = None, ax: Axes | None = None) -> Axes:
     """Draw Guettler's diagram: how soon Helmholtz motion begins, over acceleration and force.
 
     Parameters
@@ -142,7 +141,7 @@ def guettler(sweep: Any, *, at: At | None = None, ax: Axes | None = None) -> Axe
     Returns
     -------
     Axes
-        White where it never begins.
+        In periods after the first slip; grey where it never begins.
 
     Raises
     ------
@@ -155,128 +154,70 @@ def guettler(sweep: Any, *, at: At | None = None, ax: Axes | None = None) -> Axe
     >>> gesture = {"duration": 0.2, "controls": {"bow_velocity": 0.2}}
     >>> found = yehu.sweep(gesture, {"bow_acceleration": [0.5, 2.0], "bow_force": [0.2, 0.6]})
     >>> yehu.plot.guettler(found).get_xlabel()
-    'bow acceleration, m/s²'
+    'acceleration of the bow, m/s²'
     """
-    cells = MS * slice_of(sweep, "helmholtz_s", ACCELERATION, FORCE, at)
+    x, y = _axis_of(sweep, ACCELERATION), _axis_of(sweep, FORCE)
+    cells = map_of(sweep, sweep.onset_periods(), x, y, place_of(sweep, x, y, at))
     axes = axes_of(ax)
-    forces = np.abs(np.asarray(sweep.axes[FORCE]))
-    image = _draw_cells(axes, sweep.axes[ACCELERATION], forces, cells, cmap="viridis_r")
-    axes.figure.colorbar(image, ax=axes, label="time to Helmholtz motion, ms", pad=0.02)
-    axes.set(xlabel=LABELS[ACCELERATION], ylabel=LABELS[FORCE])
+    image = _draw(axes, sweep, x, y, cells, cmap="viridis_r")
+    axes.figure.colorbar(image, ax=axes, label=PERIODS, pad=0.02)
     return axes
 
 
-def gesture_of(sweep: Any) -> Mapping[str, Any]:
-    """Return the data of the gesture that a sweep varied.
+def spread_of(sweep: Result, name: str) -> str:
+    """Return how the values of an axis lie: "linear", "log", or "" for a list."""
+    return str(dict(zip(sweep.meta["axes"], sweep.meta["spreads"], strict=True))[name])
+
+
+def place_of(sweep: Result, x: str, y: str, at: At | None = None) -> dict[str, int]:
+    """Return the place on each axis but two, by name.
 
     Raises
     ------
     ParameterError
-        Where it has none.
+        Where there is no such axis, or another is varied and not told.
     """
-    meta = getattr(sweep, "meta", {})
-    found = meta.get("gesture") or meta.get("study", {}).get("gesture")
-    if not isinstance(found, Mapping):
-        raise ParameterError("the sweep has no gesture, of which Schelleng's limits could be told")
-    return found
-
-
-def slice_of(sweep: Any, quantity: str, x: str, y: str, at: At | None = None) -> Array:
-    """Return a quantity of a sweep over two of its axes, ndarray [shape=(len(y), len(x))].
-
-    Raises
-    ------
-    ParameterError
-        Where it has no such axis, or needs to be told where on another.
-    """
-    names = list(getattr(sweep, "axes", {}))
-    for name in (x, y, *(at or {})):
+    names, asked = list(sweep.axes), dict(at or {})
+    for name in (x, y, *asked):
         if name not in names:
             raise ParameterError(f"the sweep has no axis {name!r} (it has: {', '.join(names)})")
     if x == y:
         raise ParameterError(f"{x}: a map needs two axes")
-    grid = np.asarray(sweep.grid(quantity), np.float64)
-    where: list[Any] = []
+    found = {}
     for name in names:
-        values = np.asarray(sweep.axes[name])
+        values = sweep.axes[name]
         if name in (x, y):
-            where.append(slice(None))
-        elif len(values) == 1:
-            where.append(0)
-        elif at is None or name not in at:
-            raise ParameterError(f"the sweep varies {name} too: at={{{name!r}: {values[0]:g}}}")
-        else:
-            where.append(int(np.abs(values - at[name]).argmin()))
-    cells = grid[tuple(where)]
+            continue
+        if len(values) > 1 and name not in asked:
+            raise ParameterError(f"the sweep varies {name} too: at={{{name!r}: {values[0]!r}}}")
+        found[name] = _nearest(values, asked[name]) if len(values) > 1 else 0
+    return found
+
+
+def _nearest(values: Array, value: Any) -> int:
+    if values.dtype.kind == "U":
+        return int((values == value).argmax())
+    return int(np.abs(values - value).argmin())
+
+
+def map_of(sweep: Result, grid: Array, x: str, y: str, place: Mapping[str, int]) -> Array:
+    """Return values on the grid over two axes, ndarray [shape=(len(y), len(x))]."""
+    names = list(sweep.axes)
+    cells = np.asarray(grid, np.float64)[tuple(place.get(name, slice(None)) for name in names)]
     return cells if names.index(y) < names.index(x) else cells.T
 
 
-def _draw_regimes(axes: Any, sweep: Any, x: Array, y: Array, cells: Array) -> None:
-    from matplotlib.colors import BoundaryNorm, ListedColormap
-    from matplotlib.patches import Patch
-
-    names = list(sweep.regimes)
-    colours = [COLOURS.get(name, "0.7") for name in names]
-    norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
-    _draw_cells(axes, x, y, cells, cmap=ListedColormap(colours), norm=norm)
-    seen = [int(number) for number in np.unique(cells)]
-    patches = [Patch(fc=colours[each], ec="0.6", label=names[each]) for each in seen]
-    axes.legend(handles=patches, **BESIDE)
+def _axis_of(sweep: Result, names: tuple[str, ...]) -> str:
+    """Return which of the names the sweep has."""
+    for name in names:
+        if name in sweep.axes:
+            return name
+    raise ParameterError(f"the sweep has no axis {names[0]!r} (it has: {', '.join(sweep.axes)})")
 
 
-def _add_to_legend(axes: Any) -> None:
-    """Add the lines to the legend of regimes."""
-    old = axes.get_legend()
-    lines, labels = axes.get_legend_handles_labels()
-    handles = [*old.legend_handles, *lines]
-    texts = [text.get_text() for text in old.get_texts()] + labels
-    axes.legend(handles, texts, **BESIDE)
-
-
-def _draw_cells(axes: Any, x: Array, y: Array, cells: Array, **options: Any) -> Any:
-    """Draw values as cells around the places where they are; scales are as places are spaced."""
-    x, y = np.asarray(x, np.float64), np.asarray(y, np.float64)
-    across, up = np.argsort(x), np.argsort(y)
-    edges = _edges(x[across]), _edges(y[up])
-    shown = np.ma.masked_invalid(cells[up][:, across])
-    image = axes.pcolormesh(*edges, shown, edgecolors="w", lw=0.3, **options)
-    axes.set(xscale=_scale(x), yscale=_scale(y))
-    axes.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
-    for each in (axes.xaxis, axes.yaxis):
-        if each.get_scale() == "log":
-            _tick_plainly(each)
+def _draw(axes: Any, sweep: Result, x: str, y: str, cells: Array, **options: Any) -> Any:
+    """Draw a map over two axes as they are."""
+    log = is_log(sweep.axes[x], spread_of(sweep, x)), is_log(sweep.axes[y], spread_of(sweep, y))
+    image = draw_cells(axes, sweep.axes[x], sweep.axes[y], cells, log=log, **options)
+    axes.set(xlabel=LABELS.get(x, x), ylabel=LABELS.get(y, y))
     return image
-
-
-def _tick_plainly(axis: Any) -> None:
-    """Label a logarithmic axis at 1, 2 and 5 of each decade, without powers."""
-    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
-
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(FormatStrFormatter("%g"))
-    axis.set_minor_formatter(NullFormatter())
-
-
-def _is_even(steps: Array) -> bool:
-    return bool(steps.max() < EQUAL * steps.min())
-
-
-def _scale(values: Array) -> str:
-    """Return "log" where values have equal ratios, or span a decade; else "linear"."""
-    values = np.sort(values)
-    if len(values) < 3 or values[0] <= 0.0 or _is_even(np.diff(values)):
-        return "linear"
-    is_log = _is_even(np.diff(np.log(values))) or values[-1] > 8.0 * values[0]
-    return "log" if is_log else "linear"
-
-
-def _edges(values: Array) -> Array:
-    """Return the edges of cells about rising values."""
-    if len(values) == 1:
-        return np.array([0.5, 1.5]) * values[0] if values[0] else np.array([-0.5, 0.5])
-    is_log = _scale(values) == "log"
-    places = np.log(values) if is_log else values
-    middles = 0.5 * (places[1:] + places[:-1])
-    first, last = 2.0 * places[0] - middles[0], 2.0 * places[-1] - middles[-1]
-    edges = np.concatenate([[first], middles, [last]])
-    return np.exp(edges) if is_log else edges

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.analysis.pitch import note_name
-from yehu_server.plot.watch import Watch
+from yehu_server.rendering.watch import Watch
 
 RANGE_DB = 80.0
 LEVELS_DB = (-70.0, 0.0)

@@ -10,12 +10,12 @@ from pathlib import Path
 from yehu_server.audio.file import SoundWriter, check_format, sound_file
 from yehu_server.audio.pipe import PIPE, sound_pipe
 from yehu_server.files import anything
-from yehu_server.plot.asked import asked_pitch
-from yehu_server.plot.watch import Watch
+from yehu_server.rendering.asked import asked_pitch
 from yehu_server.rendering.levelled import write_normalized
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance, Samples
 from yehu_server.rendering.summary import Summary, summary_of
+from yehu_server.rendering.watch import Watch
 from yehu_server.score.score import Score
 
 

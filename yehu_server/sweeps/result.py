@@ -15,7 +15,7 @@ from yehu_server import __version__
 from yehu_server.errors import OutputError, ParameterError, ScoreError, YehuError
 from yehu_server.files import anything, replacing
 from yehu_server.regimes.judge import FINDING
-from yehu_server.regimes.names import REGIMES
+from yehu_server.regimes.names import HELMHOLTZ, REGIMES
 from yehu_server.score.gesture import CONTROLS
 from yehu_server.sweeps.gestures import ACCELERATION
 from yehu_server.sweeps.refining import fill
@@ -100,6 +100,14 @@ class Result:
             raise ParameterError(f"unknown column {name!r} (known: {', '.join(self.columns)})")
         refine, levels = self.meta["refine"], self.meta["levels"]
         return fill(self.shape, refine, levels, self.numbers, self.columns[name])
+
+    def onset_periods(self) -> Array:
+        """Periods from the first slip to lasting Helmholtz motion, on the grid; NaN for never.
+
+        Also NaN where the stroke then left it again. A period is that of the pitch at the end.
+        """
+        seconds = self.grid("helmholtz_s") - self.grid("first_slip_s")
+        return np.where(self.grid("regime") == HELMHOLTZ, seconds * self.grid("pitch_hz"), np.nan)
 
     def study(self) -> Study:
         """The study that found it.

@@ -91,20 +91,6 @@ class Fit:
 
         return save(self, Path(target), overwrite=overwrite)
 
-    def picture(self, target: Path, *, overwrite: bool = False) -> None:
-        """Draw measured and fitted curves, and write them to a PNG file.
-
-        Raises
-        ------
-        ParameterError
-            Where matplotlib is missing.
-        OutputError
-            Where it cannot be written.
-        """
-        from yehu_server.workshop.picture import write_picture
-
-        write_picture(self, Path(target), overwrite=overwrite)
-
 
 def fit(
     measurement: Measurement,

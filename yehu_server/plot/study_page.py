@@ -15,18 +15,18 @@ import numpy as np
 from yehu_server.analysis.pitch import note_name
 from yehu_server.errors import ParameterError
 from yehu_server.files import read_text, write_text
-from yehu_server.sweeps.colours import COLOURS, LABELS, plane_of
-from yehu_server.sweeps.limits import limits_of
-from yehu_server.sweeps.picture import ONSET_PERIODS, is_log, periods_of
+from yehu_server.plot.cells import is_log
+from yehu_server.plot.colours import COLOURS, LABELS
+from yehu_server.plot.maps import spread_of
+from yehu_server.plot.study import ONSET_PERIODS, limits_along, plane_of
 from yehu_server.sweeps.result import Result
 
 Array = Any
 
-TEMPLATE = Path(__file__).with_name("page.html")
+TEMPLATE = Path(__file__).with_name("study_page.html")
 MOST_CELLS = 20_000_000
 LEVELS = 254  # that a byte tells apart; 255 is none
 NONE = 255
-ALONG = 24  # points of a line
 # Of the map of colours "viridis" (CC0), from dark to light.
 SCALE = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))
 
@@ -86,7 +86,7 @@ def _axis(result: Result, name: str) -> dict[str, Any]:
         "label": label,
         "values": words or values.tolist(),
         "numbers": list(range(len(values))) if is_text else values.tolist(),
-        "log": not is_text and is_log(result, name),
+        "log": is_log(values, spread_of(result, name)),
     }
     return axis | ({"words": words} if is_text else {})
 
@@ -102,7 +102,7 @@ def _columns(result: Result, order: list[int]) -> list[dict[str, Any]]:
         }
     ]
     kinds: tuple[tuple[str, str, Array, str, float | None], ...] = (
-        ("periods to Helmholtz motion", "never", periods_of(result), "", ONSET_PERIODS),
+        ("periods to Helmholtz motion", "never", result.onset_periods(), "", ONSET_PERIODS),
         ("slips a period", "none", result.grid("slips"), "", 6.0),
         ("pitch", "none", result.grid("pitch_hz"), "Hz", None),
         ("level", "none", result.grid("level_db"), "dB re 1 Pa", None),
@@ -127,16 +127,14 @@ def _packed(values: Array) -> str:
 
 def _limits(result: Result, x: str, y: str, others: list[str]) -> dict[str, Any] | None:
     """Schelleng's limits along x of each map, where y is the bow's force."""
-    if y not in {"force", "bow_force"} or result.axes[x].dtype.kind == "U":
-        return None
     study = result.study()
-    shape = tuple(len(result.axes[name]) for name in others)
-    places = np.unique(np.linspace(0, len(result.axes[x]) - 1, ALONG).astype(int))
-    sign = -1.0 if float(result.axes[y][-1]) < 0.0 else 1.0
     upper, lower = [], []
-    for at in np.ndindex(*shape):
-        place = dict(zip(others, at, strict=True))
-        found = [limits_of(study, place | {x: int(i)}) for i in places]
-        upper.append([sign * each.upper for each in found])
-        lower.append([sign * each.lower for each in found])
-    return {"at": places.tolist(), "upper": upper, "lower": lower}
+    places: list[int] = []
+    for at in np.ndindex(*(len(result.axes[name]) for name in others)):
+        found = limits_along(result, study, x, y, dict(zip(others, at, strict=True)))
+        if found is None:
+            return None
+        places = found[0].tolist()
+        lower.append(found[1].tolist())
+        upper.append(found[2].tolist())
+    return {"at": places, "upper": upper, "lower": lower}

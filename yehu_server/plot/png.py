@@ -1,30 +1,38 @@
-"""Draws what was gathered of a rendering, and writes it to a PNG file."""
+"""PNG files of pictures: whether they may be written, and the same bytes for the same picture."""
 
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import OutputError
 from yehu_server.files import anything, check_free, check_target, replacing, why
 from yehu_server.lines import one_line
-from yehu_server.plot.panels import draw_level, draw_pitch, draw_spectrogram
-from yehu_server.plot.watch import Watch
+from yehu_server.plot.axes import check_matplotlib
 
-SOFTWARE = "yehu-server render"  # named in a picture, which may therefore be replaced
+SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
 BEGINNING = 4096  # bytes of a file in which it is named
-INCHES, DPI = (14.0, 9.0), 110
+MOST_TEXT = 120  # characters
 
 
-def check_picture(target: Path, *, overwrite: bool = False) -> None:
-    """Check that a picture may be written.
+def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
+    """Check that a picture can be drawn, and may be written.
+
+    Parameters
+    ----------
+    what : str
+        What needs it, for the message, such as ``--plot``.
 
     Raises
     ------
+    ParameterError
+        Where matplotlib is missing.
     OutputError
         Where it may not, or its name ends otherwise than in .png.
     """
+    check_matplotlib(what)
     if target.suffix.lower() != ".png":
         raise OutputError(f"{target}: a picture is a .png file")
     check_target(target)
@@ -41,48 +49,54 @@ def is_ours(target: Path) -> bool:
     return not data or (data.startswith(b"\x89PNG") and SOFTWARE.encode() in data)
 
 
-def write_picture(watch: Watch, target: Path, title: str, *, overwrite: bool = False) -> None:
-    """Draw level, pitch and spectrogram, and write them to a PNG file.
+def write_picture(
+    target: Path,
+    size: tuple[float, float],
+    fill: Callable[[Any], None],
+    *,
+    dpi: int = 110,
+    overwrite: bool = False,
+) -> None:
+    """Draw a picture and write it to a PNG file. The same picture has the same bytes.
 
-    The same rendering gives the same bytes.
+    Parameters
+    ----------
+    size : tuple of float, inches
+    fill : callable
+        Draws into a matplotlib Figure.
+    dpi : int
+        Pixels to an inch.
 
     Raises
     ------
     OutputError
         Where it cannot be written.
     """
-    data = drawn(watch, title)
-    may_replace = anything if overwrite else is_ours
-    with replacing(target, may_replace) as partial:
+    data = drawn(size, fill, dpi)
+    with replacing(target, anything if overwrite else is_ours) as partial:
         try:
             partial.write_bytes(data)
         except OSError as error:
             raise OutputError(f"{target}: cannot write: {why(error)}") from error
 
 
-def drawn(watch: Watch, title: str) -> bytes:
+def drawn(size: tuple[float, float], fill: Callable[[Any], None], dpi: int) -> bytes:
     """Draw a picture; return the bytes of its PNG file."""
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     settings: Any = {"font.size": 10.0, "text.parse_math": False}
-    # Not as the user has set matplotlib up: the same rendering has the same picture.
+    # Not as the user has set matplotlib up, which would change the picture.
     with mpl.rc_context(mpl.rcParamsDefault), mpl.rc_context(settings):
-        figure = Figure(figsize=INCHES, dpi=DPI, layout="constrained")
+        figure = Figure(figsize=size, dpi=dpi, layout="constrained")
         FigureCanvasAgg(figure)
-        panels = figure.subplots(3, 1, height_ratios=(1.0, 2.2, 1.8), sharex=True)
-        draw_level(panels[0], watch)
-        draw_pitch(panels[1], watch)
-        draw_spectrogram(panels[2], watch)
-        panels[0].set_title(_title(title), loc="left")
-        panels[2].set(xlim=(0.0, max(watch.duration_s, 0.01)), xlabel="s")
+        fill(figure)
         file = io.BytesIO()
         figure.savefig(file, format="png", metadata={"Software": SOFTWARE})
     return file.getvalue()
 
 
-def _title(text: str) -> str:
-    """A title in characters that the font has: others would warn and be drawn as boxes."""
-    plain = one_line(text)
-    return plain.encode("latin-1", "replace").decode("latin-1")[:120]
+def plain(text: str, most: int = MOST_TEXT) -> str:
+    """Text in characters that the font has: others would warn and be drawn as boxes."""
+    return one_line(text).encode("latin-1", "replace").decode("latin-1")[:most]

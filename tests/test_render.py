@@ -439,7 +439,9 @@ def test_a_pedal_or_fade_at_the_end_of_one_file_does_not_reach_the_next(midi):
     assert rms(heard) == pytest.approx(rms(expected), rel=0.2)
 
 
-@pytest.mark.parametrize("rate", [22050, 32000, 48000, 96000, 192000])
+@pytest.mark.parametrize(
+    "rate", [22050, 32000, 48000, 96000, pytest.param(192000, marks=pytest.mark.slow)]
+)
 def test_other_rates_play_the_same_tune(play, tmp_path, midi, rate):
     tune = midi(*notes((0, 0.6, 74, 64)))
     summary, sound = play(tune, "--rate", rate, "--tail", 0.1)

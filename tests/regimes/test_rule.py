@@ -75,6 +75,17 @@ def test_a_string_that_hardly_moves_or_never_sticks_is_silent(regime, motion, sp
     assert name_regime(1.0, sticking, alike, COUNT, 100.0, motion, speed)[0] == regime
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_slips_of_a_twentieth_of_the_bows_speed_are_not_heard(way):
+    velocity = way * slips(every(PERIOD), depth=-0.05 * SPEED)
+    assert judge(velocity, way * SPEED, velocity, RATE, NOTE).regime == "silent"
+
+
+def test_the_brightness_of_a_low_tone_is_its_frequency():
+    low = np.sin(2 * np.pi * 130.0 * np.arange(LENGTH) / RATE)
+    assert found(slips(every(PERIOD)), pressure=low).brightness_hz == pytest.approx(130.0, abs=2.0)
+
+
 @pytest.mark.parametrize("period", [99.63, 100.21, 103.5])
 def test_the_pitch_is_exact_between_samples(period):
     at = np.arange(LENGTH)

@@ -12,7 +12,7 @@ import pytest
 
 from yehu_server.regimes.judge import FINDING, judge
 from yehu_server.regimes.names import HELMHOLTZ, REGIMES, UNBOWED
-from yehu_server.regimes.strokes import find
+from yehu_server.regimes.strokes import find, value_at
 from yehu_server.simulation import simulate
 from yehu_server.sweeps.study import study_of
 
@@ -71,6 +71,15 @@ def test_another_seed_is_another_bow(findings):
     none = DATA | {"stroke": DATA["stroke"] | {"noise": 0.0}}
     even = find(*batch(none)[2])["level_db"].reshape(4, 2, 2)
     assert (even[..., 0] == even[..., 1]).all()
+
+
+@pytest.mark.parametrize(
+    ("time", "value"), [(-3.0, 0.2), (1.0, 0.2), (1.5, 0.4), (2.0, 0.6), (9.0, 0.6)]
+)
+def test_a_curve_is_held_before_its_first_point_and_after_its_last(time, value):
+    times, values = np.array([1.0, 2.0]), np.array([0.2, 0.6])
+    at = 0 if time < 2.0 else 1
+    assert value_at(times, values, at, 1, time) == pytest.approx(value)
 
 
 def test_a_lifted_bow_is_told():

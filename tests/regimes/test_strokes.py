@@ -82,6 +82,18 @@ def test_a_curve_is_held_before_its_first_point_and_after_its_last(time, value):
     assert value_at(times, values, at, 1, time) == pytest.approx(value)
 
 
+def test_nothing_slips_before_the_bow_sets_off(findings):
+    helmholtz = findings[findings["regime"] == HELMHOLTZ]
+    assert (helmholtz["first_slip_s"] > 0.03).all()
+
+
+@pytest.mark.parametrize(("unconverged", "lost", "faults"), [(3, 2, 5), (200, 100, 255)])
+def test_faults_of_the_model_are_counted(unconverged, lost, faults):
+    models, rests, strokes, hands = batch()[2]
+    rests["unconverged"], rests["lost"] = unconverged, lost
+    assert (find(models, rests, strokes[:2], hands)["faults"] == faults).all()
+
+
 def test_a_lifted_bow_is_told():
     gesture = {"duration": 0.1, "pluck": {"string": 1, "amplitude": 0.001}}
     data = {"gesture": gesture, "vary": {"bow_force": [0.0, 0.5]}}

@@ -82,6 +82,11 @@ def test_a_curve_is_held_before_its_first_point_and_after_its_last(time, value):
     assert value_at(times, values, at, 1, time) == pytest.approx(value)
 
 
+def test_both_strings_are_bowed():
+    data = DATA | {"stroke": {"string": 2, "note": 79}, "vary": {"force": [0.5]}}
+    assert find(*batch(data)[2])["regime"][0] == HELMHOLTZ
+
+
 def test_nothing_slips_before_the_bow_sets_off(findings):
     helmholtz = findings[findings["regime"] == HELMHOLTZ]
     assert (helmholtz["first_slip_s"] > 0.03).all()

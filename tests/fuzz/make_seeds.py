@@ -1,4 +1,4 @@
-"""Writes the binary seeds: MIDI files and messages, OSC packets and streams, WebSocket frames.
+"""Writes the made seeds: MIDI, OSC, WebSocket frames, and what the laboratory reads.
 
     .venv/bin/python tests/fuzz/make_seeds.py
 
@@ -7,9 +7,15 @@ Text seeds, and those that once broke something, are written by hand.
 
 from __future__ import annotations
 
+import io
 import struct
 import sys
+import tempfile
+import warnings
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
 
@@ -242,6 +248,103 @@ REQUESTS = {
     "an-origin-without-end": request("GET / HTTP/1.1", HOST, "Origin: " + "http://[" * 30),
 }
 
+# ---------------------------------------------------------------- the laboratory
+
+HZ = np.linspace(120.0, 1900.0, 60)
+RATE = 8000  # Hz, of taps
+ENTRY: dict[str, Any] = {
+    "type": 58, "func_type": 4, "rsp_node": 1, "rsp_dir": 3, "ref_node": 1, "ref_dir": 3,
+    "id1": "id1", "rsp_ent_name": "NONE", "ref_ent_name": "NONE", "abscissa_spacing": 1,
+    "abscissa_min": HZ[0], "abscissa_inc": HZ[1] - HZ[0], "num_pts": len(HZ), "ord_data_type": 6,
+    "abscissa_spec_data_type": 18, "ordinate_spec_data_type": 11,
+    "orddenom_spec_data_type": 13, "x": HZ,
+}  # fmt: skip
+UNITS: dict[str, Any] = {
+    "type": 164, "units_code": 5, "units_description": "mm", "temp_mode": 1,
+    "length": 1e3, "force": 1.0, "temp": 1.0, "temp_offset": 0.0,
+}  # fmt: skip
+
+
+def table(headings: str, *columns: Any) -> bytes:
+    rows = [",".join(f"{value:.8g}" for value in row) for row in zip(*columns, strict=True)]
+    return "\n".join([headings, *rows, ""]).encode()
+
+
+def universal(*sets: dict[str, Any]) -> bytes:
+    import pyuff
+
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        path = Path(folder) / "seed.uff"
+        pyuff.UFF(str(path)).write_sets(list(sets), "add")
+        return path.read_bytes()
+
+
+def tap() -> tuple[Any, Any, Any]:
+    """A hit, and the velocity of one mode at 400 Hz."""
+    time = np.arange(RATE // 2) / RATE
+    force = np.where(time < 0.05, 0.0, 20.0 * np.exp(-(((time - 0.052) / 0.0005) ** 2)))
+    ringing = np.exp(-60.0 * time) * np.cos(2.0 * np.pi * 400.0 * time) / 0.01 / RATE
+    return time, force, np.convolve(force, ringing)[: len(time)]
+
+
+def sound(*channels: Any) -> bytes:
+    import soundfile
+
+    file = io.BytesIO()
+    soundfile.write(file, np.stack(channels, axis=1), RATE, "PCM_16", format="WAV")
+    return file.getvalue()
+
+
+def result() -> bytes:
+    from yehu_server.regimes.judge import FINDING
+    from yehu_server.sweeps.result import result_of
+    from yehu_server.sweeps.study import study_of
+
+    stroke = {"string": 1, "note": 75}
+    study = study_of({"stroke": stroke, "vary": {"force": [0.1, 1.0], "position": [0.1, 0.2]}})
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "seed.npz"
+        result_of(study, np.arange(4), np.zeros(4, FINDING)).save(path)
+        return path.read_bytes()
+
+
+def laboratory() -> dict[str, dict[str, bytes]]:
+    from workshop.bodies import admittance
+
+    from yehu_server.physics.quantities import measured_body
+    from yehu_server.workshop.curve import Curve
+    from yehu_server.workshop.fitting import Fit
+    from yehu_server.workshop.kept import as_text
+    from yehu_server.workshop.measurement import Measurement
+
+    mobility = admittance(HZ)
+    level, phase = 20.0 * np.log10(np.abs(mobility)), np.degrees(np.angle(mobility))
+    time, force, velocity = tap()
+    some = slice(0, 1000)
+    measured = Measurement(Curve(HZ, mobility, np.full(len(HZ), 0.9), 3), None, 2000.0)
+    fit = Fit(measured_body(), measured, (100.0, 2000.0), None, None, ("rough",))
+    return {
+        "measured-table": {
+            "real-and-imaginary": table("f,real mobility,imag", HZ, mobility.real, mobility.imag),
+            "level-and-phase": table("freq_hz,mobility_dB level,phase_deg", HZ, level, phase),
+            "a-tap": table(
+                "time_s,force_N,velocity_m/s", time[some], force[some], 0.1 * velocity[some]
+            ),
+        },
+        "measured-universal": {
+            "a-response": universal({**ENTRY, "data": mobility, "binary": 0}),
+            "binary": universal({**ENTRY, "data": mobility, "binary": 1}),
+            "in-millimetres": universal(UNITS, {**ENTRY, "data": 1e3 * mobility, "binary": 0}),
+        },
+        "measured-sound": {"a-tap": sound(force / 100.0, 0.5 * velocity / np.abs(velocity).max())},
+        "fitted-body": {
+            "a-fit": as_text(fit).encode(),
+        },
+        "sweep-result": {"four-strokes": result()},
+    }
+
+
 MADE = {
     "midi-file": MIDI_FILES,
     "midi-structure": MIDI_STRUCTURES,
@@ -256,7 +359,7 @@ MADE = {
 
 
 def main() -> None:
-    for target, seeds in MADE.items():
+    for target, seeds in (MADE | laboratory()).items():
         (SEEDS / target).mkdir(parents=True, exist_ok=True)
         for name, data in seeds.items():
             (SEEDS / target / name).write_bytes(data)

@@ -6,6 +6,7 @@ import pytest
 
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.files import shipped_folder
+from yehu_server.sweeps.journal import key_of_study
 from yehu_server.sweeps.study import read_study, study_from_text, study_of
 
 STUDIES = sorted((shipped_folder("examples") / "studies").glob("*.toml"))
@@ -29,6 +30,22 @@ def test_a_study_is_the_same_from_its_text(data):
     again = study_from_text(study.as_text())
     assert again.axes == study.axes
     assert again.as_text() == study.as_text()
+
+
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
+def test_axes_stay_in_the_order_of_the_file(path):
+    """Points are numbered by it, in a journal and on a cluster."""
+    study = read_study(path)
+    assert [axis.name for axis in study_from_text(study.as_text()).axes] == [
+        axis.name for axis in study.axes
+    ]
+
+
+def test_another_order_of_axes_is_another_journal(data):
+    axes = data()["vary"]
+    assert len(axes) > 1
+    turned = data() | {"vary": dict(reversed(axes.items()))}
+    assert key_of_study(study_of(data())) != key_of_study(study_of(turned))
 
 
 @pytest.mark.parametrize(

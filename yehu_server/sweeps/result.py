@@ -172,7 +172,7 @@ class Result:
     def arrays(self) -> dict[str, Array]:
         """All of it by the names that the file has."""
         axes = {f"axis_{name}": values for name, values in self.axes.items()}
-        meta = np.array(json.dumps(self.meta, sort_keys=True))
+        meta = np.array(json.dumps(self.meta))
         return {"meta": meta, **axes, "numbers": self.numbers, **self.columns}
 
     @classmethod

@@ -93,7 +93,7 @@ class Study:
 
     def as_text(self) -> str:
         """All of it as JSON, from which `study_from_text` makes the same study."""
-        return json.dumps(self.data, sort_keys=True)
+        return json.dumps(self.data)  # in order, which is that of the axes
 
 
 def read_study(path: Path, vary: Sequence[Axis] = ()) -> Study:

@@ -17,6 +17,7 @@ from typing import BinaryIO
 from yehu_server.errors import OutputError
 
 MAX_TEXT_BYTES = 64 * 2**20
+PIECE_BYTES = 2**20
 MAX_LINE_BYTES = 64 * 1024
 MAX_SETTINGS_BYTES = 2**20  # for files that are read while the instrument plays
 # Names that come over the network: no path, no hidden file.
@@ -53,11 +54,15 @@ def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     OSError
         Also where it is larger than `most_bytes`, or no regular file.
     """
+    pieces, left = [], most_bytes + 1
     with _open_regular(path, most_bytes) as file:
-        data = file.read(most_bytes + 1)
-    if len(data) > most_bytes:  # it has grown, or its file system reports no sizes
+        # In pieces: a read sets aside all the memory that it may need.
+        while piece := file.read(min(left, PIECE_BYTES)):
+            pieces.append(piece)
+            left -= len(piece)
+    if left <= 0:  # it has grown, or its file system reports no sizes
         raise _too_large(most_bytes)
-    return data
+    return b"".join(pieces)
 
 
 def read_lines(path: Path, most_bytes: int) -> Iterator[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -188,14 +187,12 @@ class Result:
             if path.suffix == ".zarr":
                 from yehu_server.sweeps.zarr_store import load_zarr
 
-                arrays = load_zarr(path)
-            else:
-                with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-                    arrays = {name: file[name] for name in file.files}
-            return cls.of(arrays)
+                return cls.of(load_zarr(path))
+            with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
+                return cls.of({name: file[name] for name in file.files})
         except OSError as error:
             raise ScoreError(f"{path}: {error.strerror or error}") from error
-        except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+        except Exception as error:  # damaged archives raise whatever they lead to
             raise ScoreError(f"{path}: is not the result of a sweep") from error
 
     @classmethod
@@ -214,8 +211,14 @@ class Result:
         columns = {name: arrays[name] for name in COLUMNS}
         numbers = arrays["numbers"]
         size = int(np.prod([len(values) for values in axes.values()], dtype=np.int64))
-        if any(len(column) != len(numbers) for column in columns.values()):
+        if any(column.shape != (len(numbers),) for column in (numbers, *columns.values())):
             raise ValueError("columns of other lengths")
+        if numbers.dtype.kind not in "iu" or any(values.ndim != 1 for values in axes.values()):
+            raise ValueError("axes or points of another kind")
+        if columns["regime"].max(initial=0) >= len(meta["regimes"]):
+            raise ValueError("a regime without a name")
+        if not {"spreads", "refine", "levels", "study", "made_by"} <= meta.keys():
+            raise ValueError("something is missing")
         if len(numbers) == 0 or numbers.min() < 0 or numbers.max() >= size:
             raise ValueError("points off the grid")
         return cls(meta, axes, numbers, columns)

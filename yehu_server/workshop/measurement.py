@@ -81,9 +81,9 @@ def read(
     other_taps, other_responses = _read_all(
         radiation, radiation_channels or channels, radiation_kind
     )
-    measured = _together(taps, responses)
+    measured = average(taps, responses)
     if radiation:
-        other = _together([_pressure_alone(tap) for tap in other_taps], other_responses)
+        other = average([_pressure_alone(tap) for tap in other_taps], other_responses)
         measured = replace(
             measured,
             radiation=other.radiation,
@@ -93,9 +93,10 @@ def read(
     return replace(measured, sources=tuple(path.name for path in (*paths, *radiation)))
 
 
-def average(taps: Sequence[Tap]) -> Measurement:
-    """Average taps that are in memory; see `read`."""
-    return _together(list(taps), [])
+def average(taps: Sequence[Tap], responses: Sequence[Response] = ()) -> Measurement:
+    """Average taps and responses that are in memory; see `read`."""
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # they are refused later
+        return _together(taps, responses)
 
 
 def _read_all(
@@ -126,7 +127,7 @@ def _pressure_alone(tap: Tap) -> Tap:
     return replace(tap, responses={"pressure": tap.responses["pressure"]})
 
 
-def _together(taps: list[Tap], responses: list[Response]) -> Measurement:
+def _together(taps: Sequence[Tap], responses: Sequence[Response]) -> Measurement:
     """Average taps and responses, and check what they give."""
     averaged = average_taps(taps) if taps else Averaged(None, None, HIGHEST_HZ, ())
     warnings = list(averaged.warnings)

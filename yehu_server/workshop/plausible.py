@@ -26,6 +26,7 @@ STEP, BEYOND = 3.0, 3.0  # half-widths between two of them; how far beyond the b
 MATTERS = 0.05  # relative error
 PLAIN, SURE, TOO_FAR = 1.2, 2.0, 5.0  # errors: of the right kind; of another; of none at all
 SMALLER = 0.8  # another kind's error against the told one's
+SMALLEST, LARGEST = 1e-50, 1e50  # in any units
 USUAL, POSSIBLE = (2e-3, 20.0), (1e-4, 100.0)  # s/kg, at the highest peak of a small body
 LOUD, LOUDEST = (1e-2, 50.0), (1e-4, 500.0)  # Pa/N, at the highest peak
 
@@ -39,6 +40,7 @@ def check_admittance(curve: Curve, kind: str) -> list[str]:
         Where it is none: of another kind, of the wrong sign, in other units.
     """
     need("scipy", "body")
+    _check_numbers(curve, "admittance")
     misfit, other, sign = _likeliest(curve, kind)
     if (other, sign) != (kind, 1.0):
         raise MeasurementError(_explained(kind, other, sign))
@@ -61,6 +63,13 @@ def check_admittance(curve: Curve, kind: str) -> list[str]:
     return found
 
 
+def _check_numbers(curve: Curve, what: str) -> None:
+    """Refuse what no unit makes of a measurement: its squares would not be numbers."""
+    sizes = np.abs(curve.values)
+    if not (np.isfinite(sizes).all() and SMALLEST < sizes.max() < LARGEST):
+        raise MeasurementError(f"{what}: its numbers are too large or too small for a measurement")
+
+
 def check_radiation(curve: Curve) -> list[str]:
     """Check a radiation (Pa/N); return warnings.
 
@@ -69,6 +78,7 @@ def check_radiation(curve: Curve) -> list[str]:
     MeasurementError
         Where it is in other units.
     """
+    _check_numbers(curve, "radiation")
     peak = float(np.abs(curve.values).max())
     _check_size(peak, LOUDEST, "radiation", "Pa/N", "mPa, or of full scale")
     if not LOUD[0] <= peak <= LOUD[1]:

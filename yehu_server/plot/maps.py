@@ -32,7 +32,9 @@ FORCE = ("bow_force", "force")
 PLACE = ("bow_position", "position")
 ACCELERATION = ("bow_acceleration", "acceleration")
 ALONG = 24  # places at which limits are worked out
+MOST_PERIODS = 60.0  # that the colours of a time tell apart
 PERIODS = "periods from the first slip to Helmholtz motion"
+PERIOD_COLOURS: Any = {"cmap": "viridis_r", "vmin": 0.0, "vmax": MOST_PERIODS}
 BESIDE: Any = {
     "loc": "upper left",
     "bbox_to_anchor": (1.0, 1.0),
@@ -159,8 +161,8 @@ def guettler(sweep: Result, *, at: At | None = None, ax: Axes | None = None) -> 
     x, y = _axis_of(sweep, ACCELERATION), _axis_of(sweep, FORCE)
     cells = map_of(sweep, sweep.onset_periods(), x, y, place_of(sweep, x, y, at))
     axes = axes_of(ax)
-    image = _draw(axes, sweep, x, y, cells, cmap="viridis_r")
-    axes.figure.colorbar(image, ax=axes, label=PERIODS, pad=0.02)
+    image = _draw(axes, sweep, x, y, cells, **PERIOD_COLOURS)
+    axes.figure.colorbar(image, ax=axes, label=PERIODS, extend="max", pad=0.02)
     return axes
 
 

@@ -22,7 +22,7 @@ from yehu_server.plot.cells import (
     set_scale,
 )
 from yehu_server.plot.colours import LABELS
-from yehu_server.plot.maps import ALONG, FORCE, PERIODS, map_of, spread_of
+from yehu_server.plot.maps import ALONG, FORCE, PERIOD_COLOURS, PERIODS, map_of, spread_of
 from yehu_server.sweeps.limits import limits_of
 from yehu_server.sweeps.result import Result
 from yehu_server.sweeps.study import Study
@@ -31,7 +31,6 @@ Array = Any
 
 MOST_PANELS = 30
 LEAST_WIDTH = 8.0  # inches, for the legend
-ONSET_PERIODS = 60.0  # the most that the colours of a time tell apart
 LIMITS = ("lower", "upper")
 
 
@@ -166,7 +165,7 @@ def _draw_map(axes: Any, result: Result, x: str, y: str, cells: Array, what: str
     if what == "regime":
         options = regime_colours(result.regimes)
     elif what == "helmholtz_s":
-        options |= {"vmin": 0.0, "vmax": ONSET_PERIODS}
+        options = PERIOD_COLOURS
     across, up = result.axes[x], result.axes[y]
     log = is_log(across, spread_of(result, x)), is_log(up, spread_of(result, y))
     return draw_cells(axes, across, up, cells, log=log, **options)

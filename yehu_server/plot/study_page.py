@@ -17,8 +17,8 @@ from yehu_server.errors import ParameterError
 from yehu_server.files import read_text, write_text
 from yehu_server.plot.cells import is_log
 from yehu_server.plot.colours import COLOURS, LABELS
-from yehu_server.plot.maps import spread_of
-from yehu_server.plot.study import ONSET_PERIODS, limits_along, plane_of
+from yehu_server.plot.maps import MOST_PERIODS, spread_of
+from yehu_server.plot.study import limits_along, plane_of
 from yehu_server.sweeps.result import Result
 
 Array = Any
@@ -102,7 +102,7 @@ def _columns(result: Result, order: list[int]) -> list[dict[str, Any]]:
         }
     ]
     kinds: tuple[tuple[str, str, Array, str, float | None], ...] = (
-        ("periods to Helmholtz motion", "never", result.onset_periods(), "", ONSET_PERIODS),
+        ("periods to Helmholtz motion", "never", result.onset_periods(), "", MOST_PERIODS),
         ("slips a period", "none", result.grid("slips"), "", 6.0),
         ("pitch", "none", result.grid("pitch_hz"), "Hz", None),
         ("level", "none", result.grid("level_db"), "dB re 1 Pa", None),

@@ -30,6 +30,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
                 item.add_marker(pytest.mark.skip(reason="slow: run with --all"))
 
 
+@pytest.fixture(scope="session")
+def everything(request) -> bool:
+    """Whether what is long is wanted as well: ``--all``."""
+    return bool(request.config.getoption("--all"))
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _config_home(tmp_path_factory) -> Iterator[None]:
     """Keep tests from reading the mappings and settings of the user who runs them."""

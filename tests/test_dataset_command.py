@@ -146,7 +146,9 @@ def test_a_sound_that_is_gone_or_changed_is_made_again(made, command, tmp_path):
     assert files(tmp_path / "out") == before
 
 
-@pytest.mark.parametrize("signum", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "signum", [pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGKILL]
+)
 def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum):
     (tmp_path / "d.toml").write_text(TEXT.replace("duration = 0.1", "duration = 1.0"))
     words = (tmp_path / "d.toml", "-o", tmp_path / "out")

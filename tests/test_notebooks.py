@@ -80,6 +80,7 @@ def test_a_notebook_says_first_what_it_is_for(name):
     assert "pip install" in "".join(first["source"]) or name.startswith("2")
 
 
+@pytest.mark.slow
 @each_notebook
 def test_a_notebook_runs_and_shows_pictures_and_sounds(name, tmp_path, environment):
     outputs = run(name, tmp_path, environment)

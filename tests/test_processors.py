@@ -1,4 +1,4 @@
-"""The model as an old processor computes it: a short version of ``scripts/test --all``."""
+"""A process can be given another processor, for ``scripts/test --all``."""
 
 from __future__ import annotations
 
@@ -11,12 +11,6 @@ import pytest
 from as_processor import missing
 
 TESTS = Path(__file__).parent
-STEPS = "test_one_step_from_any_state_is_the_references_to_rounding[44100-modulation-1]"
-CHOSEN = [
-    f"physics/test_reference_step.py::{STEPS}",
-    "physics/test_power.py",
-    "physics/test_elementary.py",
-]
 
 here = pytest.mark.skipif("x86-64" in missing("generic"), reason="this is no x86-64 processor")
 
@@ -30,16 +24,6 @@ def run_as(name: str, *command: str, **variables: str) -> subprocess.CompletedPr
         check=False,
         env={**os.environ, **variables},
     )
-
-
-@here
-def test_without_any_instruction_newer_than_2003_one_step_is_the_references(tmp_path):
-    pytest_alone = ["-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist"]
-    nodes = [str(TESTS / node) for node in CHOSEN]
-    child = run_as("generic", *pytest_alone, *nodes, NUMBA_CACHE_DIR=str(tmp_path))
-    assert child.returncode == 0, child.stdout + child.stderr
-    assert " skipped" not in child.stdout
-    assert list(tmp_path.rglob("*.code"))  # it was compiled there and then
 
 
 @here

@@ -263,7 +263,9 @@ def long(tmp_path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "signum", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGKILL]
+)
 def test_an_interrupted_folder_goes_on_where_it_was(long, command, signum):
     handled = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);" + COMMAND
     words = ("render", long / "in", "-o", long / "out", *DRY, "--jobs", 1)

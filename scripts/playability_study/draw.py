@@ -18,17 +18,20 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from maps import KINDS, NEVER, Maps, bands, median, read
-from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-from matplotlib.patheffects import withStroke
-from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FormatStrFormatter
 from tables import write_tables
 
 from yehu_server.analysis.pitch import note_name
 from yehu_server.physics.quantities import measured_body
-from yehu_server.plot.cells import edges
-from yehu_server.plot.colours import COLOURS
+from yehu_server.plot.cells import (
+    draw_cells,
+    draw_limits,
+    limit_lines,
+    regime_colours,
+    regime_patches,
+)
+from yehu_server.plot.colours import LABELS
+from yehu_server.plot.maps import PERIOD_COLOURS, PERIODS
 
 ROOT = Path(__file__).resolve().parents[2]
 STRINGS = ("F4 string", "C5 string")
@@ -36,24 +39,12 @@ BLUE, RED, GREEN = "#1f5fa8", "#c03a2b", "#2f8f5b"
 Array = Any
 
 
-def panel(axes: Any, maps: Maps, cells: Array, **options: Any) -> Any:
-    """Draw one map, on logarithmic scales."""
-    x, y = edges(maps.places, log=True), edges(maps.forces, log=True)
-    image = axes.pcolormesh(x, y, cells, rasterized=True, **options)
-    axes.set(xscale="log", yscale="log", xlim=x[[0, -1]], ylim=y[[0, -1]])
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.set_major_formatter(FormatStrFormatter("%g"))
-        axis.set_minor_formatter(NullFormatter())
+def panel(axes: Any, maps: Maps, i: int, cells: Array, **options: Any) -> Any:
+    """Draw one map, with Schelleng's limits of note or bow `i`."""
+    image = draw_cells(axes, maps.places, maps.forces, cells, log=(True, True), **options)
+    draw_limits(axes, maps.places, maps.lower[i], maps.upper[i])
     axes.tick_params(labelsize=7)
     return image
-
-
-def limits(axes: Any, maps: Maps, i: int) -> None:
-    """Draw Schelleng's limits."""
-    halo = [withStroke(linewidth=2.6, foreground="w")]
-    axes.plot(maps.places, maps.upper[i], "k-", lw=1.1, path_effects=halo)
-    axes.plot(maps.places, maps.lower[i], "k--", lw=1.1, path_effects=halo)
 
 
 def tiles(count: int, across: int) -> tuple[Any, Any]:
@@ -71,7 +62,7 @@ def tiles(count: int, across: int) -> tuple[Any, Any]:
 def label_tiles(panels: Any, x: str) -> None:
     """Name the axes of the outer panels."""
     for axes in panels[:, 0]:
-        axes.set_ylabel("bow force, N", fontsize=8)
+        axes.set_ylabel(LABELS["force"], fontsize=8)
     for axes in panels[-1]:
         axes.set_xlabel(x, fontsize=8)
 
@@ -81,19 +72,13 @@ def regimes(strings: list[Maps], target: Path) -> None:
     every = [(k, maps, i) for k, maps in enumerate(strings) for i in range(len(maps.notes))]
     figure, panels = tiles(len(every), 8)
     names = strings[0].facts["regimes"]
-    colours = ListedColormap([COLOURS[name] for name in names])
-    norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
     for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
-        panel(axes, maps, maps.regime[i], cmap=colours, norm=norm)
-        limits(axes, maps, i)
+        panel(axes, maps, i, maps.regime[i], **regime_colours(names))
         axes.set_title(f"{note_name(float(maps.notes[i]))}, {STRINGS[k][:2]}", fontsize=8, pad=2)
-    handles: list[Any] = [Patch(fc=COLOURS[name], ec="0.6", label=name) for name in names[1:]]
-    handles += [
-        Line2D([], [], color="k", ls="-", label="Schelleng's upper limit"),
-        Line2D([], [], color="k", ls="--", label="and lower limit"),
-    ]
+    occurring = np.concatenate([np.unique(maps.regime) for maps in strings])
+    handles = [*regime_patches(names, occurring), *limit_lines()]
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
-    label_tiles(panels, "bow position β")
+    label_tiles(panels, LABELS["position"])
     save(figure, target / "playability_schelleng.png")
 
 
@@ -103,14 +88,12 @@ def onsets(strings: list[Maps], target: Path) -> None:
     figure, panels = tiles(len(every), 8)
     image: Any = None
     for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
-        shown = np.ma.masked_equal(maps.periods[i], NEVER)
-        axes.set_facecolor("0.85")
-        image = panel(axes, maps, shown, cmap="viridis_r", vmin=0.0, vmax=60.0)
-        limits(axes, maps, i)
+        shown = np.where(maps.periods[i] == NEVER, np.nan, maps.periods[i])
+        image = panel(axes, maps, i, shown, **PERIOD_COLOURS)
         axes.set_title(f"{note_name(float(maps.notes[i]))}, {STRINGS[k][:2]}", fontsize=8, pad=2)
-    label = "periods from the first slip to Helmholtz motion; grey: never"
+    label = f"{PERIODS}; grey: never"
     figure.colorbar(image, ax=panels, label=label, aspect=50, pad=0.01)
-    label_tiles(panels, "acceleration, m/s²")
+    label_tiles(panels, LABELS["acceleration"])
     save(figure, target / "playability_guettler.png")
 
 
@@ -148,13 +131,9 @@ def repeats(both: list[Maps], target: Path) -> None:
     image: Any = None
     for axes, maps in zip(panels[0], both, strict=True):
         share = maps.helmholtz.mean(axis=0)
-        image = panel(axes, maps, share, cmap="cividis", vmin=0.0, vmax=1.0)
-        limits(axes, maps, 0)
-        axes.set(
-            title=maps.facts["about"].rpartition(", ")[2],
-            xlabel="bow position β",
-            ylabel="bow force, N",
-        )
+        image = panel(axes, maps, 0, share, cmap="cividis", vmin=0.0, vmax=1.0)
+        title = maps.facts["about"].rpartition(", ")[2]
+        axes.set(title=title, xlabel=LABELS["position"], ylabel=LABELS["force"])
     figure.colorbar(image, ax=panels, label="share of sixteen bows in Helmholtz motion")
     save(figure, target / "playability_repeats.png")
 
@@ -177,7 +156,7 @@ def main() -> None:
     forces(found["schelleng"], target)
     repeats(found["repeats"], target)
     if len(sys.argv) == 1:
-        write_tables(ROOT / "docs" / "playability.md", found)
+        write_tables(found)
 
 
 if __name__ == "__main__":

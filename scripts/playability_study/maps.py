@@ -80,19 +80,22 @@ def bands(maps: Maps) -> tuple[Array, Array]:
     """
     shape = (len(maps.notes), len(maps.places))
     least, greatest = np.full(shape, np.nan), np.full(shape, np.nan)
-    ratio = np.sqrt(maps.forces[1] / maps.forces[0])
     for i, j in np.ndindex(*shape):
-        padded = np.concatenate([[0], maps.helmholtz[i, :, j].astype(int), [0]])
-        change = np.flatnonzero(np.diff(padded))
-        begins, ends = change[::2], change[1::2]
-        if len(begins) == 0 or (ends - begins).max() < LEAST_RUN:
-            continue
-        widest = int((ends - begins).argmax())
-        begin, end = begins[widest], ends[widest]
-        if begin > 0:
-            least[i, j] = maps.forces[begin] / ratio
-        if end < len(maps.forces):
-            greatest[i, j] = maps.forces[end - 1] * ratio
+        least[i, j], greatest[i, j] = band(maps.forces, maps.helmholtz[i, :, j])
+    return least, greatest
+
+
+def band(forces: Array, helmholtz: Array) -> tuple[float, float]:
+    """As `bands`, of one row of forces."""
+    change = np.flatnonzero(np.diff(np.concatenate([[0], helmholtz.astype(int), [0]])))
+    begins, ends = change[::2], change[1::2]
+    if len(begins) == 0 or (ends - begins).max() < LEAST_RUN:
+        return np.nan, np.nan
+    widest = int((ends - begins).argmax())
+    begin, end = begins[widest], ends[widest]
+    ratio = float(np.sqrt(forces[1] / forces[0]))
+    least = forces[begin] / ratio if begin > 0 else np.nan
+    greatest = forces[end - 1] * ratio if end < len(forces) else np.nan
     return least, greatest
 
 

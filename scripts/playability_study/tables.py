@@ -17,26 +17,26 @@ STRINGS = ("F4 string", "C5 string")
 SOON, PERFECT = 20, 5  # periods
 FAST = 3.0  # m/s^2
 BETA, NEAR = 0.13, 4  # where forces are compared, and cells about it
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "playability.md"
 MARK = "<!-- table {name} -->"
 
 
-def write_tables(page: Path, found: Mapping[str, Sequence[Maps]]) -> None:
-    """Replace each table of the page that stands between two marks of its name."""
-    text = page.read_text(encoding="utf-8")
-    tables = {
-        "strokes": strokes(found),
-        "schelleng": schelleng(found["schelleng"]),
-        "notes": notes(found["schelleng"], found["guettler"]),
-        "guettler": guettler(found["guettler"]),
-        "repeats": repeats(found["repeats"]),
-        "speeds": speeds(found["speeds"]),
-    }
-    for name, rows in tables.items():
-        mark = MARK.format(name=name)
-        before, _, rest = text.partition(mark)
-        text = "\n".join([before + mark, *rows, mark]) + rest.partition(mark)[2]
-    page.write_text(text, encoding="utf-8")
-    print(page)
+def write_tables(found: Mapping[str, Sequence[Maps]]) -> None:
+    """Write all tables that come of the maps."""
+    write_table("strokes", strokes(found))
+    write_table("schelleng", schelleng(found["schelleng"]))
+    write_table("notes", notes(found["schelleng"], found["guettler"]))
+    write_table("guettler", guettler(found["guettler"]))
+    write_table("repeats", repeats(found["repeats"]))
+    write_table("speeds", speeds(found["speeds"]))
+
+
+def write_table(name: str, rows: Sequence[str]) -> None:
+    """Replace the table of the page that stands between two marks of its name."""
+    mark = MARK.format(name=name)
+    before, _, rest = PAGE.read_text(encoding="utf-8").partition(mark)
+    text = "\n".join([before + mark, *rows, mark]) + rest.partition(mark)[2]
+    PAGE.write_text(text, encoding="utf-8")
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
@@ -77,7 +77,7 @@ def schelleng(both: Sequence[Maps]) -> list[str]:
             f"{np.nanmedian(high):.2f}",
             f"{np.nanmedian([slope(at, row) for row in least[:, near]]):.2f}",
             f"{np.nanmedian([slope(at, row) for row in greatest[:, near]]):.2f}",
-            *correlations(maps, least, greatest),
+            *correlations(maps, least),
         ])  # fmt: skip
     words = (
         "Helmholtz motion, share of the map",
@@ -96,7 +96,7 @@ def schelleng(both: Sequence[Maps]) -> list[str]:
     return table(["", *STRINGS[: len(both)]], rows)
 
 
-def correlations(maps: Maps, least: Array, _greatest: Array) -> list[str]:
+def correlations(maps: Maps, least: Array) -> list[str]:
     """How the measured least force follows its limit from note to note."""
     at = int(np.abs(np.log(maps.places / BETA)).argmin())
     middle = median(least[:, max(0, at - NEAR) : at + NEAR + 1])

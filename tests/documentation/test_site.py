@@ -190,6 +190,7 @@ def url(site):
 in_a_browser = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
 
+@pytest.mark.slow
 @in_a_browser
 def test_in_a_browser_the_site_is_read_heard_and_searched_and_loads_nothing_from_elsewhere(url):
     seen = drive(str(HERE / "reading.mjs"), url, *WIDEST)

@@ -12,7 +12,7 @@ from fuzz.findings import Findings, broken, described, smaller
 from fuzz.target import ROOT, Target
 
 RUN = Path(__file__).parent / "run.py"
-TARGETS_TAKE_S = 0.4  # each; scripts/test --all takes ten minutes
+TARGETS_TAKE_S = 0.2  # each; scripts/test --all takes ten minutes
 
 
 def test_a_moment_of_fuzzing_each_finds_nothing(tmp_path):

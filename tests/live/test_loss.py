@@ -70,7 +70,9 @@ def wait_for_frames(osc, frames: int) -> dict:
     raise AssertionError(f"only {status['frame'] - start} of {frames} frames were played")
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "number", [pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGKILL]
+)
 def test_without_its_audio_server_it_says_so_and_plays_on(
     number, jackd, serve, recorder, tmp_path, until
 ):

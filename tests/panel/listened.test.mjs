@@ -2,7 +2,7 @@
 
 import { pathToFileURL } from "node:url";
 
-const [file] = process.argv.slice(2);
+const [file, seconds] = process.argv.slice(2);
 const { Listened } = await import(pathToFileURL(file).href);
 
 const RATE = 48000;
@@ -54,8 +54,8 @@ function listen({ ppm, seconds, lateS, ownRate = RATE }) {
 
 console.log(
   JSON.stringify({
-    fast: listen({ ppm: 200, seconds: 600, lateS: 0.003 }),
-    slow: listen({ ppm: -200, seconds: 600, lateS: 0.003 }),
+    fast: listen({ ppm: 200, seconds: Number(seconds), lateS: 0.003 }),
+    slow: listen({ ppm: -200, seconds: Number(seconds), lateS: 0.003 }),
     otherRate: listen({ ppm: 0, seconds: 60, lateS: 0.003, ownRate: 44100 }),
     late: listen({ ppm: 0, seconds: 60, lateS: 0.05 }),
   }),

@@ -1,4 +1,5 @@
-/** Looks for what keeps people out, by axe-core, in each view, dark and light; prints what it finds. */
+/** Looks for what keeps people out, by axe-core, in each view; prints what it finds.
+ * With the word "all" on a phone and a desk both dark and light, otherwise each in one of them. */
 
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -13,11 +14,15 @@ function teach() {
   localStorage.yehu ??= JSON.stringify({ learned: { keyboard } });
 }
 
+const BOTH = ["light", "dark"];
+const SCHEMES = process.argv[4] === "all" ? { phone: BOTH, desk: BOTH } : { phone: ["light"], desk: ["dark"] };
+
 await run(async (browser, url) => {
   await browser.addInitScript(teach);
   const found = [];
-  for (const colorScheme of ["light", "dark"]) {
-    for (const viewport of [SIZES.phone, SIZES.desk]) {
+  for (const size of /** @type {const} */ (["phone", "desk"])) {
+    const viewport = SIZES[size];
+    for (const colorScheme of SCHEMES[size]) {
       const { page } = await open(browser, url);
       await page.emulateMedia({ colorScheme });
       await page.setViewportSize(viewport);

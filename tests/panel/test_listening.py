@@ -16,19 +16,20 @@ AIM = 512  # frames
 
 
 @pytest.fixture(scope="module")
-def heard(node, tmp_path_factory) -> dict[str, Any]:
+def heard(node, tmp_path_factory, everything) -> dict[str, Any]:
     folder = tmp_path_factory.mktemp("listened")
     (folder / "package.json").write_text('{"type": "module"}')
     for file in (MODULE, MODULE.with_name("kernel.js")):
         shutil.copy(file, folder)
-    command = [node, str(HERE / "listened.test.mjs"), str(folder / "listened.js")]
+    seconds = "600" if everything else "120"
+    command = [node, str(HERE / "listened.test.mjs"), str(folder / "listened.js"), seconds]
     done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
     found: dict[str, Any] = json.loads(done.stdout)
     return found
 
 
 @pytest.mark.parametrize(("clock", "ppm"), [("fast", 200.0), ("slow", -200.0)])
-def test_another_clock_is_followed_for_ten_minutes_without_a_gap(heard, clock, ppm) -> None:
+def test_another_clock_is_followed_without_a_gap(heard, clock, ppm) -> None:
     found = heard[clock]
     assert found["gaps"] == 0
     assert found["aim"] == AIM

@@ -21,7 +21,7 @@ def test_a_shipped_study_can_be_run(path):
 
 def test_the_shipped_studies_are_those_of_the_page():
     assert {path.stem for path in STUDIES} == {
-        "schelleng", "guettler", "force_limits", "press", "place", "tension",
+        "schelleng", "guettler", "force_limits", "press", "place", "tension", "friction",
     }  # fmt: skip
 
 

@@ -31,7 +31,8 @@ Array = Any
 
 MOST_PANELS = 30
 LEAST_WIDTH = 8.0  # inches, for the legend
-LIMITS = ("lower", "upper")
+# What is drawn along y, where a result has it: forces first.
+UPRIGHT = ("force", "bow_force", "press", "press_force", "tension")
 
 
 def write_picture(
@@ -80,11 +81,11 @@ def write_picture(
             axes.set_xlabel(LABELS.get(x, x))
         for axes in panels[:, 0]:
             axes.set_ylabel(LABELS.get(y, y) if y else what)
-        if what == "regime":
-            handles = regime_patches(result.regimes, grid)
-            handles += limit_lines() if y in FORCE else []
+        handles = regime_patches(result.regimes, grid) if what == "regime" else []
+        handles += limit_lines() if y in FORCE else []
+        if handles:
             figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
-        elif image is not None:
+        if what != "regime" and image is not None:
             label = f"{PERIODS}; grey: never" if what == "helmholtz_s" else what
             figure.colorbar(image, ax=panels, label=label, aspect=40)
         about = str(result.meta["study"].get("about", ""))
@@ -92,10 +93,6 @@ def write_picture(
 
     size = (max(LEAST_WIDTH, 1.5 + 3.4 * across), 1.6 + 3.0 * down)
     png.write_picture(target, size, fill, overwrite=overwrite)
-
-
-# What is drawn along y, where a result has it: forces first.
-UPRIGHT = ("force", "bow_force", "press", "press_force", "tension")
 
 
 def plane_of(axes: Mapping[str, int]) -> tuple[str, str | None]:
@@ -156,7 +153,8 @@ def limits_along(
     places = np.unique(np.linspace(0, len(result.axes[x]) - 1, ALONG).astype(int))
     found = [limits_of(study, {**at, x: int(place), y: largest}) for place in places]
     sign = -1.0 if forces[largest] < 0.0 else 1.0
-    lower, upper = (sign * np.array([getattr(each, end) for each in found]) for end in LIMITS)
+    lower = sign * np.array([each.lower for each in found])
+    upper = sign * np.array([each.upper for each in found])
     return places, lower, upper
 
 

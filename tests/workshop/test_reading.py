@@ -213,6 +213,13 @@ def test_any_bytes_are_refused_in_one_line(tmp_path, name, head, data):
     assert len(str(error.value)) < 400
 
 
+def test_a_line_without_a_response_is_told(tmp_path):
+    values = np.where(HZ == 500.0, 0.0, Y)
+    path = table(tmp_path / "y.csv", ["f", "mobility_real", "imag"], HZ, values.real, values.imag)
+    with pytest.raises(MeasurementError, match="zero at 500 Hz"):
+        read([path])
+
+
 # ---------------------------------------------------------------- universal files
 
 
@@ -283,6 +290,21 @@ def test_taps_are_read_from_universal_files(taps, tmp_path):
     assert measured.admittance.taps == 3
     curve = measured.admittance.within(200.0, 4000.0)
     assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
+
+
+@pytest.mark.parametrize("name", ["length", "force"])
+def test_a_unit_of_nothing_is_told(tmp_path, name):
+    path = universal(tmp_path / "y.uff", UNITS_MM | {name: 0.0}, data_set(Y))
+    with pytest.raises(MeasurementError, match=f"unit of {name}"):
+        read([path])
+
+
+def test_a_data_set_that_ends_early_is_told(tmp_path):
+    path = universal(tmp_path / "y.uff", data_set(Y))
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([*lines[:-20], lines[-1]]) + "\n")
+    with pytest.raises(MeasurementError, match="says 980"):
+        read([path])
 
 
 def test_an_unknown_kind_of_universal_file_is_asked_for(tmp_path):

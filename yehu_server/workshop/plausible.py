@@ -27,6 +27,7 @@ MATTERS = 0.05  # relative error
 PLAIN, SURE, TOO_FAR = 1.2, 2.0, 5.0  # errors: of the right kind; of another; of none at all
 SMALLER = 0.8  # another kind's error against the told one's
 SMALLEST, LARGEST = 1e-50, 1e50  # in any units
+FAINTEST = 1e-9  # of the largest: below, nothing was measured
 USUAL, POSSIBLE = (2e-3, 20.0), (1e-4, 100.0)  # s/kg, at the highest peak of a small body
 LOUD, LOUDEST = (1e-2, 50.0), (1e-4, 500.0)  # Pa/N, at the highest peak
 
@@ -68,6 +69,11 @@ def _check_numbers(curve: Curve, what: str) -> None:
     sizes = np.abs(curve.values)
     if not (np.isfinite(sizes).all() and SMALLEST < sizes.max() < LARGEST):
         raise MeasurementError(f"{what}: its numbers are too large or too small for a measurement")
+    if sizes.min() < FAINTEST * sizes.max():
+        hz = curve.frequency_hz[sizes.argmin()]
+        raise MeasurementError(
+            f"{what}: is zero at {hz:g} Hz, where nothing can have been measured"
+        )
 
 
 def check_radiation(curve: Curve) -> list[str]:

@@ -20,6 +20,7 @@ from yehu_server.workshop.tap import Tap, cut
 ENDINGS = (".uff", ".unv", ".uf", ".bunv")
 MOST_BYTES = 256 * 2**20
 RESPONSE, TIME, COHERENCE, UNITS = 4, 1, 6, 164
+SMALLEST, LARGEST = 1e-9, 1e9  # units, to the metre and newton
 # Specific data types of the format's record 9.
 QUANTITY = {8: "displacement", 9: "force", 11: "velocity", 12: "acceleration", 13: "force",
             15: "pressure"}  # fmt: skip
@@ -70,7 +71,21 @@ def _sets(path: Path) -> list[dict[str, Any]]:
         raise MeasurementError(f"{path}: not a universal file ({str(error)[:80]})") from error
     if not any(int(entry.get("type", 0)) == 58 for entry in sets):
         raise MeasurementError(f"{path}: holds no data set 58")
+    for entry in sets:
+        _check(entry, path)
     return sets
+
+
+def _check(entry: dict[str, Any], path: Path) -> None:
+    """Refuse a data set that is not whole; the library passes it on as it is."""
+    if int(entry.get("type", 0)) == UNITS:
+        for name in ("length", "force"):
+            if not SMALLEST < float(entry.get(name, 0.0)) < LARGEST:
+                raise MeasurementError(f"{path}: its unit of {name} is none")
+        return
+    told, found = int(entry.get("num_pts", 0)), len(entry.get("data", ()))
+    if found == 0 or not found == told == len(entry.get("x", ())):
+        raise MeasurementError(f"{path}: a data set in it has {found} values, and says {told}")
 
 
 def _units(sets: list[dict[str, Any]]) -> tuple[float, float]:

@@ -60,6 +60,8 @@ from measures.transitions import clicks, legato
 from measures.tunes import tunes
 
 from yehu_server.params.table import find
+from yehu_server.physics.quantities import Quantities, read_quantities
+from yehu_server.playing.practices import read_practice
 
 MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
@@ -114,11 +116,16 @@ def main() -> None:
     )
     parser.add_argument("--seed", type=int, default=0, help="of orders and of the variation")
     parser.add_argument("--way", choices=WAYS, help="measure this way alone (shuffled)")
+    parser.add_argument("--instrument", type=Path, metavar="FILE", help="as of `render`")
+    parser.add_argument("--practice", type=Path, metavar="FILE", help="as of `render`")
     parser.add_argument("--json", type=Path, metavar="FILE", help="append the shares to this file")
     arguments = parser.parse_args()
     if arguments.way is not None and arguments.measure != shuffled.__name__:
         parser.error("--way is for shuffled")
-    setup = Setup(arguments.rate, arguments.variation, arguments.seed, arguments.way)
+    own = read_quantities(arguments.instrument) if arguments.instrument else Quantities()
+    bowing = read_practice(arguments.practice) if arguments.practice else None
+    asked = arguments.rate, arguments.variation, arguments.seed, arguments.way
+    setup = Setup(*asked, own, bowing)
     parts = MEASURES[arguments.measure](setup)
     found = whole(arguments.measure, parts)
     print(found)

@@ -44,7 +44,7 @@ WAYS: dict[str, dict[str, Any]] = {
 @cache
 def _ringing_hz(rate: float) -> tuple[float, ...]:
     """Return the frequencies (Hz) of the strings' ends behind the bridge, without stiffness."""
-    tuned = calibrated(rate).tuned(Quantities())
+    tuned = calibrated(rate, Quantities()).tuned(Quantities())
     return tuple(
         wave_speed(tuned, i) / (2.0 * (silk.L - tuned.bridge_x))
         for i, silk in enumerate(tuned.strings)

@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
@@ -44,12 +44,18 @@ class Setup:
         Of all that is left to chance.
     way : str, optional
         The only way of bowing that is measured (`shuffled`).
+    own : Quantities
+        The instrument before it is tuned.
+    bowing : ndarray, optional
+        A practice; by default that which comes with the program.
     """
 
     rate: float
     variation: float = 0.0
     seed: int = 0
     way: str | None = None
+    own: Quantities = field(default_factory=Quantities)
+    bowing: Any = None
 
     def steady_s(self, usual_s: float) -> float:
         """Return when the steady state begins (s): under variation the mean from 0.4 s counts."""
@@ -61,9 +67,9 @@ class Setup:
 
 
 @cache
-def calibrated(rate: float) -> Calibration:
-    """Return the calibration for a sample rate (Hz), of the instrument that ships."""
-    return calibration_for(rate)
+def calibrated(rate: float, own: Quantities) -> Calibration:
+    """Return the calibration of an instrument for a sample rate (Hz)."""
+    return calibration_for(rate, own)
 
 
 def _believe(instrument: Instrument, quantities: Quantities) -> None:
@@ -80,7 +86,7 @@ class Take:
     settings : mapping
         Held values of parameters, by address.
     quantities : Quantities
-        The instrument before it is tuned; its calibration is always that of the one that ships.
+        Another instrument before it is tuned; it has the calibration of that of the setup.
     tension : float
         Factor on the tension of both strings, of which the player does not know.
     """
@@ -97,12 +103,13 @@ class Take:
     ) -> None:
         self.rate = setup.rate
         start = tuple(Presets().load(preset).values.items()) if mapping == DEFAULT else ()
-        style = Style(start=start, mapping=load(mapping), seed=setup.seed)
-        usual = calibrated(setup.rate)
+        style = Style(start=start, mapping=load(mapping), seed=setup.seed, bowing=setup.bowing)
+        usual = calibrated(setup.rate, setup.own)
+        quantities = quantities or setup.own
         first, second = usual.tensions
         strung = replace(usual, tensions=(tension * first, tension * second))
         self.instrument = style.instrument(setup.rate, strung, quantities)
-        _believe(self.instrument, usual.tuned(quantities or Quantities()))
+        _believe(self.instrument, usual.tuned(quantities))
         self.wishes = style.wishes(self.instrument)
         self.wishes.write("/playing/variation", setup.variation, frame=0, hold=True)
         self.midi = style.midi(self.wishes)

@@ -236,17 +236,18 @@ def _columns(curve: Curve | None) -> dict[str, Any] | None:
 def _curve(data: Any) -> Curve | None:
     if data is None:
         return None
-    frequency_hz = np.array(data["frequency_hz"], np.float64)
-    real, imag = np.array(data["real"], np.float64), np.array(data["imag"], np.float64)
-    coherence = None if data["coherence"] is None else np.array(data["coherence"], np.float64)
+    names = ["frequency_hz", "real", "imag"] + ["coherence"] * (data["coherence"] is not None)
+    columns = [np.array(data[name], np.float64) for name in names]
+    frequency_hz, real, imag, *coherence = columns
     is_whole = frequency_hz.ndim == 1 and len(frequency_hz) > 5
-    if not is_whole or not real.shape == imag.shape == frequency_hz.shape:
+    if not is_whole or any(column.shape != frequency_hz.shape for column in columns):
         raise ValueError("its curves are damaged")
-    if not np.isfinite([frequency_hz, real, imag]).all():
+    if not np.isfinite(columns).all():
         raise ValueError("a number is not finite")
     if np.diff(frequency_hz).min() <= 0.0 or not frequency_hz[0] > 0.0:
         raise ValueError("its frequencies do not rise")
-    return Curve(frequency_hz, real + 1j * imag, coherence, int(data["taps"]))
+    of_taps = coherence[0] if coherence else None
+    return Curve(frequency_hz, real + 1j * imag, of_taps, int(data["taps"]))
 
 
 def _differences(data: Any) -> Differences | None:

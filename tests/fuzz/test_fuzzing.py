@@ -15,6 +15,7 @@ RUN = Path(__file__).parent / "run.py"
 TARGETS_TAKE_S = 0.2  # each; scripts/test --all takes ten minutes
 
 
+@pytest.mark.slow
 def test_a_moment_of_fuzzing_each_finds_nothing(tmp_path):
     engine = ("--engine", "hypothesis")  # atheris takes a second at least
     words = [sys.executable, RUN, *engine, "--seconds", TARGETS_TAKE_S, "--findings", tmp_path]

@@ -59,6 +59,7 @@ from measures.take import Setup
 from measures.transitions import clicks, legato
 from measures.tunes import tunes
 
+from yehu_server.errors import YehuError
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities, read_quantities
 from yehu_server.playing.practices import read_practice
@@ -92,13 +93,19 @@ def variation(text: str) -> float:
     return param.default if text == "default" else param.accept(float(text))
 
 
-def append(file: Path, setup: Setup, found: Share, parts: list[Share]) -> None:
-    """Append a line of JSON: what was measured, its share, and those of its parts."""
+def append(
+    file: Path, setup: Setup, found: Share, parts: list[Share], **files: Path | None
+) -> None:
+    """Append a line of JSON: what was measured, its share, and those of its parts.
+
+    `files` names what was measured in place of what ships.
+    """
     data = {
         "measure": found.what,
         "rate": setup.rate,
         "variation": setup.variation,
         "seed": setup.seed,
+        **{name: str(path) for name, path in files.items() if path is not None},
         **{name: value for name, value in found.as_data().items() if name != "what"},
         "parts": [part.as_data() for part in parts],
     }
@@ -122,15 +129,19 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.way is not None and arguments.measure != shuffled.__name__:
         parser.error("--way is for shuffled")
-    own = read_quantities(arguments.instrument) if arguments.instrument else Quantities()
-    bowing = read_practice(arguments.practice) if arguments.practice else None
+    instrument, practice = arguments.instrument, arguments.practice
+    try:
+        own = read_quantities(instrument) if instrument else Quantities()
+        bowing = read_practice(practice) if practice else None
+    except YehuError as error:
+        parser.error(str(error))
     asked = arguments.rate, arguments.variation, arguments.seed, arguments.way
     setup = Setup(*asked, own, bowing)
     parts = MEASURES[arguments.measure](setup)
     found = whole(arguments.measure, parts)
     print(found)
     if arguments.json is not None:
-        append(arguments.json, setup, found, parts)
+        append(arguments.json, setup, found, parts, instrument=instrument, practice=practice)
 
 
 if __name__ == "__main__":

@@ -38,16 +38,10 @@ from yehu_server.player.bowing import (
 from yehu_server.player.calibration import OPEN_NOTES, PITCHES
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.practices import shipped_practice
-from yehu_server.plot.cells import (
-    draw_cells,
-    draw_limits,
-    limit_lines,
-    regime_colours,
-    regime_patches,
-)
+from yehu_server.plot.cells import limit_lines, regime_patches
 from yehu_server.plot.colours import LABELS
 from yehu_server.plot.maps import map_of
-from yehu_server.plot.study import limits_along
+from yehu_server.plot.study import draw_limits_over, draw_map
 from yehu_server.sweeps.result import Result
 from yehu_server.sweeps.running import sweep
 from yehu_server.sweeps.study import study_of
@@ -109,14 +103,8 @@ def bowed(rate: float, player: Player, vary: dict[str, Any]) -> Result:
 def draw(axes: Any, found: Result, x: str, at: dict[str, int]) -> None:
     """Draw regimes over force and another quantity, and Schelleng's limits."""
     cells = map_of(found, found.grid("regime"), x, "force", at)
-    across, forces = found.axes[x], found.axes["force"]
-    draw_cells(axes, across, forces, cells, log=(True, True), **regime_colours(found.regimes))
-    limits = limits_along(found, found.study(), x, "force", at)
-    if limits is not None:
-        ends = axes.get_ylim()
-        places, lower, upper = limits
-        draw_limits(axes, across[places], lower, upper)
-        axes.set(ylim=ends)
+    draw_map(axes, found, x, "force", cells, "regime")
+    draw_limits_over(axes, found, found.study(), x, "force", at)
     axes.set_xlabel(LABELS[x])
     shares = np.bincount(cells.astype(int).ravel(), minlength=len(found.regimes)) / cells.size
     words = [

@@ -42,24 +42,24 @@ WAYS: dict[str, dict[str, Any]] = {
 
 
 @cache
-def _ringing_hz(rate: float) -> tuple[float, ...]:
+def _ringing_hz(rate: float, own: Quantities) -> tuple[float, ...]:
     """Return the frequencies (Hz) of the strings' ends behind the bridge, without stiffness."""
-    tuned = calibrated(rate, Quantities()).tuned(Quantities())
+    tuned = calibrated(rate, own).tuned(own)
     return tuple(
         wave_speed(tuned, i) / (2.0 * (silk.L - tuned.bridge_x))
         for i, silk in enumerate(tuned.strings)
     )
 
 
-def _harmonics_db(sound: Sound, rate: float, pitch: float) -> float:
+def _harmonics_db(sound: Sound, setup: Setup, pitch: float) -> float:
     """Return the power of the harmonics (dB) relative to all between them."""
-    size = 4 * len(sound)
+    size, rate = 4 * len(sound), setup.rate
     power = np.abs(np.fft.rfft(sound * np.hanning(len(sound)), size)) ** 2
     frequency = frequency_hz(pitch, 440.0)
     multiples = np.arange(len(power)) * rate / size / frequency
     near = np.abs(multiples - np.rint(multiples)) * frequency < 4.0 * rate / len(sound)
     heard = (multiples > 0.5) & (multiples * frequency < 10000.0)
-    for ringing in _ringing_hz(rate):
+    for ringing in _ringing_hz(rate, setup.own):
         part = multiples * frequency / ringing
         order = np.floor(part)
         heard &= (part > (1.0 + STIFFER) * order) | (order > LAST_RINGING)
@@ -81,7 +81,7 @@ def _in_order(
         end = round(((i + 1) * EACH_S - REST_S) * rate)
         half = sound[end - round(0.5 * EACH_S * rate) : end]
         error = overtones_off_by(half, rate, 0.0, 0.5 * EACH_S, note)
-        found.append((note, a_weighted_db(half, rate), error, _harmonics_db(half, rate, note)))
+        found.append((note, a_weighted_db(half, rate), error, _harmonics_db(half, setup, note)))
     return found
 
 

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 from maps import band, median
-from tables import table, write_table
+from tables import BETA, named, table, write_table
 
-from yehu_server.analysis.pitch import note_name
+from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities
 from yehu_server.regimes.names import HELMHOLTZ
 from yehu_server.sweeps.running import sweep
@@ -25,7 +25,8 @@ from yehu_server.sweeps.study import study_of
 
 BOWS = list(range(9))  # seeds of the hair
 FORCES = {"from": 0.03, "to": 12.0, "steps": 161, "spread": "log"}  # N
-STROKE = {"speed": 0.2, "acceleration": 10.0, "noise": 0.025, "position": 0.13}
+NOISE = find("/bow/noise").default
+STROKE = {"speed": 0.2, "acceleration": 10.0, "noise": NOISE, "position": BETA}
 AS_THEY_ARE = Quantities()
 STRINGS = dict(zip(("string_1", "string_2"), AS_THEY_ARE.strings, strict=True))
 HEAVY = 100.0
@@ -39,10 +40,9 @@ CHANGES: dict[str, tuple[float, dict[str, Any]]] = {  # finger force (N), instru
         {i: {"sigma_0": 0.25 * s.sigma_0, "sigma_1": 0.25 * s.sigma_1} for i, s in STRINGS.items()},
     ),
     "a finger of 6 N": (6.0, {}),
-    "a body 100 times as heavy": (1.5, {"body": "heavy.json"}),
+    f"a body {HEAVY:g} times as heavy": (1.5, {"body": "heavy.json"}),
     "that, and 6 N": (6.0, {"body": "heavy.json"}),
 }
-NAMES = ("F4", "C5")
 NOTES = ((1, 70), (1, 72), (1, 75), (2, 72), (2, 75), (2, 84))  # string, note
 
 
@@ -77,7 +77,7 @@ def main() -> None:
             found = [forces(*note, press, instrument, folder) for note in NOTES]
             rows.append([what, *(f"{least:.2f}, {greatest:.1f}" for least, greatest in found)])
             print(*rows[-1], sep=" | ", flush=True)
-    head = [f"{note_name(float(note))}, {NAMES[string - 1]}" for string, note in NOTES]
+    head = [named(note, string - 1) for string, note in NOTES]
     write_table("causes", table(["changed", *head], rows))
 
 

@@ -19,7 +19,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from maps import KINDS, NEVER, Maps, bands, median, read
 from matplotlib.ticker import FormatStrFormatter
-from tables import write_tables
+from tables import STRINGS, named, write_tables
 
 from yehu_server.analysis.pitch import note_name
 from yehu_server.physics.quantities import measured_body
@@ -34,8 +34,7 @@ from yehu_server.plot.colours import LABELS
 from yehu_server.plot.maps import PERIOD_COLOURS, PERIODS
 
 ROOT = Path(__file__).resolve().parents[2]
-STRINGS = ("F4 string", "C5 string")
-BLUE, RED, GREEN = "#1f5fa8", "#c03a2b", "#2f8f5b"
+BLUE, RED = "#1f5fa8", "#c03a2b"
 Array = Any
 
 
@@ -74,7 +73,7 @@ def regimes(strings: list[Maps], target: Path) -> None:
     names = strings[0].facts["regimes"]
     for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
         panel(axes, maps, i, maps.regime[i], **regime_colours(names))
-        axes.set_title(f"{note_name(float(maps.notes[i]))}, {STRINGS[k][:2]}", fontsize=8, pad=2)
+        axes.set_title(named(maps.notes[i], k), fontsize=8, pad=2)
     occurring = np.concatenate([np.unique(maps.regime) for maps in strings])
     handles = [*regime_patches(names, occurring), *limit_lines()]
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
@@ -90,7 +89,7 @@ def onsets(strings: list[Maps], target: Path) -> None:
     for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
         shown = np.where(maps.periods[i] == NEVER, np.nan, maps.periods[i])
         image = panel(axes, maps, i, shown, **PERIOD_COLOURS)
-        axes.set_title(f"{note_name(float(maps.notes[i]))}, {STRINGS[k][:2]}", fontsize=8, pad=2)
+        axes.set_title(named(maps.notes[i], k), fontsize=8, pad=2)
     label = f"{PERIODS}; grey: never"
     figure.colorbar(image, ax=panels, label=label, aspect=50, pad=0.01)
     label_tiles(panels, LABELS["acceleration"])

@@ -45,6 +45,11 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     return ["| " + " | ".join(line) + " |" for line in lines]
 
 
+def named(note: float, string: int) -> str:
+    """A note, and the string (0 or 1) that it is on."""
+    return f"{note_name(float(note))}, {STRINGS[string][:2]}".replace("#", "♯")
+
+
 def strokes(found: Mapping[str, Sequence[Maps]]) -> list[str]:
     """How many strokes there are of each study."""
     rows = []
@@ -109,7 +114,7 @@ def correlations(maps: Maps, least: Array) -> list[str]:
 def notes(both: Sequence[Maps], guettlers: Sequence[Maps]) -> list[str]:
     """What the maps say of each note."""
     rows = []
-    for maps, starts, string in zip(both, guettlers, STRINGS, strict=True):
+    for k, (maps, starts) in enumerate(zip(both, guettlers, strict=True)):
         least, greatest = bands(maps)
         at = int(np.abs(np.log(maps.places / BETA)).argmin())
         near = slice(max(0, at - NEAR), at + NEAR + 1)
@@ -117,7 +122,7 @@ def notes(both: Sequence[Maps], guettlers: Sequence[Maps]) -> list[str]:
         for i, note in enumerate(maps.notes):
             own = maps.helmholtz[i]
             rows.append([
-                f"{note_name(float(note))}, {string[:2]}".replace("#", "♯"),
+                named(note, k),
                 f"{100 * own.mean():.0f}",
                 f"{100 * own[maps.inside[i]].mean():.0f}",
                 number(low[i]), number(maps.lower[i, at]),

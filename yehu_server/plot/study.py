@@ -74,8 +74,8 @@ def write_picture(
             if y is None:
                 _draw_line(axes, result, x, grid.reshape(-1), what)
             else:
-                image = _draw_map(axes, result, x, y, map_of(result, grid, x, y, at), what)
-                _draw_limits(axes, result, study, x, y, at)
+                image = draw_map(axes, result, x, y, map_of(result, grid, x, y, at), what)
+                draw_limits_over(axes, result, study, x, y, at)
             axes.set_title(title_of(result, at), fontsize="small")
         for axes in panels.flat[max(0, len(maps) - across) : len(maps)]:
             axes.set_xlabel(LABELS.get(x, x))
@@ -158,7 +158,8 @@ def limits_along(
     return places, lower, upper
 
 
-def _draw_map(axes: Any, result: Result, x: str, y: str, cells: Array, what: str) -> Any:
+def draw_map(axes: Any, result: Result, x: str, y: str, cells: Array, what: str) -> Any:
+    """Draw the cells of one map of a column; return the image."""
     options: dict[str, Any] = {"cmap": "viridis_r"}
     if what == "regime":
         options = regime_colours(result.regimes)
@@ -169,9 +170,10 @@ def _draw_map(axes: Any, result: Result, x: str, y: str, cells: Array, what: str
     return draw_cells(axes, across, up, cells, log=log, **options)
 
 
-def _draw_limits(
+def draw_limits_over(
     axes: Any, result: Result, study: Study, x: str, y: str, at: Mapping[str, int]
 ) -> None:
+    """Draw Schelleng's limits over a map, where y is the bow's force."""
     found = limits_along(result, study, x, y, at)
     if found is not None:
         ends = axes.get_xlim(), axes.get_ylim()

@@ -25,9 +25,9 @@ from figures import BLUE, RED, save
 from yehu_server.analysis.level import a_weighted_db
 from yehu_server.analysis.pitch import cents, note_name, pitch_hz
 from yehu_server.errors import ScoreError, YehuError
+from yehu_server.midi.channels import PERCUSSION
 from yehu_server.player.calibration import frequency_hz
 from yehu_server.playing.mapping import DEFAULT, load
-from yehu_server.playing.messages import PERCUSSION
 from yehu_server.playing.style import Style
 from yehu_server.rendering import Options, Performance
 from yehu_server.score.score import Score

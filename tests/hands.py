@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.midi.interpret import interpret
 from yehu_server.params.table import ENGINE, FINGERS, SLOT, find
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
@@ -48,9 +49,9 @@ class Move(NamedTuple):
 
 
 class Watched(Instrument):
-    """Fulfils each wish as it is posted, and keeps what moves; options are `Instrument`'s.
+    """Acts on each event as it is posted, and keeps what moves; options are `Instrument`'s.
 
-    Wishes that name no frame come a frame after each other. Whatever moves has arrived before the
+    Events that name no frame come a frame after each other. Whatever moves has arrived before the
     next wish.
     """
 
@@ -72,6 +73,16 @@ class Watched(Instrument):
     ) -> bool:
         self._count += 1
         at = self._count if frame is None else frame
+        m, places = self.midi, (self._rig["midi"].ctypes.data, self._rig["tables"].ctypes.data)
+        interpret.call(*places, at, kind, index, value, other)
+        for n in range(int(m["wishes"])):
+            wish = (m[f"out_{what}"][n].item() for what in ("kind", "index", "value", "other"))
+            self._fulfil(frame, at, *wish)
+        return True
+
+    def _fulfil(
+        self, frame: int | None, at: int, kind: int, index: int, value: float, other: float
+    ) -> None:
         c = self._controls[0]
         c["remaining"] = -1  # of what is not moved
         before = c["value"].copy()
@@ -88,7 +99,6 @@ class Watched(Instrument):
         if c["silence_in"] > 0:
             self.silenced.append(frame)
         c["silence_in"] = 0
-        return True
 
     def meters(self) -> Any:
         """The meters, as if all that is posted had been applied."""

@@ -31,17 +31,16 @@ from yehu_server.control import (
 )
 from yehu_server.engine import mailbox, output, telemetry
 from yehu_server.files import MAX_LINE_BYTES
+from yehu_server.midi import channels, curves
 from yehu_server.params.table import find
 from yehu_server.physics import grid, layout
 from yehu_server.physics.quantities import FingerQuantities, read_body
 from yehu_server.player import left_hand, right_hand
 from yehu_server.playing import (
-    binds,
     delay,
     learner,
     mapping_entries,
     presets,
-    zones,
 )
 from yehu_server.playing.calibrations import SHIPPED
 from yehu_server.score import capture, capture_format, gesture
@@ -217,10 +216,10 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
     },
     "mappings/README.md": {
         "up to {:g}: what": (mapping_entries.LONGEST_SMOOTHING_MS,),
-        "within a {:g}th of": (1.0 / binds.PICKUP_WINDOW,),
+        "within a {:g}th of": (1.0 / curves.PICKUP_WINDOW,),
         "by {} of its": (TIMES[learner.DISTANCE],),
-        "one zone of {} member channels": (zones.MOST_MEMBERS,),
-        "±{:g} semitones a note, ±{:g} on the master": (zones.MEMBER_BEND, zones.MASTER_BEND),
+        "one zone of {} member channels": (channels.MOST_MEMBERS,),
+        "±{:g} semitones a note, ±{:g} on the master": (channels.MEMBER_BEND, channels.MASTER_BEND),
     },
     "presets/README.md": {
         "Up to {} of your own": (presets.MOST_OWN,),

@@ -44,6 +44,7 @@ FOLDERS = (
     "params",
     "controls",
     "player",
+    "midi",
     "regimes",
     "stage",
     "engine",

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 from numba import carray as compiled_carray
+from numba import types
 
-from yehu_server.jit import IS_PLAIN
+from yehu_server.jit import IS_PLAIN, intrinsic
 from yehu_server.plain import with_attributes
 
 if IS_PLAIN:
@@ -32,3 +33,17 @@ def _plain_carray(address: int, shape: tuple[int, ...], kind: Any) -> Any:
 
 # The array of a shape and dtype at an address; nothing is copied.
 carray: Callable[..., Any] = _plain_carray if IS_PLAIN else compiled_carray
+
+
+def _plain_address_of(record: Any) -> int:
+    return int(record.__array_interface__["data"][0])
+
+
+@intrinsic(plain=_plain_address_of)
+def address_of(_context: Any, record: Any) -> Any:
+    """The address of a record, for what is compiled apart; nothing is copied."""
+
+    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return builder.bitcast(arguments[0], context.get_value_type(types.voidptr))
+
+    return types.voidptr(record), generate

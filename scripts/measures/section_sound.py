@@ -13,7 +13,6 @@ from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.player.calibration import OPEN_NOTES
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.section import section_wishes
 from yehu_server.playing.section_people import section_makes
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
@@ -117,7 +116,7 @@ def loudness(rate: float, seed: int) -> dict[str, Any]:
         style = Style(seed=seed)
         makes = section_makes(style, rate, calibration_for(rate), people=people)
         ensemble = Ensemble(makes)
-        wishes = section_wishes(style, ensemble.instruments)
+        wishes = style.wishes(ensemble.instruments)
         midi = style.midi(wishes)
         for number, note in enumerate(NOTES):
             midi.note_on(Key(0, note), 80 / 127.0, round(number * BEAT_S * rate))

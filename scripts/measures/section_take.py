@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
+import os
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.ensemble import Ensemble
 from yehu_server.player.wishes import BEGIN
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.section import section_wishes
 from yehu_server.playing.section_people import SECTION, section_makes
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
+from yehu_server.rendering.cores import Cores, shared
+from yehu_server.stage.geometry import EARS
 
 BLOCK_S = 1.0
 
@@ -26,10 +27,11 @@ class SectionTake:
         style = replace(Style(seed=seed), start=((SECTION, float(people)),))
         makes = section_makes(style, rate, calibration_for(rate), people=people)
         self.rate = rate
-        self.instruments: list[Instrument] = [make(None) for make in makes]
+        self._ensemble = Ensemble(makes, has_room=False)
+        self.instruments = self._ensemble.instruments
         for instrument in self.instruments:
             instrument.report_wishes()
-        self.wishes = section_wishes(style, self.instruments)
+        self.wishes = style.wishes(self.instruments)
         self.midi = style.midi(self.wishes)
         self.begun: list[list[int]] = [[] for _ in self.instruments]  # frames of onsets
 
@@ -41,15 +43,16 @@ class SectionTake:
 
     def play(self, seconds: float) -> Any:
         """Return the sound of each player [shape=(players, frames)]."""
-        frames = round(seconds * self.rate)
+        frames, block = round(seconds * self.rate), round(BLOCK_S * self.rate)
         sounds = np.zeros((len(self.instruments), frames), np.float32)
-        with ThreadPoolExecutor() as pool:
-            list(pool.map(self._play, range(len(self.instruments)), sounds))
+        with shared(os.cpu_count() or 1) as share:
+            cores = Cores(self._ensemble, share, has_stems=True)
+            for begin in range(0, frames, block):
+                out = np.zeros((min(block, frames - begin), EARS), np.float32)
+                cores.process(out)
+                for number, instrument in enumerate(self.instruments):
+                    end = begin + len(out)
+                    sounds[number, begin:end] = cores.stems[:, number].mean(axis=1)
+                    wishes = instrument.applied_wishes()
+                    self.begun[number] += wishes["frame"][wishes["kind"] == BEGIN].tolist()
         return sounds
-
-    def _play(self, number: int, sound: Any) -> None:
-        instrument, block = self.instruments[number], round(BLOCK_S * self.rate)
-        for begin in range(0, len(sound), block):
-            instrument.process(sound[begin : begin + block])
-            wishes = instrument.applied_wishes()
-            self.begun[number] += wishes["frame"][wishes["kind"] == BEGIN].tolist()

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from measures.section_take import SectionTake
-from yehu_server.playing.section_timing import Together
+from measures.together import Together
 
 PULSE_S, NOTE_S = 0.5, 0.3
 NOTES = (67, 69, 70, 72, 74)
@@ -18,7 +18,7 @@ HOP_S = 0.001
 
 
 def fit(onsets: Any) -> tuple[Any, float]:
-    """Fit the law of ``playing.section_timing`` to onsets.
+    """Fit the law of ``midi.section_timing`` to onsets.
 
     Parameters
     ----------

@@ -130,6 +130,7 @@ class Stage:
         self.instrument = style.instrument(self.RATE, calibration)
         self._moves = Moves(self.instrument)
         self.instrument.frame_at = self._frame_at
+        self.others: list[Instrument] = []  # more instruments, played along
         self.pace = 1.0  # of the device, relative to its nominal rate
         self._began = (clock.now, 0)
         self.player = live.LivePlayer(
@@ -170,11 +171,18 @@ class Stage:
                 sound = np.zeros(self.block, np.float32)
                 self.instrument.process(sound)
                 out.append(sound)
+                for other in self.others:
+                    other.process(np.zeros(self.block, np.float32))
             self.clock.now += 0.001
             self.handler.tick()
         self.events += [move[:3] for move in self._moves.seen()]
         assert self._moves.are_those_of_the_audio_side()
         return np.concatenate(out) if out else np.zeros(0, np.float32)
+
+    def value(self, address: str) -> float:
+        """The value of a parameter, after everything said up to now was played."""
+        self.pass_time(0.01)
+        return self.player.value(address)
 
     def target(self, address: str) -> float:
         return target_of(self.instrument, address)

@@ -90,7 +90,7 @@ def test_a_note_is_louder_the_harder_it_is_struck(stage_type):
     for velocity in (1, 64, 127):
         stage = stage_type()
         stage.tell("/note", 67, velocity)
-        pressures.append(stage.player.value("/playing/pressure"))
+        pressures.append(stage.value("/playing/pressure"))
     assert pressures == sorted(set(pressures))
 
 

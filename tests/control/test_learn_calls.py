@@ -39,7 +39,7 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(stage, address):
     assert stage.desk.changed == ["/"]
     assert "cc 20 moves /playing/vibrato" in stage.desk.said[0]
     turn(stage, 20, 127)
-    assert stage.player.value("/playing/vibrato") == 100.0
+    assert stage.value("/playing/vibrato") == 100.0
     turn(stage, 21, 0, 127)  # only one thing is learned
     assert stage.player.mapping == load("keyboard", own_first=True)
     assert not stage.player.mapping.of("cc 21")
@@ -52,7 +52,7 @@ def test_a_knob_of_another_box_moves_the_note_that_sounds(stage):
     turn(stage, 20, 10, 20, 64)
     assert told(stage.ear.heard(), "/learned")[0][1] == "cc 20"
     turn(stage, 20, 127)
-    assert stage.player.value("/playing/vibrato") == 100.0
+    assert stage.value("/playing/vibrato") == 100.0
 
 
 def test_a_knob_on_the_drums_channel_is_learned_and_heard(stage):
@@ -61,7 +61,7 @@ def test_a_knob_on_the_drums_channel_is_learned_and_heard(stage):
     turn(stage, 20, 10, 20, 64, channel=9)
     assert told(stage.ear.heard(), "/learned")[0][1] == "cc 20"
     turn(stage, 20, 127, channel=9)
-    assert stage.player.value("/playing/vibrato") == 100.0
+    assert stage.value("/playing/vibrato") == 100.0
 
 
 def test_an_address_of_the_users_own_is_learned_as_a_knob_is(stage, wire):
@@ -70,7 +70,7 @@ def test_an_address_of_the_users_own_is_learned_as_a_knob_is(stage, wire):
         stage.take(wire.message("/my/fader", value))
     assert told(stage.ear.heard(), "/learned")[0][1] == "/my/fader"
     stage.take(wire.message("/my/fader", 1.0))
-    assert stage.player.value("/output/gain") == 24.0
+    assert stage.value("/output/gain") == 24.0
     assert stage.player.addresses == ("/my/fader",)
 
 
@@ -111,12 +111,12 @@ def test_who_asks_last_is_served(stage):
 def test_a_soft_one_waits_for_its_place(stage, soft):
     stage.ask("/learn", "/playing/speed", soft)
     turn(stage, 20, 0, 20, 30)  # 0.2 m/s is at 80
-    assert (stage.player.value("/playing/speed") == pytest.approx(0.2)) == bool(soft)
+    assert (stage.value("/playing/speed") == pytest.approx(0.2)) == bool(soft)
     turn(stage, 20, 100)
-    passed = stage.player.value("/playing/speed")
+    passed = stage.value("/playing/speed")
     assert passed > 0.25
     turn(stage, 20, 30)
-    assert stage.player.value("/playing/speed") < 0.1
+    assert stage.value("/playing/speed") < 0.1
 
 
 @pytest.mark.parametrize(
@@ -158,6 +158,7 @@ def test_what_was_learned_can_be_forgotten(stage):
 
 def test_every_binding_is_told_with_where_it_is(stage):
     turn(stage, 1, 127, channel=3)
+    stage.pass_time(0.01)
     heard = stage.ask("/bindings")
     rows = {row[0]: row for row in told(heard, "/binding")}
     assert told(heard, "/bindings") == [[len(stage.player.mapping.binds)]]

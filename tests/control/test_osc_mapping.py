@@ -34,18 +34,18 @@ def say(stage, wire, address: str, *arguments, tags: str | None = None) -> list[
 def test_an_address_of_ones_own_moves_what_it_is_bound_to(own_stage, wire):
     for sent, volume in ((0.0, 0.0), (63.5, 0.5), (127, 1.0), (900.0, 1.0), (-1, 0.0)):
         assert say(own_stage, wire, "/fader1", sent) == []
-        assert own_stage.player.value(VOLUME) == volume
+        assert own_stage.value(VOLUME) == volume
     assert say(own_stage, wire, "/1/push", tags="T") == []
-    assert own_stage.player.value("/playing/pizzicato") == 1.0
+    assert own_stage.value("/playing/pizzicato") == 1.0
 
 
 def test_patterns_reach_ones_own_addresses_too(own_stage, wire):
     assert say(own_stage, wire, "/fader[12]", 0) == []
-    assert own_stage.player.value(VOLUME) == 0.0
-    assert own_stage.player.value("/playing/expression") == 1.0
+    assert own_stage.value(VOLUME) == 0.0
+    assert own_stage.value("/playing/expression") == 1.0
     assert say(own_stage, wire, "/fader{2,3}", 1) == []
-    assert own_stage.player.value("/playing/expression") == 0.0
-    assert own_stage.player.value(VOLUME) == 0.0
+    assert own_stage.value("/playing/expression") == 0.0
+    assert own_stage.value(VOLUME) == 0.0
     assert say(own_stage, wire, "/fadr*", 1) == ["/fadr* the pattern matches no address"]
 
 
@@ -63,7 +63,7 @@ def test_patterns_reach_ones_own_addresses_too(own_stage, wire):
 def test_what_ones_own_address_cannot_mean_is_answered(own_stage, wire, address, arguments, reason):
     (error,) = say(own_stage, wire, address, *arguments)
     assert error.startswith(f"{address} {reason}")
-    assert own_stage.player.value(VOLUME) == 1.0
+    assert own_stage.value(VOLUME) == 1.0
 
 
 def test_an_address_that_the_mapping_gives_up_is_unknown(own_stage, wire):
@@ -86,8 +86,7 @@ def test_ones_own_address_is_heard_at_the_time_of_its_tag(own_stage, wire):
 def test_subscribers_hear_of_what_ones_own_address_moves(own_stage, wire):
     own_stage.ask("/subscribe")
     own_stage.take(wire.message("/fader1", 0.0))
-    own_stage.clock.now += 0.02
-    own_stage.handler.tick()
+    own_stage.pass_time(0.05)
     assert ("/yehu/playing/volume", 0.0) in [
         (heard.address, *heard.arguments) for heard in own_stage.ear.heard()
     ]

@@ -28,6 +28,7 @@ def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched
     def send(control: int) -> float:
         message = mido.Message("control_change", control=control, value=0, channel=0)
         watched.player.receive(message, frame=watched.player.frame_of(), port=0)
+        watched.settle()
         return watched.player.value("/playing/volume")
 
     note = mido.Message("note_on", note=70, velocity=90, channel=0)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sound import alone, bow, run
 
-from yehu_server.engine import mixing, sounding
+from yehu_server.engine import intake, mixing, sounding
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import MOST_PARTS
@@ -44,6 +44,7 @@ def apart(ensemble: Ensemble, frames: int) -> tuple[np.ndarray, np.ndarray, np.n
     dry = np.zeros((parts, frames))
     told = np.zeros((parts, frames, sounding.TOLD))
     first = ensemble.frame
+    assert intake.take_in.call(ensemble.address, first + frames) == first + frames
     for instrument, samples, said in zip(ensemble.instruments, dry, told, strict=True):
         pointers = samples.ctypes.data, said.ctypes.data
         sounding.sound_block.call(instrument.address, frames, *pointers)

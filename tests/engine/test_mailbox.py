@@ -26,10 +26,11 @@ from yehu_server.engine import rig as memory
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
+from yehu_server.midi.events import TABLES_TO
 from yehu_server.params.table import ENGINE, SLOT
 from yehu_server.player.record import PLAYER
 from yehu_server.player.rows import ROW, ROWS
-from yehu_server.player.wishes import BEGIN, EXPRESS, HOLD, KINDS, RAMP, WRITE
+from yehu_server.player.wishes import BEGIN, EXPRESS, HOLD, RAMP, WRITE
 
 RATE = 22050
 PATIENCE_S = 120.0  # for other threads and processes; they took 20 s on a busy machine
@@ -42,6 +43,7 @@ INERT = [SLOT["/bow/force"], SLOT["/bow/pressure"]]
 ]
 run = partial(sound.run, block=4096)
 FAR = 10**9  # a frame that never comes
+LAST = TABLES_TO  # kind of events
 
 needs_memfd = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no memfd_create here")
 
@@ -487,7 +489,7 @@ def test_a_live_instrument_takes_in_so_many_wishes_for_each_64_frames():
     [
         *product([RAMP], [-1, -2, SILENCE + 1, SILENCE + 5, 2**62, -(2**62)]),
         *product([WRITE, HOLD, EXPRESS], [-1, -2, ROWS, ROWS + 5, 2**62, -(2**62)]),
-        *product([-1, -2, len(KINDS), len(KINDS) + 5, 2**62, -(2**62)], [0, ROW["/playing/speed"]]),
+        *product([-1, -2, LAST + 1, LAST + 5, 2**62, -(2**62)], [0, ROW["/playing/speed"]]),
     ],
 )
 def test_a_wish_of_no_kind_or_for_no_parameter_changes_nothing(kind, index):
@@ -558,7 +560,7 @@ def died(ensemble: Ensemble) -> None:
 def test_a_heap_that_is_out_of_order_is_put_in_order_again():
     ensemble, expected = waiting_wishes()
     instrument = ensemble.first
-    heap = instrument._rig["heap"][0]
+    heap = instrument._rig["events"][0]
     heap[:MANY] = heap[np.random.default_rng(1).permutation(MANY)]
     died(ensemble)
     run(ensemble, 1000)
@@ -571,11 +573,11 @@ def test_a_wish_that_came_while_the_process_died_comes_once_and_no_other_is_lost
     # and the one that moves may be nowhere. It is still counted, or no longer.
     ensemble, expected = waiting_wishes()
     instrument = ensemble.first
-    heap = instrument._rig["heap"][0]
+    heap = instrument._rig["events"][0]
     number = int(heap["order"][lost])
     heap[lost] = heap[MANY // 2]
     died(ensemble)
-    assert instrument._rig["mail"]["waiting"][0] == MANY - 1
+    assert instrument._rig["mail"]["coming"][0] == MANY - 1
     run(ensemble, 1000)
     expected.remove(number)
     np.testing.assert_array_equal(numbers(instrument.applied_wishes()), expected)
@@ -584,7 +586,7 @@ def test_a_wish_that_came_while_the_process_died_comes_once_and_no_other_is_lost
 def test_wishes_that_come_after_a_heap_was_mended_find_their_place():
     ensemble, expected = waiting_wishes()
     instrument = ensemble.first
-    heap = instrument._rig["heap"][0]
+    heap = instrument._rig["events"][0]
     heap[:MANY] = heap[:MANY][::-1].copy()
     died(ensemble)
     post_numbered(instrument, MANY, 300)

@@ -21,6 +21,8 @@ from yehu_server.engine import rig as memory
 from yehu_server.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.warming import PLAYED_BY
+from yehu_server.midi.interpret import APART as PARTS
+from yehu_server.midi.interpret import interpret
 from yehu_server.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
 from yehu_server.player.record import SILENT
 from yehu_server.player.rows import ROW
@@ -33,17 +35,29 @@ CALLS = {call.function.__name__: call for call in PLAYED_BY}
 REAL_TIME_SAFE = {
     *("clock_gettime", "memcpy", "memset", "memmove"),
     *("exp", "log", "log2", "pow", "sin", "cos", "sincos", "tan", "tanh", "sqrt", "fabs", "floor"),
-    *("exp2", "ldexp"),
+    *("exp2", "ldexp", "log10", "asin", "ceil"),
     "rint",  # where the processor has no instruction that rounds: x86-64 before SSE4.1
 }
 
 # What each may call that is compiled apart, and is itself one of the calls.
 APART = {
-    "callback": {"yehu_sound", "yehu_mix", "yehu_publish"},
+    "callback": {"yehu_take_in", "yehu_sound", "yehu_mix", "yehu_publish"},
+    "take_in": {"yehu_interpret"},
     "sound": {"yehu_fulfil", "yehu_attend"},
     "sound_block": {"yehu_sound"},
     "mix_block": {"yehu_mix"},
 }
+
+# Of what interprets events, each calls some of the functions that are compiled apart.
+INTERPRETING = {call.function.__name__: call for call in (*PARTS, interpret)}
+
+
+def only_safe(found: set[str], name: str) -> bool:
+    """Whether foreign names are safe, or those of calls that are compiled apart."""
+    if name in INTERPRETING:
+        return found - REAL_TIME_SAFE <= {call.name for call in INTERPRETING.values()}
+    return found - REAL_TIME_SAFE == APART.get(name, set())
+
 
 # Some x86-64 processors, by what LLVM calls them: of 2003, of 2013 and with AVX-512.
 PROCESSORS = ["generic", "haswell", "skylake-avx512"]
@@ -139,7 +153,7 @@ WORDS = ["POSTED", "DRAINED", "REPORTED", "READ", "VERSION", "TAPED"]
 def test_these_are_all_calls_and_those_compiled_apart_are_of_them():
     for name, call in CALLS.items():
         apart = {f"yehu_{other.function.__name__}" for other in call.calls}
-        assert apart == APART.get(name, set())
+        assert name in INTERPRETING or apart == APART.get(name, set())
         assert set(call.calls) <= set(PLAYED_BY)
 
 
@@ -150,7 +164,7 @@ def test_a_call_reaches_no_python_no_allocation_and_no_lock(name):
         for part, code in reached(name).items()
         if not part.startswith("llvm.") and not re.search(r"^define |constant ", code, re.MULTILINE)
     }
-    assert outside - REAL_TIME_SAFE == APART.get(name, set())
+    assert only_safe(outside, name)
 
 
 def own_statuses(code: str) -> set[str]:
@@ -213,7 +227,7 @@ def assembly(name: str, processor: str) -> str:
 @pytest.mark.parametrize("name", CALLS)
 def test_its_assembly_names_nothing_else(name):
     found = names(machine(name).get_asm_str(), name)
-    assert found - REAL_TIME_SAFE == APART.get(name, set())
+    assert only_safe(found, name)
 
 
 @on_x86
@@ -221,7 +235,7 @@ def test_its_assembly_names_nothing_else(name):
 @pytest.mark.parametrize("name", CALLS)
 def test_nor_does_it_on_other_processors(name, processor):
     found = names(assembly(name, processor), name)
-    assert found - REAL_TIME_SAFE == APART.get(name, set())
+    assert only_safe(found, name)
 
 
 @on_x86
@@ -248,11 +262,12 @@ def test_the_callback_reads_and_writes_the_cursors_atomically_and_in_order():
         ]
     ]
     assert atomics("callback") == [["store taped release"]]
-    assert {tuple(block) for block in atomics("sound")} == {
-        ("load posted acquire",),
-        ("store drained release",),
-        ("load read acquire",),
-        ("store reported release",),
+    assert atomics("sound") == [["load read acquire"], ["store reported release"]]
+    # Cursors of several rings have places that are computed.
+    found = [re.search(r"(load|store) atomic i64.* (\w+), align 8", a) for a in lines("take_in")]
+    assert {match.groups() for match in found if match} == {
+        ("load", "acquire"),
+        ("store", "release"),
     }
 
 
@@ -321,7 +336,7 @@ def test_on_arm_they_are_loads_that_acquire_and_stores_that_release(name, words)
     except RuntimeError as error:
         pytest.skip(str(error))
     alone = {part: code for part, code in reached(name).items() if part.startswith(("_Z", "llvm."))}
-    declared = [re.sub(r" #\d+", "", code) for code in alone.values()]
+    declared = [re.sub(r" #\d+|, !\w+ !\d+", "", code) for code in alone.values()]
     module = llvm.parse_assembly("\n".join(declared))
     module.triple = target.triple
     assembly = target.create_target_machine().emit_assembly(module)

@@ -6,6 +6,7 @@ import heapq
 import math
 
 import numpy as np
+from interpreted import ALL_KINDS, Leader, Wished
 
 from yehu_server.controls.record import prepare_controls
 from yehu_server.controls.slots import HIGHEST, LOWEST
@@ -26,7 +27,7 @@ CALIBRATION = Calibration(
 )
 QUANTITIES = CALIBRATION.tuned(Quantities())
 DEFAULTS = {param.address: param.default for param in TABLE}
-RATE = 48000.0
+RATE = Leader.rate
 PLAYER = prepare_player(QUANTITIES, RATE, DEFAULTS, calibration=CALIBRATION)
 CONTROLS = prepare_controls(QUANTITIES, RATE, DEFAULTS)
 _ = fulfil.call, told_pitch(PLAYER[0])  # compile now, not within an input's bounds
@@ -34,25 +35,19 @@ _ = fulfil.call, told_pitch(PLAYER[0])  # compile now, not within an input's bou
 MAY_BE_NAN = {"sent", "first_error"}
 
 
-class Instrument:
+class Instrument(Leader):
     """Stands in for ``engine.instrument.Instrument``; `now_s` is its time."""
 
-    rate = RATE
-    seed = 0
-
     def __init__(self) -> None:
+        super().__init__()
         self.now_s = 0.0
         self.posted = 0
-        self.rests: list[tuple[int, int]] = []
         self._player, self._controls = PLAYER.copy(), CONTROLS.copy()
         self._waiting: list[tuple[int, int, int, int, float, float]] = []
 
     @property
     def frame(self) -> int:
         return int(self.now_s * self.rate)
-
-    def frames(self, ms: float) -> int:
-        return round(ms * 1e-3 * self.rate)
 
     def frame_at(self, _time_ns: int) -> float:
         return self.now_s * self.rate
@@ -66,23 +61,32 @@ class Instrument:
         value: float = 0.0,
         other: float = 0.0,
     ) -> bool:
-        assert 0 <= kind < len(KINDS)
+        assert 0 <= kind < len(ALL_KINDS)
         assert isinstance(index, (int, np.integer))
         assert frame is None or isinstance(frame, int)
-        assert math.isfinite(value), KINDS[kind]
-        assert math.isfinite(other), KINDS[kind]
+        assert math.isfinite(value), ALL_KINDS[kind]
+        assert math.isfinite(other), ALL_KINDS[kind]
         at = self.frame if frame is None else frame
         heapq.heappush(self._waiting, (at, self.posted, kind, int(index), value, other))
         self.posted += 1
         return True
 
     def play(self) -> None:
-        """Fulfil what is due, by frame and then as posted."""
+        """Interpret and fulfil what is due, by frame and then as posted."""
         while self._waiting and self._waiting[0][0] <= self.frame:
-            self.fulfil(heapq.heappop(self._waiting)[2:])
+            frame, _, *event = heapq.heappop(self._waiting)
+            for wish in self.interpret(frame, *event):
+                self.fulfil(wish)
 
-    def fulfil(self, wish: tuple[int, int, float, float]) -> None:
+    def take_in(self) -> None:
+        self.play()
+
+    def fulfil(self, wish: Wished) -> None:
         """Fulfil a wish at this frame; every parameter stays within its range."""
+        kind, _, value, other = wish
+        assert 0 <= kind < len(KINDS)
+        assert math.isfinite(value), wish
+        assert math.isfinite(other), wish
         fulfil.call(self._player.ctypes.data, self._controls.ctypes.data, self.frame, *wish)
         target = self._controls["target"][0]
         assert ((target >= LOWEST) & (target <= HIGHEST)).all(), wish  # also refuses NaN
@@ -93,12 +97,12 @@ class Instrument:
         for record in (self._player, *(self._player[name] for name in inner)):
             for name in set(record.dtype.names) - MAY_BE_NAN - inner:
                 assert np.isfinite(record[name]).all(), name
+        assert np.isfinite(self.midi["value"]).all()
 
     def meters(self) -> dict[str, float]:
         self.play()
         pitch = told_pitch(self._player[0])
-        drained = self.posted - len(self._waiting)
-        return {"pitch": pitch, "drained": drained, "next_frame": self.frame + 1}
+        return {"pitch": pitch, "drained": self.posted, "next_frame": self.frame + 1}
 
     def target(self, address: str) -> float:
         self.play()
@@ -117,5 +121,6 @@ def check_silence(player: LivePlayer, instrument: Instrument) -> None:
     instrument.now_s += 1.0
     assert player.pitch is None
     assert not instrument._player["held"][0]
+    assert not instrument.midi["held"]
     assert instrument.target("/bow/speed") == instrument.target("/bow/side") == 0.0
     instrument.check_player()

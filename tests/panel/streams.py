@@ -126,9 +126,7 @@ class Streams:
 
     def _some(self) -> list[Call]:
         chance = self._chance
-        self._frame += chance.choice(
-            [0, 0, 1, 480, 100_000, -60_000 if self._frame > 60_000 else 1]
-        )
+        self._frame += chance.choice([0, 0, 1, 1, 480, 100_000])
         kind = chance.random()
         if kind < 0.40:
             return [self._note()]

@@ -10,6 +10,7 @@ from pitch import hertz
 from sound import rms, run_for
 
 from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.midi.record import let_go
 from yehu_server.params.table import FINGERS, TABLE
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.record import prepare_player
@@ -184,11 +185,10 @@ def test_an_open_string_is_left_as_it_is_tuned(note, detuned):
 
 
 @pytest.mark.parametrize("is_panic", [True, False])
-def test_a_panic_ends_what_sounds_even_if_python_has_forgotten_it(is_panic):
+def test_a_panic_ends_what_sounds_even_if_the_part_has_forgotten_it(is_panic):
     play = Play()
     play.note(70, 0.4)
-    play.wishes._held.clear()
-    play.wishes._sounding = None
+    let_go(play.instrument.midi)
     play.wishes.stop_sound(is_panic=is_panic)
     sound = run_for(play.instrument, 0.5)
     assert (rms(sound[round(0.1 * RATE) :]) == 0.0) == is_panic

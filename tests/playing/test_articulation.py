@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import pytest
 from hands import Checked
 
+from yehu_server.playing.tuning import KEYS, Tuning
 from yehu_server.playing.wishes import Key
 
 
@@ -132,9 +135,14 @@ def test_a_bowed_note_becomes_a_plucked_one(player, listener):
 # ---------------------------------------------------------------- tunings
 
 
+def tuning(pitches: Iterable[float | None]) -> Tuning:
+    """A tuning with the pitches of all keys."""
+    return Tuning("test", tuple(pitches))
+
+
 def test_a_tuning_says_where_keys_are(listener):
-    quarter_flat = {75.0: 74.5, 76.0: None}
-    player = Checked(listener, tuning=lambda note: quarter_flat.get(note, note))
+    quarter_flat = {75: 74.5, 76: None}
+    player = Checked(listener, tuning=tuning(quarter_flat.get(note, note) for note in KEYS))
     player.write("/playing/variation", 0.0)
     player.note_on(key(75.0))
     assert listener.where() == ("C", 2.5)
@@ -146,14 +154,14 @@ def test_a_tuning_says_where_keys_are(listener):
 
 @pytest.mark.parametrize(("tuned", "played"), [(64.9999, ("F", None)), (64.6, ("F", None))])
 def test_a_tuning_a_little_below_the_open_string_is_the_open_string(listener, tuned, played):
-    player = Checked(listener, tuning=lambda _note: tuned)
+    player = Checked(listener, tuning=tuning(tuned for _ in KEYS))
     player.note_on(key(65))
     assert listener.where() == played
     assert player.notes_out_of_range == 0
 
 
 def test_a_tuning_far_below_is_moved_by_octaves(listener):
-    player = Checked(listener, tuning=lambda note: note - 0.5)
+    player = Checked(listener, tuning=tuning(note - 0.5 for note in KEYS))
     player.write("/playing/variation", 0.0)
     player.note_on(key(65))
     assert listener.where() == ("C", 4.5)

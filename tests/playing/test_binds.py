@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from curves import from_unit, input_to_unit, picks_up, receives, to_unit
 from hypothesis import given
 from hypothesis import strategies as st
 
+from yehu_server.midi.curves import PICKUP_WINDOW
 from yehu_server.params.spec import Curve
-from yehu_server.playing.binds import PICKUP_WINDOW, Bind, Breakpoints
+from yehu_server.playing.binds import Bind, Breakpoints
 
 PRESSURE = "/playing/pressure"
 units = st.floats(0.0, 1.0)
@@ -47,13 +49,13 @@ def test_between_its_points_a_table_is_straight(table, unit):
 
 def test_a_table_spreads_over_the_span():
     bind = Bind("cc 4", PRESSURE, (0.5, 1.5), Breakpoints(((0.0, 0.0), (0.5, 0.2), (1.0, 1.0))))
-    values = [bind.from_unit(unit) for unit in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    values = [from_unit(bind, unit) for unit in (0.0, 0.25, 0.5, 0.75, 1.0)]
     assert values == pytest.approx([0.5, 0.6, 0.7, 1.1, 1.5])
 
 
 @given(spans, curves, st.booleans(), units)
 def test_no_place_leads_beyond_the_span(span, curve, invert, unit):
-    value = Bind("cc 4", PRESSURE, span, curve, invert).from_unit(unit)
+    value = from_unit(Bind("cc 4", PRESSURE, span, curve, invert), unit)
     assert min(span) - 1e-9 <= value <= max(span) + 1e-9
 
 
@@ -63,55 +65,62 @@ def test_to_invert_is_to_reverse_the_span_and_both_together_cancel(span, curve, 
     inverted = Bind("cc 4", PRESSURE, span, curve, invert=True)
     reversed_ = Bind("cc 4", PRESSURE, back, curve)
     both = Bind("cc 4", PRESSURE, back, curve, invert=True)
-    assert inverted.from_unit(unit) == pytest.approx(reversed_.from_unit(unit))
-    assert both.from_unit(unit) == pytest.approx(plain.from_unit(unit))
+    assert from_unit(inverted, unit) == pytest.approx(from_unit(reversed_, unit))
+    assert from_unit(both, unit) == pytest.approx(from_unit(plain, unit))
 
 
 @given(spans, curves, st.booleans(), units)
 def test_every_value_is_found_back_at_a_place_that_gives_it(span, curve, invert, unit):
     bind = Bind("cc 4", PRESSURE, span, curve, invert)
-    value = bind.from_unit(unit)
-    position = bind.to_unit(value)
+    value = from_unit(bind, unit)
+    position = to_unit(bind, value)
     assert -1e-9 <= position <= 1.0 + 1e-9
-    assert bind.from_unit(position) == pytest.approx(value, abs=1e-6)
+    assert from_unit(bind, position) == pytest.approx(value, abs=1e-6)
 
 
 @given(tables(), st.floats(0.05, 2.0))
 def test_any_value_has_a_place_also_in_a_table_that_turns_back(table, value):
-    assert 0.0 <= Bind("cc 4", PRESSURE, (0.1, 1.9), table).to_unit(value) <= 1.0
+    bind = Bind("cc 4", PRESSURE, (0.1, 1.9), table)
+    assert 0.0 <= to_unit(bind, value) <= 1.0
+
+
+@given(spans, curves, st.booleans(), st.floats(0.05, 2.0))
+def test_python_finds_the_place_that_compiled_code_finds(span, curve, invert, value):
+    bind = Bind("cc 4", PRESSURE, span, curve, invert)
+    assert bind.to_unit(value) == pytest.approx(to_unit(bind, value), abs=1e-9)
 
 
 @given(spans, curves, st.booleans(), units, units)
 def test_a_source_that_goes_over_the_targets_place_meets_it(span, curve, invert, unit, other):
     bind = Bind("cc 4", PRESSURE, span, curve, invert)
     low, high = sorted((unit, other))
-    middle = bind.from_unit(0.5 * (low + high))
-    assert bind.picks_up(high, low, middle)
-    assert bind.picks_up(low, high, middle)
+    middle = from_unit(bind, 0.5 * (low + high))
+    assert picks_up(bind, high, low, middle)
+    assert picks_up(bind, low, high, middle)
 
 
 def test_a_source_meets_its_target_from_a_sixtyfourth_of_the_way():
     bind = Bind("cc 4", "/playing/volume")
-    assert bind.picks_up(0.5, None, 0.5 + PICKUP_WINDOW)
-    assert bind.picks_up(0.5, None, 0.5 - PICKUP_WINDOW)
-    assert not bind.picks_up(0.5, None, 0.5 + 1.01 * PICKUP_WINDOW)
-    assert not bind.picks_up(0.5, 0.4, 0.6)
-    assert not bind.picks_up(0.5, 0.9, 0.4)
+    assert picks_up(bind, 0.5, None, 0.5 + PICKUP_WINDOW)
+    assert picks_up(bind, 0.5, None, 0.5 - PICKUP_WINDOW)
+    assert not picks_up(bind, 0.5, None, 0.5 + 1.01 * PICKUP_WINDOW)
+    assert not picks_up(bind, 0.5, 0.4, 0.6)
+    assert not picks_up(bind, 0.5, 0.9, 0.4)
 
 
 @pytest.mark.parametrize("invert", [False, True])
 def test_a_target_beyond_the_span_is_met_at_its_end(invert):
     bind = Bind("cc 4", PRESSURE, (0.3, 0.7), invert=invert)
     low, high = (1.0, 0.0) if invert else (0.0, 1.0)
-    assert bind.picks_up(high, None, 1.8)
-    assert not bind.picks_up(low, None, 1.8)
-    assert bind.picks_up(low, None, 0.05)
+    assert picks_up(bind, high, None, 1.8)
+    assert not picks_up(bind, low, None, 1.8)
+    assert picks_up(bind, low, None, 0.05)
 
 
 def test_a_flat_part_of_a_table_is_met_anywhere_on_it():
     bind = Bind("cc 4", "/playing/volume", None, Breakpoints(((0.0, 0.5), (0.8, 0.5), (1.0, 1.0))))
-    assert all(bind.picks_up(position, None, 0.5) for position in (0.0, 0.4, 0.8))
-    assert not bind.picks_up(1.0, None, 0.5)
+    assert all(picks_up(bind, position, None, 0.5) for position in (0.0, 0.4, 0.8))
+    assert not picks_up(bind, 1.0, None, 0.5)
 
 
 @pytest.mark.parametrize(
@@ -125,10 +134,11 @@ def test_a_flat_part_of_a_table_is_met_anywhere_on_it():
     ],
 )
 def test_an_osc_argument_is_spread_over_what_the_address_sends(sent, argument, position):
-    assert Bind("/fader", "/playing/volume", input_range=sent).input_to_unit(argument) == position
+    bind = Bind("/fader", "/playing/volume", input_range=sent)
+    assert input_to_unit(bind, argument) == position
 
 
 def test_channels_count_from_one_and_over_all_ports():
     bind = Bind("cc 4", PRESSURE, channels=(2, 16))
-    assert [channel for channel in range(-16, 40) if bind.receives(channel)] == [1, 15, 17, 31, 33]
-    assert Bind("cc 4", PRESSURE).receives(-1)
+    assert [channel for channel in range(-16, 40) if receives(bind, channel)] == [1, 15, 17, 31, 33]
+    assert receives(Bind("cc 4", PRESSURE), -1)

@@ -9,6 +9,7 @@ import tomllib
 from dataclasses import replace
 
 import pytest
+from curves import from_unit
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -298,7 +299,7 @@ def test_any_entries_are_read_or_refused_and_what_is_read_is_written_and_read_ag
         lines = ()
         assert mapping_file_from(path, toml_of(path, as_toml(contents))) == contents
         for bind, position in itertools.product(contents.binds, (0.0, 0.3, 1.0)):
-            assert min(bind.ends) - 1e-9 <= bind.from_unit(position) <= max(bind.ends) + 1e-9
+            assert min(bind.ends) - 1e-9 <= from_unit(bind, position) <= max(bind.ends) + 1e-9
     assert all(line.isprintable() for line in lines)
 
 

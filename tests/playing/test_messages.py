@@ -86,6 +86,7 @@ def test_messages_that_are_none_of_the_players_business_change_nothing(player, l
         mido.Message("sysex", data=(1, 2, 3)),
         mido.Message("control_change", control=20, value=99),
         mido.MetaMessage("set_tempo", tempo=400_000),
+        mido.MetaMessage("end_of_track"),
     ):
         midi.receive(message)
     assert len(listener.moves) == heard

@@ -10,18 +10,24 @@ import mido
 import numpy as np
 import pytest
 from hands import RATE, ideal
+from together import Together
 
+from yehu_server.engine.ensemble import Ensemble
+from yehu_server.engine.rig import RIG_BYTES
+from yehu_server.midi.interpret import interpret
+from yehu_server.midi.record import IN_PORT, MIDI, let_go, prepare_midi
+from yehu_server.midi.tables import SLOTS, TABLES
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.player import wishes as kinds
 from yehu_server.player.rows import ROW
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.section import Section, section_wishes
 from yehu_server.playing.section_people import section_makes
-from yehu_server.playing.section_timing import Together
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.rendering.cores import Cores
+from yehu_server.stage.geometry import EARS
 
 LATEST = round(0.040 * RATE)
 BEAT = 24000  # frames
@@ -29,7 +35,7 @@ CHORD = (76, 72, 67)
 
 
 class Posted(NamedTuple):
-    """A wish that an instrument was told."""
+    """A wish that an instrument was told; fields as in the record of its part."""
 
     kind: int
     frame: int
@@ -39,24 +45,46 @@ class Posted(NamedTuple):
 
 
 class Told:
-    """An instrument that only keeps what it is told."""
+    """An instrument of a part that only keeps what it is told.
 
-    def __init__(self, seed: int = 0) -> None:
-        self.rate, self.seed, self.frame = RATE, seed, 0
-        self.rests: list[tuple[int, int]] = []
+    The first of the part leads it: what is posted there is interpreted at once, for all of them.
+    """
+
+    is_live, frame = False, 0
+
+    def __init__(self, number: int, part: list[Told]) -> None:
+        self.address, self._part = number * RIG_BYTES, part
+        self._midi, self.tables = np.zeros(1, MIDI), np.zeros(SLOTS, TABLES)
+        self.posted = 0
         self.all: list[Posted] = []
         self.sounding_pitch = np.nan
 
-    def frames(self, ms: float) -> int:
-        return round(ms * 1e-3 * self.rate)
+    def lead(self, tables, people: int = 1) -> None:
+        defaults = {param.address: param.default for param in TABLE}
+        is_mpe = bool(tables["mpe"][0])
+        prepare_midi(self._midi, RATE, defaults, people=people, mpe=is_mpe)
+        self.tables[0] = tables[0]
+
+    def furnish(self, tables) -> None:
+        self.tables[0] = tables[0]
+        self.midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
 
     @property
-    def posted(self) -> int:
-        return len(self.all)
+    def midi(self):
+        return self._midi[0]
 
     def post(self, kind, *, frame=None, index=0, value=0.0, other=0.0) -> bool:
-        self.all.append(Posted(kind, frame, index, value, other))
+        m, at = self.midi, self.frame if frame is None else frame
+        places = self._midi.ctypes.data, self.tables.ctypes.data
+        interpret.call(*places, at, kind, index, value, other)
+        for n in range(int(m["wishes"])):
+            wish = (m[f"out_{what}"][n].item() for what in Posted.__annotations__)
+            self._part[m["out_person"][n]].all.append(Posted(*wish))
+        self.posted += 1
         return True
+
+    def take_in(self) -> None:
+        pass
 
     def meters(self):
         return {"pitch": self.sounding_pitch, "drained": 0, "next_frame": 0}
@@ -87,9 +115,10 @@ class Told:
 kinds_of_settings = (kinds.WRITE, kinds.HOLD, kinds.EXPRESS)
 
 
-def section(people: int) -> SimpleNamespace:
-    told = [Told() for _ in range(people)]
-    return SimpleNamespace(told=told, wishes=Section(told))
+def section(people: int, style: Style | None = None) -> SimpleNamespace:
+    told: list[Told] = []
+    told += [Told(number, told) for number in range(people)]
+    return SimpleNamespace(told=told, wishes=(style or Style()).wishes(told))
 
 
 @pytest.fixture
@@ -111,9 +140,17 @@ def off(to, *keys, frame):
     to.wishes.notes_off([Key(0, key) for key in keys], frame=frame)
 
 
-def test_one_instrument_needs_no_section():
-    assert type(section_wishes(Style(), [Told()])) is Wishes
-    assert type(section_wishes(Style(), [Told(), Told()])) is Section
+def test_one_player_alone_is_on_time():
+    one = section(1)
+    for beat in range(40):
+        on(one, 67, frame=beat * BEAT)
+    assert one.told[0].begun() == [(67.0, beat * BEAT) for beat in range(40)]
+
+
+def test_players_of_a_section_lie_one_after_another():
+    apart = section(3).told[::2]
+    with pytest.raises(ValueError, match="one after another"):
+        Wishes(apart)
 
 
 def test_all_play_a_line_and_nobody_begins_early_or_too_late(four):
@@ -241,7 +278,8 @@ def test_a_key_that_sounds_again_has_its_expression_again(four):
     address = "/playing/pressure"
     on(four, 67, frame=0, values={address: 0.6})
     on(four, 69, frame=BEAT, values={address: 0.2})
-    four.wishes.notes_off([Key(0, 69)], {address: 0.6}, frame=2 * BEAT)
+    four.wishes.post(kinds.EXPRESS, 2 * BEAT, ROW[address], 0.6)
+    off(four, 69, frame=2 * BEAT)
     for told in four.told:
         express, end = [w for w in told.all if w.kind in (kinds.EXPRESS, kinds.END)][-2:]
         assert (express.value, end.kind, end.frame) == (0.6, kinds.END, express.frame)
@@ -324,9 +362,9 @@ def test_a_setting_is_there_from_the_first_sample_in_every_player(four):
         assert ENGINE[jump.index].address == "/output/gain"
         assert (jump.frame, jump.other) == (0, 0.0)
         assert jump.value == told.value("/output/gain") == pytest.approx(2.0 - 6.0206)
-    alone = Told()
-    Wishes(alone).start_with("/output/gain", 2.0)
-    assert alone.all[-1] == Posted(kinds.RAMP, None, SLOT["/output/gain"], 2.0, 0.0)
+    alone = section(1)
+    alone.wishes.start_with("/output/gain", 2.0)
+    assert alone.told[0].all[-1] == Posted(kinds.RAMP, 0, SLOT["/output/gain"], 2.0, 0.0)
 
 
 def test_fewer_and_more_may_play_but_not_more_than_there_are(four):
@@ -341,7 +379,7 @@ def test_fewer_and_more_may_play_but_not_more_than_there_are(four):
     assert four.wishes.write("/playing/section", 16.0, frame=4 * BEAT) == 4.0
     on(four, 72, frame=5 * BEAT)
     assert all(told.settled() == [72] for told in four.told)
-    assert Wishes(Told()).write("/playing/section", 16.0) == 1.0
+    assert section(1).wishes.write("/playing/section", 16.0) == 1.0
 
 
 def test_a_gain_that_is_held_stays_so_as_players_rest(four):
@@ -369,8 +407,7 @@ def test_the_pitch_is_that_of_the_first_who_plays(four):
 
 def test_notes_that_ended_with_the_audio_process_are_forgotten(four):
     on(four, *CHORD, frame=0)
-    for told in four.told:
-        told.rests.append((10, 20))
+    let_go(four.told[0].midi)
     before = [len(told.of(kinds.END)) for told in four.told]
     off(four, *CHORD, frame=BEAT)
     assert [len(told.of(kinds.END)) for told in four.told] == before
@@ -387,9 +424,9 @@ def test_a_panic_comes_after_the_notes_that_were_wished_before_it(four):
 
 def played(style: Style, people: int, block: int, seconds: float = 1.5) -> np.ndarray:
     """The sound of each player of a chord and a line."""
-    makes = section_makes(style, RATE, ideal(), people=people)
-    instruments = [make(None) for make in makes]
-    midi = style.midi(section_wishes(style, instruments))
+    stage = Ensemble(section_makes(style, RATE, ideal(), people=people), has_room=False)
+    cores = Cores(stage, map, has_stems=True)
+    midi = style.midi(style.wishes(stage.instruments))
     events = [(0.1, "note_on", 67), (0.1, "note_on", 74), (0.6, "note_off", 67)]
     events += [(0.6, "note_off", 74), (0.6, "note_on", 70), (1.1, "note_off", 70)]
     frames = round(seconds * RATE)
@@ -398,8 +435,8 @@ def played(style: Style, people: int, block: int, seconds: float = 1.5) -> np.nd
         while events and events[0][0] * RATE < begin + block:
             at, kind, note = events.pop(0)
             midi.receive(mido.Message(kind, note=note, velocity=80), frame=round(at * RATE))
-        for instrument, sound in zip(instruments, sounds, strict=True):
-            instrument.process(sound[begin : begin + block])
+        cores.process(np.zeros((min(block, frames - begin), EARS), np.float32))
+        sounds[:, begin : begin + block] = cores.stems[:, :people].mean(axis=2).T
     return sounds
 
 
@@ -416,9 +453,10 @@ def test_the_same_wishes_give_the_same_samples_in_blocks_of_any_size():
 @pytest.mark.parametrize("seed", range(8))
 def test_no_note_hangs_whatever_is_played(seed):
     random = np.random.default_rng(seed)
-    told = [Told() for _ in range(random.integers(2, 7))]
-    style = replace(Style(), start=(("/playing/section", float(len(told))),))
-    wishes = section_wishes(style, told)
+    people = int(random.integers(2, 7))
+    style = replace(Style(), start=(("/playing/section", float(people)),))
+    part = section(people, style)
+    told, wishes = part.told, part.wishes
     midi = style.midi(wishes)
     frame = 0
     for number in range(400):
@@ -454,9 +492,9 @@ def test_players_add_up_as_people_do_and_not_as_copies_of_one():
 
 
 def test_a_reset_lets_all_play_that_played_at_the_start():
-    told = [Told() for _ in range(4)]
     style = replace(Style(), start=(("/playing/section", 4.0),))
-    wishes = section_wishes(style, told)
+    part = section(4, style)
+    told, wishes = part.told, part.wishes
     midi = style.midi(wishes)
     wishes.write("/playing/section", 1.0, frame=10)
     midi.begin_again(frame=20)

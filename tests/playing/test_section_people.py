@@ -8,18 +8,15 @@ import numpy as np
 import pytest
 from hands import ideal
 
+from yehu_server.midi.seats import DISTANCE, GAIN, PAN, SEED, own_value
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import response
 from yehu_server.player.calibration import wave_speed
+from yehu_server.player.rows import ROW
 from yehu_server.playing.section_people import (
-    DISTANCE,
-    GAIN,
     MODE,
-    PAN,
-    SEED,
     SIZE,
     TUNED_CENTS,
-    own_value,
     section_makes,
     section_size,
     vary,
@@ -30,7 +27,7 @@ SEEDS = range(20)
 
 
 def own(address, value, people):
-    return [own_value(address, value, number, people) for number in range(people)]
+    return [own_value(ROW[address], value, number, people) for number in range(people)]
 
 
 @pytest.mark.parametrize("people", [2, 3, 8, 16])
@@ -66,7 +63,7 @@ def test_both_sides_of_a_section_are_as_far_away(people):
 
 
 def test_one_player_sits_and_plays_as_the_part():
-    assert [own_value(a, 0.3, 0, 1) for a in (GAIN, PAN, DISTANCE)] == [0.3] * 3
+    assert [own_value(ROW[a], 0.3, 0, 1) for a in (GAIN, PAN, DISTANCE)] == [0.3] * 3
 
 
 def test_players_have_seeds_of_their_own():

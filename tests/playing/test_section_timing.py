@@ -6,14 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from together import Together
 
-from yehu_server.playing.section_timing import (
-    ERROR_MS,
-    GAIN_HI,
-    GAIN_LO,
-    SHARE,
-    Together,
-)
+from yehu_server.midi.section_timing import ERROR_MS, GAIN_HI, GAIN_LO, SHARE
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
 RATE = 48000.0

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import mido
 import numpy as np
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import FINGERS, TABLE
+from yehu_server.player.record import MOST_HELD
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import (
     BEGIN,
@@ -26,9 +28,9 @@ from yehu_server.player.wishes import (
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.style import Style
-from yehu_server.playing.visitor import CHANNELS, LOWEST, MOST_HELD, Wish
+from yehu_server.playing.visitor import CHANNELS, LOWEST, Wish
 
-PRESSURE, VELOCITY = "/playing/pressure", "/playing/velocity"
+PRESSURE, SPEED, VELOCITY = "/playing/pressure", "/playing/speed", "/playing/velocity"
 
 
 @pytest.fixture(scope="module")
@@ -88,13 +90,17 @@ def test_keys_that_end_together_do_so_also_here(player) -> None:
     for key in (65.0, 69.0, 72.0):
         fulfil(player, 0, BEGIN, 0, key, key)
     wished(player)
+    fingers = [player.instrument.target(f"/finger/{number}/position") for number in FINGERS]
     fulfil(player, 0, END, 0, 72.0, 1.0)
     fulfil(player, 0, END, 0, 69.0, 1.0)
-    assert wished(player) == []
+    ended = wished(player)
+    assert [player.instrument.target(f"/finger/{n}/position") for n in FINGERS] == fingers
     fulfil(player, 0, END, 0, 65.0, 0.0)
-    assert [(value, other) for _, _, value, other in wished(player)] == [
+    assert [(value, other) for _, _, value, other in ended + wished(player)] == [
         (72.0, 1.0), (69.0, 1.0), (65.0, 0.0),
     ]  # fmt: skip
+    assert not player._wishes.held()
+    assert player.instrument.target("/bow/speed") == 0.0
 
 
 def test_a_visitor_that_leaves_holds_nothing_and_draws_no_bow(player) -> None:
@@ -116,6 +122,17 @@ def test_what_it_sets_all_know(player) -> None:
     fulfil(player, 0, RELEASE)
     player.write(PRESSURE, 0.5, frame=player.instrument.frame)
     assert player.value(PRESSURE) == 0.5
+
+
+def test_what_it_moves_slowly_the_next_note_keeps(player) -> None:
+    moved = mido.Message("control_change", control=1, value=10)
+    player.receive(moved, frame=player.instrument.frame, port=0)
+    wished(player)
+    fulfil(player, 0, WRITE, ROW[SPEED], 0.25, 40.0)
+    assert wished(player) == [(WRITE, ROW[SPEED], 0.25, 40.0)]
+    note = mido.Message("note_on", note=69)
+    player.receive(note, frame=player.instrument.frame, port=0)
+    assert player.value(SPEED) == 0.25
 
 
 def test_a_panic_ends_what_others_hold(player) -> None:

@@ -3,35 +3,64 @@
 from __future__ import annotations
 
 import mido
+import numpy as np
 import pytest
 
+from yehu_server.midi.channels import bend_range, configure_zone, master_of
+from yehu_server.midi.record import MIDI, NONE, prepare_midi
+from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.wishes import Key
-from yehu_server.playing.zones import Zones
 
 # ---------------------------------------------------------------- zones
+
+USUAL = 7.0  # bend range (semitones) of channels outside all zones
+
+
+class Zones:
+    """The zones of the first port of a part."""
+
+    def __init__(self, *, whole: bool = False) -> None:
+        values = {param.address: param.default for param in TABLE}
+        midi = np.zeros(1, MIDI)
+        prepare_midi(midi, 48000.0, values | {"/playing/bend_range": USUAL}, mpe=whole)
+        self._record = midi[0]
+
+    def configure(self, channel: int, members: int) -> bool:
+        return configure_zone(self._record, channel, members)
+
+    def master(self, channel: int) -> int | None:
+        master = master_of(self._record, channel)
+        return None if master == NONE else master
+
+    def members(self, channel: int) -> list[int]:
+        return [member for member in range(16) if self.master(member) == channel]
+
+    def bend_range(self, channel: int) -> float:
+        return bend_range(self._record, channel)
 
 
 def test_without_a_zone_every_channel_is_its_own():
     zones = Zones()
     assert all(zones.master(channel) is None for channel in range(16))
-    assert all(zones.bend_range(channel) is None for channel in range(16))
+    assert all(zones.bend_range(channel) == USUAL for channel in range(16))
 
 
 def test_a_lower_zone_has_the_channels_above_the_first():
     zones = Zones()
     assert zones.configure(0, 5)
     assert [zones.master(channel) for channel in range(16)] == [None, *[0] * 5, *[None] * 10]
-    assert list(zones.members(0)) == [1, 2, 3, 4, 5]
-    assert (zones.bend_range(0), zones.bend_range(1), zones.bend_range(6)) == (2.0, 48.0, None)
+    assert zones.members(0) == [1, 2, 3, 4, 5]
+    assert (zones.bend_range(0), zones.bend_range(1), zones.bend_range(6)) == (2.0, 48.0, USUAL)
 
 
 def test_an_upper_zone_has_the_channels_below_the_last():
     zones = Zones()
     assert zones.configure(15, 3)
     assert [channel for channel in range(16) if zones.master(channel) == 15] == [12, 13, 14]
-    assert list(zones.members(15)) == [12, 13, 14]
+    assert zones.members(15) == [12, 13, 14]
+    assert (zones.bend_range(15), zones.bend_range(14), zones.bend_range(11)) == (2.0, 48.0, USUAL)
 
 
 def test_the_zone_configured_last_takes_the_channels_of_the_other():

@@ -23,6 +23,7 @@ from yehu_server.physics.quantities import Quantities, override
 from yehu_server.player.bowing import ordinary_table
 from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.player.fingering import OpenStrings
+from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import (
     BEGIN,
     DRAW,
@@ -324,8 +325,10 @@ def wish_something(instrument, wishes, chance) -> None:
         values = {"/playing/dynamics": chance.random(), "/playing/attack": 20.0 * chance.random()}
         wishes.note_on(key, values, frame=frame)
     elif what < 6:
-        held = wishes.held()
-        wishes.notes_off(held[: chance.randrange(1, 3)], {"/playing/speed": 0.2}, frame=frame)
+        ending = wishes.held()[: chance.randrange(1, 3)]
+        if ending:
+            wishes.post(EXPRESS, frame, ROW["/playing/speed"], 0.2)
+        wishes.notes_off(ending, frame=frame)
     elif what < 9:
         param = find(chance.choice(ADDRESSES))
         value = chance.uniform(param.lo, param.hi)

@@ -171,8 +171,10 @@ class Instrument:
         ParameterError
             Where it is no note, or the time is over.
         """
-        ending = self._wishes.held() if note is None else [Key(CHANNEL, pitch_of(note))]
-        self._wishes.notes_off(ending, frame=self._frame(at))
+        if note is None:
+            self._wishes.end_all(frame=self._frame(at))
+        else:
+            self._wishes.note_off(Key(CHANNEL, pitch_of(note)), frame=self._frame(at))
         self._check()
 
     def slide(self, note: str | float, *, at: float | None = None) -> None:
@@ -349,7 +351,7 @@ class Instrument:
 
     def stop(self) -> None:
         """End all notes, and let all sound fade within 5 ms; time and parameters stay."""
-        self._wishes.notes_off(self._wishes.held())
+        self._wishes.end_all()
         self._wishes.stop_sound(is_panic=True)
 
     def reset(self) -> None:

@@ -94,7 +94,7 @@ def players_of(
 def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[PartEntry]:
     """Name a part for each channel or track with notes."""
     from yehu_server.engine.rig import MOST_PARTS
-    from yehu_server.playing.messages import PERCUSSION
+    from yehu_server.midi.channels import PERCUSSION
     from yehu_server.score.ensemble_file import PartEntry
     from yehu_server.score.parts import channels_with_notes, tracks_with_notes
 
@@ -138,7 +138,7 @@ def _check_played(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
 
 def _warn_of_unplayed(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
     """Tell which channels no part plays, where all parts are channels."""
-    from yehu_server.playing.messages import PERCUSSION
+    from yehu_server.midi.channels import PERCUSSION
     from yehu_server.score.parts import channels_with_notes
 
     if any(entry.track is not None for entry in ensemble.parts):

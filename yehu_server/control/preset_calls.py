@@ -83,13 +83,18 @@ class PresetCalls:
         if not self._saves.takes(time.monotonic()):
             raise PresetError("presets are saved too often; try again in a second")
         self._presets.save(name, self._player.sound())
-        self._changed("/preset")
+        self._know()
         call.peer.send(pack(f"{self._prefix}/preset/saved", name))
+
+    def _know(self) -> None:
+        """Tell everybody that there are other presets."""
+        self._player.know_programs()
+        self._changed("/preset")
 
     def _delete(self, call: Request) -> None:
         name = call.word()
         self._presets.delete(name)
-        self._changed("/preset")
+        self._know()
         call.peer.send(pack(f"{self._prefix}/preset/deleted", name))
 
     def _list(self, call: Request) -> None:

@@ -11,11 +11,14 @@ import numpy as np
 from yehu_server.controls.record import prepare_controls, settle
 from yehu_server.controls.slots import SILENCE
 from yehu_server.engine import native
-from yehu_server.engine.mailbox import LIVE_BUDGET, RING, mend
+from yehu_server.engine.intake import take_in
+from yehu_server.engine.mailbox import LIVE_BUDGET, RING, SERVER, mend
 from yehu_server.engine.output import prepare_output, rest_output
 from yehu_server.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.engine.telemetry import METERS
 from yehu_server.errors import ParameterError
+from yehu_server.midi.record import IN_PORT, let_go, prepare_midi
+from yehu_server.midi.tables import plain_tables
 from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.physics import kernel
 from yehu_server.physics.bow import friction_bound
@@ -89,6 +92,7 @@ class Instrument:
         check_rate(rate)
         self.rate = rate
         self.calibration, self.open_strings, self.seed = calibration, open_strings, seed
+        self.is_live = is_live
         self.bowing = ordinary_table() if bowing is None else bowing
         seeded = {"/engine/seed": find("/engine/seed").accept(seed)}
         defaults = {param.address: param.default for param in TABLE}
@@ -133,9 +137,10 @@ class Instrument:
         if self._stage is not None:
             rest_stage(self._stage[0])
         mail = rig["mail"]
-        kept = mail["budget"].copy(), mail["reporting"].copy()
+        kept = mail["budget"].copy(), mail["reporting"].copy(), mail["delay"].copy()
         mail[:] = np.zeros(1, mail.dtype)
-        mail["budget"], mail["reporting"] = kept
+        mail["budget"], mail["reporting"], mail["delay"] = kept
+        self.play_alone()
         rig["meters"] = np.zeros(1, METERS)
         rig["meters"]["rate"], rig["meters"]["pitch"] = self.rate, np.nan
         rig["meters"]["loop"]["ns_per_frame"] = 1e9 / self.rate
@@ -143,6 +148,49 @@ class Instrument:
         self._meters = rig["meters"].copy()  # the last consistent copy
         rig["taped"], rig["version"] = 0, 0
         self.rests: list[tuple[int, int]] = []
+
+    def play_alone(self) -> None:
+        """Play a part alone, which no tables describe: all that is posted is for this instrument.
+
+        Nothing may post or compute meanwhile.
+        """
+        self.lead(plain_tables())
+
+    def lead(self, tables: Array, people: int = 1) -> None:
+        """Play a part as the first of some instruments, the next ones on the stage.
+
+        Nothing may post or compute meanwhile.
+
+        Parameters
+        ----------
+        tables : ndarray [shape=(1,), dtype=``midi.tables.TABLES``]
+        people : int
+            Number of instruments; 0 where another one is the first of this one's part.
+        """
+        defaults = {param.address: param.default for param in TABLE}
+        defaults["/engine/seed"] = find("/engine/seed").accept(self.seed)
+        is_mpe = bool(tables["mpe"][0])
+        prepare_midi(self._rig["midi"], self.rate, defaults, people=people, mpe=is_mpe)
+        self._rig["tables"][0, 0] = tables[0]
+
+    def furnish(self, tables: Array) -> None:
+        """Use other tables from the beginning on, in place of those of `lead`.
+
+        Nothing may compute meanwhile.
+        """
+        midi = self._rig["midi"][0]
+        self._rig["tables"][0, midi["tables"]] = tables[0]
+        midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
+
+    @property
+    def midi(self) -> Any:
+        """The record of its part, of dtype ``midi.record.MIDI``, if it leads one."""
+        return self._rig["midi"][0]
+
+    @property
+    def tables(self) -> Any:
+        """The tables of its part: ndarray [shape=(SLOTS,), dtype=``midi.tables.TABLES``]."""
+        return self._rig["tables"][0]
 
     @property
     def address(self) -> int:
@@ -179,8 +227,8 @@ class Instrument:
 
     @property
     def dropped_events(self) -> int:
-        """Number of wishes dropped because the ring was full, since the start."""
-        return int(self._rig["mail"]["dropped"][0, 0])
+        """Number of events dropped because a ring was full, since the start."""
+        return int(self._rig["mail"]["dropped"][0, :, 0].sum())
 
     def frames(self, ms: float) -> int:
         """Convert milliseconds to frames."""
@@ -225,14 +273,22 @@ class Instrument:
         value: float = 0.0,
         other: float = 0.0,
     ) -> bool:
-        """Post a wish (``player.wishes``), by default for now; return whether there was room."""
+        """Post an event (``midi.events``), by default for now; return whether there was room."""
         frame = self.frame if frame is None else frame
         return bool(native.post.call(self._address, frame, kind, index, value, other))
 
+    def take_in(self) -> None:
+        """Interpret what is posted for now, so that the record of the part has it.
+
+        Of live instruments the callback alone does.
+        """
+        if not self.is_live:
+            take_in.call(self._clock, self.frame + 1)
+
     @property
     def posted(self) -> int:
-        """Number of wishes posted since the start."""
-        return int(self._rig["mail"]["posted"][0, 0])
+        """Number of events posted since the start."""
+        return int(self._rig["mail"]["posted"][0, SERVER, 0])
 
     def target(self, address: str) -> float:
         """The value that a parameter of the engine has, or moves to."""
@@ -281,6 +337,7 @@ class Instrument:
     def end_all(self) -> None:
         """End all notes at once, then as `come_to_rest`."""
         end_all(self._rig["player"][0], self._rig["controls"][0])
+        let_go(self._rig["midi"][0])
         self.come_to_rest()
 
     def is_broken(self) -> bool:
@@ -291,7 +348,8 @@ class Instrument:
         """Put meters and waiting wishes in order again, after a process was killed."""
         self._rig["version"][0, 0] += self._rig["version"][0, 0] % 2
         self._rig["meters"]["running"] = 0
-        mend(self._rig["heap"][0], self._rig["mail"][0])
+        mend(self._rig["events"][0], self._rig["mail"][0], "coming")
+        mend(self._rig["heap"][0], self._rig["mail"][0], "waiting")
 
     def skip_to(self, frame: int) -> None:
         """Go on at a later frame. Nothing may compute meanwhile."""

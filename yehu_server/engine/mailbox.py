@@ -1,9 +1,9 @@
-"""Lock-free queues of wishes to the instrument, and of reports of fulfilled ones. Compiled.
+"""Lock-free queues of events to the instrument, and of reports of fulfilled wishes. Compiled.
 
-Players post wishes to a ring; the audio side moves them to a heap in the order of their frames,
-and reports fulfilled ones in a second ring. Each ring has one writer and one reader. Each moves
-only its own cursor, after it has written or read the entry, so neither waits. Wishes for a full
-ring are dropped and counted.
+Whoever plays posts events (``midi.events``) to a ring of its own; the audio side moves them to a
+heap in the order of their frames, interprets them, and reports fulfilled wishes in a further ring.
+Each ring has one writer and one reader. Each moves only its own cursor, after it has written or
+read the entry, so neither waits. Events for a full ring are dropped and counted.
 """
 
 from __future__ import annotations
@@ -17,55 +17,82 @@ from yehu_server.player.wishes import WISH
 
 Array = Any
 
-RING = 1 << 16  # wishes; powers of two
+RING = 1 << 16  # events of the server, or of the program that plays; powers of two
+SMALL_RING = 1 << 12  # of each other writer
 HEAP = 1 << 14
-# Limits on the work of a callback: wishes moved to the heap for each 64 frames, and wishes
+ROOM = 1 << 12  # entries that a heap of wishes has room for before another event is interpreted
+# Limits on the work of a callback: events moved to the heap for each 64 frames, and wishes
 # fulfilled at one frame. The rest waits for the next.
 LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 10, 64
+# The writers of events. Those of MIDI have the time of their arrival (ns) in place of a frame.
+SERVER, MIDI_INPUTS, PAGES = range(3)
+WRITERS = 3
 
 WAITING = np.dtype([("wish", WISH), ("order", np.int64)])
 LINE = 8  # words of a cache line: the two sides' cursors lie in different ones
 
 MAIL = np.dtype(
     [
-        ("posted", np.int64, LINE),  # number of wishes posted; written by players, as the next
-        ("dropped", np.int64, LINE),
+        # Number of events posted; written by each writer, as the next.
+        ("posted", np.int64, (WRITERS, LINE)),
+        ("dropped", np.int64, (WRITERS, LINE)),
         ("read", np.int64, LINE),  # number of reports read; written by their reader
-        ("drained", np.int64, LINE),  # written by the audio side, as all below
+        ("delay", np.int64, LINE),  # frames from the arrival of a message to its sound
+        # Written by the audio side, as all below.
+        ("drained", np.int64, (WRITERS, LINE)),
         ("reported", np.int64, LINE),
         ("unreported", np.int64),
         ("late", np.int64),
+        ("arrived", np.int64),  # frame of the latest message
         ("applied", np.int64),
-        ("waiting", np.int64),  # entries in the heap
+        ("ordered", np.int64),  # number of events and wishes that came into a heap
+        ("coming", np.int64),  # entries in the heap of events, and in that of wishes
+        ("waiting", np.int64),
         ("reporting", np.int64),
-        ("budget", np.int64),  # wishes moved to the heap at a time
+        ("budget", np.int64),  # events moved to the heap at a time
     ],
     align=True,
 )
 
 
-def mend(heap: Array, mail: Any) -> None:
-    """Put a heap in order again that a process left while it moved an entry, in place."""
-    entries = heap[: int(mail["waiting"])]
+def mend(heap: Array, mail: Any, count: str) -> None:
+    """Put a heap in order again that a process left while it moved an entry, in place.
+
+    Parameters
+    ----------
+    count : str
+        Field of `mail` that has the number of its entries.
+    """
+    entries = heap[: int(mail[count])]
     _, first = np.unique(entries["order"], return_index=True)  # one may be there twice
     entries = entries[first]
     entries = entries[np.lexsort((entries["order"], entries["wish"]["frame"]))]
     heap[: len(entries)] = entries
-    mail["waiting"] = len(entries)
+    mail[count] = len(entries)
 
 
 @compiled
-def wait(heap: Array, waiting: int, wish: Any, order: int) -> None:
-    """Add a wish to a heap of `waiting` entries. Real time: safe; log(waiting) steps."""
+def wait(
+    heap: Array,
+    waiting: int,
+    frame: int,
+    kind: int,
+    index: int,
+    value: float,
+    other: float,
+    order: int,
+) -> None:
+    """Add a wish, by its fields, to a heap of `waiting` entries. Real time: safe; log(waiting)."""
     hole = waiting
     while hole > 0:
         parent = (hole - 1) // 2
-        if heap[parent].wish.frame <= wish.frame:  # at one frame, the older wish comes first
+        if heap[parent].wish.frame <= frame:  # at one frame, the older wish comes first
             break
         heap[hole] = heap[parent]
         hole = parent
     entry = heap[hole]
-    copy_wish(wish, entry.wish)
+    wish = entry.wish
+    wish.frame, wish.kind, wish.index, wish.value, wish.other = frame, kind, index, value, other
     entry.order = order
 
 

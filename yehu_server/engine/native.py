@@ -19,7 +19,8 @@ from yehu_server.engine.atomics import (
     load_acquire,
     store_release,
 )
-from yehu_server.engine.mailbox import MAIL, RING
+from yehu_server.engine.intake import take_in
+from yehu_server.engine.mailbox import MAIL, RING, SERVER
 from yehu_server.engine.mixing import mix
 from yehu_server.engine.output import OUTPUT
 from yehu_server.engine.processor import (
@@ -30,6 +31,7 @@ from yehu_server.engine.processor import (
 )
 from yehu_server.engine.rig import (
     CONTROLS_AT,
+    CURSOR_BYTES,
     DRAINED_AT,
     MAIL_AT,
     METERS_AT,
@@ -42,7 +44,8 @@ from yehu_server.engine.rig import (
     REPORTED_AT,
     REPORTS_AT,
     RIG_BYTES,
-    RING_AT,
+    RING_SIZES,
+    RINGS_AT,
     STATE_AT,
     TAPED_AT,
     VERSION_AT,
@@ -60,7 +63,7 @@ from yehu_server.stage.record import STAGE
 STALL_NS = 20_000_000
 TRIES = 100
 
-sound_chunk, mix_chunk = sound.symbol, mix.symbol
+take_in_events, sound_chunk, mix_chunk = take_in.symbol, sound.symbol, mix.symbol
 
 
 @native("void(voidptr)")
@@ -76,7 +79,10 @@ def publish(rig: Any) -> None:
 tell = publish.symbol
 
 
-@native("int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)", calls=[sound, mix, publish])
+@native(
+    "int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)",
+    calls=[take_in, sound, mix, publish],
+)
 def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rigs: Any) -> int:
     """Compute one block for PortAudio (a PaStreamCallback).
 
@@ -101,7 +107,8 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     tell(rigs)  # at once, so that messages that arrive now are stamped by this block
     done = 0
     while done < block:
-        count, first = min(block - done, CHUNK), c.frame
+        first = c.frame
+        count = take_in_events(rigs, first + min(block - done, CHUNK)) - first
         for part in range(parts):
             sound_chunk(at(rigs, part * RIG_BYTES), count)
         here = at(output, 4 * channels * done)
@@ -127,10 +134,10 @@ def tell_of(rig: Any, frame: int, block: int) -> None:
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     t.frame, t.block = frame, block
     t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
-    t.late_events, t.applied, t.drained = mail.late, mail.applied, mail.drained[0]
+    t.late_events, t.applied, t.drained = mail.late, mail.applied, mail.drained[SERVER, 0]
     t.next_frame = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0].frame
     t.pitch = told_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
-    t.waiting, t.unreported = mail.waiting, mail.unreported
+    t.waiting, t.unreported = mail.coming + mail.waiting, mail.unreported
 
 
 @native("int64(voidptr, voidptr)")
@@ -163,19 +170,35 @@ def frame_at(rig: Any, time_ns: int) -> float:
 
 @native("int64(voidptr, int64, int64, int64, float64, float64)")
 def post(rig: Any, frame: int, kind: int, index: int, value: float, other: float) -> int:
-    """Post a wish, by its fields; return 0 where it was dropped because the ring is full.
+    """Post an event, by its fields; return 0 where it was dropped because the ring is full.
 
     Only one thread at a time may post.
     """
+    return post_to(rig, SERVER, frame, kind, index, value, other)
+
+
+@native("int64(voidptr, int64, int64, int64, int64, float64, float64)")
+def post_from(
+    rig: Any, writer: int, frame: int, kind: int, index: int, value: float, other: float
+) -> int:
+    """Post an event to the ring of one of ``mailbox.WRITERS``; see `post`."""
+    return post_to(rig, writer, frame, kind, index, value, other)
+
+
+@compiled_to_share
+def post_to(
+    rig: Any, writer: int, frame: int, kind: int, index: int, value: float, other: float
+) -> int:
+    """See `post_from`."""
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
-    posted = mail.posted[0]
-    if posted - load_acquire(rig, DRAINED_AT) >= RING:
-        mail.dropped[0] += 1
+    posted, size = mail.posted[writer, 0], RING_SIZES[writer]
+    if posted - load_acquire(rig, DRAINED_AT + writer * CURSOR_BYTES) >= size:
+        mail.dropped[writer, 0] += 1
         return 0
-    entry = carray(at(rig, RING_AT), (RING,), WISH)[posted & (RING - 1)]
+    entry = carray(at(rig, RINGS_AT[writer]), (size,), WISH)[posted & (size - 1)]
     entry.frame, entry.kind, entry.index = frame, kind, index
     entry.value, entry.other = value, other
-    store_release(rig, POSTED_AT, posted + 1)
+    store_release(rig, POSTED_AT + writer * CURSOR_BYTES, posted + 1)
     return 1
 
 

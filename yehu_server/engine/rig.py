@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 
 from yehu_server.controls.record import CONTROLS
-from yehu_server.engine.mailbox import HEAP, LINE, MAIL, RING, WAITING
+from yehu_server.engine.mailbox import HEAP, LINE, MAIL, RING, SMALL_RING, WAITING
 from yehu_server.engine.output import OUTPUT
 from yehu_server.engine.telemetry import METERS
+from yehu_server.midi.record import MIDI
+from yehu_server.midi.tables import SLOTS, TABLES
 from yehu_server.physics.layout import MODEL, STATE
 from yehu_server.player.ear import HEARD
 from yehu_server.player.record import PLAYER
@@ -36,8 +38,15 @@ RIG = np.dtype(
         ("version", np.int64, LINE),
         ("published", METERS),
         ("taped", np.int64, LINE),
+        # Of the first instrument of a part: what the part is sent, by writer; what is to come;
+        # the record of the part, and its tables.
         ("ring", WISH, RING),
-        ("heap", WAITING, HEAP),
+        ("midi_ring", WISH, SMALL_RING),
+        ("page_ring", WISH, SMALL_RING),
+        ("events", WAITING, HEAP),
+        ("midi", MIDI),
+        ("tables", TABLES, SLOTS),
+        ("heap", WAITING, HEAP),  # wishes to come
         ("reports", WISH, RING),
         ("seat", SEAT),
     ],
@@ -63,7 +72,11 @@ MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("c
 PLAYER_AT, HEARD_AT = _offset("player"), _offset("heard")
 OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
-RING_AT, HEAP_AT, REPORTS_AT = _offset("ring"), _offset("heap"), _offset("reports")
+RINGS_AT = np.array([_offset("ring"), _offset("midi_ring"), _offset("page_ring")])  # by writer
+RING_SIZES = np.array([RING, SMALL_RING, SMALL_RING])
+EVENTS_AT, MIDI_AT, TABLES_AT = _offset("events"), _offset("midi"), _offset("tables")
+HEAP_AT, REPORTS_AT = _offset("heap"), _offset("reports")
 SEAT_AT = _offset("seat")
 POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
+CURSOR_BYTES = 8 * LINE  # from one writer's to the next
 REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")

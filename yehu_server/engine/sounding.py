@@ -21,13 +21,11 @@ from yehu_server.engine.mailbox import (
     WAITING,
     copy_wish,
     leave,
-    wait,
 )
 from yehu_server.engine.output import OUTPUT, STILL, fall_silent, play_out
 from yehu_server.engine.processor import flush_denormals, restore_denormals
 from yehu_server.engine.rig import (
     CONTROLS_AT,
-    DRAINED_AT,
     HEAP_AT,
     HEARD_AT,
     MAIL_AT,
@@ -35,11 +33,9 @@ from yehu_server.engine.rig import (
     MODEL_AT,
     OUTPUT_AT,
     PLAYER_AT,
-    POSTED_AT,
     READ_AT,
     REPORTED_AT,
     REPORTS_AT,
-    RING_AT,
     STATE_AT,
 )
 from yehu_server.engine.telemetry import METERS, close_window, hear
@@ -55,27 +51,6 @@ from yehu_server.player.wishes import WISH, fulfil
 Array = Any
 
 fulfil_wish, attend_string = fulfil.symbol, attend.symbol
-
-
-@compiled_to_share
-def drain(rig: Any, mail: Any, frame: int) -> bool:
-    """Move posted wishes to the heap, up to the budget of a callback.
-
-    Returns whether some are left because the heap is full: then it is worth trying again soon.
-    """
-    ring = carray(at(rig, RING_AT), (RING,), WISH)
-    heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
-    posted = load_acquire(rig, POSTED_AT)
-    drained = mail.drained[0]
-    end = min(posted, drained + mail.budget)
-    while drained < end and mail.waiting < HEAP:
-        wish = ring[drained & (RING - 1)]
-        mail.late += 1 if wish.frame < frame else 0
-        wait(heap, mail.waiting, wish, drained)
-        mail.waiting += 1
-        drained += 1
-    store_release(rig, DRAINED_AT, drained)
-    return bool(drained < posted and mail.waiting >= HEAP)
 
 
 @compiled_to_share
@@ -140,13 +115,10 @@ def sound(rig: Any, wanted: int) -> None:
     o.fallen = STILL
     done = 0
     while done < wanted:
-        is_full = drain(rig, mail, c.frame)
         first, start = c.frame, done
         silenced, retuned = False, False
         while done < wanted and not silenced and not retuned:
             apply(rig, mail, c)
-            if is_full:
-                is_full = drain(rig, mail, c.frame)
             if c.frame == p.ear.next:
                 attend_string(at(rig, PLAYER_AT), at(rig, CONTROLS_AT), at(rig, HEARD_AT))
             move(c)

@@ -1,8 +1,8 @@
 """Compile what playing needs, before the first sound; or load it from the cache.
 
 At the first start machine code is made of the bitcode that is shipped. Where none is for this
-machine and these sources, all is compiled, the model in a process of its own, which leaves it
-in the cache: it calls the player by name, so both can be compiled at a time.
+machine and these sources, all is compiled, half of it in a process of its own, which leaves it
+in the cache: parts call each other by name, so they can be compiled at a time.
 """
 
 from __future__ import annotations
@@ -14,11 +14,13 @@ import sys
 
 from yehu_server.bitcode.capture import capturing
 from yehu_server.bitcode.shipped import Shipped
+from yehu_server.engine.intake import take_in
 from yehu_server.engine.mixing import mix, mix_block
 from yehu_server.engine.native import (
     callback,
     frame_at,
     post,
+    post_from,
     publish,
     read_meters,
     read_reports,
@@ -26,11 +28,14 @@ from yehu_server.engine.native import (
 )
 from yehu_server.engine.sounding import sound, sound_block
 from yehu_server.jit import IS_CACHED, IS_PLAIN, make_of_shipped
+from yehu_server.midi.interpret import APART, interpret
 from yehu_server.player.attention import attend
 from yehu_server.player.wishes import fulfil
 
-BESIDE = (fulfil, attend, publish, read_meters, frame_at, post, read_reports, taped, mix)
-PLAYED_BY = (*BESIDE, sound, sound_block, mix_block, callback)
+# Compiled at a time: the model and the player in a process of their own, and what is sent to them.
+MODEL = (sound, fulfil, attend, mix)
+BESIDE = (*APART, interpret, publish, read_meters, frame_at, post, post_from, read_reports, taped)
+PLAYED_BY = (*MODEL, *BESIDE, take_in, sound_block, mix_block, callback)
 
 
 def warm_up() -> None:
@@ -66,4 +71,5 @@ def is_warm() -> bool:
 
 
 if __name__ == "__main__":
-    sound.keep()
+    for part in MODEL:
+        part.keep()

@@ -6,20 +6,11 @@ from types import ModuleType
 from typing import Any
 
 from yehu_server.analysis.pitch import NOTE_NAMES
+from yehu_server.midi import channels, controllers, curves, messages
 from yehu_server.params import preset, spec, table
 from yehu_server.player import fingering
 from yehu_server.player.calibration import OPEN_NOTES
-from yehu_server.playing import (
-    binds,
-    controllers,
-    learner,
-    live,
-    messages,
-    midi_channel,
-    sources,
-    tuning,
-    zones,
-)
+from yehu_server.playing import learner, live, sources, tuning
 from yehu_server.playing.range_policy import RangePolicy
 
 
@@ -39,18 +30,30 @@ def constants() -> dict[str, Any]:
             sources, "BEND", "PRESSURE", "POLY_PRESSURE", "VELOCITY", "NOTE", "OF_ONE_NOTE",
             "COARSE", "FINE_ABOVE", "STEPS", "FINEST", "CHANNELS", "RESERVED", "NO_NRPN",
         ),
-        "binds": _of(binds, "PICKUP_WINDOW"),
-        "controllers": _of(controllers, "KEPT_ON_RESET", "SPRUNG", "FINE_BITS"),
-        "midiChannel": _of(
-            midi_channel, "DATA_ENTRY", "DATA_ENTRY_FINE", "INCREMENT", "DECREMENT", "NRPN_FINE",
-            "NRPN", "RPN_FINE", "RPN",
-        ),
-        "messages": _of(
-            messages, "BANK", "BANK_FINE", "SUSTAIN", "ALL_SOUND_OFF", "RESET_CONTROLLERS",
-            "ALL_NOTES_OFF", "SUSTAIN_SOURCE", "BEND_RANGE", "MPE_CONFIGURATION", "PERCUSSION",
-        ),
+        "binds": _of(curves, "PICKUP_WINDOW"),
+        "controllers": {
+            "KEPT_ON_RESET": sorted(
+                table.TABLE[row].address for row in (controllers.VOLUME, controllers.PAN)
+            ),
+            "SPRUNG": [sources.BEND, sources.PRESSURE],
+            **_of(controllers, "FINE_BITS"),
+        },
+        "midiChannel": {
+            **_of(messages, "DATA_ENTRY", "DATA_ENTRY_FINE", "INCREMENT", "DECREMENT", "NRPN_FINE"),
+            "NRPN": messages.NRPN_COARSE,
+            "RPN": messages.RPN_COARSE,
+            **_of(messages, "RPN_FINE"),
+        },
+        "messages": {
+            **_of(messages, "BANK", "BANK_FINE", "SUSTAIN", "ALL_SOUND_OFF", "RESET_CONTROLLERS"),
+            **_of(messages, "ALL_NOTES_OFF"),
+            "SUSTAIN_SOURCE": sources.control(messages.SUSTAIN),
+            "BEND_RANGE": list(divmod(messages.BEND_RANGE, 128)),
+            "MPE_CONFIGURATION": list(divmod(messages.MPE_CONFIGURATION, 128)),
+            **_of(channels, "PERCUSSION"),
+        },
         "zones": _of(
-            zones, "LOWER_MASTER", "UPPER_MASTER", "MOST_MEMBERS", "MEMBER_BEND", "MASTER_BEND",
+            channels, "LOWER_MASTER", "UPPER_MASTER", "MOST_MEMBERS", "MEMBER_BEND", "MASTER_BEND",
         ),
         "tuning": _of(tuning, "KEYS", "STANDARD_A4"),
         "learner": _of(learner, "DISTANCE", "AT_REST"),

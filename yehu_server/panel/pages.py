@@ -12,11 +12,12 @@ from yehu_server.child_keeper import ChildKeeper
 from yehu_server.control.addresses import Address
 from yehu_server.control.web import listen
 from yehu_server.errors import DeviceError, ParameterError
+from yehu_server.midi.seats import OWN
 from yehu_server.params.table import TABLE
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import HOLD, WRITE
 from yehu_server.playing.live import Arrivals, LivePlayer
-from yehu_server.playing.section_people import OWN, SECTION
+from yehu_server.playing.section_people import SECTION
 from yehu_server.playing.visitor import Wish
 
 STATUS_S = 0.5

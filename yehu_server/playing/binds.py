@@ -9,9 +9,6 @@ from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing import sources
 
-# Distance from the target's value within which a soft bind takes over, as a fraction of the span.
-PICKUP_WINDOW = 1.0 / 64.0
-
 
 @dataclass(frozen=True)
 class Breakpoints:
@@ -137,16 +134,6 @@ class Bind:
             terms.append("global")
         return tuple(terms)
 
-    def receives(self, channel: int) -> bool:
-        """Whether it receives on a channel, counted from 0 over all ports; negative: no channel."""
-        return not self.channels or (
-            channel >= 0 and channel % sources.CHANNELS + 1 in self.channels
-        )
-
-    def input_to_unit(self, argument: float) -> float:
-        """Map an OSC argument to a position, 0 to 1."""
-        return Curve.LIN.to_unit(argument, *self.input_range)
-
     def from_unit(self, position: float) -> float:
         """Map the source's position, 0 to 1, to the target's value."""
         return self.curve.from_unit(self._inverted(position), *self.ends)
@@ -159,34 +146,8 @@ class Bind:
         """Map the position of a pitch wheel to semitones, for a bend range in semitones."""
         return (2.0 * self.curve.from_unit(self._inverted(position), 0.0, 1.0) - 1.0) * bend_range
 
-    def picks_up(self, position: float, before: float | None, value: float) -> bool:
-        """Whether a source that moves to a position reaches or passes the target's value.
-
-        Parameters
-        ----------
-        before : float, optional
-            The source's position before, if it was ever moved.
-        value : float
-            The target's present value.
-        """
-        here, there = self._fraction(position), self._fraction_of(value)
-        if abs(here - there) <= PICKUP_WINDOW or self.ends[0] == self.ends[1]:
-            return True
-        return before is not None and (self._fraction(before) - there) * (here - there) < 0.0
-
     def _inverted(self, position: float) -> float:
         return 1.0 - position if self.invert else position
-
-    # Breakpoints may fall or stay the same, so positions are compared by their fractions.
-
-    def _fraction(self, position: float) -> float:
-        unit = self._inverted(position)
-        return self.curve.fraction_at(unit) if isinstance(self.curve, Breakpoints) else unit
-
-    def _fraction_of(self, value: float) -> float:
-        curve = self.curve
-        inverse = curve.fraction_of if isinstance(curve, Breakpoints) else curve.to_unit
-        return inverse(value, *self.ends)
 
 
 def override_key(bind: Bind) -> tuple[str, tuple[int, ...]]:

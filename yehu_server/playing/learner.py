@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 
 import mido
 
+from yehu_server.midi.messages import DATA_ENTRY, NRPN_FINE, RPN_FINE
+from yehu_server.midi.messages import NRPN_COARSE as NRPN
+from yehu_server.midi.messages import RPN_COARSE as RPN
 from yehu_server.playing import sources
-from yehu_server.playing.midi_channel import DATA_ENTRY, NRPN, NRPN_FINE, RPN, RPN_FINE
 from yehu_server.playing.sources import COARSE, FINE_ABOVE, RESERVED, STEPS
 
 # How far a source has to move, 0 to 1: pedals and breath sensors are noisy at rest.

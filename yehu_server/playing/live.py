@@ -177,6 +177,11 @@ class LivePlayer:
         with self._lock:
             self._midi.remap(mapping, frame=self._at(frame))
 
+    def know_programs(self) -> None:
+        """Read again which presets MIDI programs select, where they do."""
+        with self._lock:
+            self._midi.know_programs(self.presets.programs(), frame=self._at(self.frame_of()))
+
     def bindings(self) -> list[tuple[Bind, float | None, float]]:
         """Each bind, the position (0 to 1) its source was last moved to, and the target's value."""
         with self._lock:
@@ -212,7 +217,7 @@ class LivePlayer:
     def keys(self) -> int:
         """Number of keys that are held."""
         with self._lock:
-            return len(self._wishes.held())
+            return int(self._wishes.record["held"])
 
     @property
     def pitch(self) -> float | None:
@@ -300,7 +305,7 @@ class LivePlayer:
                 return
             visitor = self._visitors.get(number)
             if visitor is None:
-                visitor = self._visitors[number] = Visitor(self._wishes, self._midi.write, number)
+                visitor = self._visitors[number] = Visitor(self._wishes, number)
             visitor.take(wish, self._at(frame))
 
     def dismiss(self, number: int, *, frame: int) -> None:

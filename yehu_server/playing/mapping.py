@@ -17,7 +17,8 @@ from platformdirs import user_config_path
 
 from yehu_server.errors import MappingError
 from yehu_server.files import shipped_folder
-from yehu_server.playing.binds import Bind, override_key
+from yehu_server.midi.tables import MOST_BINDS, MOST_POINTS
+from yehu_server.playing.binds import Bind, Breakpoints, override_key
 from yehu_server.playing.mapping_file import (
     FileErrors,
     MappingFile,
@@ -168,7 +169,17 @@ def with_bases(path: Path, contents: MappingFile) -> Mapping:
     mapping = Mapping(contents.name, (), about=contents.about, files=tuple(files))
     for layer in reversed(layers):
         mapping = _merged(mapping, layer)
+    _check_size(path, mapping)
     return mapping
+
+
+def _check_size(path: Path, mapping: Mapping) -> None:
+    """Refuse a mapping that a part's tables have no room for."""
+    curves = [bind.curve for bind in mapping.binds]
+    points = sum(len(curve.points) for curve in curves if isinstance(curve, Breakpoints))
+    for what, count, most in (("binds", len(curves), MOST_BINDS), ("points", points, MOST_POINTS)):
+        if count > most:
+            raise MappingError(f"{path}: {count} {what}, those of its bases too: at most {most}")
 
 
 def _merged(below: Mapping, layer: MappingFile) -> Mapping:

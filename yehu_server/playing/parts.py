@@ -13,7 +13,6 @@ from yehu_server.errors import ParameterError
 from yehu_server.player.calibration import Calibration
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.places import places
-from yehu_server.playing.section import section_wishes
 from yehu_server.playing.section_people import part_makes, section_size
 from yehu_server.playing.style import Style
 
@@ -83,5 +82,5 @@ def player_of(
     part: int, style: Style, instruments: Sequence[Instrument], *, delay_ms: float
 ) -> LivePlayer:
     """The player of a part, counted from 0: its wishes go to all of its instruments."""
-    wishes = section_wishes(style, instruments)
+    wishes = style.wishes(instruments)
     return LivePlayer(instruments[0], style, delay_ms=delay_ms, part=part, wishes=wishes)

@@ -275,7 +275,7 @@ class Practice:
             self._rate, self._tuned, calibration=self._calibration, bowing=table
         )
         instrument.bow_by_tables()
-        wishes = Wishes(instrument, tuning=lambda key: self._pitches[int(key)])
+        wishes = Wishes(instrument)
         wishes.write("/playing/variation", 0.0)
         wishes.write("/playing/bow_length", 0.0)
         instrument.write("/bow/noise", 0.0, ramp_ms=0.0)
@@ -305,13 +305,13 @@ class Practice:
         rest = instrument.frames(1e3 * passage.rest_s)
         wishes.write("/playing/speed", passage.speed, frame=start)
         wishes.write("/playing/pressure", passage.pressure, frame=start)
-        wishes.note_on(Key(0, before), frame=start)
+        wishes.note_on(Key(0, before), frame=start, tuned=self._pitches[int(before)])
         if passage.is_slurred:
-            wishes.note_on(Key(0, note), frame=at)
+            wishes.note_on(Key(0, note), frame=at, tuned=self._pitches[int(note)])
             wishes.note_off(Key(0, before), frame=at)
         else:
             wishes.note_off(Key(0, before), frame=at - rest)
-            wishes.note_on(Key(0, note), frame=at)
+            wishes.note_on(Key(0, note), frame=at, tuned=self._pitches[int(note)])
         play_until(BEFORE_S + EARLY_S)
         early, error = _speaks(instrument, NEAR_EARLY)
         play_until(BEFORE_S + LATE_S)

@@ -168,14 +168,14 @@ class Presets:
     def _is_only_own(self, name: str) -> bool:
         return not self._shipped_file(name).is_file()
 
-    def of_program(self, program: int) -> Preset | None:
-        """The preset of a MIDI program, 1 to 128: the user's own first, then by name."""
-        found = [
-            preset
-            for preset in self.all()[0]
-            if preset.program == program and (self._own_first or not self._is_only_own(preset.name))
-        ]
-        return min(found, key=lambda preset: not self.is_own(preset.name), default=None)
+    def programs(self) -> dict[int, Preset]:
+        """The presets of MIDI programs, 1 to 128: the user's own first, then by name."""
+        found: dict[int, Preset] = {}
+        for preset in sorted(self.all()[0], key=lambda preset: not self.is_own(preset.name)):
+            is_known = self._own_first or not self._is_only_own(preset.name)
+            if preset.program is not None and is_known:
+                found.setdefault(preset.program, preset)
+        return found
 
     def save(self, name: str, values: Mapping[str, float]) -> None:
         """Save the values that make up a sound as one of the user's own presets.

@@ -14,16 +14,14 @@ from typing import Any
 import numpy as np
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.midi.seats import DISTANCE, GAIN, PAN, SEED, own_value
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Body, Quantities, StringQuantities
 from yehu_server.player.calibration import Calibration
+from yehu_server.player.rows import ROW
 from yehu_server.playing.style import Style
 
-SECTION, SEED = "/playing/section", "/engine/seed"
-GAIN, PAN, DISTANCE = "/output/gain", "/room/pan", "/room/distance"
-OWN = (SEED, GAIN, PAN, DISTANCE)  # what each player has a value of its own of
-SEEDS = 1 << 16
-APART = 7919  # seeds of two players; a prime, so that they meet no other section's soon
+SECTION = "/playing/section"
 
 # A maker's tolerances, as fractions to either side, by ear. Bodies of one size differ as a whole,
 # by their size, and mode by mode.
@@ -31,12 +29,6 @@ SIZE, MODE, MASS, DAMPING = 0.025, 0.01, 0.05, 0.1
 DENSITY, STIFFNESS, LOSS = 0.02, 0.05, 0.1
 ROSIN = 0.03
 TUNED_CENTS = 1.5  # how well a player tunes
-
-# Seats: in two rows, so far before and behind the part's own distance, alike on both sides; from
-# left to right, neighbours so far apart, all of them no more than to either side of the part's
-# own place.
-FRONT, BACK = 0.87, 1.15
-NEIGHBOUR, TO_EITHER_SIDE = 0.12, 0.35
 
 MOST_HAIRS = 65536
 
@@ -99,14 +91,14 @@ def section_makes(
 
     def maker(number: int) -> Callable[[Any], Instrument]:
         def make(memory: Any) -> Instrument:
-            seed = round(own_value(SEED, style.seed, number, people))
+            seed = round(own_value(ROW[SEED], float(style.seed), number, people))
             tuned, own = (calibration, base) if number == 0 else vary(calibration, base, seed)
             return replace(style, seed=seed).instrument(
                 rate,
                 tuned,
                 own,
                 start_values={
-                    address: own_value(address, find(address).default, number, people)
+                    address: own_value(ROW[address], find(address).default, number, people)
                     for address in (GAIN, PAN, DISTANCE)
                 },
                 body=seed if number else 0,
@@ -117,35 +109,6 @@ def section_makes(
         return make
 
     return [maker(number) for number in range(people)]
-
-
-def own_value(address: str, value: float, number: int, people: int) -> float:
-    """The value that a player has of a parameter, of what their part has.
-
-    All of them together are as loud as one alone.
-
-    Parameters
-    ----------
-    number : int
-        The player, counted from 0.
-    people : int
-        How many of them play.
-    """
-    if address == SEED:
-        return float((round(value) + APART * number) % SEEDS)
-    if people == 1:
-        return value
-    if address == GAIN:
-        return find(GAIN).accept(value - 10.0 * math.log10(people))
-    if address == DISTANCE:
-        from_outside = min(number, people - 1 - number)
-        row = BACK if from_outside % 2 else FRONT
-        return find(DISTANCE).accept(value * (row if people > 2 else 1.0))
-    if address == PAN:
-        side = min(0.5 * NEIGHBOUR * (people - 1), TO_EITHER_SIDE)
-        middle = min(max(value, side - 1.0), 1.0 - side)
-        return middle + side * (2.0 * min(number, people - 1) / (people - 1) - 1.0)
-    return value
 
 
 def vary(

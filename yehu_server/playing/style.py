@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping as Values
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -87,11 +88,11 @@ class Style:
             is_live=is_live,
         )
 
-    def wishes(self, instrument: Instrument) -> Wishes:
-        """What posts wishes of this style to an instrument."""
-        return Wishes(instrument, self.policy, lambda note: self.tuning.pitch(note, self.a4))
+    def wishes(self, instruments: Instrument | Sequence[Instrument]) -> Wishes:
+        """What posts wishes of this style to an instrument, or to those of a section."""
+        return Wishes(instruments, self.policy, self.tuning, self.a4)
 
     def midi(self, wishes: Wishes, channels: set[int] | None = None) -> MidiPlayer:
         """A MIDI player of this style; `channels` as in `MidiPlayer`."""
-        programs = self.presets.of_program if self.programs else None
+        programs = self.presets.programs() if self.programs else None
         return MidiPlayer(wishes, self.mapping, channels, start=self.start, programs=programs)

@@ -1,22 +1,32 @@
-"""Posts what is wished of the player: the only way from Python to bow and fingers.
+"""Posts what is wished of a part, and reads from its record what it holds.
 
-The player decides in the audio callback (``yehu_server.player``). What it will do follows from
-the wishes, so that parameters and held keys can be told at once, in the order of posting.
+What the wishes come to is decided in compiled code (``midi``, ``player``), at their frames.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.rig import RIG_BYTES
+from yehu_server.midi.events import NOTE_ON, RELEASE_ALL, SET
+from yehu_server.midi.record import NONE, SECTION
+from yehu_server.midi.section import sounds
+from yehu_server.midi.tables import plain_tables
 from yehu_server.params.spec import Param
-from yehu_server.params.table import SLOT, TABLE, find
+from yehu_server.params.table import SLOT, find
 from yehu_server.player import wishes
-from yehu_server.player.fingering import OPEN_WITHIN
 from yehu_server.player.rows import ROW
+from yehu_server.playing.mapping import Mapping as Binds
 from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.tables import Controls, make_tables
+from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning
+
+UNMAPPED = Binds("", ())
+OWN_VALUES = -1.0  # in place of a velocity: the note has been given its values
 
 
 @dataclass(frozen=True)
@@ -32,60 +42,80 @@ class Key:
 
 @dataclass(frozen=True)
 class Pending:
-    """A direct write: its value, its number among all wishes, and its frame."""
+    """A direct write: its value, its number among all events, and its frame."""
 
     value: float
     number: int
     frame: int
+    is_held: bool
 
 
 class Wishes:
-    """Asks the player of an instrument for notes and parameters.
+    """Asks the player of an instrument, or those of a section, for notes and parameters.
 
     Parameters
     ----------
+    instruments : Instrument, or sequence of Instrument
+        Who plays the part; those of a section lie one after another on the stage.
     policy : RangePolicy
         What happens to notes out of range.
-    tuning : callable
-        Maps a key to its pitch, both fractional MIDI notes, or None; by default to itself.
+    tuning : Tuning
+    a4 : float, Hz
     """
 
     def __init__(
         self,
-        instrument: Instrument,
+        instruments: Instrument | Sequence[Instrument],
         policy: RangePolicy = RangePolicy.TRANSPOSE,
-        tuning: Callable[[float], float | None] = float,
+        tuning: Tuning = EQUAL,
+        a4: float = STANDARD_A4,
     ) -> None:
-        self._instrument = instrument
-        self._policy = policy
-        self._tuning = tuning
-        self._value = {p.address: p.default for p in TABLE if not p.owned}
-        self._value["/engine/seed"] = find("/engine/seed").accept(instrument.seed)
-        self._kept: set[str] = set()
+        self._all = [instruments] if isinstance(instruments, Instrument) else list(instruments)
+        self._instrument = self._all[0]
+        places = [instrument.address for instrument in self._all]
+        if places != [places[0] + number * RIG_BYTES for number in range(len(places))]:
+            raise ValueError("the instruments of a section lie one after another on a stage")
+        self.policy, self._tuning, self._a4 = policy, tuning, a4
+        self.controls = Controls()
         self._pending: dict[str, Pending] = {}
-        self._held: dict[Key, int] = {}  # in the order pressed; the frame each begins at
-        self._sounding: Key | None = None
-        self._rests = 0  # number of those that ended all notes
-        self.notes_played = 0
-        self.notes_out_of_range = 0
+        self._instrument.lead(self.tables(UNMAPPED), len(self._all))
+        for other in self._all[1:]:
+            other.lead(plain_tables(), 0)
 
-    def _post(
-        self, kind: int, frame: int | None, index: int = 0, value: float = 0.0, other: float = 0.0
-    ) -> None:
-        self._instrument.post(kind, frame=frame, index=index, value=value, other=other)
+    def tables(self, mapping: Binds, **more: Any) -> Any:
+        """Tables of a mapping with this part's tuning and range; `more` as of `make_tables`."""
+        tuning, a4, policy = self._tuning, self._a4, self.policy
+        return make_tables(mapping, self.controls, tuning=tuning, a4=a4, policy=policy, **more)
+
+    @property
+    def instrument(self) -> Instrument:
+        """The first instrument, which has the record of the part."""
+        return self._instrument
 
     @property
     def people(self) -> int:
-        """How many players there are."""
-        return 1
+        """How many players there are, whether they play or rest."""
+        return len(self._all)
+
+    @property
+    def record(self) -> Any:
+        """The part's record (``midi.record.MIDI``), with all that is posted for now."""
+        self._instrument.take_in()
+        return self._instrument.midi
+
+    def post(
+        self, kind: int, frame: int | None, index: int = 0, value: float = 0.0, other: float = 0.0
+    ) -> None:
+        """Post an event (``midi.events``); without a frame, for now."""
+        self._instrument.post(kind, frame=frame, index=index, value=value, other=other)
 
     # -- parameters --------------------------------------------------------------------------
 
     @property
     def pitch(self) -> float | None:
         """The pitch (fractional MIDI note) while a note sounds or the bow is drawn by hand."""
-        pitch = float(self._instrument.meters()["pitch"])
-        return None if math.isnan(pitch) else pitch
+        pitches = (float(instrument.meters()["pitch"]) for instrument in self._all)
+        return next((pitch for pitch in pitches if not math.isnan(pitch)), None)
 
     def value(self, address: str) -> float:
         """The value of a parameter; one of bow and fingers may be moving to it.
@@ -96,17 +126,26 @@ class Wishes:
             Where there is no such parameter.
         """
         param = find(address)
-        return self._owned(param) if param.owned else self._value[param.address]
-
-    def _owned(self, param: Param) -> float:
-        """A value as just written, until the audio side has it."""
-        pending = self._pending.get(param.address)
+        pending = self._waiting(param)
         if pending is not None:
-            meters = self._instrument.meters()
-            if meters["drained"] <= pending.number or meters["next_frame"] <= pending.frame:
-                return pending.value
+            return pending.value
+        if param.owned:
+            return self._instrument.target(param.address)
+        return float(self.record["value"][ROW[param.address]])
+
+    def _waiting(self, param: Param) -> Pending | None:
+        """The last direct write to a parameter, while the audio side does not have it."""
+        pending = self._pending.get(param.address)
+        if pending is None:
+            return None
+        meters = self._instrument.meters()
+        is_done = meters["drained"] > pending.number and meters["next_frame"] > pending.frame
+        # What is not live takes in all that is for now as soon as it is read.
+        is_read = not self._instrument.is_live and pending.frame <= self._instrument.frame
+        if is_done or (is_read and not param.owned):
             del self._pending[param.address]
-        return self._instrument.target(param.address)
+            return None
+        return pending
 
     def write(
         self,
@@ -116,12 +155,16 @@ class Wishes:
         frame: int | None = None,
         hold: bool = False,
         glide_ms: float = 0.0,
-        key: Key | None = None,  # noqa: ARG002 - one instrument plays one key
+        kind: int = wishes.WRITE,
     ) -> float:
         """Set any parameter of the table; return the value it then has.
 
-        The moves of bow and fingers that follow take at least `glide_ms`. Where several keys
-        sound (`all_sounding`), `key` is the one that it is for; by default it is for all.
+        The moves of bow and fingers that follow take at least `glide_ms`.
+
+        Parameters
+        ----------
+        kind : int
+            Of the event: a plain write, or one that counts as a move of a controller.
 
         Raises
         ------
@@ -130,21 +173,22 @@ class Wishes:
         """
         param = find(address)
         accepted = param.accept(value)
-        if address == "/playing/section":
+        row = ROW[param.address]
+        if row == SECTION:
             accepted = min(float(round(accepted)), float(self.people))
-        if param.owned:
-            self._note(address, accepted, frame)
-            if address == "/bow/force":  # raw newtons are heard only without assist
-                self._note("/bow/assist", 0.0, frame)
-        elif address in self._kept and not hold:
-            return self._value[address]
-        else:
-            self._value[address] = accepted
-        if hold:
-            self._kept.add(address)
-        kind = wishes.HOLD if hold else wishes.WRITE
-        self._post(kind, frame, ROW[address], accepted, glide_ms)
+        if not param.owned and not hold and self.keeps(address):
+            accepted = self.value(address)
+        self._note(param.address, accepted, frame, is_held=hold)
+        if param.address == "/bow/force":  # raw newtons are heard only without assist
+            self._note("/bow/assist", 0.0, frame, is_held=hold)
+        self.post(wishes.HOLD if hold else kind, frame, row, accepted, glide_ms)
         return accepted
+
+    def set(
+        self, address: str, value: float, *, frame: int | None = None, glide_ms: float = 0.0
+    ) -> float:
+        """Set a parameter for all channels, until a controller moves it; see `write`."""
+        return self.write(address, value, frame=frame, glide_ms=glide_ms, kind=SET)
 
     def start_with(self, address: str, value: float) -> float:
         """Hold a parameter at a value, from the first sample on; see `write`."""
@@ -155,58 +199,73 @@ class Wishes:
     def jump(self, address: str, value: float) -> None:
         """Have the engine begin with a value that a parameter was given, and not move there."""
         if address in SLOT:
-            self._post(wishes.RAMP, None, SLOT[address], find(address).accept(value))
+            self.post(wishes.RAMP, None, SLOT[address], find(address).accept(value))
 
-    def _note(self, address: str, value: float, frame: int | None) -> None:
+    def expect(self, values: Mapping[str, float], frame: int | None) -> None:
+        """Answer with these values, but for held ones, until the audio side has what sets them."""
+        for address, value in values.items():
+            if not self.keeps(address):
+                self._note(address, value, frame)
+
+    def _note(
+        self, address: str, value: float, frame: int | None, *, is_held: bool = False
+    ) -> None:
         at = self._instrument.frame if frame is None else frame
-        self._pending[address] = Pending(value, self._instrument.posted, at)
+        self._pending[address] = Pending(value, self._instrument.posted, at, is_held)
 
     def release(self, *, frame: int | None = None) -> None:
         """Return every parameter that was taken over to the player."""
-        self._kept.clear()
-        self._post(wishes.RELEASE, frame)
+        self._pending.clear()
+        self.post(wishes.RELEASE, frame)
 
     def keeps(self, address: str) -> bool:
         """Whether a parameter was written with ``hold``."""
-        return address in self._kept
+        pending = self._waiting(find(address))
+        is_held = pending is not None and pending.is_held
+        return is_held or bool(self.record["kept"][ROW[find(address).address]])
 
     # -- notes -------------------------------------------------------------------------------
 
     @property
+    def notes_played(self) -> int:
+        """Number of notes that were begun."""
+        return int(self.record["notes"])
+
+    @property
+    def notes_out_of_range(self) -> int:
+        """Number of notes that the instrument does not have, played or not."""
+        return int(self.record["out_of_range"])
+
+    @property
     def sounding(self) -> Key | None:
         """The key whose note sounds, if any."""
-        self._forget_ended()
-        return self._sounding
+        record = self.record
+        return None if record["sounding"] == NONE else self._key(record, record["sounding"])
 
     @property
     def all_sounding(self) -> list[Key]:
         """The keys that sound at once: more than one where a section divides."""
-        return [] if self.sounding is None else [self.sounding]
+        record = self.record
+        return [self._key(record, n) for n in range(record["held"]) if sounds(record, n)]
 
     def holds(self, key: Key) -> bool:
         """Whether a key is held."""
-        self._forget_ended()
-        return key in self._held
+        return key in self.held()
 
     def held(self, channel: int | None = None) -> list[Key]:
         """The held keys, of one channel or all, in the order pressed."""
-        self._forget_ended()
-        return [key for key in self._held if channel in (None, key.channel)]
+        record = self.record
+        keys = (self._key(record, number) for number in range(record["held"]))
+        return [key for key in keys if channel in (None, key.channel)]
 
-    def _forget_ended(self) -> None:
-        """Forget the notes that ended as the audio process died."""
-        if len(self._instrument.rests) != self._rests:
-            self._rests = len(self._instrument.rests)
-            self._held.clear()
-            self._sounding = None
+    @staticmethod
+    def _key(record: Any, number: int) -> Key:
+        return Key(int(record["held_channel"][number]), float(record["held_key"][number]))
 
     def has(self, key: Key) -> bool:
         """Whether the instrument has a note for a key."""
-        return self._pitch(key) is not None
-
-    def _pitch(self, key: Key) -> float | None:
-        tuned = self._tuning(key.note)
-        return None if tuned is None else self._policy.fit(tuned)
+        tuned = self._tuning.pitch(key.note, self._a4)
+        return tuned is not None and self.policy.fit(tuned) is not None
 
     def note_on(
         self,
@@ -225,83 +284,38 @@ class Wishes:
         values : mapping
             Values of parameters, by address, for this note.
         tuned : float
-            Its pitch (fractional MIDI note); by default as the tuning has it.
+            Its pitch (fractional MIDI note) within range; by default as the tuning has it.
         """
-        self._forget_ended()
-        tuned = self._tuning(key.note) if tuned is None else tuned
-        pitch = None if tuned is None else self._policy.fit(tuned)
-        if tuned is None or pitch is None or abs(pitch - tuned) > OPEN_WITHIN:
-            self.notes_out_of_range += 1
-        if pitch is None:
-            return False
-        self.notes_played += 1
-        self._held.pop(key, None)
-        self._held[key] = self._instrument.frame if frame is None else frame
-        self._sounding = key
-        self._express(values, frame)
-        self._post(wishes.BEGIN, frame, key.channel, key.note, pitch)
-        return True
+        has_note = tuned is not None or self.has(key)
+        for address, value in (values or {}).items() if has_note else ():
+            self.post(wishes.EXPRESS, frame, ROW[address], find(address).accept(value))
+        if tuned is None:
+            self.post(NOTE_ON, frame, key.channel, key.note, OWN_VALUES)
+        else:
+            self.post(wishes.BEGIN, frame, key.channel, key.note, tuned)
+        return has_note
 
-    def heir(self, keys: Iterable[Key]) -> Key | None:
-        """The key that will sound again when these end; None where none will."""
-        self._forget_ended()
-        ending = set(keys)
-        if self._sounding not in ending:
-            return None
-        return next((key for key in reversed(self._held) if key not in ending), None)
-
-    def notes_off(
-        self,
-        keys: Iterable[Key],
-        values: Mapping[str, float] | None = None,
-        *,
-        frame: int | None = None,
-    ) -> None:
-        """End several notes at once; of those still held the last one sounds again, legato.
-
-        Parameters
-        ----------
-        values : mapping
-            Values of parameters, by address, for the note that sounds again; see `heir`.
-        """
-        self._forget_ended()
+    def notes_off(self, keys: Iterable[Key], *, frame: int | None = None) -> None:
+        """End several notes at once; of those still held the last one sounds again, legato."""
         ending = list(dict.fromkeys(keys))
-        # A note whose end comes before its beginning, as it was asked for ahead, ends as it begins.
-        for key in ending:
-            begun = self._held.pop(key, None)
-            if frame is not None and begun is not None:
-                frame = max(frame, begun)
-        if self._sounding in ending:
-            self._sounding = next(reversed(self._held), None)
-            if self._sounding is not None:
-                self._express(values, frame)
         for key in ending:
             more = float(key is not ending[-1])
-            self._post(wishes.END, frame, key.channel, key.note, more)
+            self.post(wishes.END, frame, key.channel, key.note, more)
 
-    def note_off(
-        self,
-        key: Key,
-        values: Mapping[str, float] | None = None,
-        *,
-        frame: int | None = None,
-    ) -> None:
+    def note_off(self, key: Key, *, frame: int | None = None) -> None:
         """End a note; see `notes_off`."""
-        self.notes_off([key], values, frame=frame)
+        self.notes_off([key], frame=frame)
 
-    def _express(self, values: Mapping[str, float] | None, frame: int | None) -> None:
-        for address, value in (values or {}).items():
-            if address not in self._kept:
-                self._value[address] = find(address).accept(value)
-                self._post(wishes.EXPRESS, frame, ROW[address], self._value[address])
+    def end_all(self, *, frame: int | None = None) -> None:
+        """End all notes, also those that were asked for ahead."""
+        self.post(RELEASE_ALL, frame)
 
     def stop_sound(self, *, frame: int | None = None, is_panic: bool = False) -> None:
         """Lift bow and fingers and stop the sound at once, unless a note sounds.
 
-        In a panic also what sounds ends, whatever is known of it here.
+        In a panic also what sounds ends.
         """
-        if is_panic or self.sounding is None:
-            self._post(wishes.STOP, frame, value=float(is_panic))
+        self.post(wishes.STOP, frame, value=float(is_panic))
 
     # -- by hand -----------------------------------------------------------------------------
 
@@ -311,7 +325,7 @@ class Wishes:
         The sounding note slides; in silence, the finger waits there for the bow.
         """
         pitch = RangePolicy.CLAMP.fit(pitch) or pitch
-        self._post(wishes.SLIDE, frame, value=pitch)
+        self.post(wishes.SLIDE, frame, value=pitch)
         return pitch
 
     def draw(self, speed: float, force: float, *, frame: int | None = None) -> tuple[float, float]:
@@ -322,9 +336,9 @@ class Wishes:
         speed, force = find("/bow/speed").accept(speed), find("/bow/force").accept(force)
         for address, value in (("/bow/speed", speed), ("/bow/force", force), ("/bow/assist", 0.0)):
             self._note(address, value, frame)
-        self._post(wishes.DRAW, frame, value=speed, other=force)
+        self.post(wishes.DRAW, frame, value=speed, other=force)
         return speed, force
 
     def lift(self, *, frame: int | None = None) -> None:
         """Lift a bow drawn by hand, and return it to the player."""
-        self._post(wishes.LIFT, frame)
+        self.post(wishes.LIFT, frame)

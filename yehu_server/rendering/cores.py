@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.engine.ensemble import Ensemble
+from yehu_server.engine.intake import take_in
 from yehu_server.engine.mixing import mix_block
 from yehu_server.engine.sounding import TOLD, sound_block
 from yehu_server.stage.geometry import EARS
@@ -45,12 +46,21 @@ class Cores:
 
     def process(self, out: Array) -> None:
         """Compute the next frames; see `Ensemble.process`."""
+        frames, parts = len(out), len(self._ensemble.instruments)
+        if self._has_stems:
+            self.stems = np.zeros((frames, parts + 1, EARS))
+        done, begin = 0, self._ensemble.frame
+        while done < frames:
+            end = take_in.call(self._ensemble.address, begin + frames) - begin
+            self._compute(out[done:end], self.stems[done:end])
+            done = end
+
+    def _compute(self, out: Array, stems: Array) -> None:
+        """Compute frames whose events are taken in."""
         frames, instruments = len(out), self._ensemble.instruments
         first = self._ensemble.frame
         dry = np.zeros((len(instruments), frames))
         told = np.zeros((len(instruments), frames, TOLD))
-        if self._has_stems:
-            self.stems = np.zeros((frames, len(instruments) + 1, EARS))
 
         def sound(part: int) -> None:
             places = (dry[part].ctypes.data, told[part].ctypes.data)
@@ -58,7 +68,7 @@ class Cores:
 
         for _ in self._share(sound, range(len(instruments))):
             pass
-        into = (dry.ctypes.data, told.ctypes.data, out.ctypes.data, self.stems.ctypes.data)
+        into = (dry.ctypes.data, told.ctypes.data, out.ctypes.data, stems.ctypes.data)
         mix_block.call(self._ensemble.address, first, frames, *into, int(self._has_stems))
 
 

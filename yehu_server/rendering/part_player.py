@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import find
-from yehu_server.playing.section import section_wishes
 from yehu_server.rendering.options import Part
 from yehu_server.score.score import ScoreEvent
 from yehu_server.score.score_notes import notes_of
@@ -29,7 +28,7 @@ class PartPlayer:
     def __init__(self, part: Part, instruments: Sequence[Instrument]) -> None:
         self.part, self.instruments = part, instruments
         style = part.style
-        self.wishes = section_wishes(style, instruments)
+        self.wishes = style.wishes(instruments)
         self.midi = style.midi(self.wishes, None if part.channels is None else set(part.channels))
         self.wishes.write("/playing/phrasing", part.phrasing)
         for address, value in style.start:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from yehu_server.playing.messages import PERCUSSION
+from yehu_server.midi.channels import PERCUSSION
 from yehu_server.score.score import Score, ScoreEvent
 
 

@@ -44,7 +44,7 @@ def midi_messages(data: bytes) -> None:
     every = styles()
     instrument = Instrument()
     style = every[program.byte() % len(every)]
-    player = LivePlayer(instrument, style, delay_ms=3.0)
+    player = LivePlayer(instrument, style, delay_ms=3.0, wishes=style.wishes([instrument]))
     ports = MidiPorts([player], MidiOptions(), lambda _line: None)
 
     def tell(kind: str, **fields: object) -> None:

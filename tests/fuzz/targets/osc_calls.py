@@ -134,7 +134,7 @@ def osc_calls(data: bytes) -> None:
     with still_time() as clock:
         instrument, desk, ear = Instrument(), Desk(), Ear(host="ear")
         style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
-        player = LivePlayer(instrument, style, delay_ms=3.0)
+        player = LivePlayer(instrument, style, delay_ms=3.0, wishes=style.wishes([instrument]))
         handler = OscHandler([player], desk)
 
         def take(what: bytes) -> None:

@@ -1,0 +1,61 @@
+"""Stands for an instrument that leads a part: events come to wishes, and nothing sounds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.midi.events import EVENTS
+from yehu_server.midi.interpret import interpret
+from yehu_server.midi.record import IN_PORT, MIDI, prepare_midi
+from yehu_server.midi.tables import SLOTS, TABLES
+from yehu_server.params.table import TABLE
+from yehu_server.player.wishes import KINDS
+
+ALL_KINDS = (*KINDS, *EVENTS)
+DEFAULTS = {param.address: param.default for param in TABLE}
+Wished = tuple[int, int, float, float]  # kind, index, value, other
+
+
+class Leader:
+    """The side of ``engine.instrument.Instrument`` that interprets what is posted."""
+
+    rate = 48000.0
+    seed = 0
+    address = 0
+    is_live = True
+
+    def __init__(self) -> None:
+        self.rests: list[tuple[int, int]] = []
+        self._midi = np.zeros(1, MIDI)
+        self.tables = np.zeros(SLOTS, TABLES)
+
+    @property
+    def midi(self) -> Any:
+        return self._midi[0]
+
+    def lead(self, tables: Any, people: int = 1) -> None:
+        is_mpe = bool(tables["mpe"][0])
+        prepare_midi(self._midi, self.rate, DEFAULTS, people=people, mpe=is_mpe)
+        self.tables[0] = tables[0]
+
+    def furnish(self, tables: Any) -> None:
+        self.tables[self.midi["tables"]] = tables[0]
+        self.midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
+
+    def take_in(self) -> None:
+        """Each event is interpreted as it comes."""
+
+    def frames(self, ms: float) -> int:
+        return round(ms * 1e-3 * self.rate)
+
+    def interpret(self, frame: int, kind: int, *fields: float) -> list[Wished]:
+        """What an event comes to, all at its frame."""
+        midi = self.midi
+        interpret.call(self._midi.ctypes.data, self.tables.ctypes.data, frame, kind, *fields)
+        count = int(midi["wishes"])
+        assert (midi["out_frame"][:count] == frame).all()
+        assert midi["lost"] == 0
+        names = ("out_kind", "out_index", "out_value", "out_other")
+        return list(zip(*(midi[name][:count].tolist() for name in names), strict=True))

@@ -1,0 +1,149 @@
+"""Writes what files say of playing into tables for compiled code (``midi.tables``)."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from yehu_server.midi import tables
+from yehu_server.params.preset import Preset
+from yehu_server.params.spec import Curve
+from yehu_server.params.table import find
+from yehu_server.player.rows import ROW
+from yehu_server.playing import sources
+from yehu_server.playing.binds import Bind, Breakpoints
+from yehu_server.playing.mapping import Mapping as Binds
+from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.tuning import KEYS, Tuning
+
+Array = Any
+
+CURVES = {Curve.LIN: tables.LINEAR, Curve.EXP: tables.EXPONENTIAL, Curve.S: tables.S}
+POLICIES = {
+    RangePolicy.TRANSPOSE: tables.TRANSPOSE,
+    RangePolicy.CLAMP: tables.CLAMP,
+    RangePolicy.SKIP: tables.SKIP,
+}
+WORDS = {
+    sources.BEND: tables.BEND,
+    sources.PRESSURE: tables.PRESSURE,
+    sources.POLY_PRESSURE: tables.POLY_PRESSURE,
+    sources.VELOCITY: tables.VELOCITY,
+    sources.NOTE: tables.NOTE,
+}
+
+
+class Controls:
+    """Numbers of the named controls of mappings: their OSC addresses, as they come."""
+
+    def __init__(self) -> None:
+        self._numbers: dict[str, int] = {}
+
+    def number(self, address: str) -> int:
+        """The number of an address; a new one for a new address."""
+        return self._numbers.setdefault(address, len(self._numbers))
+
+
+def make_tables(
+    mapping: Binds,
+    controls: Controls,
+    *,
+    start: Iterable[tuple[str, float]] = (),
+    tuning: Tuning,
+    a4: float,
+    policy: RangePolicy,
+    received: Iterable[int] | None = None,
+    programs: Mapping[int, Preset] | None = None,
+) -> Array:
+    """Make the tables of a part.
+
+    Parameters
+    ----------
+    mapping : Mapping
+        With no more binds and points than there is room for, as ``playing.mapping`` reads it.
+    start : iterable of (address, value)
+        Start values of parameters, over those of the mapping.
+    received : iterable of int, optional
+        Channels to receive, counted from 0; by default all but percussion.
+    programs : mapping, optional
+        The presets of MIDI programs, from 1. Without it program changes are ignored.
+
+    Returns
+    -------
+    ndarray [shape=(1,), dtype=TABLES]
+    """
+    made = tables.plain_tables()
+    t = made[0]
+    _write_binds(t, mapping, controls)
+    t["mpe"] = float(mapping.mpe)
+    for address, value in mapping.start:
+        t["usual"][ROW[address]] = value
+    starts = dict(mapping.start) | dict(start)
+    t["starts"] = len(starts)
+    for place, (address, value) in enumerate(starts.items()):
+        t["start_row"][place], t["start_value"][place] = ROW[address], find(address).accept(value)
+    t["is_equal"] = float(tuning.keys is None)
+    pitches = (tuning.pitch(float(key), a4) for key in KEYS)
+    t["pitch"] = [math.nan if pitch is None else pitch for pitch in pitches]
+    t["policy"] = POLICIES[policy]
+    t["received"] = -1 if received is None else sum(1 << channel for channel in set(received))
+    _write_programs(t, programs)
+    return made
+
+
+def _write_binds(t: Array, mapping: Binds, controls: Controls) -> None:
+    t["binds"] = len(mapping.binds)
+    firsts: dict[str, int] = {}
+    points = 0
+    for n, bind in enumerate(mapping.binds):
+        t["source"][n] = source_code(bind.source, controls)
+        t["first"][n] = firsts.setdefault(bind.source, n)
+        t["target"][n] = ROW[bind.target]
+        t["lo"][n], t["hi"][n] = bind.ends
+        if isinstance(bind.curve, Breakpoints):
+            end = points + len(bind.curve.points)
+            t["curve"][n], t["first_point"][n] = tables.POINTS, points
+            t["points"][n] = len(bind.curve.points)
+            t["x"][points:end], t["y"][points:end] = np.transpose(bind.curve.points)
+            points = end
+        else:
+            t["curve"][n] = CURVES[bind.curve]
+        t["invert"][n] = float(bind.invert)
+        t["smoothing_ms"][n] = bind.smoothing_ms
+        t["channels"][n] = sum(1 << channel - 1 for channel in bind.channels)
+        t["soft"][n] = float(bind.is_soft)
+        t["by_range"][n] = float(bind.is_by_range)
+        t["for_all"][n] = float(bind.is_global)
+        t["input_lo"][n], t["input_hi"][n] = bind.input_range
+        t["same"][n] = _mark(bind)
+
+
+def source_code(source: str, controls: Controls) -> int:
+    """The code of a source (``midi.tables``)."""
+    if source in WORDS:
+        return WORDS[source]
+    if sources.is_address(source):
+        return tables.CONTROL + controls.number(source)
+    kind, number = source.split(" ")
+    if kind == "nrpn":
+        return tables.NRPN + int(number)
+    coarse, _, fine = number.partition("/")
+    return tables.PAIR + int(coarse) if fine else int(coarse)
+
+
+def _mark(bind: Bind) -> float:
+    """A number that equal binds have, and no others."""
+    return float(int(hashlib.sha256(repr(bind).encode()).hexdigest()[:12], 16))
+
+
+def _write_programs(t: Array, programs: Mapping[int, Preset] | None) -> None:
+    t["has_programs"] = float(programs is not None)
+    for program, preset in (programs or {}).items():
+        t["has_program"][program - 1] = 1.0
+        for place, (address, value) in enumerate(preset.values.items()):
+            t["program_row"][program - 1, place] = ROW[address]
+            t["program_value"][program - 1, place] = find(address).accept(value)

@@ -24,6 +24,7 @@ export const WISH = 5;
  */
 function surroundings(view) {
   return {
+    asin: Math.asin,
     sin: Math.sin,
     cos: Math.cos,
     tan: Math.tan,

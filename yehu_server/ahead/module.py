@@ -17,7 +17,7 @@ from yehu_server.errors import YehuError
 from yehu_server.jit import Native
 
 # What the machine's C library gives, or the page.
-MATHEMATICS = "cos exp exp2 log log10 log2 pow sin sqrt tan tanh"
+MATHEMATICS = "asin cos exp exp2 log log10 log2 pow sin sqrt tan tanh"
 OUTSIDE = {"clock_gettime", "memcpy", "memmove", "memset", *MATHEMATICS.split()}
 LAYOUT = re.compile(r'^target datalayout = ".*"', re.MULTILINE)
 TRIPLE = re.compile(r'^target triple = ".*"', re.MULTILINE)

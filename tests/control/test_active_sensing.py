@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from yehu_server.control import midi_process
+from yehu_server.control.midi_feed import MidiFeed
 from yehu_server.control.midi_process import ACTIVE_SENSING, SENSE_EVERY_S, Input, Inputs
+from yehu_server.control.midi_routes import Router
+from yehu_server.midi.events import DISCONNECT, EVENTS, MESSAGE
 
 MS = 1_000_000
 
@@ -28,9 +33,19 @@ class Desk:
         self.told: list[str] = []
         monkeypatch.setattr(midi_process.time, "monotonic", lambda: 1e-9 * self.now_ns)
         monkeypatch.setattr(midi_process.time, "monotonic_ns", lambda: self.now_ns)
-        self.inputs = Inputs(self, {"patterns": [], "others": True, "virtual": None, "api": None})
+        ring = SimpleNamespace(post=self.post)
+        feed = MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)
+        order = {"patterns": [], "others": True, "virtual": None, "api": None}
+        self.inputs = Inputs(self, feed, order)
         self.port = Port()
-        self.inputs._open["keystep"] = Input(self.port, "keystep", None, self)
+        feed.open("keystep")
+        self.inputs._open["keystep"] = Input(self.port, "keystep", None, feed, self)
+
+    def post(self, time_ns: int, kind: int, index: int) -> bool:
+        assert time_ns == self.now_ns
+        assert index == 0
+        self.told.append(EVENTS[kind - MESSAGE])
+        return True
 
     def tell(self, event: str, **_details: object) -> None:
         self.told.append(event)
@@ -52,7 +67,7 @@ def test_a_controller_that_falls_silent_is_told_of_once(desk):
     desk.sense_for(300)
     assert desk.told == []
     desk.sense_for(1000)
-    assert desk.told == ["silent"]
+    assert desk.told == ["disconnect", "silent"]
 
 
 @pytest.mark.parametrize("slept_s", [0.4, 2.5, 3600.0])
@@ -65,4 +80,4 @@ def test_a_controller_is_not_taken_for_silent_because_we_slept(desk, slept_s):
     desk.sense_for(300)
     assert desk.told == []
     desk.sense_for(200)
-    assert desk.told == ["silent"]
+    assert desk.told == ["disconnect", "silent"]

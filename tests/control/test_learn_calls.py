@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mido
 import pytest
+from midi_input import receive
 
 from yehu_server.control import learn_calls
 from yehu_server.playing.mapping import load
@@ -22,7 +23,7 @@ def _clock(monkeypatch, still_time):
 def turn(stage, control: int, *values: int, channel: int = 0) -> None:
     for value in values:
         message = mido.Message("control_change", control=control, value=value, channel=channel)
-        stage.player.receive(message, frame=stage.player.frame_of(), port=0)
+        receive(stage.player, message, frame=stage.player.frame_of(), port=0)
 
 
 def told(heard, address: str) -> list[list]:
@@ -47,7 +48,7 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(stage, address):
 
 def test_a_knob_of_another_box_moves_the_note_that_sounds(stage):
     for port in (0, 1):  # keyboards, both of them
-        stage.player.receive(mido.Message("note_on", note=70), frame=0, port=port)
+        receive(stage.player, mido.Message("note_on", note=70), frame=0, port=port)
     stage.ask("/learn", "/playing/vibrato")
     turn(stage, 20, 10, 20, 64)
     assert told(stage.ear.heard(), "/learned")[0][1] == "cc 20"
@@ -56,7 +57,7 @@ def test_a_knob_of_another_box_moves_the_note_that_sounds(stage):
 
 
 def test_a_knob_on_the_drums_channel_is_learned_and_heard(stage):
-    stage.player.receive(mido.Message("note_on", note=70), frame=0, port=1)
+    receive(stage.player, mido.Message("note_on", note=70), frame=0, port=1)
     stage.ask("/learn", "/playing/vibrato")
     turn(stage, 20, 10, 20, 64, channel=9)
     assert told(stage.ear.heard(), "/learned")[0][1] == "cc 20"

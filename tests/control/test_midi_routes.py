@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
 
 from yehu_server.control.midi_routes import Route, Router, check_routes, route_of
@@ -106,18 +104,18 @@ def test_channels_of_an_input_play_their_parts():
 
 
 class Player:
-    """Keeps what it receives."""
+    """Keeps what it hears to learn from, and what it lets go of."""
 
     def __init__(self) -> None:
-        self.instrument = SimpleNamespace(rate=48000.0)
-        self.got: list[tuple[str, int]] = []
+        self.listens = True
+        self.heard: list[tuple[str, int]] = []
         self.let_go: list[int] = []
 
-    def frame_of(self, _arrived_ns: int = 0) -> int:
+    def frame_of(self) -> int:
         return 0
 
-    def receive(self, message, *, frame: int, port: int) -> None:  # noqa: ARG002
-        self.got.append((message.type, port))
+    def hear_message(self, message, port: int) -> None:
+        self.heard.append((message.type, port))
 
     def let_go_of(self, port: int, *, frame: int) -> None:  # noqa: ARG002
         self.let_go.append(port)
@@ -125,42 +123,45 @@ class Player:
 
 def opened(parts: int, *texts: str) -> tuple[list[Player], MidiPorts, list[str]]:
     players, said = [Player() for _ in range(parts)], []
-    ports = MidiPorts(players, MidiOptions(routes=routes(*texts)), said.append)
-    for name in ("first", "second", "third"):
-        ports._heard({"event": "appeared", "port": name})
+    ports = MidiPorts(players, MidiOptions(routes=routes(*texts)), 0, range(parts), said.append)
+    for number, name in enumerate(("first", "second", "third")):
+        ports._heard({"event": "appeared", "port": name, "number": number})
     return players, ports, said
 
 
-def test_what_an_input_plays_is_told_as_it_comes_and_heard_by_that_part():
+def test_what_an_input_plays_is_told_as_it_comes():
     players, ports, said = opened(2)
     assert said == [
         "MIDI: first is connected to part 1",
         "MIDI: second is connected to part 2",
         "MIDI: third is connected to part 2",
     ]
-    for name in ("third", "second", "first"):
-        ports._heard({"event": "midi", "port": name, "at": 0, "bytes": NOTE})
-    assert [player.got for player in players] == [
-        [("note_on", 2)],
-        [("note_on", 0), ("note_on", 1)],
-    ]
     ports._heard({"event": "vanished", "port": "first"})
-    assert [player.let_go for player in players] == [[2], []]
-    ports._heard({"event": "appeared", "port": "first"})
+    ports._heard({"event": "appeared", "port": "first", "number": 0})
     assert said[-1] == "MIDI: first is connected to part 1"
-
-
-def test_a_channel_is_heard_by_its_part_and_a_reset_by_all_of_the_input():
-    players, ports, said = opened(3, "1=first:1", "3=first:2", "2=second")
+    _, _, said = opened(3, "1=first:1", "3=first:2", "2=second")
     assert said == [
         "MIDI: first is connected to parts 1, 3",
         "MIDI: second is connected to part 2",
         "MIDI: third is connected, and plays no part",
     ]
-    for bytes_ in (NOTE, [0x91, 67, 90], [0x92, 67, 90], [0xFF]):
-        ports._heard({"event": "midi", "port": "first", "at": 0, "bytes": bytes_})
-    kinds = [[kind for kind, _ in player.got] for player in players]
-    assert kinds == [["note_on", "reset"], [], ["note_on", "reset"]]
-    ports._heard({"event": "midi", "port": "third", "at": 0, "bytes": NOTE})
-    assert players[1].got == []
-    assert ports.received == 5
+    assert [player.let_go for player in players] == [[], []]
+
+
+def test_players_that_listen_hear_what_their_input_sends_and_damage_is_nothing():
+    players, ports, _ = opened(2)
+    for name in ("third", "second", "first"):
+        ports._heard({"event": "midi", "port": name, "bytes": NOTE})
+        ports._heard({"event": "midi", "port": name, "bytes": [0x90, 200, 1]})
+    assert [player.heard for player in players] == [
+        [("note_on", 0)],
+        [("note_on", 2), ("note_on", 1)],
+    ]
+
+
+def test_notes_of_inputs_whose_process_died_are_ended():
+    players, ports, said = opened(2)
+    ports._ended(by_itself=True)
+    assert [player.let_go for player in players] == [[0], [1, 2]]
+    assert said[-1] == "MIDI: first, second, third gone; notes are ended"
+    assert ports.connected == []

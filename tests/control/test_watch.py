@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import mido
 import pytest
+from midi_input import receive
 
 from yehu_server.playing.mapping import load
 from yehu_server.playing.style import Style
@@ -27,12 +28,12 @@ def watched(make_hall, path):
 def test_a_changed_file_is_taken_up_while_a_note_sounds_or_refused_whole(watched, path, patience):
     def send(control: int) -> float:
         message = mido.Message("control_change", control=control, value=0, channel=0)
-        watched.player.receive(message, frame=watched.player.frame_of(), port=0)
+        receive(watched.player, message, frame=watched.player.frame_of(), port=0)
         watched.settle()
         return watched.player.value("/playing/volume")
 
     note = mido.Message("note_on", note=70, velocity=90, channel=0)
-    watched.player.receive(note, frame=watched.player.frame_of(), port=0)
+    receive(watched.player, note, frame=watched.player.frame_of(), port=0)
     path.write_text(BIND.format(21) + BIND.format(2100))
     (refused,) = patience(lambda: watched.said, "a line on what is wrong")
     assert refused.startswith(f"{path}:5: bind 2: unknown source 'cc 2100'")

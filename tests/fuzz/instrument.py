@@ -41,7 +41,7 @@ class Instrument(Leader):
     def __init__(self) -> None:
         super().__init__()
         self.now_s = 0.0
-        self.posted = 0
+        self.posted = self.delay = 0
         self._player, self._controls = PLAYER.copy(), CONTROLS.copy()
         self._waiting: list[tuple[int, int, int, int, float, float]] = []
 

@@ -98,7 +98,7 @@ def test_under_load_the_callback_keeps_its_deadlines(jackd, until):
             env=jackd.environment,
         )
         try:
-            until(lambda: server.midi.received > 100, 10.0, "MIDI")
+            until(lambda: server.status()["midi_messages"] > 100, 10.0, "MIDI")
             counted = ("callbacks", "missed", "late_callbacks", "underruns", "loads", "applied")
             before = {
                 one: {what: meters[what].copy() for what in counted}
@@ -107,14 +107,17 @@ def test_under_load_the_callback_keeps_its_deadlines(jackd, until):
                     ("playing", server.instrument.meters()),
                 )
             }
-            received = server.midi.received, server.osc.traffic.packets
+            received = server.status()["midi_messages"], server.osc.traffic.packets
             start = time.monotonic()
             while time.monotonic() < start + 4.0:
                 time.sleep(0.1)
                 server.instrument.applied_wishes()
             seconds = time.monotonic() - start
             after = {"idle": idle.meters(), "playing": server.instrument.meters()}
-            heard = server.midi.received - received[0], server.osc.traffic.packets - received[1]
+            heard = (
+                server.status()["midi_messages"] - received[0],
+                server.osc.traffic.packets - received[1],
+            )
         finally:
             load.kill()
             load.wait()

@@ -15,9 +15,14 @@ import rtmidi
 from moves import Moves
 
 from yehu_server.audio.output import OutputOptions
+from yehu_server.control.midi_feed import MidiFeed, SharedRing
 from yehu_server.control.midi_names import is_wanted, stable_names
 from yehu_server.control.midi_process import Inputs
+from yehu_server.control.midi_routes import Router
 from yehu_server.control.ports import MidiOptions, MidiPorts
+from yehu_server.engine.mailbox import MIDI_INPUTS
+from yehu_server.engine.rig import ring_place
+from yehu_server.midi.events import DISCONNECT, MESSAGE
 from yehu_server.player.bowing import ordinary_table
 from yehu_server.playing.style import Style
 from yehu_server.server import PartOptions, ServeOptions, Server
@@ -398,25 +403,30 @@ def test_a_system_exclusive_that_is_cut_short_makes_nobody_deaf(keys):
     heard.plays(69.0, keyboard, "send keyboard 90 45 60")
 
 
-def hear_noise(ports: MidiPorts, data: Callable[[], list[int]]) -> None:
+def hear_noise(server: Server, data: Callable[[], list[int]]) -> None:
     """Send noise from two ports, and then close them."""
     chance = random.Random(9)
     names = ["one", "two"]
+    ring = SharedRing(server.output.memory.buffer, ring_place(MIDI_INPUTS, 0))
+    feed = MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)
+    for name in names:
+        feed.open(name)
     for number in range(5000):
         port = chance.choice(names)
-        event = {"event": "midi", "port": port, "at": time.monotonic_ns(), "bytes": data()}
-        ports._heard(event)
+        if sent := data():
+            feed.receive(port, sent, time.monotonic_ns())
         if number % 1000 == 999:
-            ports._heard({"event": chance.choice(["vanished", "silent"]), "port": port})
+            feed.let_go_of(port, time.monotonic_ns(), is_gone=False)
+            time.sleep(0.1)  # the callback takes so many at a time
     for name in names:
-        ports._heard({"event": "vanished", "port": name})
+        feed.let_go_of(name, time.monotonic_ns(), is_gone=True)
 
 
 def test_whatever_is_played_leaves_no_note(listening):
     heard = listening
     heard.forget()
     chance = random.Random(8)
-    hear_noise(heard.server.midi, lambda: [*noise(chance), 0, 0][:3])
+    hear_noise(heard.server, lambda: [*noise(chance), 0, 0][:3])
     assert heard.applied()["/bow/side"][1] == 0.0
     assert heard.player.pitch is None
 
@@ -424,10 +434,10 @@ def test_whatever_is_played_leaves_no_note(listening):
 def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listening):
     heard = listening
     chance = random.Random(8)
-    hear_noise(heard.server.midi, lambda: [chance.randrange(256)] * chance.randrange(4))
-    hear_noise(heard.server.midi, lambda: noise(chance))
+    hear_noise(heard.server, lambda: [chance.randrange(256)] * chance.randrange(4))
+    hear_noise(heard.server, lambda: noise(chance))
     heard.comes_to(None)
-    assert heard.server.midi.malformed > 0
+    assert heard.server.status()["midi_malformed"] > 0
 
 
 # ---------------------------------------------------------------- names
@@ -471,6 +481,12 @@ def test_ports_are_wanted_by_words_of_their_name(name, patterns, wanted):
     assert is_wanted(name, patterns) is wanted
 
 
+def feed() -> MidiFeed:
+    """A feed whose messages nobody takes."""
+    ring = SimpleNamespace(post=lambda *_event: True)
+    return MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)
+
+
 class Fresh:
     """An RtMidi input that records the order of its calls."""
 
@@ -495,7 +511,7 @@ class Fresh:
 
 def test_a_port_is_listened_to_before_it_is_open():
     order = []
-    inputs = Inputs(Fresh(order), {"patterns": [], "virtual": None, "api": None})
+    inputs = Inputs(Fresh(order), feed(), {"patterns": [], "virtual": None, "api": None})
     inputs._client = lambda: Fresh(order)
     inputs._add("keys", "keys")
     assert order == ["listens", "opens keys", "appeared"]
@@ -510,7 +526,7 @@ class Closed(Fresh):
 
 def test_a_port_that_cannot_be_opened_is_told_of_once():
     told = []
-    inputs = Inputs(Fresh(told), {"patterns": [], "virtual": None, "api": None})
+    inputs = Inputs(Fresh(told), feed(), {"patterns": [], "virtual": None, "api": None})
     inputs._client = lambda: Closed([])
     inputs._finder = Closed([])
     for _ in range(5):
@@ -542,17 +558,17 @@ class Studio(Fresh):
 def test_a_name_that_no_port_has_is_told_once_and_heard_when_it_comes():
     studio = Studio()
     order = {"patterns": ["KEY", "breath"], "virtual": None, "api": None}
-    inputs = Inputs(studio, order)
+    inputs = Inputs(studio, feed(), order)
     inputs._finder, inputs._client = studio, lambda: studio
     for _ in range(3):
         inputs.look()
     assert studio.told == [
-        ("appeared", {"port": "keys"}),
+        ("appeared", {"port": "keys", "number": 0}),
         ("missing", {"pattern": "breath", "present": ["keys", "synth"]}),
     ]
     studio.ports = ["keys", "breath"]
     inputs.look()
-    assert studio.told[2:] == [("appeared", {"port": "breath"})]
+    assert studio.told[2:] == [("appeared", {"port": "breath", "number": 1})]
     studio.ports = ["keys"]
     inputs.look()
     assert studio.told[3:] == [("vanished", {"port": "breath"})]
@@ -560,7 +576,7 @@ def test_a_name_that_no_port_has_is_told_once_and_heard_when_it_comes():
 
 def test_a_missing_name_is_said_once_however_often_the_midi_system_begins_anew():
     said = []
-    ports = MidiPorts([SimpleNamespace()], MidiOptions(), said.append)
+    ports = MidiPorts([SimpleNamespace()], MidiOptions(), 0, [0], said.append)
     for _ in range(2):
         ports._heard({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]

@@ -9,6 +9,7 @@ import time
 import mido
 import numpy as np
 import pytest
+from midi_input import receive
 from sound import run
 
 from yehu_server.engine.instrument import Instrument
@@ -79,8 +80,8 @@ def test_messages_of_one_source_keep_their_order_where_the_delay_becomes_shorter
 
 def test_what_arrives_is_played_before_what_is_tagged_for_later(live, instrument):
     live.note_on(67.0, 90.0, frame=500)  # with a time tag
-    live.receive(mido.Message("note_on", note=72, velocity=90), frame=300, port=0)
-    live.receive(mido.Message("note_off", note=72), frame=350, port=0)
+    receive(live, mido.Message("note_on", note=72, velocity=90), frame=300, port=0)
+    receive(live, mido.Message("note_off", note=72), frame=350, port=0)
     live.note_off(67.0, frame=600)
     pitches = []
     for _ in range(7):  # frames 0, 100, ... 600
@@ -160,9 +161,9 @@ def test_notes_out_of_midis_range_are_refused_and_change_nothing(live, instrumen
 
 @pytest.mark.parametrize("ending", ["panic", "reset", "end_notes"])
 def test_nothing_sounds_on_after_the_end(live, instrument, ending):
-    live.receive(mido.Message("control_change", control=64, value=127), frame=0, port=0)
-    live.receive(mido.Message("note_on", note=72, velocity=90), frame=0, port=0)
-    live.receive(mido.Message("note_off", note=72), frame=100, port=0)
+    receive(live, mido.Message("control_change", control=64, value=127), frame=0, port=0)
+    receive(live, mido.Message("note_on", note=72, velocity=90), frame=0, port=0)
+    receive(live, mido.Message("note_off", note=72), frame=100, port=0)
     live.note_on(67.0, 90.0, frame=200)
     run(instrument, 9600)
     live.draw(0.2, 1.0, frame=9600)
@@ -183,7 +184,7 @@ def test_panic_is_silent_within_ten_milliseconds(live, instrument):
 
 def test_a_held_setting_stays_through_notes_and_controllers(live):
     live.hold("/playing/speed", 0.5)
-    live.receive(mido.Message("control_change", control=1, value=0), frame=0, port=0)
+    receive(live, mido.Message("control_change", control=1, value=0), frame=0, port=0)
     live.note_on(67.0, 90.0, frame=0)
     assert live.value("/playing/speed") == 0.5
 
@@ -192,8 +193,8 @@ def test_many_threads_take_turns_without_a_torn_note(live, instrument):
     def hammer(port: int) -> None:
         for turn in range(200):
             note = 65 + (turn * 7 + port) % 24
-            live.receive(mido.Message("note_on", note=note, velocity=90), frame=turn, port=port)
-            live.receive(mido.Message("note_off", note=note), frame=turn, port=port)
+            receive(live, mido.Message("note_on", note=note, velocity=90), frame=turn, port=port)
+            receive(live, mido.Message("note_off", note=note), frame=turn, port=port)
 
     threads = [threading.Thread(target=hammer, args=(port,)) for port in range(4)]
     for thread in threads:

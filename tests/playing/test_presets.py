@@ -10,6 +10,7 @@ from pathlib import Path
 import mido
 import numpy as np
 import pytest
+from midi_input import receive
 from pitch import cents, hertz, pitch_of
 from sound import run
 
@@ -382,12 +383,12 @@ def test_the_beginning_is_where_a_reset_leads_back_to(instrument):
 
 def change(live: LivePlayer, program: int, channel: int = 1) -> None:
     message = mido.Message("program_change", program=program - 1, channel=channel - 1)
-    live.receive(message, frame=0, port=0)
+    receive(live, message, frame=0, port=0)
 
 
 def bank(live: LivePlayer, control: int, value: int, channel: int = 1) -> None:
     message = mido.Message("control_change", control=control, value=value, channel=channel - 1)
-    live.receive(message, frame=0, port=0)
+    receive(live, message, frame=0, port=0)
 
 
 def test_a_program_change_selects_a_preset_where_it_may(instrument, presets):

@@ -1,12 +1,13 @@
 """The process that holds the MIDI inputs: ``python -m yehu_server.control.midi_process``.
 
-It opens the wanted inputs as they appear, stamps each message on arrival, and passes it on.
-RtMidi over JACK crashes when the JACK server dies: then this process ends, and a new one takes
-its place.
+It opens the wanted inputs as they appear, stamps each message on arrival, and puts it where the
+audio callback takes it (``midi_feed``). RtMidi over JACK crashes when the JACK server dies: then
+this process ends, and a new one takes its place.
 """
 
 from __future__ import annotations
 
+import mmap
 import os
 import threading
 import time
@@ -15,8 +16,11 @@ from typing import Any
 
 from yehu_server.child import Message, Parent
 from yehu_server.control.jack_watch import JackWatch
+from yehu_server.control.midi_feed import PORTS, MidiFeed, SharedRing
 from yehu_server.control.midi_names import StableNames, is_wanted, stable_names
+from yehu_server.control.midi_routes import Route, Router
 from yehu_server.errors import ParameterError
+from yehu_server.midi.packing import MOST_BYTES
 
 LOOK_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # between looks for a MIDI system, where there is none
@@ -25,18 +29,27 @@ SENSE_WITHIN_S = 0.33  # active sensing promises a message every 300 ms
 SLEPT_S = 0.25  # a longer pause between two checks: this process was stopped
 CLIENT = "yehu-server MIDI"
 ACTIVE_SENSING, CLOCKS = 0xFE, {0xF8, 0xF9}
-MOST_BYTES = 3  # longer ones are system exclusive, which is ignored
 
 APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windows": "WINDOWS_MM"}
 
 
 class Input:
-    """An open MIDI input."""
+    """An open MIDI input.
 
-    def __init__(self, midi: Any, name: str, full_name: str | None, parent: Parent) -> None:
+    Attributes
+    ----------
+    is_heard : bool
+        Whether the parent is told of each message, too.
+    """
+
+    def __init__(
+        self, midi: Any, name: str, full_name: str | None, feed: MidiFeed, parent: Parent
+    ) -> None:
         self.midi = midi
         self.name = name
         self.full_name = full_name
+        self.is_heard = False
+        self._feed = feed
         self._parent = parent
         self._last = 0.0
         self._senses = False
@@ -49,13 +62,16 @@ class Input:
         self._last = 1e-9 * at
         if data[0] == ACTIVE_SENSING:
             self._senses = True
-        elif data[0] not in CLOCKS and len(data) <= MOST_BYTES:
-            self._parent.tell("midi", port=self.name, at=at, bytes=list(data))
+        elif data[0] not in CLOCKS and len(data) <= MOST_BYTES:  # no system exclusive
+            self._feed.receive(self.name, data, at)
+            if self.is_heard:
+                self._parent.tell("midi", port=self.name, bytes=list(data))
 
     def sense(self) -> None:
-        """Report the port as silent where active sensing has stopped."""
+        """End the notes of the port where active sensing has stopped."""
         if self._senses and time.monotonic() - self._last > SENSE_WITHIN_S:
             self._senses = False
+            self._feed.let_go_of(self.name, time.monotonic_ns(), is_gone=False)
             self._parent.tell("silent", port=self.name)
 
     def wait_anew(self) -> None:
@@ -71,8 +87,10 @@ class Input:
 class Inputs:
     """The wanted MIDI inputs, opened and closed as they appear and disappear."""
 
-    def __init__(self, parent: Parent, order: Message) -> None:
+    def __init__(self, parent: Parent, feed: MidiFeed, order: Message) -> None:
         self._parent = parent
+        self._feed = feed
+        self._is_heard = False
         self._patterns: Sequence[str] = order["patterns"]
         # Whether all others but through ports are opened, too.
         self._others = bool(order.get("others", not self._patterns))
@@ -103,8 +121,9 @@ class Inputs:
             left = self._watch.left()
             gone |= {name for name, port in self._open.items() if port.full_name in left}
         for name in gone:
-            self._parent.tell("vanished", port=name)
             self._open.pop(name).close()
+            self._feed.let_go_of(name, time.monotonic_ns(), is_gone=True)
+            self._parent.tell("vanished", port=name)
         self._refused &= set(stable)
         for name, full_name in stable.items():
             if name not in self._open | dict.fromkeys(self._refused) and self._wants(name):
@@ -132,6 +151,12 @@ class Inputs:
             else:
                 port.sense()
 
+    def hear(self, is_heard: bool) -> None:
+        """Tell the parent of each message from now on, or no more; any thread may call."""
+        self._is_heard = is_heard
+        for port in list(self._open.values()):
+            port.is_heard = is_heard
+
     def _start(self) -> bool:
         finder, problem = open_client(self._api)
         if finder is None:
@@ -152,18 +177,25 @@ class Inputs:
         """Open a port, or (without a full name) a virtual one."""
         import rtmidi
 
+        number = self._feed.open(name)
+        if number is None:
+            self._refused.add(name)
+            self._parent.tell("refused", port=name, reason=f"{PORTS} are open, which is the most")
+            return
         try:
-            port = Input(self._client(), name, full_name, self._parent)
+            port = Input(self._client(), name, full_name, self._feed, self._parent)
             if full_name is None:
                 port.midi.open_virtual_port(name)
             else:
                 port.midi.open_port(port.midi.get_ports().index(full_name), name=name[:32])
         except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
             self._refused.add(name)
+            self._feed.let_go_of(name, time.monotonic_ns(), is_gone=True)
             self._parent.tell("refused", port=name, reason=str(error))
             return
         self._open[name] = port
-        self._parent.tell("appeared", port=name)
+        port.is_heard = self._is_heard
+        self._parent.tell("appeared", port=name, number=number)
 
     def _client(self) -> Any:
         import rtmidi
@@ -225,16 +257,27 @@ def api_name(number: int) -> str:
     return str(rtmidi.get_api_display_name(number))
 
 
+def _feed(order: Message) -> MidiFeed:
+    """Make the feed that an order describes."""
+    memory = mmap.mmap(order["memory"], os.fstat(order["memory"]).st_size)
+    rings = [SharedRing(memory, place) for place in order["rings"]]
+    routes = [Route(*route) for route in order["routes"]]
+    router = Router(routes, len(rings), order["known"])
+    kinds = {name: order[name] for name in ("message", "disconnect")}
+    return MidiFeed(rings, router, numbers=order["numbers"], **kinds)
+
+
 def main() -> None:
     """Serve the parent process until it closes the pipe."""
     parent = Parent()
     orders = parent.orders()
-    inputs = Inputs(parent, next(orders))
+    order = next(orders)
+    inputs = Inputs(parent, _feed(order), order)
     hung_up = threading.Event()
 
     def listen() -> None:
-        for _ in orders:
-            pass
+        for later in orders:
+            inputs.hear(later["hear"])
         hung_up.set()
 
     threading.Thread(target=listen, daemon=True).start()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from yehu_server.control.midi_names import is_wanted
@@ -90,11 +90,19 @@ class Router:
     has, one each in the order in which they came, and the last of them all further ones.
     """
 
-    def __init__(self, routes: Sequence[Route], parts: int) -> None:
+    def __init__(
+        self, routes: Sequence[Route], parts: int, others: Mapping[str, int] | None = None
+    ) -> None:
         self._routes = tuple(routes)
         routed = {route.part for route in routes}
         self._free = [part for part in range(parts) if part not in routed]
-        self._others: dict[str, int] = {}  # part of each input that no route names
+        # Part of each input that no route names, and that came before.
+        self._others = dict(others or {})
+
+    @property
+    def others(self) -> dict[str, int]:
+        """The part of each input that came and that no route names, by name."""
+        return dict(self._others)
 
     @property
     def patterns(self) -> list[str]:

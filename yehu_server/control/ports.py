@@ -1,4 +1,4 @@
-"""Play from MIDI inputs as they are connected; end the notes of those that disappear."""
+"""Play from MIDI inputs as they are connected; tell of those that come and go."""
 
 from __future__ import annotations
 
@@ -6,14 +6,17 @@ import contextlib
 import logging
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import mido
 
 from yehu_server.child import Child, Message
 from yehu_server.child_keeper import ChildKeeper
 from yehu_server.control.midi_routes import Route, Router
-from yehu_server.playing.live import Arrivals, LivePlayer
+from yehu_server.engine.mailbox import MIDI_INPUTS
+from yehu_server.engine.rig import ring_place
+from yehu_server.midi.events import DISCONNECT, MESSAGE
+from yehu_server.playing.live import LivePlayer
 
 log = logging.getLogger(__name__)
 
@@ -29,10 +32,17 @@ class MidiOptions:
 
 
 class MidiPorts:
-    """Passes MIDI messages from the process that holds the inputs to the players of all parts.
+    """Keeps the process that holds the MIDI inputs, and plays all parts from them.
+
+    Its messages reach the audio callback by shared memory; the server hears of them only where
+    something is to be learned.
 
     Parameters
     ----------
+    memory : int
+        File descriptor of the memory that has the instruments.
+    rigs : sequence of int
+        The first instrument of each part.
     changed : callable
         Called with a line when a port or the MIDI system appears or disappears; from another
         thread.
@@ -42,11 +52,13 @@ class MidiPorts:
         self,
         players: Sequence[LivePlayer],
         options: MidiOptions,
+        memory: int,
+        rigs: Sequence[int],
         changed: Callable[[str], None],
     ) -> None:
         self._players = players
         self._router = Router(options.routes, len(players))
-        self._arrivals = Arrivals(players[0])
+        self._memory, self._rigs = memory, rigs
         self._options = options
         self._changed = changed
         self._numbers: dict[str, int] = {}  # a port that comes back gets its old one
@@ -58,11 +70,13 @@ class MidiPorts:
             attend=self._attend,
             ended=self._ended,
             told=changed,
+            share=[memory],
         )
+        self._child: Child | None = None
         self._missing: set[str] = set()  # patterns reported as matching nothing
-        self.received = 0
-        self.malformed = 0
         self.problem = ""
+        for player in players:
+            player.listening = self._tell_hearing
 
     @property
     def connected(self) -> list[str]:
@@ -85,8 +99,22 @@ class MidiPorts:
             others=not options.patterns and self._router.wants_others,
             virtual=options.virtual,
             api=options.api,
+            routes=[astuple(route) for route in options.routes],
+            known=self._router.others,
+            numbers=self._numbers,
+            memory=self._memory,
+            rings=[ring_place(MIDI_INPUTS, rig) for rig in self._rigs],
+            message=MESSAGE,
+            disconnect=DISCONNECT,
         )
+        self._child = child
+        self._tell_hearing()
         gone.wait()
+
+    def _tell_hearing(self) -> None:
+        """Have the process tell of messages while something is to be learned, and only then."""
+        if self._child is not None:
+            self._child.send("hear", hear=any(player.listens for player in self._players))
 
     def _ended(self, by_itself: bool) -> None:
         if by_itself:
@@ -95,17 +123,16 @@ class MidiPorts:
     def _heard(self, event: Message) -> None:
         kind = event["event"]
         if kind == "midi":
-            self._receive(event)
+            self._hear(event["port"], event["bytes"])
         elif kind == "appeared":
             self._connected[event["port"]] = None
+            self._number(event["port"], event["number"])
             self._changed(f"MIDI: {event['port']} is connected{self._whose(event['port'])}")
-        elif kind in ("vanished", "silent"):
-            self._let_go_of(event["port"])
-            if kind == "vanished":
-                self._connected.pop(event["port"], None)
-                self._changed(f"MIDI: {event['port']} is gone; its notes are ended")
-            else:
-                log.info("MIDI: %s fell silent (active sensing)", event["port"])
+        elif kind == "vanished":
+            self._connected.pop(event["port"], None)
+            self._changed(f"MIDI: {event['port']} is gone; its notes are ended")
+        elif kind == "silent":
+            log.info("MIDI: %s fell silent (active sensing)", event["port"])
         elif kind == "missing":
             self._tell_missing(event["pattern"], event["present"])
         elif kind == "refused":
@@ -132,28 +159,24 @@ class MidiPorts:
             there = ", ".join(present) or "none"
             self._changed(f"MIDI: no input matches {pattern!r} yet (there are: {there})")
 
-    def _receive(self, event: Message) -> None:
-        self.received += 1
-        try:
-            message = mido.Message.from_bytes(event["bytes"])
-        except (ValueError, IndexError):
-            self.malformed += 1
-            return
-        number = self._numbers.setdefault(event["port"], len(self._numbers))
-        frame = self._arrivals.frame_of(event["at"])
-        for part in self._router.parts_of(event["port"], getattr(message, "channel", None)):
-            self._players[part].receive(message, frame=frame, port=number)
+    def _number(self, port: str, number: int) -> None:
+        """Remember the number of a port; one that is gone may have had it before."""
+        self._numbers = {name: old for name, old in self._numbers.items() if old != number}
+        self._numbers[port] = number
 
-    def _let_go_of(self, port: str) -> None:
-        with contextlib.suppress(KeyError):
+    def _hear(self, port: str, data: Sequence[int]) -> None:
+        """Hear a message that is played already, for what is to be learned."""
+        with contextlib.suppress(ValueError, IndexError):  # damaged
+            message = mido.Message.from_bytes(data)
+            for part in self._router.parts_of(port, getattr(message, "channel", None)):
+                self._players[part].hear_message(message, self._numbers[port])
+
+    def _let_go(self) -> None:
+        """End the notes of all ports, whose process is gone."""
+        for port in self._connected:
             for part in self._router.parts_of(port):
                 player = self._players[part]
                 player.let_go_of(self._numbers[port], frame=player.frame_of())
-
-    def _let_go(self) -> None:
-        """End the notes of all ports."""
-        for port in self._connected:
-            self._let_go_of(port)
         if self._connected:
             self._changed(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
         self._connected.clear()

@@ -74,6 +74,11 @@ def _number(name: str) -> Callable[[StatusSources], float]:
     return lambda now: float(now.parts[0].meters[0][name])
 
 
+def _count_of_midi(name: str) -> Callable[[StatusSources], int]:
+    """Add up a count of what the parts were sent."""
+    return lambda now: sum(int(part.instruments[0].midi[name]) for part in now.parts)
+
+
 def _of_parts(name: str) -> StatusValue:
     """The status value of all parts that is the sum of theirs, or the first one's."""
     row = PART_ROWS[name]
@@ -273,14 +278,14 @@ STATUS: tuple[StatusValue, ...] = (
     StatusValue(
         "midi_messages",
         COUNTER,
-        "MIDI messages received.",
-        lambda now: now.midi.received if now.midi else 0,
+        "MIDI messages that parts received.",
+        _count_of_midi("messages"),
     ),
     StatusValue(
         "midi_malformed",
         COUNTER,
-        "Damaged MIDI messages received.",
-        lambda now: now.midi.malformed if now.midi else 0,
+        "Damaged MIDI messages that parts received.",
+        _count_of_midi("malformed"),
     ),
     StatusValue(
         "http_requests",

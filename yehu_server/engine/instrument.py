@@ -230,6 +230,15 @@ class Instrument:
         """Number of events dropped because a ring was full, since the start."""
         return int(self._rig["mail"]["dropped"][0, :, 0].sum())
 
+    @property
+    def delay(self) -> int:
+        """Frames from the arrival of a MIDI message to its sound."""
+        return int(self._rig["mail"]["delay"][0, 0])
+
+    @delay.setter
+    def delay(self, frames: int) -> None:
+        self._rig["mail"]["delay"][0, 0] = frames
+
     def frames(self, ms: float) -> int:
         """Convert milliseconds to frames."""
         return round(ms * 1e-3 * self.rate)

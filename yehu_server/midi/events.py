@@ -5,7 +5,7 @@ replay, posts them, and they pass on to the players of the part. Beside them:
 
 | kind | index | value | other |
 |---|---|---|---|
-| MESSAGE | a MIDI message: `packed` | | |
+| MESSAGE | a MIDI message: ``packing.packed`` | | |
 | NOTE_ON | channel, or below 0 for none | key | velocity (0 to 1); below 0: it has its values |
 | FINGER_ON | the same; for a pitch, whatever the tuning | pitch | velocity |
 | NOTE_OFF | the channel of the note | its key | |
@@ -21,8 +21,6 @@ replay, posts them, and they pass on to the players of the part. Beside them:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from yehu_server.player.wishes import KINDS
 
 EVENTS = (
@@ -33,18 +31,3 @@ EVENTS = (
     MESSAGE, NOTE_ON, FINGER_ON, NOTE_OFF, SET, LOAD, CONTROL, DISCONNECT, LEAVE, RELEASE_ALL,
     START, TABLES_TO,
 ) = range(len(KINDS), len(KINDS) + len(EVENTS))  # fmt: skip
-
-BYTE, LENGTH_AT, PORT_AT = 8, 24, 32  # bits
-
-
-def packed(message: Sequence[int], port: int = 0) -> int:
-    """The index of a MIDI message of 1 to 3 bytes: its bytes from the lowest, its length, its port.
-
-    Longer ones are packed as if they had no byte, and change nothing.
-    """
-    index = len(message) << LENGTH_AT | port << PORT_AT
-    if len(message) > 3:
-        return port << PORT_AT
-    for place, byte in enumerate(message):
-        index |= (byte & 0xFF) << BYTE * place
-    return index

@@ -37,7 +37,6 @@ from yehu_server.midi.controllers import (
     set_directly,
     step,
 )
-from yehu_server.midi.events import BYTE, LENGTH_AT, PORT_AT
 from yehu_server.midi.keys import list_key
 from yehu_server.midi.notes import (
     end_all,
@@ -49,6 +48,7 @@ from yehu_server.midi.notes import (
     note_off,
     note_on,
 )
+from yehu_server.midi.packing import BYTE, LENGTH_AT, PORT_AT
 from yehu_server.midi.record import CHANNELS, IN_PORT, MIDI, NONE, PORTS
 from yehu_server.midi.tables import BEND, NRPN, PAIR, PRESSURE, TABLES
 from yehu_server.midi.wishing import in_range, stop_sound, write_apart
@@ -72,7 +72,7 @@ BEND_RANGE_ROW = ROW["/playing/bend_range"]
 
 @compiled_exactly
 def receive(m: Any, t: Any, frame: int, index: int) -> None:
-    """Act on a channel message or a system reset, as ``events.packed``; ignore others.
+    """Act on a channel message or a system reset, as ``packing.packed``; ignore others.
 
     Each port has 16 channels of its own.
     """

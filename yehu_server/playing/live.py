@@ -61,6 +61,11 @@ class LivePlayer:
         first one's.
     wishes : Wishes, optional
         What its wishes go through; by default those of the style, to the instrument.
+
+    Attributes
+    ----------
+    listening : callable
+        Called where `listens` changes, from any thread.
     """
 
     def __init__(
@@ -81,8 +86,18 @@ class LivePlayer:
         self._midi = style.midi(self._wishes)
         self._learner = Learner()
         self._found: Callable[[Found], None] | None = None
+        self.listening: Callable[[], None] = lambda: None
         self._latest = 0  # the latest frame of any call
         self._visitors: dict[int, Visitor] = {}
+
+    @property
+    def delay(self) -> int:
+        """Frames from the arrival of a message to its sound."""
+        return self.instrument.delay
+
+    @delay.setter
+    def delay(self, frames: int) -> None:
+        self.instrument.delay = frames
 
     def frame_of(self, arrived_ns: int | None = None) -> int:
         """The frame for a message that arrived at this ``time.monotonic_ns()``; by default, now."""
@@ -195,6 +210,7 @@ class LivePlayer:
         """
         with self._lock:
             self._learner, self._found = Learner(), found
+        self.listening()
 
     @property
     def listens(self) -> bool:
@@ -206,10 +222,16 @@ class LivePlayer:
         with self._lock:
             self._report(self._learner.hear_address(address, argument))
 
+    def hear_message(self, message: mido.Message, port: int) -> None:
+        """Receive a MIDI message of a port, counted from 0, for `listen`; it plays elsewhere."""
+        with self._lock:
+            self._report(self._learner.hear(message, port))
+
     def _report(self, source: Found | None) -> None:
         if source is not None and self._found is not None:
             found, self._found = self._found, None
             found(source)
+            self.listening()
 
     # -- notes -------------------------------------------------------------------------------
 
@@ -224,13 +246,6 @@ class LivePlayer:
         """The sounding pitch (fractional MIDI note); None in silence."""
         with self._lock:
             return self._wishes.pitch
-
-    def receive(self, message: mido.Message, *, frame: int, port: int) -> None:
-        """Act on a MIDI message of a port, counted from 0."""
-        with self._lock:
-            if self._found is not None:
-                self._report(self._learner.hear(message, port))
-            self._midi.receive(message, frame=self._at(frame), port=port)
 
     def let_go_of(self, port: int, *, frame: int) -> None:
         """End the notes of a port that is gone."""

@@ -19,6 +19,7 @@ from mido.messages import BaseMessage
 from yehu_server.errors import YehuError
 from yehu_server.midi import events
 from yehu_server.midi.channels import plays
+from yehu_server.midi.packing import packed
 from yehu_server.midi.record import CHANNELS, IN_PORT
 from yehu_server.midi.tables import SLOTS
 from yehu_server.params.preset import Preset
@@ -79,7 +80,7 @@ class MidiPlayer:
         Each port, counted from 0, has 16 channels of its own.
         """
         data = message.bytes() if isinstance(message, BaseMessage) else message
-        self._wishes.post(events.MESSAGE, frame, events.packed(data, port))
+        self._wishes.post(events.MESSAGE, frame, packed(data, port))
 
     def move(self, address: str, argument: float, *, frame: int | None = None) -> None:
         """Move the targets of an OSC address of the mapping, for all channels."""

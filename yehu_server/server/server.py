@@ -113,7 +113,7 @@ class Server:
             undo.pop_all()
         self.takes = Takes(self.ensemble, options.recordings, said)
         self.is_interruptible = False  # whether `stop` may be interrupted by an exception now
-        self.midi = MidiPorts(self.players, options.midi, said) if options.midi else None
+        self.midi = self._midi()
         services = announced(self.osc, self.web, options.announce)
         self._announcer = Announcer(services, said) if services else None
         self._ways_in: list[OscPorts | WebServer | Announcer | MidiPorts | Pages] = [self.osc]
@@ -152,8 +152,20 @@ class Server:
         if self.options.page is None:
             return None
         memory = self.output.memory.descriptor
-        rigs = [self.ensemble.instruments.index(part.instruments[0]) for part in self.parts]
-        return Pages(self.players, self.options.page, memory, self.desk.for_pages, self._said, rigs)
+        return Pages(
+            self.players, self.options.page, memory, self.desk.for_pages, self._said, self._rigs
+        )
+
+    def _midi(self) -> MidiPorts | None:
+        if not self.options.midi:
+            return None
+        memory = self.output.memory.descriptor
+        return MidiPorts(self.players, self.options.midi, memory, self._rigs, self._said)
+
+    @property
+    def _rigs(self) -> list[int]:
+        """The first instrument of each part, by its number on the stage."""
+        return [self.ensemble.instruments.index(part.instruments[0]) for part in self.parts]
 
     def _web(self) -> WebServer | None:
         if self.options.http is None:

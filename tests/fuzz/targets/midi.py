@@ -8,8 +8,10 @@ from types import SimpleNamespace
 from fuzz.instrument import Instrument, check_silence, check_values
 from fuzz.target import Program, target
 
+from yehu_server.control.midi_feed import MidiFeed
 from yehu_server.control.midi_process import Input
-from yehu_server.control.ports import MidiOptions, MidiPorts
+from yehu_server.control.midi_routes import Router
+from yehu_server.midi.events import DISCONNECT, MESSAGE
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.style import Style
@@ -45,14 +47,16 @@ def midi_messages(data: bytes) -> None:
     instrument = Instrument()
     style = every[program.byte() % len(every)]
     player = LivePlayer(instrument, style, delay_ms=3.0, wishes=style.wishes([instrument]))
-    ports = MidiPorts([player], MidiOptions(), lambda _line: None)
 
-    def tell(kind: str, **fields: object) -> None:
-        ports._heard({"event": kind, **fields})
+    def post(_time_ns: int, kind: int, index: int) -> bool:
+        return instrument.post(kind, frame=player.frame_of(), index=index)
 
+    router = Router([], 1)
+    feed = MidiFeed([SimpleNamespace(post=post)], router, message=MESSAGE, disconnect=DISCONNECT)
     midi_ins = [MidiIn() for _ in range(PORTS)]
     for number, midi_in in enumerate(midi_ins):
-        Input(midi_in, f"port {number}", None, SimpleNamespace(tell=tell))
+        feed.open(f"port {number}")
+        Input(midi_in, f"port {number}", None, feed, None)
     for _ in range(MOST_MESSAGES):
         if not program:
             break

@@ -1,0 +1,121 @@
+"""Messages of MIDI inputs, from the process that holds them to the rings of the parts."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+
+from yehu_server.control.midi_feed import PORTS, MidiFeed, SharedRing
+from yehu_server.control.midi_routes import Route, Router
+from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.mailbox import MIDI_INPUTS, SMALL_RING
+from yehu_server.engine.rig import ring_place
+from yehu_server.midi.events import DISCONNECT, MESSAGE
+from yehu_server.midi.packing import packed
+
+NOTE = [0x90, 67, 90]
+
+
+class Ring:
+    """Keeps what is posted."""
+
+    def __init__(self) -> None:
+        self.got: list[tuple[int, int, int]] = []
+
+    def post(self, time_ns: int, kind: int, index: int) -> bool:
+        self.got.append((time_ns, kind, index))
+        return True
+
+
+def feed(*routes: Route, parts: int = 1, **known) -> tuple[MidiFeed, list[Ring]]:
+    rings = [Ring() for _ in range(parts)]
+    router = Router(routes, parts)
+    return MidiFeed(rings, router, message=MESSAGE, disconnect=DISCONNECT, **known), rings
+
+
+def test_each_input_plays_its_part_with_channels_of_its_own():
+    made, rings = feed(parts=2)
+    assert [made.open(name) for name in ("a", "b", "c")] == [0, 1, 2]
+    for time_ns, name in enumerate("cba"):
+        made.receive(name, NOTE, time_ns)
+    made.let_go_of("c", 3, is_gone=True)
+    assert rings[0].got == [(2, MESSAGE, packed(NOTE, 0))]
+    assert rings[1].got == [
+        (0, MESSAGE, packed(NOTE, 2)),
+        (1, MESSAGE, packed(NOTE, 1)),
+        (3, DISCONNECT, 2),
+    ]
+
+
+def test_a_channel_plays_its_part_and_a_reset_all_of_the_input():
+    made, rings = feed(Route(0, "daw", 0), Route(2, "daw", 1), parts=3)
+    made.open("daw")
+    for data in (NOTE, [0x91, 67, 90], [0x92, 67, 90], [0xFF]):
+        made.receive("daw", data, 0)
+    sent = [[index & 0xFF for _, _, index in ring.got] for ring in rings]
+    assert sent == [[0x90, 0xFF], [], [0x91, 0xFF]]
+
+
+def test_an_input_that_comes_back_has_its_number_and_a_new_one_that_of_one_that_is_gone():
+    made, _ = feed(numbers={"before": 3})
+    names = [f"input {number}" for number in range(PORTS - 1)]
+    numbers = [made.open(name) for name in names]
+    assert sorted(numbers) == [number for number in range(PORTS) if number != 3]
+    assert made.open("before") == 3
+    assert made.open("too many") is None
+    made.let_go_of(names[5], 0, is_gone=True)
+    assert made.open(names[5]) == numbers[5]
+    made.let_go_of(names[5], 0, is_gone=True)
+    assert made.open("another") == numbers[5]
+    assert made.open(names[5]) is None
+
+
+@pytest.fixture
+def shared() -> tuple[Instrument, SharedRing]:
+    instrument = Instrument(48000.0, is_live=True)
+    return instrument, SharedRing(instrument.memory, ring_place(MIDI_INPUTS, 0))
+
+
+def test_the_callback_takes_messages_from_shared_memory_at_their_time(shared):
+    instrument, ring = shared
+    out = np.zeros(64, np.float32)
+    instrument.process(out)
+    instrument.delay = 480
+    late_ns = 1 << 62  # far ahead: it stays
+    assert ring.post(0, MESSAGE, packed(NOTE, 2))
+    assert ring.post(late_ns, MESSAGE, packed([0x90, 70, 90]))
+    instrument.process(out)
+    midi = instrument.midi
+    assert midi["messages"] == 1
+    assert midi["held_channel"][: midi["held"]].tolist() == [32]
+    assert instrument.dropped_events == 0
+
+
+def test_a_full_ring_drops_and_counts(shared):
+    instrument, ring = shared
+    taken = [ring.post(0, MESSAGE, packed(NOTE)) for _ in range(SMALL_RING + 5)]
+    assert sum(taken) == SMALL_RING
+    assert instrument.dropped_events == 5
+
+
+def test_threads_of_several_inputs_lose_nothing(shared):
+    instrument, ring = shared
+    made = MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)
+    made.open("a"), made.open("b")
+    count = SMALL_RING // 4
+
+    def send(name: str) -> None:
+        for _ in range(count):
+            made.receive(name, [0xB0, 20, 1], 0)
+
+    threads = [threading.Thread(target=send, args=(name,)) for name in "ab"]
+    for thread in threads:
+        thread.start()
+    out = np.zeros(64, np.float32)
+    while any(thread.is_alive() for thread in threads):
+        instrument.process(out)
+    for _ in range(4):
+        instrument.process(out)
+    assert instrument.midi["messages"] == 2 * count

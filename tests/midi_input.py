@@ -1,0 +1,15 @@
+"""MIDI messages to a live player, as those of an input reach it."""
+
+from __future__ import annotations
+
+import mido
+
+from yehu_server.midi.events import MESSAGE
+from yehu_server.midi.packing import packed
+from yehu_server.playing.live import LivePlayer
+
+
+def receive(player: LivePlayer, message: mido.Message, *, frame: int, port: int) -> None:
+    """Have a player play a message of a port at a frame, and hear it where it listens."""
+    player.hear_message(message, port)
+    player.instrument.post(MESSAGE, frame=frame, index=packed(message.bytes(), port))

@@ -115,7 +115,8 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
             frame = event.frame
             if writer == MIDI_INPUTS:
                 frame = frame_of_arrival(rigs, mail, frame)
-            mail.late += 1 if frame < now else 0
+            mail.late[writer] += 1 if frame < now else 0
+            mail.most_late[writer] = max(mail.most_late[writer], now - frame)
             wait(
                 events,
                 mail.coming,

@@ -42,7 +42,9 @@ MAIL = np.dtype(
         ("drained", np.int64, (WRITERS, LINE)),
         ("reported", np.int64, LINE),
         ("unreported", np.int64),
-        ("late", np.int64),
+        # By writer: events that came after their frame, and by how many frames at most.
+        ("late", np.int64, WRITERS),
+        ("most_late", np.int64, WRITERS),
         ("arrived", np.int64),  # frame of the latest message
         ("applied", np.int64),
         ("ordered", np.int64),  # number of events and wishes that came into a heap

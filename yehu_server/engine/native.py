@@ -20,7 +20,7 @@ from yehu_server.engine.atomics import (
     store_release,
 )
 from yehu_server.engine.intake import take_in
-from yehu_server.engine.mailbox import MAIL, RING, SERVER
+from yehu_server.engine.mailbox import MAIL, RING, SERVER, WRITERS
 from yehu_server.engine.mixing import mix
 from yehu_server.engine.output import OUTPUT
 from yehu_server.engine.processor import (
@@ -134,7 +134,10 @@ def tell_of(rig: Any, frame: int, block: int) -> None:
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     t.frame, t.block = frame, block
     t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
-    t.late_events, t.applied, t.drained = mail.late, mail.applied, mail.drained[SERVER, 0]
+    t.late_events = 0
+    for writer in range(WRITERS):
+        t.late_events += mail.late[writer]
+    t.applied, t.drained = mail.applied, mail.drained[SERVER, 0]
     t.next_frame = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0].frame
     t.pitch = told_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
     t.waiting, t.unreported = mail.coming + mail.waiting, mail.unreported

@@ -276,6 +276,18 @@ def tables_of_another_host(port: int, seconds: float) -> None:
     tables(port, seconds)
 
 
+def small_of_the_players_host(port: int, seconds: float) -> None:
+    """Small datagrams from one port, 20,000 a second."""
+    (sender,) = senders(port, 1)
+    packet = message("/yehu/bow/force", 0.5)
+    due = time.monotonic()
+    for _ in until(seconds):
+        for _ in range(200):
+            _send(sender, packet)
+        due += 0.01
+        time.sleep(max(0.0, due - time.monotonic()))
+
+
 def small_of_one(port: int, seconds: float) -> None:
     """Small datagrams from one port, as many as possible."""
     flood(port, seconds, [message("/yehu/bow/force", 0.5)])
@@ -310,6 +322,7 @@ KINDS: dict[str, Attack] = {
         small_of_many,
         small_of_another_host,
         tables_of_another_host,
+        small_of_the_players_host,
         small_of_one,
     )
 }

@@ -1,17 +1,18 @@
-"""A player beside hostile senders: notes lost, ping, memory, for each kind of sender.
+"""Two players beside hostile senders: notes lost, late, ping, memory, for each kind of sender.
 
     .venv/bin/python bench/hostile.py [--seconds N] [--kind NAME ...] [--save FILE.json]
 
 Each kind of sender (`attacks.py`) meets a new server, which plays without a device in its own
-process; the sender runs in another. A hundred times a second the player begins a note, ends the one
-before and pings, by UDP. Memory is that of the server process alone, sampled; this needs Linux.
+process; the sender runs in another. A hundred times a second a player begins a note, ends the one
+before and pings, by UDP; another one does so by MIDI, through a JACK server that is started for it.
+That one's messages are counted where they are sent, where they are taken by the callback, and where
+they came after their frame. Memory is that of the server process alone, sampled; this needs Linux.
 """
 
 from __future__ import annotations
 
 import contextlib
 import itertools
-import multiprocessing
 import socket
 import statistics
 import struct
@@ -23,10 +24,14 @@ from typing import Any
 
 import report
 from attacks import HOST, HOSTILE, KINDS, message, text
+from load import SPAWN, dummy_jack, midi_out
 
-SPAWN = multiprocessing.get_context("spawn")
+from yehu_server.engine.mailbox import MIDI_INPUTS
+
+RATE, PERIOD = 48000, 256
 EVERY_S = 0.01  # between a note and the next
 ACQUAINTED_S = 1.5  # the player alone, before the attack
+FOUND_S = 1.0  # until a MIDI output is found
 RECOVERS_S = 20.0  # at most, until all pings are answered
 PITCHES = 24
 LOWEST = 62  # the player's notes; hostile ones are lower
@@ -38,9 +43,11 @@ LOWEST = 62  # the player's notes; hostile ones are lower
 def serve(pipe: Any) -> None:
     """Serve until told to stop; answer each request with the notes received and the status."""
     from yehu_server.audio.output import NULL, OutputOptions
+    from yehu_server.control.ports import MidiOptions
     from yehu_server.server import ServeOptions, Server
 
-    options = ServeOptions(output=OutputOptions(device=NULL), midi=None, osc=(HOST, 0))
+    output = OutputOptions(device=NULL, rate=RATE)
+    options = ServeOptions(output=output, midi=MidiOptions(api="jack"), osc=(HOST, 0))
     playing = Server(options, lambda _line: None)
     notes: list[tuple[float, float]] = []
     begin = playing.player.note_on
@@ -52,8 +59,16 @@ def serve(pipe: Any) -> None:
     vars(playing.player)["note_on"] = note_on
     playing.start()
     pipe.send(playing.osc.port)
+    mail = playing.instrument._rig["mail"][0]  # noqa: SLF001
     while pipe.recv():
-        pipe.send((list(notes), playing.status()))
+        midi = {
+            "taken": int(mail["drained"][MIDI_INPUTS, 0]),
+            "dropped": int(mail["dropped"][MIDI_INPUTS, 0]),
+            "late": int(mail["late"][MIDI_INPUTS]),
+            "latest": int(mail["most_late"][MIDI_INPUTS]),
+            "notes": int(playing.instrument.midi["notes_of"][0]),
+        }
+        pipe.send((list(notes), playing.status(), midi))
     playing.stop()
 
 
@@ -67,11 +82,11 @@ class Served:
         there.close()
         self.port = int(self._pipe.recv())
 
-    def told(self) -> tuple[list[tuple[float, float]], dict[str, Any]]:
-        """The notes received so far, in order, and the status."""
+    def told(self) -> tuple[list[tuple[float, float]], dict[str, Any], dict[str, int]]:
+        """The notes received so far by OSC, in order; the status; and what is counted of MIDI."""
         self._pipe.send(True)
-        notes, status = self._pipe.recv()
-        return notes, status
+        notes, status, midi = self._pipe.recv()
+        return notes, status, midi
 
     def bytes(self) -> int:
         """The process's private memory; 0 where the system does not tell."""
@@ -105,7 +120,11 @@ class Playing:
         self._sent: dict[int, float] = {}
         self.notes: list[tuple[float, float]] = []
         self.pings_s: list[float] = []
-        self._threads = [threading.Thread(target=work) for work in (self._play, self._hear)]
+        self._midi = midi_out("player")
+        self.midi_notes = 0
+        time.sleep(FOUND_S)
+        works = (self._play, self._play_midi, self._hear)
+        self._threads = [threading.Thread(target=work) for work in works]
         self._is_playing = True
         for thread in self._threads:
             thread.start()
@@ -120,12 +139,14 @@ class Playing:
         if self._ending.is_set():
             return
         self._is_playing = False
-        self._threads[0].join()
+        for thread in self._threads[:2]:
+            thread.join()
         deadline = time.monotonic() + RECOVERS_S
         while self._sent and time.monotonic() < deadline:
             time.sleep(0.01)
         self._ending.set()
-        self._threads[1].join()
+        self._threads[2].join()
+        self._midi.close_port()
         self._socket.close()
 
     def _play(self) -> None:
@@ -144,6 +165,16 @@ class Playing:
             due += EVERY_S
             time.sleep(max(0.0, due - time.monotonic()))
 
+    def _play_midi(self) -> None:
+        due = time.monotonic()
+        while self._is_playing:
+            key = LOWEST + self.midi_notes % PITCHES
+            self._midi.send_message([0x90, key, 90])
+            self._midi.send_message([0x80, LOWEST + (self.midi_notes - 1) % PITCHES, 0])
+            self.midi_notes += 1
+            due += EVERY_S
+            time.sleep(max(0.0, due - time.monotonic()))
+
     def _hear(self) -> None:
         while not self._ending.is_set():
             try:
@@ -157,8 +188,13 @@ class Playing:
 
 @dataclass
 class Figures:
-    """The effect of one kind of sender on the player."""
+    """The effect of one kind of sender on the players."""
 
+    midi_notes: int
+    midi_lost: int
+    midi_dropped: int  # messages, by a full ring; others that are lost JACK has lost
+    midi_late: int
+    midi_latest_ms: float
     notes: int
     lost: int
     hostile_notes: int
@@ -173,7 +209,7 @@ class Figures:
 
 def measured(name: str, seconds: float, served: Served) -> Figures:
     """Play beside one kind of sender, and measure its effect."""
-    before, status = served.told()
+    before, status, midi = served.told()
     playing = Playing(served.port)
     attacker = SPAWN.Process(target=KINDS[name], args=(served.port, seconds))
     try:
@@ -187,7 +223,7 @@ def measured(name: str, seconds: float, served: Served) -> Figures:
             time.sleep(0.005)
         playing.finish()
         most_bytes = max(most_bytes, served.bytes())
-        notes, after = served.told()
+        notes, after, played = served.told()
     finally:
         attacker.kill()
         attacker.join()
@@ -198,6 +234,11 @@ def measured(name: str, seconds: float, served: Served) -> Figures:
     in_order = sum(note in left for note in own)
     pings = sorted(playing.pings_s) + [RECOVERS_S] * playing.unanswered
     return Figures(
+        midi_notes=playing.midi_notes,
+        midi_lost=playing.midi_notes - played["notes"] + midi["notes"],
+        midi_dropped=played["dropped"],
+        midi_late=played["late"],
+        midi_latest_ms=1e3 * played["latest"] / RATE,
         notes=len(playing.notes),
         lost=len(playing.notes) - in_order,
         hostile_notes=len(notes) - len(own),
@@ -222,7 +263,8 @@ def main() -> None:
     arguments = parser.parse_args()
     console = Console(width=150)
     table = Table()
-    columns = ("notes", "lost", "hostile notes", "pings unanswered", "ping ms, median")
+    columns = ("MIDI notes", "lost", "dropped", "late", "latest ms")
+    columns += ("OSC notes", "lost", "hostile notes", "pings unanswered", "ping ms, median")
     for column in (
         "",
         *columns,
@@ -235,11 +277,12 @@ def main() -> None:
         table.add_column(column)
     figures = {}
     for name in arguments.kind or KINDS:
-        served = Served()
-        try:
-            got = figures[name] = measured(name, arguments.seconds, served)
-        finally:
-            served.stop()
+        with dummy_jack(PERIOD, RATE):
+            served = Served()
+            try:
+                got = figures[name] = measured(name, arguments.seconds, served)
+            finally:
+                served.stop()
         cells = [
             f"{cell:.1f}" if isinstance(cell, float) else str(cell) for cell in vars(got).values()
         ]

@@ -16,15 +16,17 @@ import aiohttp
 import mido
 import numpy as np
 import pytest
+from midi_input import receive
 
 from yehu_server.ahead.layout import look_layout, look_length
 from yehu_server.audio.output import OutputOptions
 from yehu_server.control.web import WebOptions
+from yehu_server.panel.page_players import CHANNELS, LOWEST
 from yehu_server.panel.page_sockets import LOOK, NOW, WISHES, WRONG
 from yehu_server.panel.pages import PageOptions
 from yehu_server.params.table import TABLE
 from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import BEGIN, END, HOLD, RAMP, STOP, WRITE
+from yehu_server.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
 from yehu_server.server import ServeOptions, Server
 
 PROCESSES = Path("/proc")
@@ -254,9 +256,8 @@ def test_a_page_plays_and_lets_go_as_it_leaves(server) -> None:
 
 
 def test_a_page_does_not_end_the_keys_of_others(server) -> None:
-    server.player.receive(
-        mido.Message("note_on", note=72, velocity=90), frame=server.player.frame_of(), port=0
-    )
+    message = mido.Message("note_on", note=72, velocity=90)
+    receive(server.player, message, frame=server.player.frame_of(), port=0)
 
     async def play(page: Page) -> None:
         await page.wish(wish(BEGIN, 0, 72.0, 72.0), wish(END, 0, 72.0, 0.0))
@@ -303,6 +304,10 @@ def test_a_wish_ahead_is_fulfilled_at_its_frame(server) -> None:
         packed(wish(2.5)),
         packed(wish(WRITE, 0, np.nan)),
         packed(wish(WRITE, 0.5, 1.0)),
+        packed(wish(HOLD, len(TABLE), 1.0)),
+        packed(wish(EXPRESS, -1, 1.0)),
+        packed(wish(BEGIN, LOWEST - 1, 69.0, 69.0)),
+        packed(wish(BEGIN, LOWEST + CHANNELS, 69.0, 69.0)),
         packed(wish(WRITE, 0, 1.0, at=-2)),
         packed(wish(WRITE, 0, 1.0, at=1e300)),
         packed(wish(WRITE))[:-1],
@@ -328,17 +333,6 @@ def test_what_cannot_be_asked_ends_the_connection(server, text) -> None:
         return message.data
 
     assert with_pages(server, 1, err) == WRONG
-
-
-def test_a_wish_for_no_parameter_is_counted_and_dropped(server) -> None:
-    before = server.pages.refused
-
-    async def err(page: Page) -> None:
-        await page.wish(wish(HOLD, len(TABLE), 1.0), wish(WRITE, ROW[PRESSURE], 0.5))
-        await asyncio.to_thread(until, lambda: server.player.value(PRESSURE) == 0.5, "not written")
-
-    with_pages(server, 1, err)
-    assert server.pages.refused == before + 1
 
 
 def test_pages_that_sound_get_the_wishes_of_others_and_hear_that_they_left(server) -> None:

@@ -59,10 +59,9 @@ def test_what_arrives_is_heard_a_constant_time_later(live, instrument):
     assert np.diff(frames) == pytest.approx(48, abs=1)
 
 
-def test_messages_of_one_source_keep_their_order_over_corrections_of_the_clock(live, monkeypatch):
+def test_messages_of_one_source_keep_their_order_over_corrections_of_the_clock(live):
     frames = iter([100, 200, 190, 210, 205])
-    monkeypatch.setattr(live, "frame_of", lambda _arrived_ns: next(frames))
-    arrivals = Arrivals(live)
+    arrivals = Arrivals(lambda _arrived_ns: next(frames), live.instrument.rate)
     assert [arrivals.frame_of(0) for _ in range(5)] == [100, 200, 200, 210, 210]
     frames = iter([10**7, 300])  # a device that began anew
     assert [arrivals.frame_of(0) for _ in range(2)] == [10**7, 300]
@@ -70,7 +69,7 @@ def test_messages_of_one_source_keep_their_order_over_corrections_of_the_clock(l
 
 def test_messages_of_one_source_keep_their_order_where_the_delay_becomes_shorter(live, instrument):
     instrument.process(np.zeros(480, np.float32))
-    arrivals, frames = Arrivals(live), []
+    arrivals, frames = Arrivals(live.frame_of, instrument.rate), []
     for number in range(100):
         live.delay = 1072 if 20 <= number < 60 else 176
         frames.append(arrivals.frame_of(time.monotonic_ns() + 100_000 * number))

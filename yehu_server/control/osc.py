@@ -80,7 +80,7 @@ class OscHandler:
         self._schedule: Schedule[bytes, Peer] = Schedule()
         self._due: Backlog[bytes] = Backlog(self._act_on_due, lambda _peer: None)
         self._tags = TagClock(players[0])
-        self._arrivals = Arrivals(players[0])
+        self._arrivals = Arrivals(players[0].frame_of, players[0].instrument.rate)
         backstage = Backstage(
             self.clients,
             desk,

@@ -1,7 +1,7 @@
 """The process that serves pages: ``python -m yehu_server.panel.page_process``.
 
-It reads the instrument from the shared record, and passes wishes to its parent, which posts them.
-So neither pictures nor sound for twenty pages delay a note.
+It reads the instruments in shared memory, and posts wishes there itself. So neither pictures nor
+sound for twenty pages delay a note.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ PREPARING, READY, NONE = "preparing", "ready", "none"
 class Pages:
     """The site, the WebSockets, and what the control process tells them."""
 
-    def __init__(self, parent: Parent, order: Message) -> None:
+    def __init__(self, order: Message) -> None:
         self._listening = socket.socket(fileno=order["socket"])
         self._allowed = Allowed(order["allowed"])
         self._names = own_names()
@@ -43,7 +43,7 @@ class Pages:
         self._sounds = PREPARING  # whether pages can sound themselves
         self._status: dict[str, Any] = {}
         seen = Seen(order["memory"])
-        self._sockets = PageSockets(seen, order["rigs"], parent.tell, self._told)
+        self._sockets = PageSockets(seen, order["rigs"], self._told)
         self._loop = asyncio.new_event_loop()
         self._finder = Child("yehu_server.panel.module_process", self._hear_of_module)
 
@@ -119,7 +119,7 @@ def main() -> None:
     parent = Parent()
     os.nice(NICE)
     orders = parent.orders()
-    pages = Pages(parent, next(orders))
+    pages = Pages(next(orders))
     threading.Thread(target=partial(pages.hear, orders), daemon=True).start()
     parent.tell("serving")
     pages.run()

@@ -20,12 +20,15 @@ from aiohttp import WSMsgType, web
 
 from yehu_server.control.allowance import Allowance
 from yehu_server.panel.frames import TEXT, frame_of, write
+from yehu_server.panel.page_players import CHANNELS, LOWEST, PagePlayers
 from yehu_server.panel.seen import Seen
-from yehu_server.player.wishes import HOLD, KINDS, RAMP, WRITE
+from yehu_server.params.table import TABLE
+from yehu_server.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
 
 LOOK, WISHES = 0.0, 1.0
 WISH = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
+SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
 LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.001, 1.0
 IDLE_S = 0.05  # between looks whether somebody listens
 MOST_PAGES, MOST_UNSENT = 64, 1 << 16  # bytes
@@ -36,8 +39,6 @@ HEARTBEAT_S, CLOSING_S = 10.0, 0.3
 WRONG, NO_PART = 1008, 4404  # close codes: against the rules; there is no such part
 # A page that is heard for the first time hears this much of what was just played.
 FIRST_FRAMES = 512
-
-Tell = Callable[..., None]
 
 
 class Page:
@@ -58,8 +59,6 @@ class PageSockets:
     ----------
     rigs : sequence of int
         The instrument that shows each part.
-    tell : callable
-        Tells the control process an event, with its details.
     status : callable
         The state of the server, beside what is in the record, of JSON's types.
     """
@@ -68,12 +67,11 @@ class PageSockets:
         self,
         seen: Seen,
         rigs: Sequence[int],
-        tell: Tell,
         status: Callable[[], Mapping[str, Any]],
     ) -> None:
         self._seen = seen
         self._rigs = rigs
-        self._tell = tell
+        self._players = PagePlayers(seen, rigs)
         self._status = status
         self._pages: dict[web.WebSocketResponse, Page] = {}
         self._listeners: dict[web.WebSocketResponse, Any] = {}
@@ -112,7 +110,7 @@ class PageSockets:
                 await self._pass_on(page, wishes)
         finally:
             del self._pages[socket]
-            self._tell("left", page=page.number)
+            self._players.leave(page.number, time.monotonic_ns())
             text = frame_of(json.dumps({"left": page.number}).encode(), TEXT)
             for other in self._pages.values():
                 write(other.transport, text, MOST_UNSENT)
@@ -149,11 +147,8 @@ class PageSockets:
         return True
 
     async def _pass_on(self, page: Page, wishes: Any) -> None:
-        """Tell the control process, and other pages that sound as this part; a hasty page waits."""
-        arrived_ns = time.monotonic_ns()
-        self._tell(
-            "wishes", page=page.number, part=page.part, at=arrived_ns, wishes=wishes.tolist()
-        )
+        """Post wishes, and tell other pages that sound as this part; a hasty page waits."""
+        self._players.post(page.number, page.part, wishes, time.monotonic_ns())
         own = self._own.get(page.part, {})
         for _, kind, row, value, _ in wishes:
             if kind in (WRITE, HOLD) and row in own:
@@ -249,7 +244,10 @@ def read_wishes(data: bytes) -> Any:
         and (frames >= NOW).all()
         and ((kinds > RAMP) & (kinds < len(KINDS))).all()
         and (wishes[:, :3] == np.rint(wishes[:, :3])).all()
-        and (np.abs(indices) < 1 << 31).all()
+        and (np.where(np.isin(kinds, SETTINGS), indices, 0) < len(TABLE)).all()
+        and (np.where(np.isin(kinds, SETTINGS), indices, 0) >= 0).all()
+        and (indices >= LOWEST).all()
+        and (indices < LOWEST + CHANNELS).all()
         and (frames < 1 << 53).all()
     )
     return wishes if is_right else None

@@ -1,4 +1,4 @@
-"""Plays the wishes of pages, which a process of its own serves; ends the notes of those that go."""
+"""Keeps the process that serves pages, which posts what they play by itself."""
 
 from __future__ import annotations
 
@@ -7,21 +7,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from yehu_server.child import Child, Message
+from yehu_server.child import Child
 from yehu_server.child_keeper import ChildKeeper
 from yehu_server.control.addresses import Address
 from yehu_server.control.web import listen
-from yehu_server.errors import DeviceError, ParameterError
+from yehu_server.errors import DeviceError
 from yehu_server.midi.seats import OWN
-from yehu_server.params.table import TABLE
+from yehu_server.panel.page_players import CHANNELS, FIRST
+from yehu_server.panel.page_sockets import MOST_PAGES
 from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import HOLD, WRITE
-from yehu_server.playing.live import Arrivals, LivePlayer
+from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.section_people import SECTION
-from yehu_server.playing.visitor import Wish
 
 STATUS_S = 0.5
-AHEAD_S = 3.0  # by which a wish may lie ahead
 NAME = "the page"
 
 
@@ -71,9 +69,6 @@ class Pages:
         self._memory = memory
         self._status = status
         self._changed = changed
-        self._arrivals = Arrivals(self._players[0])
-        self._known: set[tuple[int, int]] = set()  # pages that wished something, and of which part
-        self.refused = 0  # wishes that nobody can have
         host, port = options.address
         try:
             self._listening = listen(NAME, host, port)
@@ -85,7 +80,7 @@ class Pages:
         self._keeper = ChildKeeper(
             "yehu_server.panel.page_process",
             "pages",
-            heard=self._heard,
+            heard=lambda _event: None,  # it tells nothing
             attend=self._attend,
             ended=self._ended,
             told=changed,
@@ -122,39 +117,8 @@ class Pages:
         ]
 
     def _ended(self, by_itself: bool) -> None:
-        for page in {page for page, _ in self._known}:
-            self._dismiss(page)
+        """End what the pages held, whose process is gone."""
+        for player in self._players:
+            player.let_go_of_channels(FIRST, MOST_PAGES * CHANNELS, frame=player.frame_of())
         if by_itself:
             self._changed("pages: their process ended; it is started again")
-
-    def _heard(self, event: Message) -> None:
-        kind = event["event"]
-        if kind == "wishes":
-            self._fulfil(event["page"], event["part"], event["at"], event["wishes"])
-        elif kind == "left":
-            self._dismiss(event["page"])
-
-    def _fulfil(
-        self, page: int, part: int, arrived_ns: int, wishes: Sequence[Sequence[float]]
-    ) -> None:
-        now = self._arrivals.frame_of(arrived_ns)
-        latest = now + round(AHEAD_S * self._players[0].instrument.rate)
-        for frame, kind, index, value, other in wishes:
-            try:
-                wish = Wish(int(kind), int(index), value, other)
-                asked = 0 if _is_for_all(wish) else part
-                self._known.add((page, asked))
-                self._players[asked].fulfil(page, wish, frame=min(max(int(frame), now), latest))
-            except ParameterError:
-                self.refused += 1
-
-    def _dismiss(self, page: int) -> None:
-        for known in [known for known in self._known if known[0] == page]:
-            self._known.discard(known)
-            player = self._players[known[1]]
-            player.dismiss(page, frame=player.frame_of())
-
-
-def _is_for_all(wish: Wish) -> bool:
-    """Whether it sets what all parts share: the first part's player has it."""
-    return wish.kind in (WRITE, HOLD) and TABLE[wish.index].is_shared

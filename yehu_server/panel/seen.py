@@ -1,4 +1,4 @@
-"""The instruments of the server, seen from the pages' process: it reads the shared memory only."""
+"""The instruments of the server, from the pages' process: it reads them, and posts wishes."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from yehu_server.engine import native
 from yehu_server.engine.look import LOOK, look
+from yehu_server.engine.mailbox import PAGES
 from yehu_server.engine.rig import RIG, RIG_BYTES
 from yehu_server.engine.telemetry import METERS
 from yehu_server.params.table import TABLE
@@ -48,6 +49,24 @@ class Seen:
     def rate(self) -> float:
         """Sample rate (Hz)."""
         return float(self._rigs["model"]["rate"][0])
+
+    def frame_of(self, arrived_ns: int) -> int:
+        """The frame at which a message sounds that arrived at this ``time.monotonic_ns()``."""
+        delay = int(self._rigs["mail"]["delay"][0, 0])
+        return int(native.frame_at.call(self._address, arrived_ns)) + delay
+
+    def post(
+        self,
+        rig: int,
+        frame: int,
+        kind: int,
+        index: int = 0,
+        value: float = 0.0,
+        other: float = 0.0,
+    ) -> bool:
+        """Post an event (``midi.events``) to the part that an instrument is the first of."""
+        address = self._address + rig * RIG_BYTES
+        return bool(native.post_from.call(address, PAGES, frame, kind, index, value, other))
 
     def look(self, rig: int = 0, own: Mapping[int, float] = _NOTHING) -> bytes:
         """A look at an instrument (``engine.look``), and then the value of each row of the table.

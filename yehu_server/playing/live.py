@@ -15,12 +15,12 @@ import mido
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.errors import ParameterError
+from yehu_server.midi.events import LEAVE
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.learner import Found, Learner
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.style import Style
-from yehu_server.playing.visitor import Visitor, Wish
 from yehu_server.playing.wishes import Key, Wishes
 
 ELSEWHERE = -1  # the channel of notes that do not come from MIDI
@@ -30,16 +30,23 @@ class Arrivals:
     """Assigns frames to the messages of one source, in the order of their arrival.
 
     Small corrections of the clock must not swap messages that arrive close together.
+
+    Parameters
+    ----------
+    frame_at : callable
+        Returns the frame for a ``time.monotonic_ns()``, such as `LivePlayer.frame_of`.
+    rate : float, Hz
     """
 
-    def __init__(self, player: LivePlayer) -> None:
-        self._player = player
+    def __init__(self, frame_at: Callable[[int], int], rate: float) -> None:
+        self._frame_at = frame_at
+        self._rate = rate
         self._latest = 0
 
     def frame_of(self, arrived_ns: int) -> int:
-        """See `LivePlayer.frame_of`."""
-        frame = self._player.frame_of(arrived_ns)
-        if self._latest - frame > self._player.instrument.rate:  # no small correction of the clock
+        """The frame for a message that arrived then."""
+        frame = self._frame_at(arrived_ns)
+        if self._latest - frame > self._rate:  # no small correction of the clock
             self._latest = frame
         self._latest = max(self._latest, frame)
         return self._latest
@@ -88,7 +95,6 @@ class LivePlayer:
         self._found: Callable[[Found], None] | None = None
         self.listening: Callable[[], None] = lambda: None
         self._latest = 0  # the latest frame of any call
-        self._visitors: dict[int, Visitor] = {}
 
     @property
     def delay(self) -> int:
@@ -304,31 +310,12 @@ class LivePlayer:
             self._midi.begin_again(frame=self._after_all(frame))
             self.panic(frame=frame)
 
-    # -- other players' wishes -----------------------------------------------------------------
-
-    def fulfil(self, number: int, wish: Wish, *, frame: int) -> None:
-        """Fulfil a wish of a visitor: another program's player, known by its number.
-
-        Raises
-        ------
-        ParameterError
-            Where nobody can wish that.
-        """
+    def let_go_of_channels(self, first: int, channels: int, *, frame: int) -> None:
+        """End what is held on channels whose owner is gone, and lift a bow drawn by hand."""
         with self._lock:
-            if wish.ends_all:
-                self.panic(frame=frame)
-                return
-            visitor = self._visitors.get(number)
-            if visitor is None:
-                visitor = self._visitors[number] = Visitor(self._wishes, number)
-            visitor.take(wish, self._at(frame))
-
-    def dismiss(self, number: int, *, frame: int) -> None:
-        """End what a visitor still holds, and forget it."""
-        with self._lock:
-            visitor = self._visitors.pop(number, None)
-            if visitor is not None:
-                visitor.leave(self._after_all(frame))
+            frame = self._after_all(frame)
+            self._wishes.post(LEAVE, frame, first, channels)
+            self._wishes.lift(frame=frame)
 
 
 def _key(note: float) -> Key:

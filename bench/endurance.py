@@ -43,7 +43,7 @@ from visitors import visit
 
 from yehu_server.audio.output import NULL, Output, OutputOptions
 from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.engine.warming import warm_up
 
 COMMAND = [sys.executable, "-c", "from yehu_server.cli import main; raise SystemExit(main())"]
@@ -68,7 +68,7 @@ def play_idle(device: str, blocksize: int, answer: Any) -> None:
     """Play silence with the same callback; answer each request with the callback's counters."""
     output = Output(OutputOptions(device=device, blocksize=blocksize), lambda _line: None)
     rate = output.find()
-    ensemble = Ensemble([lambda place: Instrument(rate, memory=place)], memory=output.memory.buffer)
+    ensemble = Ensemble([InstrumentSpec(rate)], memory=output.memory.buffer)
     output.begin(ensemble)
     while True:
         answer.send({what: int(ensemble.meters()[what]) for what in CALLBACKS})

@@ -20,6 +20,7 @@ from rich.console import Console
 from rich.table import Table
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 
 BLOCK, SECONDS, RUNS = 128, 0.5, 5
 COUNTS = (1, 2, 4, 8, 16, 32, 64)
@@ -28,7 +29,7 @@ RATES = (22050.0, 44100.0, 48000.0, 96000.0, 192000.0)
 
 def instrument(number: int, rate: float = 44100.0, fingers: int = 1) -> Instrument:
     """An instrument that bows a stopped note; the number varies its pitch."""
-    made = Instrument(rate)
+    made = Instrument(InstrumentSpec(rate))
     for finger in range(1, fingers + 1):
         made.write(f"/finger/{finger}/position", 0.11 - 0.02 * finger + 1e-3 * (number % 8))
         made.write(f"/finger/{finger}/press", 1.5)

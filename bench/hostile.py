@@ -40,14 +40,15 @@ LOWEST = 62  # the player's notes; hostile ones are lower
 # ---------------------------------------------------------------- the server
 
 
-def serve(pipe: Any) -> None:
+def serve(pipe: Any, has_midi: bool) -> None:
     """Serve until told to stop; answer each request with the notes received and the status."""
     from yehu_server.audio.output import NULL, OutputOptions
     from yehu_server.control.ports import MidiOptions
     from yehu_server.server import ServeOptions, Server
 
     output = OutputOptions(device=NULL, rate=RATE)
-    options = ServeOptions(output=output, midi=MidiOptions(api="jack"), osc=(HOST, 0))
+    midi = MidiOptions(api="jack") if has_midi else None
+    options = ServeOptions(output=output, midi=midi, osc=(HOST, 0))
     playing = Server(options, lambda _line: None)
     notes: list[tuple[float, float]] = []
     begin = playing.player.note_on
@@ -61,23 +62,23 @@ def serve(pipe: Any) -> None:
     pipe.send(playing.osc.port)
     mail = playing.instrument._rig["mail"][0]  # noqa: SLF001
     while pipe.recv():
-        midi = {
+        counts = {
             "taken": int(mail["drained"][MIDI_INPUTS, 0]),
             "dropped": int(mail["dropped"][MIDI_INPUTS, 0]),
             "late": int(mail["late"][MIDI_INPUTS]),
             "latest": int(mail["most_late"][MIDI_INPUTS]),
             "notes": int(playing.instrument.midi["notes_of"][0]),
         }
-        pipe.send((list(notes), playing.status(), midi))
+        pipe.send((list(notes), playing.status(), counts))
     playing.stop()
 
 
 class Served:
     """A server in another process."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, has_midi: bool = False) -> None:
         self._pipe, there = SPAWN.Pipe()
-        self.process = SPAWN.Process(target=serve, args=(there,), daemon=True)
+        self.process = SPAWN.Process(target=serve, args=(there, has_midi), daemon=True)
         self.process.start()
         there.close()
         self.port = int(self._pipe.recv())
@@ -110,9 +111,15 @@ class Served:
 
 
 class Playing:
-    """A player by UDP: sends notes and pings, and measures how long answers take."""
+    """Two players: one by UDP, who pings, too, and measures how long answers take; one by MIDI.
 
-    def __init__(self, port: int) -> None:
+    Parameters
+    ----------
+    midi : MidiOut, optional
+        Without it, nobody plays by MIDI.
+    """
+
+    def __init__(self, port: int, midi: Any = None) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.connect((HOST, port))
         self._socket.settimeout(0.1)
@@ -120,9 +127,8 @@ class Playing:
         self._sent: dict[int, float] = {}
         self.notes: list[tuple[float, float]] = []
         self.pings_s: list[float] = []
-        self._midi = midi_out("player")
+        self._midi = midi
         self.midi_notes = 0
-        time.sleep(FOUND_S)
         works = (self._play, self._play_midi, self._hear)
         self._threads = [threading.Thread(target=work) for work in works]
         self._is_playing = True
@@ -146,7 +152,6 @@ class Playing:
             time.sleep(0.01)
         self._ending.set()
         self._threads[2].join()
-        self._midi.close_port()
         self._socket.close()
 
     def _play(self) -> None:
@@ -167,7 +172,7 @@ class Playing:
 
     def _play_midi(self) -> None:
         due = time.monotonic()
-        while self._is_playing:
+        while self._midi is not None and self._is_playing:
             key = LOWEST + self.midi_notes % PITCHES
             self._midi.send_message([0x90, key, 90])
             self._midi.send_message([0x80, LOWEST + (self.midi_notes - 1) % PITCHES, 0])
@@ -207,10 +212,10 @@ class Figures:
     system_dropped: int  # packets, of any sender
 
 
-def measured(name: str, seconds: float, served: Served) -> Figures:
-    """Play beside one kind of sender, and measure its effect."""
+def measured(name: str, seconds: float, served: Served, output: Any = None) -> Figures:
+    """Play beside one kind of sender, by MIDI to an output, too; measure its effect."""
     before, status, midi = served.told()
-    playing = Playing(served.port)
+    playing = Playing(served.port, output)
     attacker = SPAWN.Process(target=KINDS[name], args=(served.port, seconds))
     try:
         time.sleep(ACQUAINTED_S)
@@ -263,8 +268,8 @@ def main() -> None:
     arguments = parser.parse_args()
     console = Console(width=150)
     table = Table()
-    columns = ("MIDI notes", "lost", "dropped", "late", "latest ms")
-    columns += ("OSC notes", "lost", "hostile notes", "pings unanswered", "ping ms, median")
+    columns = ["MIDI notes", "lost", "dropped", "late", "latest ms"]
+    columns += ["OSC notes", "lost", "hostile notes", "pings unanswered", "ping ms, median"]
     for column in (
         "",
         *columns,
@@ -278,11 +283,13 @@ def main() -> None:
     figures = {}
     for name in arguments.kind or KINDS:
         with dummy_jack(PERIOD, RATE):
-            served = Served()
+            served, output = Served(has_midi=True), midi_out("player")
             try:
-                got = figures[name] = measured(name, arguments.seconds, served)
+                time.sleep(FOUND_S)
+                got = figures[name] = measured(name, arguments.seconds, served, output)
             finally:
                 served.stop()
+                output.close_port()
         cells = [
             f"{cell:.1f}" if isinstance(cell, float) else str(cell) for cell in vars(got).values()
         ]

@@ -24,6 +24,7 @@ from rich.console import Console
 from rich.table import Table
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities
 from yehu_server.rendering import Options, Performance
@@ -66,7 +67,7 @@ def kernel_runs(rate: float, fingers: int, *, bowed: bool, stopped: bool, moving
 
 def instrument_runs() -> Any:
     """Real-time factors of `Instrument.process`, a stopped note, blocks of 128."""
-    instrument = Instrument(44100.0)
+    instrument = Instrument(InstrumentSpec(44100.0))
     instrument.write("/finger/1/position", 0.1, ramp_ms=0.0)
     instrument.write("/finger/1/press", 1.5)
     instrument.write("/bow/side", 1.0)

@@ -16,6 +16,7 @@ import numpy as np
 import report
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.params.table import ENGINE
 
 RATE, BLOCK = 44100.0, 64
@@ -61,7 +62,7 @@ def main() -> None:
     parser = report.options(__doc__)
     parser.add_argument("--seconds", type=float, default=60.0)
     arguments = parser.parse_args()
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     play(instrument, 100)
     times = play(instrument, round(arguments.seconds * RATE / BLOCK))
     deadline = BLOCK / RATE

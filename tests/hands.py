@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.midi.interpret import interpret
 from yehu_server.params.table import ENGINE, FINGERS, SLOT, find
 from yehu_server.physics.quantities import Quantities
@@ -56,7 +57,7 @@ class Watched(Instrument):
     """
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(RATE, **options)
+        super().__init__(InstrumentSpec(RATE, **options))
         self.moves: list[Move] = []
         self.silenced: list[int | None] = []
         self._player, self._controls = self._rig["player"], self._rig["controls"]
@@ -164,7 +165,7 @@ class Watched(Instrument):
 
     def pitch_at(self, string: int, position: float) -> float:
         """Pitch (fractional MIDI note) of an ideal string, 0 or 1, stopped at a position (m)."""
-        silk = self.quantities.strings[string]
+        silk = self.spec.quantities.strings[string]
         length = self.quantities.bridge_x - position
         frequency = math.sqrt(silk.T / silk.rho_A) / (2.0 * length)
         return 69.0 + 12.0 * math.log2(frequency / 440.0)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.engine.instrument import Instrument
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
@@ -19,7 +20,7 @@ class Playing:
 
     def __init__(self, seed: int = 0, **values: float) -> None:
         style = Style(seed=seed)
-        self.instrument = style.instrument(RATE, calibration_for(float(RATE)))
+        self.instrument = Instrument(style.spec(RATE, calibration_for(float(RATE))))
         self.wishes = style.wishes(self.instrument)
         for name, value in values.items():
             self.wishes.write(f"/playing/{name}", value)

@@ -6,15 +6,12 @@ import numpy as np
 
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 
 
-def alone(rate: float, *, memory: object = None, channels: int = 1, **how: object) -> Ensemble:
+def alone(rate: float, *, seed: int = 0, **how: object) -> Ensemble:
     """An ensemble of one instrument, without a room."""
-
-    def make(place: object) -> Instrument:
-        return Instrument(rate, memory=place, **how)
-
-    return Ensemble([make], channels=channels, has_room=False, memory=memory)
+    return Ensemble([InstrumentSpec(rate, seed=seed)], **{"channels": 1, "has_room": False} | how)
 
 
 def bow(instrument: Instrument, press: float = 0.0, frame: int = 0) -> None:

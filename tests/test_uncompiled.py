@@ -20,7 +20,7 @@ PLAIN = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
 def phrase() -> tuple[Instrument, np.ndarray]:
     """Play two notes, a bend, their ends, a bow by hand, panic and one more, in small blocks."""
     style = Style(seed=1)
-    instrument = style.instrument(RATE, calibration_for(RATE))
+    instrument = Instrument(style.spec(RATE, calibration_for(RATE)))
     wishes = style.wishes(instrument)
     midi = style.midi(wishes)
     wishes.note_on(Key(0, 70), {"/playing/pressure": 0.5}, frame=0)

@@ -13,7 +13,7 @@ from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.player.calibration import OPEN_NOTES
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.section_people import section_makes
+from yehu_server.playing.section_people import section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 
@@ -114,8 +114,8 @@ def loudness(rate: float, seed: int) -> dict[str, Any]:
     for people in (1, 2, 4, 8):
         alone = scale(rate, seed, people).sum(axis=0)
         style = Style(seed=seed)
-        makes = section_makes(style, rate, calibration_for(rate), people=people)
-        ensemble = Ensemble(makes)
+        specs = section_specs(style, rate, calibration_for(rate), people=people)
+        ensemble = Ensemble(specs)
         wishes = style.wishes(ensemble.instruments)
         midi = style.midi(wishes)
         for number, note in enumerate(NOTES):

@@ -11,7 +11,7 @@ import numpy as np
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.player.wishes import BEGIN
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.section_people import SECTION, section_makes
+from yehu_server.playing.section_people import SECTION, section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 from yehu_server.rendering.cores import Cores, shared
@@ -25,9 +25,9 @@ class SectionTake:
 
     def __init__(self, rate: float, seed: int, people: int) -> None:
         style = replace(Style(seed=seed), start=((SECTION, float(people)),))
-        makes = section_makes(style, rate, calibration_for(rate), people=people)
+        specs = section_specs(style, rate, calibration_for(rate), people=people)
         self.rate = rate
-        self._ensemble = Ensemble(makes, has_room=False)
+        self._ensemble = Ensemble(specs, has_room=False)
         self.instruments = self._ensemble.instruments
         for instrument in self.instruments:
             instrument.report_wishes()

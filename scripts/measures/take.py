@@ -108,7 +108,7 @@ class Take:
         quantities = quantities or setup.own
         first, second = usual.tensions
         strung = replace(usual, tensions=(tension * first, tension * second))
-        self.instrument = style.instrument(setup.rate, strung, quantities)
+        self.instrument = Instrument(style.spec(setup.rate, strung, quantities))
         _believe(self.instrument, usual.tuned(quantities))
         self.wishes = style.wishes(self.instrument)
         self.wishes.write("/playing/variation", setup.variation, frame=0, hold=True)

@@ -48,9 +48,7 @@ def played(wishes, frames=FRAMES, block=BLOCK, channels=2) -> tuple[np.ndarray, 
         Of the one instrument, at the end.
     """
     calibration = calibration_for(RATE)
-    ensemble = Ensemble(
-        [lambda memory: Style().instrument(RATE, calibration, memory=memory)], channels=channels
-    )
+    ensemble = Ensemble([Style().spec(RATE, calibration)], channels=channels)
     for frame, kind, index, value, other in wishes:
         assert ensemble.first.post(kind, frame=frame, index=index, value=value, other=other)
     out = np.zeros((frames, channels), np.float32)

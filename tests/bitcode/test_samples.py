@@ -24,7 +24,7 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.playing.wishes import Key, Wishes
 warming.warm_up()
 print(all(function.compiled.cache_hits == 1 for function in warming.PLAYED_BY))
-instrument = Instrument(44100.0)
+instrument = Instrument(InstrumentSpec(44100.0))
 wishes = Wishes(instrument)
 block = np.zeros(441, np.float32)
 for pitch in (67, 69, 72, 74, 65, 77, 79, 84):

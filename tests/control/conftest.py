@@ -127,7 +127,7 @@ class Stage:
         self.block = block
         style = Style()
         calibration = calibration_for(float(self.RATE))
-        self.instrument = style.instrument(self.RATE, calibration)
+        self.instrument = Instrument(style.spec(self.RATE, calibration))
         self._moves = Moves(self.instrument)
         self.instrument.frame_at = self._frame_at
         self.others: list[Instrument] = []  # more instruments, played along

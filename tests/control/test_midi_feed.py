@@ -12,6 +12,7 @@ from yehu_server.control.midi_routes import Route, Router
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.mailbox import MIDI_INPUTS, SMALL_RING
 from yehu_server.engine.rig import ring_place
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.midi.events import DISCONNECT, MESSAGE
 from yehu_server.midi.packing import packed
 
@@ -74,7 +75,7 @@ def test_an_input_that_comes_back_has_its_number_and_a_new_one_that_of_one_that_
 
 @pytest.fixture
 def shared() -> tuple[Instrument, SharedRing]:
-    instrument = Instrument(48000.0, is_live=True)
+    instrument = Instrument(InstrumentSpec(48000.0), is_live=True)
     return instrument, SharedRing(instrument.memory, ring_place(MIDI_INPUTS, 0))
 
 

@@ -14,6 +14,7 @@ from yehu_server.control.part_status import PART_STATUS
 from yehu_server.control.parts import OF_PARTS
 from yehu_server.control.query import LISTENABLE_OF_PARTS, Told, find, is_listenable, tree
 from yehu_server.control.status import STATUS
+from yehu_server.engine.instrument import Instrument
 from yehu_server.params.preset import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learned
@@ -33,7 +34,7 @@ def players(stage) -> list[LivePlayer]:
     """Those of three parts; the first is the stage's own."""
     more = []
     for part in range(1, PARTS):
-        instrument = Style().instrument(stage.RATE, stage.instrument.calibration)
+        instrument = Instrument(Style().spec(stage.RATE, stage.instrument.spec.calibration))
         instrument.frame_at = stage.instrument.frame_at
         stage.others.append(instrument)
         more.append(LivePlayer(instrument, Style(), delay_ms=3.0, part=part))

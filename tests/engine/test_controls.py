@@ -9,6 +9,7 @@ import pytest
 from sound import run
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.params.table import ENGINE, SLOT
 from yehu_server.physics.layout import F_N, FINGER_CONTROLS, V_B, X_B
 
@@ -30,7 +31,7 @@ def controls(instrument: Instrument) -> np.ndarray:
 
 @pytest.fixture
 def instrument() -> Instrument:
-    return Instrument(RATE)
+    return Instrument(InstrumentSpec(RATE))
 
 
 # ---------------------------------------------------------------- ramps

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from functools import partial
 
 import numpy as np
 import pytest
@@ -11,8 +10,8 @@ from sound import alone, bow, run
 
 from yehu_server.engine import intake, mixing, sounding
 from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.errors import ParameterError
 from yehu_server.player.wishes import BEGIN
 
@@ -22,8 +21,7 @@ KEYS = (69.0, 74.0, 77.0)
 
 def trio(**how: object) -> Ensemble:
     """Three who play a note each, in three places."""
-    makes = [lambda memory, k=k: Instrument(RATE, seed=k, body=k, memory=memory) for k in range(3)]
-    ensemble = Ensemble(makes, **how)
+    ensemble = Ensemble([InstrumentSpec(RATE, seed=k, body=k) for k in range(3)], **how)
     for instrument, key, pan in zip(ensemble.instruments, KEYS, (-0.5, 0.0, 0.7), strict=True):
         instrument.post(BEGIN, value=key, other=key)
         instrument.write("/room/pan", pan)
@@ -167,15 +165,12 @@ def test_its_level_is_that_of_the_mix():
 @pytest.mark.parametrize("parts", [0, MOST_PARTS + 1])
 def test_a_stage_has_room_for_1_to_16(parts):
     with pytest.raises(ParameterError, match=f"{parts} parts: a stage has 1 to 16"):
-        Ensemble([partial(Instrument, RATE)] * parts)
+        Ensemble([InstrumentSpec(RATE)] * parts)
 
 
 def test_instruments_of_one_stage_have_one_rate():
-    def make(rate: float):
-        return lambda memory: Instrument(rate, memory=memory)
-
     with pytest.raises(ParameterError, match="one sample rate"):
-        Ensemble([make(22050.0), make(44100.0)])
+        Ensemble([InstrumentSpec(22050.0), InstrumentSpec(44100.0)])
 
 
 def test_an_instrument_of_an_ensemble_is_not_played_by_itself():

@@ -1,7 +1,6 @@
 """Every sample is finite and within full scale, whatever the instrument's state is."""
 
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from yehu_server.controls.record import CHUNK
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import RIG
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.params.table import ENGINE, SLOT
 from yehu_server.player.rows import ROWS
 from yehu_server.player.wishes import BEGIN, KINDS, RAMP
@@ -34,7 +34,7 @@ def of_floats(kind: np.dtype) -> list[str]:
 @pytest.fixture(scope="module")
 def playing() -> np.ndarray:
     """The rig of an instrument in the middle of a stopped note."""
-    instrument = Instrument(44100)
+    instrument = Instrument(InstrumentSpec(44100))
     bow(instrument, press=1.5)
     run(instrument, 4410)
     return instrument._rig.copy()
@@ -42,7 +42,7 @@ def playing() -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def instrument() -> Instrument:
-    return Instrument(44100)
+    return Instrument(InstrumentSpec(44100))
 
 
 @pytest.mark.parametrize(("stage", "field"), [(s, field) for s in STAGES for field in fields(s)])
@@ -62,15 +62,11 @@ def test_whatever_a_stage_holds_every_sample_is_finite(instrument, playing, stag
 @pytest.fixture(scope="module")
 def duet() -> tuple[Ensemble, np.ndarray]:
     """Two who bow in a room, and their memory in the middle of a note."""
-    ensemble = Ensemble([partial(bowing, body=body) for body in range(2)])
+    ensemble = Ensemble([InstrumentSpec(44100, body=body) for body in range(2)])
+    for instrument in ensemble.instruments:
+        bow(instrument, press=1.5)
     ensemble.process(np.zeros((4410, 2), np.float32))
     return ensemble, ensemble.memory.copy()
-
-
-def bowing(memory: object, body: int) -> Instrument:
-    instrument = Instrument(44100, memory=memory, body=body)
-    bow(instrument, press=1.5)
-    return instrument
 
 
 @pytest.mark.parametrize("field", of_floats(SEAT))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.physics.layout import (
     CONTROLS_PER_FINGER,
     F_N,
@@ -22,7 +23,7 @@ BRIDGE_X = 0.30  # m
 
 @pytest.fixture
 def instrument() -> Instrument:
-    return Instrument(RATE)
+    return Instrument(InstrumentSpec(RATE))
 
 
 def put(instrument: Instrument, **values: float) -> None:

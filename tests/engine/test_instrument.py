@@ -10,6 +10,7 @@ import pytest
 from sound import bow, rms, run, run_for
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import ENGINE, TABLE
 from yehu_server.physics.quantities import Quantities, StringQuantities
@@ -45,7 +46,7 @@ def busy(instrument: Instrument) -> None:
 
 
 def played(block: int) -> np.ndarray:
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     busy(instrument)
     out = run(instrument, RATE, block)
     assert instrument.frame == RATE
@@ -64,7 +65,7 @@ def test_what_is_heard_does_not_depend_on_the_size_of_blocks(whole, block):
 
 
 def test_what_is_heard_does_not_depend_on_when_a_write_is_scheduled():
-    early, late = Instrument(RATE), Instrument(RATE)
+    early, late = Instrument(InstrumentSpec(RATE)), Instrument(InstrumentSpec(RATE))
     bow(early, frame=5000)
     expected = run_for(early, 0.4)
     first = run_for(late, 0.1)
@@ -73,7 +74,7 @@ def test_what_is_heard_does_not_depend_on_when_a_write_is_scheduled():
 
 
 def test_an_empty_block_is_no_time():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.process(np.zeros(0, np.float32))
     assert instrument.frame == 0
 
@@ -82,12 +83,12 @@ def test_a_block_with_gaps_in_memory_is_refused():
     """Other data lies between its samples and would be overwritten."""
     wider = np.zeros((64, 2), np.float32)
     with pytest.raises(TypeError, match="contiguous"):
-        Instrument(RATE).process(wider[:, 0])
+        Instrument(InstrumentSpec(RATE)).process(wider[:, 0])
     assert not wider.any()
 
 
 def test_two_instruments_do_not_hear_each_other(whole):
-    one, other = Instrument(RATE), Instrument(48000)
+    one, other = Instrument(InstrumentSpec(RATE)), Instrument(InstrumentSpec(48000))
     busy(one)
     bow(other)
     parts = []
@@ -98,7 +99,7 @@ def test_two_instruments_do_not_hear_each_other(whole):
 
 
 def test_after_a_reset_it_plays_as_if_new(whole):
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     bow(instrument, press=3.0)
     instrument.write("/output/gain", 12.0)
     instrument.write("/bow/speed", 1.0, frame=RATE)  # still to come
@@ -114,12 +115,12 @@ def test_after_a_reset_it_plays_as_if_new(whole):
 
 @pytest.mark.parametrize("rate", [22050, 44100, 48000, 96000, 192000])
 def test_an_instrument_left_alone_is_silent(rate):
-    assert not run_for(Instrument(rate), 0.1).any()
+    assert not run_for(Instrument(InstrumentSpec(rate)), 0.1).any()
 
 
 @pytest.mark.parametrize("rate", [22050, 44100, 96000])
 def test_a_bowed_string_sounds_and_a_lifted_bow_lets_it_ring_out(rate):
-    instrument = Instrument(rate)
+    instrument = Instrument(InstrumentSpec(rate))
     bow(instrument)
     assert rms(run_for(instrument, 0.5)[rate // 4 :]) > 0.01
     instrument.write("/bow/side", 0.0)
@@ -129,7 +130,7 @@ def test_a_bowed_string_sounds_and_a_lifted_bow_lets_it_ring_out(rate):
 
 @pytest.mark.parametrize("press", [0.0, 1.5, 5.0])
 def test_silence_ends_the_sound_within_five_milliseconds(press):
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     bow(instrument, press)
     before = run_for(instrument, 0.5)
     assert level(before[-2000:]) > -40.0
@@ -145,7 +146,7 @@ def test_silence_ends_the_sound_within_five_milliseconds(press):
 
 
 def test_silence_puts_the_model_to_rest():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     bow(instrument, 1.5)
     run_for(instrument, 0.5)
     for address in ("/bow/speed", "/bow/side", "/finger/1/press"):
@@ -160,7 +161,7 @@ def test_silence_puts_the_model_to_rest():
 
 
 def test_silence_asked_for_twice_comes_no_later():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     bow(instrument)
     run_for(instrument, 0.5)
     start = instrument.frame
@@ -173,7 +174,7 @@ def test_silence_asked_for_twice_comes_no_later():
 
 
 def test_after_silence_the_instrument_speaks_again():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     bow(instrument)
     loud = rms(run_for(instrument, 1.0)[RATE // 2 :])
     instrument.silence()
@@ -181,7 +182,7 @@ def test_after_silence_the_instrument_speaks_again():
 
 
 def test_a_resting_finger_makes_no_sound_of_its_own():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.write("/finger/1/press", 3.0, ramp_ms=50.0)
     out = run_for(instrument, 3.0)
     assert level(out[-RATE:]) < -80.0  # its pull at the bridge lasts, and is no sound
@@ -200,7 +201,7 @@ def spoil(instrument: Instrument, where: str, value: float) -> None:
 @pytest.mark.parametrize("press", [0.0, 5.0])
 @pytest.mark.parametrize("where", ["u", "q", "zeta", "z", "U", "s_1"])
 def test_a_lost_state_fades_is_counted_and_the_instrument_speaks_again(press, where):
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     bow(instrument, press)
     before = run_for(instrument, 1.0)
     loud = rms(before[RATE // 2 :])
@@ -215,7 +216,7 @@ def test_a_lost_state_fades_is_counted_and_the_instrument_speaks_again(press, wh
 
 
 def test_a_state_lost_again_and_again_never_breaks_the_output():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     bow(instrument, 1.5)
     for number in range(50):
         out = run_for(instrument, 0.01)
@@ -233,7 +234,7 @@ def test_a_state_lost_again_and_again_never_breaks_the_output():
 @pytest.mark.parametrize("seed", range(3))
 def test_whatever_is_written_the_output_is_finite_and_within_full_scale(rate, seed):
     chance = random.Random(1000 * seed + rate)
-    instrument = Instrument(rate)
+    instrument = Instrument(InstrumentSpec(rate))
     frame = 0
     while frame < 3 * rate:
         param = chance.choice(ENGINE)
@@ -255,7 +256,7 @@ def test_whatever_is_written_the_output_is_finite_and_within_full_scale(rate, se
 
 @pytest.mark.parametrize("param", ENGINE, ids=lambda param: param.address)
 def test_every_parameter_of_the_engine_answers_and_is_clamped(param):
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     assert instrument.write(param.address, 1e9) == param.hi
     assert instrument.write(param.address, -1e9) == param.lo
     middle = 0.5 * (param.lo + param.hi)
@@ -275,7 +276,7 @@ def test_every_parameter_of_the_engine_answers_and_is_clamped(param):
     ],
 )
 def test_what_the_engine_does_not_know_or_cannot_reckon_with_is_refused(address, value):
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     with pytest.raises(ParameterError):
         instrument.write(address, value)
     assert not run_for(instrument, 0.01).any()
@@ -284,10 +285,10 @@ def test_what_the_engine_does_not_know_or_cannot_reckon_with_is_refused(address,
 @pytest.mark.parametrize("rate", [0.0, -44100.0, 8000.0, 22049.0, 192001.0, math.nan, math.inf])
 def test_a_rate_the_model_is_not_made_for_is_refused(rate):
     with pytest.raises(ParameterError, match="sample rate"):
-        Instrument(rate)
+        Instrument(InstrumentSpec(rate))
 
 
 def test_a_string_the_grid_cannot_hold_is_refused():
     stiff = StringQuantities(r=5e-3, E=1e12)
     with pytest.raises(ParameterError, match="grid"):
-        Instrument(22050.0, Quantities(string_1=stiff))
+        Instrument(InstrumentSpec(22050.0, Quantities(string_1=stiff)))

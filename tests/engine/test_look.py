@@ -9,6 +9,7 @@ import pytest
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.look import LOOK, NO_STRING, look
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.physics.layout import V_B, X_B
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import BEGIN, END, HOLD
@@ -29,7 +30,7 @@ def play(instrument: Instrument, frames: int) -> np.ndarray:
 
 
 def test_at_rest_nothing_sounds_and_nothing_touches_a_string():
-    found = seen(Instrument(RATE))
+    found = seen(Instrument(InstrumentSpec(RATE)))
     assert (found["frame"], found["rate"]) == (0, RATE)
     assert found["string"] == NO_STRING
     assert math.isnan(found["pitch"])
@@ -39,7 +40,7 @@ def test_at_rest_nothing_sounds_and_nothing_touches_a_string():
 
 
 def test_of_a_bowed_note_it_tells_pitch_bow_fingers_and_strings():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.post(BEGIN, value=79.0, other=79.0)  # on the C string
     out = play(instrument, 22050)
     found = seen(instrument)
@@ -64,7 +65,7 @@ def test_of_a_bowed_note_it_tells_pitch_bow_fingers_and_strings():
 
 
 def test_the_bows_force_lies_between_schellengs_limits():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.post(BEGIN, value=76.0, other=76.0)
     play(instrument, 22050)
     found = seen(instrument)
@@ -73,7 +74,7 @@ def test_the_bows_force_lies_between_schellengs_limits():
 
 
 def test_the_speed_turns_with_the_tremolo():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.post(HOLD, index=ROW["/playing/tremolo"], value=10.0)
     instrument.post(BEGIN, value=76.0, other=76.0)
     signs = set()
@@ -84,7 +85,7 @@ def test_the_speed_turns_with_the_tremolo():
 
 
 def test_after_the_note_the_bow_is_lifted():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.post(BEGIN, value=76.0, other=76.0)
     instrument.post(END, frame=8000, value=76.0)
     play(instrument, 44100)
@@ -94,7 +95,7 @@ def test_after_the_note_the_bow_is_lifted():
 @pytest.mark.parametrize("length", [0.7, 0.3])
 def test_the_string_is_at_its_place_on_the_hair_and_goes_as_the_bow_is_drawn(length):
     """To the tip and back, within a bow that turns before its ends."""
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.post(HOLD, index=ROW["/playing/bow_length"], value=length)
     instrument.post(BEGIN, value=69.0, other=69.0)
     looks = []
@@ -113,7 +114,7 @@ def test_the_string_is_at_its_place_on_the_hair_and_goes_as_the_bow_is_drawn(len
 
 
 def test_a_bow_without_ends_has_no_length():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.post(HOLD, index=ROW["/playing/bow_length"], value=0.0)
     play(instrument, 64)
     assert seen(instrument)["hair_length"] == 0.0

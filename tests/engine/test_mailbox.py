@@ -26,6 +26,7 @@ from yehu_server.engine import rig as memory
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.midi.events import TABLES_TO
 from yehu_server.params.table import ENGINE, SLOT
 from yehu_server.player.record import PLAYER
@@ -74,9 +75,13 @@ def numbers(wishes: np.ndarray) -> np.ndarray:
     return found
 
 
+def offline() -> Instrument:
+    return Instrument(InstrumentSpec(RATE))
+
+
 def live(rate: float = RATE) -> Instrument:
     """An instrument whose blocks take a limited number of wishes."""
-    return Instrument(rate, is_live=True)
+    return Instrument(InstrumentSpec(rate), is_live=True)
 
 
 # ---------------------------------------------------------------- the ring between threads
@@ -143,7 +148,7 @@ def collect(
     return np.concatenate(reports)
 
 
-@pytest.mark.parametrize("make", [lambda: Instrument(RATE), live], ids=["offline", "live"])
+@pytest.mark.parametrize("make", [offline, live], ids=["offline", "live"])
 @pytest.mark.parametrize(("post", "count"), [(post_by_storm, 300_000), (post_by_python, 80_000)])
 def test_wishes_come_whole_and_in_order_from_thread_to_thread(make, post, count):
     instrument = make()
@@ -262,7 +267,7 @@ def test_wishes_come_whole_and_in_order_from_another_process():
 # ---------------------------------------------------------------- full rings
 
 
-@pytest.mark.parametrize("make", [lambda: Instrument(RATE), live], ids=["offline", "live"])
+@pytest.mark.parametrize("make", [offline, live], ids=["offline", "live"])
 def test_a_full_ring_drops_and_counts_what_comes_and_keeps_what_it_has(make):
     instrument = make()
     instrument.report_wishes()
@@ -293,7 +298,7 @@ def test_a_ring_that_is_drained_a_little_has_room_for_as_much():
 
 
 def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     for number in range(RING):
         post_numbered(instrument, number)
@@ -311,7 +316,7 @@ def test_reports_nobody_reads_are_dropped_and_counted_and_the_older_kept():
 
 
 def test_nothing_is_reported_unless_it_is_asked_for():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     post_numbered(instrument, 1)
     run(instrument, 64)
     assert not len(instrument.applied_wishes())
@@ -382,7 +387,7 @@ def postings(frames: int, most: int) -> st.SearchStrategy:
 @settings(max_examples=40)
 @given(st.one_of(postings(100, 30), postings(5, 60), postings(2, 120)))
 def test_wishes_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(batches):
-    instrument, model = Instrument(RATE), Model()
+    instrument, model = Instrument(InstrumentSpec(RATE)), Model()
     instrument.report_wishes()
     start = values(instrument)
     seen = []
@@ -404,7 +409,7 @@ def test_wishes_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(
 @settings(max_examples=30)
 @given(postings(300, 60), st.sampled_from([64, 100, 333, 4096]))
 def test_within_longer_blocks_they_apply_on_the_same_frames(batches, block):
-    instrument, model = Instrument(RATE), Model()
+    instrument, model = Instrument(InstrumentSpec(RATE)), Model()
     instrument.report_wishes()
     for wishes, frames in [*batches, ([], 600)]:
         for frame, index in wishes:
@@ -418,7 +423,7 @@ def test_within_longer_blocks_they_apply_on_the_same_frames(batches, block):
 @pytest.mark.parametrize("seed", range(5))
 def test_thousands_in_any_order_come_out_sorted(seed):
     chance = random.Random(seed)
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     frames = [chance.randrange(2000) for _ in range(HEAP)]
     for number, frame in enumerate(frames):
@@ -434,7 +439,7 @@ def test_thousands_in_any_order_come_out_sorted(seed):
 
 
 def test_wishes_for_frames_that_have_passed_apply_at_once_and_are_counted():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     run(instrument, 1000)
     for number, frame in enumerate([999, 0, -5, 1000, 1001]):
@@ -447,7 +452,7 @@ def test_wishes_for_frames_that_have_passed_apply_at_once_and_are_counted():
 
 
 def test_at_most_so_many_wishes_apply_on_one_frame_and_the_rest_on_the_next():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     for number in range(3 * APPLIED_AT_ONCE + 4):
         post_numbered(instrument, number, 50)
@@ -463,7 +468,7 @@ def test_at_most_so_many_wishes_apply_on_one_frame_and_the_rest_on_the_next():
 
 
 def test_more_than_wait_at_once_in_the_order_of_frames_apply_on_their_frames():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     count = HEAP + HEAP // 2
     for number in range(count):
@@ -493,7 +498,7 @@ def test_a_live_instrument_takes_in_so_many_wishes_for_each_64_frames():
     ],
 )
 def test_a_wish_of_no_kind_or_for_no_parameter_changes_nothing(kind, index):
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.post(BEGIN, value=69.0, other=69.0)
     run(instrument, 64)
     before = instrument._rig[["controls", "player"]].copy()
@@ -508,7 +513,7 @@ def test_a_wish_of_no_kind_or_for_no_parameter_changes_nothing(kind, index):
 
 
 def test_a_reset_leaves_nothing_to_apply():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     post_numbered(instrument, 1, 200)
     run(instrument, 100)
@@ -520,7 +525,7 @@ def test_a_reset_leaves_nothing_to_apply():
 
 
 def test_a_reset_leaves_nothing_to_tell_of():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     run(instrument, 100)
     post_numbered(instrument, 1, 0)
@@ -613,7 +618,7 @@ def test_an_empty_heap_and_one_that_is_in_order_need_no_mending():
 def crowded(block: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sound, reports and last parameters of a crowded half second."""
     chance = random.Random(3)
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     instrument.write("/bow/side", 1.0)
     instrument.write("/bow/speed", 0.2)
@@ -646,7 +651,7 @@ def test_a_crowd_of_wishes_sounds_the_same_in_blocks_of_any_size(whole, block):
 
 def test_even_more_than_can_wait_at_once_apply_the_same_in_blocks_of_any_size():
     def applied(block: int) -> np.ndarray:
-        instrument = Instrument(RATE)
+        instrument = Instrument(InstrumentSpec(RATE))
         instrument.report_wishes()
         for number in range(HEAP):
             post_numbered(instrument, number, 10 + number // 20)

@@ -20,6 +20,7 @@ from yehu_server.engine import native
 from yehu_server.engine import rig as memory
 from yehu_server.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.engine.warming import PLAYED_BY
 from yehu_server.midi.interpret import APART as PARTS
 from yehu_server.midi.interpret import interpret
@@ -361,7 +362,7 @@ def test_in_given_memory_it_sounds_the_same():
 
 
 def test_a_callback_of_no_frames_does_no_harm():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     out = np.zeros(64, np.float32)
     instrument.process(out)
     before = instrument.meters().copy()
@@ -374,7 +375,7 @@ def test_a_callback_of_no_frames_does_no_harm():
 
 
 def test_what_a_callback_answers_is_to_go_on():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     out = np.zeros(64, np.float32)
     for flags in (0, 4, 31):
         call = native.callback.call(None, out.ctypes.data, 64, None, flags, instrument.address)

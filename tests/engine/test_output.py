@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from sound import bow, run
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.stage.limiter import limit
 
 RATE = 44100
@@ -57,7 +58,7 @@ def test_the_limiter_takes_the_infinite():
 
 
 def bowed(gain_db: float = 0.0, level: float = 1.0) -> np.ndarray:
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.write("/output/gain", gain_db, ramp_ms=0.0)
     instrument.write("/output/level", level, ramp_ms=0.0)
     bow(instrument)
@@ -88,7 +89,7 @@ def test_a_loud_instrument_is_bent_and_not_clipped(soft):
 
 def test_the_limiter_may_begin_lower_or_only_cut(soft):
     def loud(limiter_db: float) -> np.ndarray:
-        instrument = Instrument(RATE)
+        instrument = Instrument(InstrumentSpec(RATE))
         instrument.write("/output/gain", 24.0, ramp_ms=0.0)
         instrument.write("/output/limiter", limiter_db, ramp_ms=0.0)
         bow(instrument)
@@ -102,7 +103,7 @@ def test_the_limiter_may_begin_lower_or_only_cut(soft):
 
 def test_the_bodys_gain_is_of_what_it_radiates_alone():
     def heard(gain_db: float, blend: float) -> np.ndarray:
-        instrument = Instrument(RATE)
+        instrument = Instrument(InstrumentSpec(RATE))
         instrument.write("/body/gain", gain_db, ramp_ms=0.0)
         instrument.write("/body/blend", blend, ramp_ms=0.0)
         bow(instrument)
@@ -113,7 +114,7 @@ def test_the_bodys_gain_is_of_what_it_radiates_alone():
 
 
 def blended(blend: float) -> np.ndarray:
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.write("/body/blend", blend, ramp_ms=0.0)
     bow(instrument)
     out = np.zeros(RATE, np.float32)

@@ -15,6 +15,7 @@ from sound import bow, run
 
 from yehu_server.engine import processor
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.physics.layout import GHOST
 
 RATE = 22050
@@ -123,7 +124,7 @@ def test_flush_is_for_one_thread():
 @knows_how
 @pytest.mark.parametrize("is_flushed", [False, True])
 def test_a_block_leaves_the_threads_mode_as_it_was(is_flushed):
-    instrument, out = Instrument(RATE), np.zeros(256, np.float32)
+    instrument, out = Instrument(InstrumentSpec(RATE)), np.zeros(256, np.float32)
     instrument.write("/bow/side", 1.0)
     instrument.write("/bow/speed", 0.2)
     instrument.process(out)
@@ -158,7 +159,7 @@ def denormals(instrument: Instrument) -> int:
 
 def ringing() -> Instrument:
     """An instrument that rings after a bow stroke."""
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     bow(instrument)
     assert np.abs(run(instrument, RATE // 4)).max() > 0.001
     instrument.write("/bow/side", 0.0, ramp_ms=0.0)
@@ -174,7 +175,7 @@ def scale(instrument: Instrument, factor: float) -> None:
 
 @knows_how
 def test_a_string_of_denormals_is_at_rest_after_one_turn_of_its_levels():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     model, state = instrument._rig["model"][0], instrument._rig["state"]
     for i in range(2):
         state["motion"]["u"][0, :, i, GHOST + 1 : GHOST + model["N"][i]] = 0.5 * SMALLEST

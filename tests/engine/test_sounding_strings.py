@@ -10,6 +10,7 @@ from pitch import cents, pitch_of
 from sound import run_for
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.params.table import ENGINE
 
 RATE = 44100
@@ -18,7 +19,7 @@ each_string = pytest.mark.parametrize(("name", "side", "about_hz"), STRINGS)
 
 
 def bow(side: float, **options) -> Instrument:
-    instrument = Instrument(RATE, **options)
+    instrument = Instrument(InstrumentSpec(RATE, **options))
     instrument.write("/bow/side", side)
     instrument.write("/bow/speed", 0.2, ramp_ms=40.0)
     return instrument
@@ -78,7 +79,7 @@ def test_a_damped_string_dies_away_sooner(name, side, about_hz):
     del about_hz
 
     def left(loss: float) -> float:
-        instrument = Instrument(RATE)
+        instrument = Instrument(InstrumentSpec(RATE))
         instrument.write(f"/string/{name}/loss", loss, ramp_ms=0.0)
         instrument.write("/pluck/force", 1.0 * side)
         run_for(instrument, 0.6)
@@ -100,7 +101,7 @@ def numbers(record: np.ndarray) -> Iterator[np.ndarray]:
                                      for what in ("tuning", "loss")])  # fmt: skip
 def test_a_string_that_comes_back_is_as_it_was(address):
     param = {row.address: row for row in ENGINE}[address]
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     fresh = instrument._rig["model"].copy()
     for value in (param.lo, param.hi, param.default):
         instrument.write(address, value)
@@ -126,7 +127,7 @@ def test_a_string_that_is_being_tuned_sounds_the_same_in_any_block(block):
 @pytest.mark.parametrize("tuning", [-200.0, 40.0])
 @pytest.mark.parametrize("loss", [0.25, 4.0])
 def test_every_tuning_and_loss_is_stable(rate, tuning, loss):
-    instrument = Instrument(rate)
+    instrument = Instrument(InstrumentSpec(rate))
     for name, _, _ in STRINGS:
         instrument.write(f"/string/{name}/tuning", tuning, ramp_ms=0.0)
         instrument.write(f"/string/{name}/loss", loss, ramp_ms=0.0)
@@ -148,7 +149,7 @@ def test_every_tuning_and_loss_is_stable(rate, tuning, loss):
 
 
 def test_tuning_again_and_again_pumps_no_energy_in():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.write("/pluck/force", 2.0)
     before = loudness(run_for(instrument, 0.2)[RATE // 10 :])
     for turn in range(40):

@@ -18,6 +18,7 @@ from yehu_server.engine import native, telemetry
 from yehu_server.engine.atomics import at, load_acquire
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import METERS_AT, POSTED_AT
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.engine.telemetry import (
     BINS_PER_DEADLINE,
     LOAD_BINS,
@@ -35,7 +36,7 @@ OUTPUT_UNDERFLOW, OTHER_FLAGS = 4, [0, 1, 2, 8, 16]
 
 
 def bowed(rate: float = RATE) -> Instrument:
-    instrument = Instrument(rate)
+    instrument = Instrument(InstrumentSpec(rate))
     sound.bow(instrument, press=1.5)
     return instrument
 
@@ -87,7 +88,7 @@ def test_each_window_tells_of_its_own_samples_only():
 
 
 def test_a_silent_instrument_has_no_level_and_straight_strings():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     run(instrument, RATE // 10)
     meters = instrument.meters()
     assert meters["window"] > 0
@@ -180,7 +181,7 @@ def test_the_load_shown_follows_in_about_a_second():
 
 
 def test_under_runs_are_counted_as_the_device_flags_them():
-    instrument, out = Instrument(RATE), np.zeros(64, np.float32)
+    instrument, out = Instrument(InstrumentSpec(RATE)), np.zeros(64, np.float32)
     for count, others in enumerate(itertools.product(OTHER_FLAGS, OTHER_FLAGS)):
         for flags in (sum(set(others)), sum(set(others)) + OUTPUT_UNDERFLOW):
             native.callback.call(None, out.ctypes.data, 64, None, flags, instrument.address)
@@ -296,7 +297,7 @@ class Host(Clock):
         super().__init__(48000.0, block, **options)
         self.period, self._kept = period, 0
         self.begun_ns = self.exact_ns
-        self._instrument = Instrument(48000.0)
+        self._instrument = Instrument(InstrumentSpec(48000.0))
         self.ahead: list[float] = []  # frames played before their time, after each request
 
     def frame_at(self, moment_ns: float) -> float:
@@ -409,7 +410,7 @@ def test_the_first_frame_of_a_block_falls_on_when_it_was_due():
 def test_a_moment_falls_on_its_frame_and_frames_follow_in_order():
     clock = Clock(48000.0, 256, 0.9999, jitter_ns=0.5e6)
     clock.follow(8.0)
-    instrument = told(Instrument(48000.0), clock.meters)
+    instrument = told(Instrument(InstrumentSpec(48000.0)), clock.meters)
     first, due = int(clock.meters["frame"][0]), int(clock.meters["loop"]["due_ns"][0])
     length = 256 * clock.ns_per_frame
     moments = [due + round(length * part) for part in np.linspace(0.0, 1.0, 500)]
@@ -421,7 +422,7 @@ def test_a_moment_falls_on_its_frame_and_frames_follow_in_order():
 def test_what_comes_at_a_steady_pace_is_stamped_at_a_steady_pace():
     clock = Clock(48000.0, 256, 0.9999, jitter_ns=0.5e6)
     clock.follow(6.0)
-    instrument = Instrument(48000.0)
+    instrument = Instrument(InstrumentSpec(48000.0))
     stamps = []
     for _ in range(1000):
         moment = clock.exact_ns + 3.1e6  # the same moment of each block
@@ -435,7 +436,7 @@ def test_what_comes_at_a_steady_pace_is_stamped_at_a_steady_pace():
 def test_in_a_stall_time_stands_still_a_little_after_the_last_block():
     clock = Clock(48000.0, 480)
     clock.follow(1.0)
-    instrument = told(Instrument(48000.0), clock.meters)
+    instrument = told(Instrument(InstrumentSpec(48000.0)), clock.meters)
     first, due = int(clock.meters["frame"][0]), int(clock.meters["loop"]["due_ns"][0])
     end = first + 480 + native.STALL_NS * 48e-6
     moments = [due + round(1e6 * ms) for ms in np.linspace(0.0, 100.0, 301)]
@@ -447,7 +448,7 @@ def test_in_a_stall_time_stands_still_a_little_after_the_last_block():
 
 
 def test_before_anything_is_played_every_moment_is_near_the_start():
-    instrument = Instrument(48000.0)
+    instrument = Instrument(InstrumentSpec(48000.0))
     assert 0.0 <= instrument.frame_at(time.monotonic_ns()) <= 48000.0 * 0.05
 
 
@@ -488,7 +489,7 @@ def listen(rig, into, times):
 
 
 def test_a_reader_never_sees_half_of_a_record():
-    instrument, into, times = Instrument(RATE), np.zeros(1, METERS), 500_000
+    instrument, into, times = Instrument(InstrumentSpec(RATE)), np.zeros(1, METERS), 500_000
     teller = threading.Thread(target=lambda: tell.ctypes(instrument.address, times))
     teller.start()
     found = []
@@ -501,7 +502,7 @@ def test_a_reader_never_sees_half_of_a_record():
 
 
 def test_a_reader_is_told_when_a_record_is_just_being_written():
-    instrument, into = Instrument(RATE), np.zeros(1, METERS)
+    instrument, into = Instrument(InstrumentSpec(RATE)), np.zeros(1, METERS)
     for version in range(4):
         instrument._rig["version"][0, 0] = version
         is_whole = native.read_meters.call(instrument.address, into.ctypes.data)
@@ -539,7 +540,7 @@ def test_a_reader_never_sees_half_of_a_block():
 
 
 def test_while_a_block_is_being_told_of_the_one_before_is_read():
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     run(instrument, 64)
     before = instrument.meters().copy()
     instrument._rig["version"][0, 0] += 1  # the audio side was interrupted here
@@ -548,7 +549,7 @@ def test_while_a_block_is_being_told_of_the_one_before_is_read():
 
 
 def test_meters_of_a_new_instrument_are_empty():
-    meters = Instrument(RATE).meters()
+    meters = Instrument(InstrumentSpec(RATE)).meters()
     assert meters["rate"] == RATE
     assert np.isnan(meters["pitch"])  # no note sounds
     for name in set(METERS.names) - {"rate", "loop", "pitch"}:

@@ -24,8 +24,7 @@ STYLE = Style(mapping=load("keyboard"), seed=3)
 
 def stage_of(memory: object = None) -> Ensemble:
     calibration = calibration_for(float(RATE))
-    makes = [lambda place: STYLE.instrument(float(RATE), calibration, memory=place)]
-    return Ensemble(makes, memory=memory)
+    return Ensemble([STYLE.spec(float(RATE), calibration)], memory=memory)
 
 
 def play(instrument: Instrument) -> None:

@@ -101,11 +101,11 @@ from yehu_server.audio.devices import choose, load_portaudio, outputs
 from yehu_server.audio.output import SharedMemory
 from yehu_server.audio.stream import Stream
 from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 
 memory = SharedMemory()
 stage = Ensemble(
-    [lambda place: Instrument({RATE:.1f}, memory=place)], channels=1, memory=memory.buffer
+    [InstrumentSpec({RATE:.1f})], channels=1, memory=memory.buffer
 )
 instrument = stage.first
 sounddevice = load_portaudio()

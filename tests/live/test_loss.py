@@ -347,9 +347,7 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
     memory = SharedMemory()
     style = Style(seed=3)
     calibration = calibration_for(48000.0)
-    stage = Ensemble(
-        [lambda place: style.instrument(48000.0, calibration, memory=place)], memory=memory.buffer
-    )
+    stage = Ensemble([style.spec(48000.0, calibration)], memory=memory.buffer)
     live = stage.first
     wishes = style.wishes(live)
     live.report_wishes()

@@ -14,6 +14,7 @@ import pytest
 
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.look import LOOK, look
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.panel import facts
 from yehu_server.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 from yehu_server.player.wishes import BEGIN
@@ -26,7 +27,7 @@ E5 = 76.0
 @pytest.fixture(scope="module")
 def instrument() -> Instrument:
     """One that has played a stopped note on the outer string for half a second."""
-    played = Instrument(RATE)
+    played = Instrument(InstrumentSpec(RATE))
     played.post(BEGIN, value=E5, other=E5)
     played.process(np.zeros(22050, np.float32))
     return played
@@ -47,7 +48,7 @@ def snapshots(node, seen, tmp_path_factory) -> Any:
     (folder / "package.json").write_text('{"type": "module"}')
     facts.write(folder)
     at_rest = np.zeros(1, LOOK)
-    silent = Instrument(RATE)
+    silent = Instrument(InstrumentSpec(RATE))
     look.call(silent.address, at_rest.ctypes.data)
     rows = [np.frombuffer(record.tobytes(), np.float64) for record in (seen, at_rest[0])]
     lines = [json.dumps([None if math.isnan(x) else x for x in row.tolist()]) for row in rows]

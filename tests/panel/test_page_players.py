@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from midi_input import receive
 
+from yehu_server.engine.instrument import Instrument
 from yehu_server.panel.page_players import PagePlayers
 from yehu_server.params.table import FINGERS
 from yehu_server.player.record import MOST_HELD
@@ -34,7 +35,7 @@ PRESSURE, SPEED, VELOCITY = "/playing/pressure", "/playing/speed", "/playing/vel
 @pytest.fixture(scope="module")
 def instrument():
     style = Style()
-    instrument = style.instrument(48000.0, calibration_for(48000.0))
+    instrument = Instrument(style.spec(48000.0, calibration_for(48000.0)))
     instrument.report_wishes()
     return instrument
 

@@ -10,6 +10,7 @@ from pitch import hertz
 from sound import rms, run_for
 
 from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.engine.instrument import Instrument
 from yehu_server.midi.record import let_go
 from yehu_server.params.table import FINGERS, TABLE
 from yehu_server.physics.quantities import Quantities
@@ -30,7 +31,7 @@ class Play:
 
     def __init__(self, listening: float = 1.0, detuned: float = 0.0, **values: float) -> None:
         style = Style()
-        self.instrument = style.instrument(RATE, calibration_for(float(RATE)))
+        self.instrument = Instrument(style.spec(RATE, calibration_for(float(RATE))))
         self.wishes: Wishes = style.wishes(self.instrument)
         self.wishes.write("/playing/variation", 0.0)
         self.wishes.write("/playing/listening", listening)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from yehu_server.analysis.level import a_weighted_db
+from yehu_server.engine.instrument import Instrument
 from yehu_server.params.table import find
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
@@ -23,7 +24,7 @@ def struck(note: int, velocity: int) -> np.ndarray:
     """The sound of a note on the shipped keyboard mapping, evened out and without variation."""
     style = Style()
     assert style.mapping.name == "keyboard"
-    instrument = style.instrument(RATE, calibration_for(float(RATE)))
+    instrument = Instrument(style.spec(RATE, calibration_for(float(RATE))))
     wishes = style.wishes(instrument)
     wishes.write("/playing/variation", 0.0)
     instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # A4 at the body's mode minds it by a decibel

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, KINDS, SLIDE, WRITE
@@ -15,7 +16,7 @@ from yehu_server.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, KINDS, SLIDE, 
 
 def after(*wishes: tuple[int, int, float, float]):
     """The player's record, and the controls', after some wishes."""
-    instrument = Instrument(44100.0)
+    instrument = Instrument(InstrumentSpec(44100.0))
     for kind, index, value, other in wishes:
         assert instrument.post(kind, index=index, value=value, other=other)
     instrument.process(np.zeros(64, np.float32))

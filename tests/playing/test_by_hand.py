@@ -9,6 +9,7 @@ from hands import HIGH_DB, LOW_DB, Checked, Watched, ideal
 
 from yehu_server.analysis.level import a_weighted_db
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.fingering import OpenStrings
 from yehu_server.playing.calibrations import calibration_for
@@ -130,7 +131,8 @@ CALIBRATION = calibration_for(RATE)
 
 def drawn_by_hand(pitches, seconds: float, evenness: float) -> np.ndarray:
     """The sound of a bow drawn by hand while the finger goes through pitches."""
-    instrument = Instrument(RATE, CALIBRATION.tuned(Quantities()), calibration=CALIBRATION)
+    tuned = CALIBRATION.tuned(Quantities())
+    instrument = Instrument(InstrumentSpec(RATE, tuned, calibration=CALIBRATION))
     player = Wishes(instrument)
     player.write("/body/evenness", evenness)
     out = []

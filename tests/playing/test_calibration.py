@@ -12,6 +12,7 @@ from hands import Watched
 from pitch import cents, hertz, pitch_of
 from sound import run, run_for
 
+from yehu_server.engine.instrument import Instrument
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
 from yehu_server.player.intonation import position_of
@@ -81,7 +82,7 @@ def test_the_sharpening_is_read_at_its_notes_and_speeds():
 def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 440.0) -> float:
     """The pitch (Hz) of a note, from 0.1 s after it began."""
     tuned = calibration_for(rate, a4=a4)
-    instrument = Style().instrument(rate, tuned)
+    instrument = Instrument(Style().spec(rate, tuned))
     midi = MidiPlayer(Wishes(instrument), load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
@@ -114,7 +115,7 @@ def test_without_evenness_the_body_has_its_way():
 def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None = None) -> float:
     """A-weighted level (dB) of a note once it has settled."""
     tuned = calibration_for(44100.0)
-    instrument = Style().instrument(44100.0, tuned)
+    instrument = Instrument(Style().spec(44100.0, tuned))
     player = Wishes(instrument)
     if evenness is not None:
         player.write("/body/evenness", evenness)

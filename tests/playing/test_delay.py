@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.playing.delay import HELD_WINDOWS, Delay
 
 RATE, BLOCK = 48000, 128
@@ -16,7 +17,7 @@ class Device:
     """An instrument with the telemetry of a device that the test sets."""
 
     def __init__(self, fixed_ms: float | None = None) -> None:
-        self._instrument = Instrument(RATE)
+        self._instrument = Instrument(InstrumentSpec(RATE))
         self.delay = Delay(self._instrument, BLOCK, fixed_ms)
 
     def window(self, ahead: float, longest: int | None = None) -> int:

@@ -13,6 +13,7 @@ from midi_input import receive
 from sound import run
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE
 from yehu_server.player.rows import ROW
@@ -25,7 +26,7 @@ RATE = 48000.0
 
 @pytest.fixture
 def instrument() -> Instrument:
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     return instrument
 

@@ -21,7 +21,7 @@ class Stand:
     """A player and an instrument; times in seconds."""
 
     def __init__(self, **wishes: float) -> None:
-        self.instrument: Instrument = Style().instrument(RATE, calibration_for(float(RATE)))
+        self.instrument: Instrument = Instrument(Style().spec(RATE, calibration_for(float(RATE))))
         self.player: Wishes = Style().wishes(self.instrument)
         self.wish(0.0, variation=0.0, **wishes)
 

@@ -15,6 +15,7 @@ from pitch import cents, hertz, pitch_of
 from sound import run
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.errors import OutputError, PresetError
 from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED
 from yehu_server.params.table import TABLE
@@ -292,7 +293,7 @@ def test_a_program_is_the_players_own_before_a_shipped_one(presets, put):
 
 @pytest.fixture
 def instrument() -> Instrument:
-    instrument = Instrument(RATE)
+    instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     return instrument
 
@@ -435,7 +436,7 @@ def test_an_unknown_program_is_ignored_and_counted(instrument, presets):
 def heard(name: str, note: int, seconds: float = 0.5) -> np.ndarray:
     values = Presets(Path(os.devnull)).load(name).values | {"/playing/variation": 0.0}
     style = Style(start=tuple(values.items()))
-    instrument = style.instrument(RATE, calibration_for(RATE))
+    instrument = Instrument(style.spec(RATE, calibration_for(RATE)))
     midi = style.midi(style.wishes(instrument))
     midi.receive(mido.Message("note_on", note=note, velocity=64), frame=0)
     return run(instrument, round(RATE * seconds)).astype(np.float64)

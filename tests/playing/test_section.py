@@ -23,7 +23,7 @@ from yehu_server.player.rows import ROW
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.section_people import section_makes
+from yehu_server.playing.section_people import section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes
 from yehu_server.rendering.cores import Cores
@@ -424,7 +424,7 @@ def test_a_panic_comes_after_the_notes_that_were_wished_before_it(four):
 
 def played(style: Style, people: int, block: int, seconds: float = 1.5) -> np.ndarray:
     """The sound of each player of a chord and a line."""
-    stage = Ensemble(section_makes(style, RATE, ideal(), people=people), has_room=False)
+    stage = Ensemble(section_specs(style, RATE, ideal(), people=people), has_room=False)
     cores = Cores(stage, map, has_stems=True)
     midi = style.midi(style.wishes(stage.instruments))
     events = [(0.1, "note_on", 67), (0.1, "note_on", 74), (0.6, "note_off", 67)]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hands import ideal
 
+from yehu_server.engine.instrument import Instrument
 from yehu_server.midi.seats import DISTANCE, GAIN, PAN, SEED, own_value
 from yehu_server.physics.quantities import Quantities
 from yehu_server.physics.radiation import response
@@ -17,8 +18,8 @@ from yehu_server.playing.section_people import (
     MODE,
     SIZE,
     TUNED_CENTS,
-    section_makes,
     section_size,
+    section_specs,
     vary,
 )
 from yehu_server.playing.style import Style
@@ -108,15 +109,16 @@ def test_strings_hair_and_rosin_differ_within_the_tolerances_of_one_maker():
 
 def test_each_player_of_a_section_has_an_instrument_and_sides_of_their_own():
     style = Style(seed=3)
-    made = [make(None) for make in section_makes(style, 44100.0, ideal(), people=4)]
-    alone = style.instrument(44100.0, ideal())
-    assert made[0].quantities == alone.quantities  # the first has the measured one
-    bodies = [instrument.quantities.body for instrument in made]
+    specs = section_specs(style, 44100.0, ideal(), people=4)
+    alone = style.spec(44100.0, ideal())
+    assert specs[0].quantities == alone.quantities  # the first has the measured one
+    bodies = [spec.quantities.body for spec in specs]
     assert len({body.frequency_hz for body in bodies}) == 4
-    assert len({instrument.quantities.bow.hair for instrument in made}) == 4
+    assert len({spec.quantities.bow.hair for spec in specs}) == 4
+    made = map(Instrument, (*specs, alone))
     turns = [tuple(instrument._rig["seat"]["sides"]["c_1"][0]) for instrument in made]
     assert len(set(turns)) == 4
-    assert turns[0] == tuple(alone._rig["seat"]["sides"]["c_1"][0])
+    assert turns[0] == turns[-1]
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -153,11 +155,11 @@ def test_a_mapping_preset_or_setting_asks_for_players():
 def test_a_part_of_one_player_is_the_instrument_of_its_style():
     style = Style(seed=3)
     out = []
-    for make in (
-        section_makes(style, 44100.0, ideal(), people=1)[0],
-        lambda memory: style.instrument(44100.0, ideal(), memory=memory),
+    for spec in (
+        *section_specs(style, 44100.0, ideal(), people=1),
+        style.spec(44100.0, ideal()),
     ):
-        instrument = make(None)
+        instrument = Instrument(spec)
         wishes = style.wishes(instrument)
         wishes.draw(0.2, 0.6, frame=0)
         out.append(np.zeros(4410, np.float32))

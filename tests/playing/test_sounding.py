@@ -24,7 +24,7 @@ def level(samples: np.ndarray) -> float:
 
 def player_at(rate: float) -> tuple[Wishes, Instrument]:
     style = Style()
-    instrument = style.instrument(rate, calibration_for(float(rate)))
+    instrument = Instrument(style.spec(rate, calibration_for(float(rate))))
     return style.wishes(instrument), instrument
 
 

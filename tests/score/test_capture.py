@@ -7,7 +7,6 @@ import os
 import random
 import resource
 from dataclasses import fields, replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from sound import alone, bow, rms, run
 from yehu_server.controls.slots import SILENCE
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.physics.quantities import Quantities, override
@@ -57,7 +57,7 @@ SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 @pytest.fixture(scope="module")
 def plain() -> Beginning:
     """An instrument without calibration, without a room."""
-    return beginning_of([Instrument(RATE, TUNED, seed=3)], has_room=False)
+    return Beginning((InstrumentSpec(RATE, TUNED, seed=3),), has_room=False)
 
 
 @pytest.fixture
@@ -174,7 +174,7 @@ def measured(seed: int = 1) -> Calibration:
 def test_an_instrument_is_read_as_it_began(tmp_path):
     bowing = ordinary_table() * 1.01
     calibration = measured()
-    began = Instrument(
+    spec = InstrumentSpec(
         44100.0,
         calibration.tuned(Quantities()),
         calibration=calibration,
@@ -183,6 +183,7 @@ def test_an_instrument_is_read_as_it_began(tmp_path):
         bowing=bowing,
         start_values={"/output/gain": -7.0 / 3.0, "/playing/speed": 0.3, "/engine/seed": 5.0},
     )
+    began = Instrument(spec)
     expected = began._rig.copy()
     run(began, 100)
     began.post(BEGIN, value=69.0, other=69.0)  # what happens afterwards is no beginning
@@ -193,7 +194,7 @@ def test_an_instrument_is_read_as_it_began(tmp_path):
     for part in ("model", "state", "controls", "player"):
         for name in expected[part].dtype.names:
             np.testing.assert_array_equal(again._rig[part][name], expected[part][name], name)
-    assert again.calibration == calibration
+    assert again.spec.calibration == calibration
 
 
 def test_a_session_that_crashed_can_be_read(tmp_path, write):
@@ -352,11 +353,7 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
     styles = [
         Style(seed=seed + i, open_strings=list(OpenStrings)[seed % 3]) for i in range(players)
     ]
-
-    def make(style, memory):
-        return style.instrument(RATE, measured(seed), body=style.seed, memory=memory)
-
-    stage = Ensemble([partial(make, style) for style in styles])
+    stage = Ensemble([style.spec(RATE, measured(seed), body=style.seed) for style in styles])
     asked = [style.wishes(one) for style, one in zip(styles, stage.instruments, strict=True)]
     for one in stage.instruments:
         one.report_wishes()
@@ -400,7 +397,9 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
 
 
 def test_wishes_of_several_players_are_read_in_the_order_of_frames(tmp_path):
-    beginning = beginning_of([Instrument(RATE), Instrument(RATE)], has_room=True)
+    beginning = beginning_of(
+        [Instrument(InstrumentSpec(RATE)), Instrument(InstrumentSpec(RATE))], has_room=True
+    )
     writer = CaptureWriter(tmp_path / "c", beginning=beginning)
     for player, frames in [(1, [5, 9]), (0, [3, 7]), (1, [9]), (0, [8])]:
         writer.wishes(np.array([(frame, LIFT, 0, 0.0, 0.0) for frame in frames], WISH), player)
@@ -413,9 +412,9 @@ def test_wishes_of_several_players_are_read_in_the_order_of_frames(tmp_path):
 
 def test_what_players_have_in_common_is_written_once(tmp_path):
     of = measured()
-    players = [Instrument(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
-    players.append(Instrument(RATE, calibration=measured(2), bowing=ordinary_table() * 1.01))
-    CaptureWriter(tmp_path / "c", beginning=beginning_of(players, has_room=True)).close(9)
+    players = [InstrumentSpec(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
+    players.append(InstrumentSpec(RATE, calibration=measured(2), bowing=ordinary_table() * 1.01))
+    CaptureWriter(tmp_path / "c", beginning=Beginning(tuple(players), has_room=True)).close(9)
     header = json.loads((tmp_path / "c").read_text().splitlines()[0])
     assert [player["calibration"] for player in header["players"][1:3]] == [1, 1]
     assert [player["bowing"] for player in header["players"][1:3]] == [1, 1]
@@ -431,7 +430,7 @@ def test_an_instrument_of_another_build_is_read_as_it_was(tmp_path):
     usual = Quantities()
     body = replace(usual.body, mass=tuple(1.01 * mass for mass in usual.body.mass))
     own = replace(usual, body=body, bow=replace(usual.bow, hair=7.0, xi=(0.6, 0.5)))
-    beginning = beginning_of([Instrument(RATE, own)], has_room=True)
+    beginning = Beginning((InstrumentSpec(RATE, own),), has_room=True)
     CaptureWriter(tmp_path / "c", beginning=beginning).close(9)
     (again,) = read_capture(tmp_path / "c").beginning.players
     assert again.quantities == own
@@ -460,7 +459,7 @@ MOVES = [
 
 def written(moves, rests=(), **options) -> np.ndarray:
     """What an instrument plays whose parameters move so."""
-    instrument = Instrument(RATE, TUNED, **options)
+    instrument = Instrument(InstrumentSpec(RATE, TUNED, **options))
     for frame, address, target, ramp in moves:
         if address == "silence":
             instrument.silence(frame=frame)
@@ -846,7 +845,7 @@ def test_a_file_of_version_2_sounds_as_it_did_without_a_room(tmp_path):
     path = second_version(tmp_path / "c", NOTE)
     capture = read_capture(path)
     assert (capture.version, capture.beginning.has_room) == (2, False)
-    instrument = Instrument(RATE, TUNED, seed=3)
+    instrument = Instrument(InstrumentSpec(RATE, TUNED, seed=3))
     instrument.post(BEGIN, frame=0, value=69.0, other=69.0)
     instrument.post(END, frame=5000, value=69.0)
     samples = replayed(path)

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import memory_bytes
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
@@ -35,12 +34,7 @@ def image(rate: float) -> Array:
         First word, number of words, the words; again; to the end.
     """
     memory = bytearray(memory_bytes(1))
-    calibration = calibration_for(rate)
-
-    def make(place: Any) -> Instrument:
-        return Style().instrument(rate, calibration, memory=place, is_live=True)
-
-    Ensemble([make], memory=memory)
+    Ensemble([Style().spec(rate, calibration_for(rate))], memory=memory, is_live=True)
     words = np.frombuffer(memory, np.int64)
     return np.concatenate([np.zeros(0, np.int64), *_runs(words)])
 

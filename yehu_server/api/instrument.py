@@ -100,17 +100,13 @@ class Instrument:
         self._channels = 2 if stereo else 1
         calibration = calibration_for(float(self._rate), make.quantities, a4=self._style.a4)
 
-        def build(memory: Any = None) -> Engine:
-            return self._style.instrument(
-                float(self._rate), calibration, make.quantities, memory=memory
-            )
-
+        spec = self._style.spec(float(self._rate), calibration, make.quantities)
         self._stage: Ensemble | Engine
         if stereo:
-            self._stage = Ensemble([build])
+            self._stage = Ensemble([spec])
             self._engine = self._stage.first
         else:
-            self._stage = self._engine = build()
+            self._stage = self._engine = Engine(spec)
         self._begin()
 
     def __repr__(self) -> str:
@@ -124,7 +120,7 @@ class Instrument:
     @property
     def quantities(self) -> Quantities:
         """The physical quantities of the instrument, as it is tuned."""
-        return self._engine.quantities
+        return self._engine.spec.quantities
 
     @property
     def time(self) -> float:

@@ -136,7 +136,7 @@ class Run:
         arrays: dict[str, Array] = {"sound": out} | signals(probes, controls, self._instrument.rate)
         if strings_every:
             arrays["strings_time"] = arrays["time"][::strings_every]
-            for i, string in enumerate(self._instrument.quantities.strings):
+            for i, string in enumerate(self._instrument.spec.quantities.strings):
                 arrays[f"string_{i + 1}"] = np.array(kept[i])
                 arrays[f"x_{i + 1}"] = np.linspace(0.0, string.L, int(model["N"][i]) + 1)
         return Simulation(arrays, {"version": __version__} | about(model, state, frames))

@@ -9,6 +9,7 @@ import numpy as np
 from yehu_server.controls.record import CHUNK
 from yehu_server.dataset.description import A4, Description
 from yehu_server.dataset.sound import Sound, calibrated, regimes
+from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import RIG
 from yehu_server.errors import ParameterError
 from yehu_server.physics.layout import MAX_FINGERS, control_columns, probe_columns
@@ -38,7 +39,8 @@ def melody(description: Description, number: int) -> Sound:
     }
     drawn["notes"] = _written(description, number, int(drawn["notes"]))
     _, calibration = calibrated(description)
-    instrument = Style(seed=number % 65536).instrument(rate, calibration, description.quantities)
+    spec = Style(seed=number % 65536).spec(rate, calibration, description.quantities)
+    instrument = Instrument(spec)
     wishes = Style().wishes(instrument)
     for address in description.draws:
         if address.startswith("/"):

@@ -5,7 +5,7 @@ One or more; live and offline alike.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from ctypes import addressof, c_float
 from typing import Any
 
@@ -14,11 +14,11 @@ import numpy as np
 from yehu_server.engine import native
 from yehu_server.engine.instrument import Instrument, new_memory
 from yehu_server.engine.rig import MOST_PARTS, RIG_BYTES, memory_bytes
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.errors import ParameterError
 from yehu_server.stage.record import STAGE, TAPE, prepare_stage, rest_stage
 
 Array = Any
-Make = Callable[[Any], Instrument]  # makes an instrument in a buffer of RIG_BYTES
 
 TAPE_FRAMES = TAPE
 
@@ -28,14 +28,16 @@ class Ensemble:
 
     Parameters
     ----------
-    makes : sequence of callables
-        Each makes one of the instruments, in the memory that it is given.
+    specs : sequence of InstrumentSpec
+        What each of the instruments is.
     channels : int
         Number of channels: left and right in turn; a single one has the mean of both.
     has_room : bool
         Whether they play in a room, and their bodies sound differently to both sides; else dry.
     memory : buffer, optional
         Of ``rig.memory_bytes`` of their number, all zeros: holds all state.
+    is_live : bool
+        See `Instrument`.
 
     Raises
     ------
@@ -45,25 +47,27 @@ class Ensemble:
 
     def __init__(
         self,
-        makes: Sequence[Make],
+        specs: Sequence[InstrumentSpec],
         *,
         channels: int = 2,
         has_room: bool = True,
         memory: Any = None,
+        is_live: bool = False,
     ) -> None:
-        check_parts(len(makes))
-        memory = new_memory(len(makes)) if memory is None else memory
-        whole = np.frombuffer(memory, np.uint8, count=memory_bytes(len(makes)))
-        self.instruments = tuple(
-            make(whole[part * RIG_BYTES : (part + 1) * RIG_BYTES])
-            for part, make in enumerate(makes)
-        )
-        if len({instrument.rate for instrument in self.instruments}) > 1:
+        check_parts(len(specs))
+        if len({spec.rate for spec in specs}) > 1:
             raise ParameterError("instruments of one stage have one sample rate")
-        self.rate = self.instruments[0].rate
-        self._stage = np.frombuffer(whole, STAGE, offset=len(makes) * RIG_BYTES, count=1)[0]
+        memory = new_memory(len(specs)) if memory is None else memory
+        whole = np.frombuffer(memory, np.uint8, count=memory_bytes(len(specs)))
+        rigs = whole[: len(specs) * RIG_BYTES].reshape(-1, RIG_BYTES)
+        self.instruments = tuple(
+            Instrument(spec, memory=rig, is_live=is_live)
+            for spec, rig in zip(specs, rigs, strict=True)
+        )
+        self.rate = specs[0].rate
+        self._stage = np.frombuffer(whole, STAGE, offset=len(specs) * RIG_BYTES, count=1)[0]
         self._address = whole.ctypes.data
-        whole[:8].view(np.int64)[0] = len(makes)
+        whole[:8].view(np.int64)[0] = len(specs)
         prepare_stage(self._stage, self.rate, channels, has_room=has_room)
         for instrument in self.instruments:
             instrument.follow_clock(self.address)

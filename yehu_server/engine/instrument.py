@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from ctypes import addressof, c_float
 from typing import Any
 
@@ -15,6 +14,7 @@ from yehu_server.engine.intake import take_in
 from yehu_server.engine.mailbox import LIVE_BUDGET, RING, SERVER, mend
 from yehu_server.engine.output import prepare_output, rest_output
 from yehu_server.engine.rig import RIG, RIG_BYTES, memory_bytes
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.engine.telemetry import METERS
 from yehu_server.errors import ParameterError
 from yehu_server.midi.record import IN_PORT, let_go, prepare_midi
@@ -24,10 +24,6 @@ from yehu_server.physics import kernel
 from yehu_server.physics.bow import friction_bound
 from yehu_server.physics.grid import check_rate
 from yehu_server.physics.layout import MAX_FINGERS, new_record
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import ordinary_table
-from yehu_server.player.calibration import Calibration
-from yehu_server.player.fingering import OpenStrings
 from yehu_server.player.record import end_all, prepare_player
 from yehu_server.player.wishes import RAMP, WISH
 from yehu_server.stage.record import STAGE, prepare_stage, rest_stage
@@ -45,24 +41,10 @@ class Instrument:
 
     Parameters
     ----------
-    rate : float, Hz
-        Sample rate, within the bounds of ``physics.grid``.
-    quantities : Quantities
-        The physical instrument, as it is tuned; by default the measured one.
-    calibration : Calibration, optional
-        Where its player's fingers stop; by default where an ideal string is in tune.
-    open_strings : OpenStrings
-        When the C string is played open.
-    seed : int
-        Seed of the variation between notes.
-    bowing : ndarray
-        How each note is bowed; by default ``player.bowing.ordinary_table``.
-    start_values : mapping
-        Values of parameters at the start, by address; others have their default.
+    spec : InstrumentSpec
+        What it is, and starts from.
     channels : int
         Number of channels that `process` writes.
-    body : int
-        Which of many bodies it has, for what differs to both sides.
     memory : buffer of RIG_BYTES, optional
         Holds all state of an instrument of an ensemble.
     is_live : bool
@@ -76,29 +58,15 @@ class Instrument:
 
     def __init__(
         self,
-        rate: float,
-        quantities: Quantities | None = None,
+        spec: InstrumentSpec,
         *,
-        calibration: Calibration | None = None,
-        open_strings: OpenStrings = OpenStrings.ALWAYS,
-        seed: int = 0,
-        bowing: Array | None = None,
-        start_values: Mapping[str, float] | None = None,
         channels: int = 1,
-        body: int = 0,
         memory: Any = None,
         is_live: bool = False,
     ) -> None:
-        check_rate(rate)
-        self.rate = rate
-        self.calibration, self.open_strings, self.seed = calibration, open_strings, seed
+        check_rate(spec.rate)
+        self.spec, self.rate, self.seed = spec, spec.rate, spec.seed
         self.is_live = is_live
-        self.bowing = ordinary_table() if bowing is None else bowing
-        seeded = {"/engine/seed": find("/engine/seed").accept(seed)}
-        defaults = {param.address: param.default for param in TABLE}
-        self.start_values = defaults | seeded | dict(start_values or {})
-        self.quantities = quantities or Quantities()
-        self.body = body
         self._stage = None
         if memory is None:
             memory = new_memory(1)
@@ -107,11 +75,11 @@ class Instrument:
         self._rig = np.frombuffer(memory, RIG, count=1)
         self._address = self._rig.ctypes.data
         self._clock = self._address
-        self._rig["model"] = kernel.prepare(self.quantities, rate, MAX_FINGERS)
+        self._rig["model"] = kernel.prepare(spec.quantities, spec.rate, MAX_FINGERS)
         self._rig["mail"]["budget"] = LIVE_BUDGET if is_live else RING
         if self._stage is not None:
             self._rig["parts"][0, 0] = 1
-            prepare_stage(self._stage[0], rate, channels, has_room=False)
+            prepare_stage(self._stage[0], spec.rate, channels, has_room=False)
         self.reset()
 
     def reset(self) -> None:
@@ -119,21 +87,21 @@ class Instrument:
 
         Nothing may post or compute meanwhile.
         """
-        rig = self._rig
+        rig, spec, values = self._rig, self.spec, self.spec.values
         rig["state"] = kernel.at_rest(rig["model"])
-        rig["controls"] = prepare_controls(self.quantities, self.rate, self.start_values)
+        rig["controls"] = prepare_controls(spec.quantities, self.rate, values)
         rig["player"] = prepare_player(
-            self.quantities,
+            spec.quantities,
             self.rate,
-            self.start_values,
-            calibration=self.calibration,
-            open_strings=self.open_strings,
-            bowing=self.bowing,
-            seed=self.seed,
+            values,
+            calibration=spec.calibration,
+            open_strings=spec.open_strings,
+            bowing=spec.bowing,
+            seed=spec.seed,
         )
         rig["heard"] = 0.0
         prepare_output(rig["output"], self.rate)
-        prepare_seat(rig["seat"][0], self.rate, self.body)
+        prepare_seat(rig["seat"][0], self.rate, spec.body)
         if self._stage is not None:
             rest_stage(self._stage[0])
         mail = rig["mail"]

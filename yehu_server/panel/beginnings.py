@@ -9,7 +9,7 @@ from yehu_server.ahead.build import RATES
 from yehu_server.files import write_text
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
-from yehu_server.score.capture_beginning import beginning_of, header_of
+from yehu_server.score.capture_beginning import Beginning, header_of
 
 PROCESSOR = {"machine": "wasm32", "processor": "any"}
 
@@ -27,8 +27,8 @@ def write_beginnings(folder: Path) -> list[Path]:
 
 
 def _write(path: Path, rate: float) -> Path:
-    instrument = Style().instrument(rate, calibration_for(rate))
-    header = header_of(beginning_of([instrument], has_room=True))
+    spec = Style().spec(rate, calibration_for(rate))
+    header = header_of(Beginning((spec,), has_room=True))
     header["build"] |= PROCESSOR
     write_text(path, json.dumps(header, separators=(",", ":")))
     return path

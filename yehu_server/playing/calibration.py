@@ -21,6 +21,7 @@ from yehu_server.analysis.level import SILENCE_DB, a_weighted_db
 from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.code_key import key_of
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities, override
 from yehu_server.player.bowing import (
@@ -133,7 +134,7 @@ def _bow(
 ) -> tuple[float, float]:
     """Pitch (Hz) and level (dB) of a string, bowed as the player does at medium pressure."""
     rate = setup.rate
-    instrument = Instrument(rate, setup.quantities)
+    instrument = Instrument(InstrumentSpec(rate, setup.quantities))
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
         instrument.write("/finger/1/press", max(PRESS, setup.manner(string, pitch, LEAST_PRESS)))

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.errors import ParameterError
 from yehu_server.player.calibration import Calibration
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.places import places
-from yehu_server.playing.section_people import part_makes, section_size
+from yehu_server.playing.section_people import part_specs, section_size
 from yehu_server.playing.style import Style
 
 SEEDS = 1 << 16
@@ -68,12 +69,12 @@ def assemble(
     memory : buffer
         See `Ensemble`.
     """
-    makes: list[Callable[[Any], Instrument]] = []
+    specs: list[InstrumentSpec] = []
     ends = []
     for style in styles:
-        makes += part_makes(style, rate, calibration, number=len(makes), is_live=True)
-        ends.append(len(makes))
-    ensemble = Ensemble(makes, has_room=has_room, memory=memory)
+        specs += part_specs(style, rate, calibration, number=len(specs))
+        ends.append(len(specs))
+    ensemble = Ensemble(specs, has_room=has_room, memory=memory, is_live=True)
     begins = [0, *ends]
     return ensemble, [ensemble.instruments[a:b] for a, b in zip(begins, ends, strict=False)]
 

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.bowing import (
@@ -271,9 +272,8 @@ class Practice:
         pitch = self._pitches[search.note]
         for row in {math.floor(pitch), math.ceil(pitch)}:
             table[search.string, :, row - FIRST] = manner
-        instrument = Instrument(
-            self._rate, self._tuned, calibration=self._calibration, bowing=table
-        )
+        spec = InstrumentSpec(self._rate, self._tuned, calibration=self._calibration, bowing=table)
+        instrument = Instrument(spec)
         instrument.bow_by_tables()
         wishes = Wishes(instrument)
         wishes.write("/playing/variation", 0.0)

@@ -9,11 +9,10 @@ import cmath
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
-from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.midi.seats import DISTANCE, GAIN, PAN, SEED, own_value
 from yehu_server.params.table import find
 from yehu_server.physics.quantities import Body, Quantities, StringQuantities
@@ -39,16 +38,15 @@ def section_size(style: Style) -> int:
     return round(find(SECTION).accept(asked.get(SECTION, 1.0)))
 
 
-def part_makes(
+def part_specs(
     style: Style,
     rate: float,
     calibration: Calibration,
     quantities: Quantities | None = None,
     *,
     number: int,
-    is_live: bool = False,
-) -> list[Callable[[Any], Instrument]]:
-    """What makes the instruments of a part: one, or those of a section; see `section_makes`.
+) -> list[InstrumentSpec]:
+    """The instruments of a part: one, or those of a section; see `section_specs`.
 
     Parameters
     ----------
@@ -57,27 +55,19 @@ def part_makes(
     """
     people = section_size(style)
     if people > 1:
-        return section_makes(style, rate, calibration, quantities, people=people, is_live=is_live)
-
-    def make(memory: Any) -> Instrument:
-        how = {"body": number, "memory": memory, "is_live": is_live}
-        return style.instrument(rate, calibration, quantities, **how)
-
-    return [make]
+        return section_specs(style, rate, calibration, quantities, people=people)
+    return [style.spec(rate, calibration, quantities, body=number)]
 
 
-def section_makes(
+def section_specs(
     style: Style,
     rate: float,
     calibration: Calibration,
     quantities: Quantities | None = None,
     *,
     people: int,
-    is_live: bool = False,
-) -> list[Callable[[Any], Instrument]]:
-    """What makes the instruments of a section, in the memory that each is given.
-
-    One player has the very instrument of ``Style.instrument``.
+) -> list[InstrumentSpec]:
+    """The instruments of a section; the first has that of ``Style.spec``.
 
     Parameters
     ----------
@@ -89,26 +79,17 @@ def section_makes(
     """
     base = quantities or Quantities()
 
-    def maker(number: int) -> Callable[[Any], Instrument]:
-        def make(memory: Any) -> Instrument:
-            seed = round(own_value(ROW[SEED], float(style.seed), number, people))
-            tuned, own = (calibration, base) if number == 0 else vary(calibration, base, seed)
-            return replace(style, seed=seed).instrument(
-                rate,
-                tuned,
-                own,
-                start_values={
-                    address: own_value(ROW[address], find(address).default, number, people)
-                    for address in (GAIN, PAN, DISTANCE)
-                },
-                body=seed if number else 0,
-                memory=memory,
-                is_live=is_live,
-            )
+    def spec(number: int) -> InstrumentSpec:
+        seed = round(own_value(ROW[SEED], float(style.seed), number, people))
+        tuned, own = (calibration, base) if number == 0 else vary(calibration, base, seed)
+        values = {
+            address: own_value(ROW[address], find(address).default, number, people)
+            for address in (GAIN, PAN, DISTANCE)
+        }
+        player, body = replace(style, seed=seed), seed if number else 0
+        return player.spec(rate, tuned, own, start_values=values, body=body)
 
-        return make
-
-    return [maker(number) for number in range(people)]
+    return [spec(number) for number in range(people)]
 
 
 def vary(

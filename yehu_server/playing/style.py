@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.physics.quantities import Quantities
 from yehu_server.player.calibration import Calibration
 from yehu_server.player.fingering import OpenStrings
@@ -55,7 +56,7 @@ class Style:
         named = [path for path in (self.preset, self.practice) if path is not None]
         return (*self.mapping.files, *named, *self.tuning.files)
 
-    def instrument(
+    def spec(
         self,
         rate: float,
         calibration: Calibration,
@@ -63,29 +64,25 @@ class Style:
         *,
         start_values: Values[str, float] | None = None,
         body: int = 0,
-        memory: Any = None,
-        is_live: bool = False,
-    ) -> Instrument:
+    ) -> InstrumentSpec:
         """An instrument at a rate (Hz), calibrated, with a player of this style.
 
         Parameters
         ----------
         quantities : Quantities
             The instrument as it is before it is tuned.
-        start_values, body, memory, is_live
-            See `Instrument`.
+        start_values, body
+            See `InstrumentSpec`.
         """
-        return Instrument(
+        return InstrumentSpec(
             rate,
             calibration.tuned(quantities or Quantities()),
             calibration=calibration,
             open_strings=self.open_strings,
             bowing=shipped_practice(rate) if self.bowing is None else self.bowing,
             seed=self.seed,
-            start_values=start_values,
+            start_values=start_values or {},
             body=body,
-            memory=memory,
-            is_live=is_live,
         )
 
     def wishes(self, instruments: Instrument | Sequence[Instrument]) -> Wishes:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.parts import number_of_instruments
-from yehu_server.playing.section_people import part_makes
+from yehu_server.playing.section_people import part_specs
 from yehu_server.rendering.cores import Cores, shared
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.part_player import PartPlayer
@@ -45,16 +45,16 @@ class Performance:
         parts = [options.solo(played)] if isinstance(played, Score) else list(played)
         self._options, self._has_stems = options, has_stems
         number_of_instruments([part.style for part in parts])
-        makes: list[Callable[[Any], Instrument]] = []
+        specs: list[InstrumentSpec] = []
         self._places: list[slice] = []  # of the instruments of each part
         for part in parts:
             style, quantities, rate = part.style, part.quantities, float(options.rate)
             calibration = part.calibration or calibration_for(rate, quantities, a4=style.a4)
-            own = part_makes(style, rate, calibration, quantities, number=len(makes))
-            self._places.append(slice(len(makes), len(makes) + len(own)))
-            makes += own
+            own = part_specs(style, rate, calibration, quantities, number=len(specs))
+            self._places.append(slice(len(specs), len(specs) + len(own)))
+            specs += own
         self.ensemble = Ensemble(
-            makes, channels=options.sound_channels, has_room=not options.is_dry
+            specs, channels=options.sound_channels, has_room=not options.is_dry
         )
         self.players = [
             PartPlayer(part, self.ensemble.instruments[place])

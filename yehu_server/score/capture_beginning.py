@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass, replace
-from functools import partial
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
 from yehu_server.physics.grid import check_rate
@@ -34,65 +34,25 @@ LOWEST_A4, HIGHEST_A4 = 1.0, 20000.0  # Hz
 
 
 @dataclass(frozen=True)
-class Start:
-    """All that an instrument and its player start from."""
-
-    quantities: Quantities  # as tuned
-    seed: int = 0
-    open_strings: OpenStrings = OpenStrings.ALWAYS
-    calibration: Calibration | None = None
-    bowing: Any = field(default_factory=ordinary_table)
-    values: Mapping[str, float] = field(default_factory=dict)  # of parameters; others: default
-    body: int = 0
-
-    def instrument(self, rate: float, memory: Any = None) -> Instrument:
-        """An instrument that starts so."""
-        return Instrument(
-            rate,
-            self.quantities,
-            calibration=self.calibration,
-            bowing=self.bowing,
-            open_strings=self.open_strings,
-            seed=self.seed,
-            start_values=self.values,
-            body=self.body,
-            memory=memory,
-        )
-
-
-@dataclass(frozen=True)
 class Beginning:
-    """All that a session starts from."""
+    """All that a session starts from: the players in their order on the stage."""
 
-    rate: float
-    players: tuple[Start, ...]  # in their order on the stage
+    players: tuple[InstrumentSpec, ...]
     has_room: bool = False
+
+    @property
+    def rate(self) -> float:
+        """Sample rate (Hz)."""
+        return self.players[0].rate
 
     def ensemble(self) -> Ensemble:
         """Instruments on their stage that start so."""
-        makes = [partial(_make, start, self.rate) for start in self.players]
-        return Ensemble(makes, has_room=self.has_room)
-
-
-def _make(start: Start, rate: float, memory: Any) -> Instrument:
-    return start.instrument(rate, memory)
+        return Ensemble(self.players, has_room=self.has_room)
 
 
 def beginning_of(instruments: Sequence[Instrument], *, has_room: bool) -> Beginning:
     """What instruments on one stage started from."""
-    players = tuple(
-        Start(
-            one.quantities,
-            one.seed,
-            one.open_strings,
-            one.calibration,
-            one.bowing,
-            one.start_values,
-            one.body,
-        )
-        for one in instruments
-    )
-    return Beginning(instruments[0].rate, players, has_room)
+    return Beginning(tuple(instrument.spec for instrument in instruments), has_room)
 
 
 # ---------------------------------------------------------------- as JSON values
@@ -111,7 +71,7 @@ def header_of(beginning: Beginning) -> dict[str, Any]:
     }
 
 
-def _as_data(start: Start, before: Sequence[Start]) -> dict[str, Any]:
+def _as_data(start: InstrumentSpec, before: Sequence[InstrumentSpec]) -> dict[str, Any]:
     """The JSON values of a player, where some come before; what is one's of those is named so."""
     calibration: Any = None if start.calibration is None else as_data(start.calibration)
     bowing: Any = start.bowing.tolist()
@@ -130,7 +90,7 @@ def _as_data(start: Start, before: Sequence[Start]) -> dict[str, Any]:
         "bowing": bowing,
         "body": start.body,
         "quantities": _changes(start.quantities, Quantities()),
-        "values": dict(start.values),
+        "values": start.values,
     }
 
 
@@ -164,21 +124,22 @@ def read_header(header: Any, version: int) -> Beginning:
     rate = float(header["rate"])
     check_rate(rate)
     if version < VERSION:
-        start = _start(header, _tuned(header["tensions"]), []) if version > 1 else _first(header)
-        return Beginning(rate, (start,), bool(header.get("room", False)))
-    entries, starts = header["players"], list[Start]()
+        tuned = _tuned(header["tensions"])
+        start = _start(header, rate, tuned, []) if version > 1 else _first(header, rate, tuned)
+        return Beginning((start,), bool(header.get("room", False)))
+    entries, starts = header["players"], list[InstrumentSpec]()
     if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_PARTS:
         raise ParameterError(f"expected 1 to {MOST_PARTS} players")
     for entry in entries:
-        starts.append(_start(entry, _quantities(entry["quantities"]), starts))
+        starts.append(_start(entry, rate, _quantities(entry["quantities"]), starts))
     if type(header["room"]) is not bool:
         raise ValueError("room")
-    return Beginning(rate, tuple(starts), header["room"])
+    return Beginning(tuple(starts), header["room"])
 
 
-def _first(header: Any) -> Start:
+def _first(header: Any, rate: float, quantities: Quantities) -> InstrumentSpec:
     """The start of a session of version 1, which has no player."""
-    return Start(_tuned(header["tensions"]), values=_values(header["values"]))
+    return InstrumentSpec(rate, quantities, start_values=_values(header["values"]))
 
 
 def _tuned(tensions: Any) -> Quantities:
@@ -186,20 +147,23 @@ def _tuned(tensions: Any) -> Quantities:
     return override(Quantities(), {"string_1": {"T": first}, "string_2": {"T": second}})
 
 
-def _start(entry: Any, quantities: Quantities, before: Sequence[Start]) -> Start:
+def _start(
+    entry: Any, rate: float, quantities: Quantities, before: Sequence[InstrumentSpec]
+) -> InstrumentSpec:
     """The start of a player, some of which come before."""
-    return Start(
+    return InstrumentSpec(
+        rate,
         quantities,
         seed=frames_of(entry["seed"]),
         open_strings=OpenStrings(entry["open_strings"]),
         calibration=_calibration(entry["calibration"], before),
         bowing=_bowing(entry["bowing"], before),
-        values=_values(entry["values"]),
+        start_values=_values(entry["values"]),
         body=frames_of(entry.get("body", 0)),
     )
 
 
-def _calibration(data: Any, before: Sequence[Start]) -> Calibration | None:
+def _calibration(data: Any, before: Sequence[InstrumentSpec]) -> Calibration | None:
     if data is None:
         return None
     if type(data) is int:
@@ -210,7 +174,7 @@ def _calibration(data: Any, before: Sequence[Start]) -> Calibration | None:
     return read_calibration(data, Quantities(), a4)
 
 
-def _bowing(data: Any, before: Sequence[Start]) -> Any:
+def _bowing(data: Any, before: Sequence[InstrumentSpec]) -> Any:
     if type(data) is int:
         return before[_number(data) - 1].bowing
     bowing = np.array(data, np.float64)

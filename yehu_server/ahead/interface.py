@@ -13,7 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.ahead.right_tables import CHECKS, check_binds, check_fields, check_values
+from yehu_server.ahead.right_tables import (
+    CHECKS,
+    check_binds,
+    check_curves,
+    check_fields,
+    check_values,
+)
 from yehu_server.controls.record import CONTROLS
 from yehu_server.engine import native as engine
 from yehu_server.engine import rig as memory
@@ -47,7 +53,7 @@ LAST_AT = memory.POSTED_AT + SERVER * memory.CURSOR_BYTES + WORD
 STATUS, SYSTEM, REAL_TIME, SYSTEM_RESET = 0x80, 0xF0, 0xF8, 0xFF
 play_block = engine.callback.symbol
 fields_are_right, values_are_right = check_fields.symbol, check_values.symbol
-binds_are_right = check_binds.symbol
+binds_are_right, curves_are_right = check_binds.symbol, check_curves.symbol
 
 
 @native("int64()")
@@ -147,7 +153,7 @@ def use_tables(rig: Any, frame: int, tables: Any, size: int) -> int:
     """
     if size != TABLES_BYTES or fields_are_right(tables) == 0:
         return -1
-    if values_are_right(tables) == 0 or binds_are_right(tables) == 0:
+    if min(values_are_right(tables), binds_are_right(tables), curves_are_right(tables)) == 0:
         return -1
     last = carray(at(rig, LAST_AT), (1,), np.int64)
     if load_acquire(rig, IN_USE_AT) != last[0]:

@@ -113,10 +113,10 @@ def check_values(tables: Any) -> int:
 
 @native("int64(voidptr)")
 def check_binds(tables: Any) -> int:
-    """Tell whether the binds can be followed, once each field is right."""
+    """Tell whether sources and targets of binds are right, once each field is."""
     t = carray(tables, (1,), TABLES)[0]
     for n in range(int(t.binds)):
-        source, row, curve = int(t.source[n]), int(t.target[n]), int(t.curve[n])
+        source, row = int(t.source[n]), int(t.target[n])
         is_change = source < KEYS or PAIR <= source < PAIR + PAIRS
         is_other = BEND <= source <= NOTE or NRPN <= source < NRPN + NRPNS or source >= CONTROL
         first = 0
@@ -124,22 +124,31 @@ def check_binds(tables: Any) -> int:
             first += 1
         if not (is_change or is_other) or int(t.first[n]) != first:
             return 0
-        low, high = min(t.lo[n], t.hi[n]), max(t.lo[n], t.hi[n])
-        if not LOWEST[row] <= low <= high <= HIGHEST[row]:
+        if not LOWEST[row] <= min(t.lo[n], t.hi[n]) <= max(t.lo[n], t.hi[n]) <= HIGHEST[row]:
             return 0
-        if curve == EXPONENTIAL and (low < TINY or t.by_range[n] != 0.0):
+    return 1
+
+
+@native("int64(voidptr)")
+def check_curves(tables: Any) -> int:
+    """Tell whether the curves of binds are right, once each field is."""
+    t = carray(tables, (1,), TABLES)[0]
+    for n in range(int(t.binds)):
+        curve = int(t.curve[n])
+        if curve == EXPONENTIAL and (min(t.lo[n], t.hi[n]) < TINY or t.by_range[n] != 0.0):
             return 0
-        if curve == POINTS:
-            begin, end = int(t.first_point[n]), int(t.first_point[n] + t.points[n])
-            if end > MOST_POINTS or t.points[n] < 2.0:
+        if curve != POINTS:
+            continue
+        begin, end = int(t.first_point[n]), int(t.first_point[n] + t.points[n])
+        if end > MOST_POINTS or end - begin < 2:
+            return 0
+        if t.x[begin] != 0.0 or t.x[end - 1] != 1.0:
+            return 0
+        for point in range(begin + 1, end):
+            if t.x[point] <= t.x[point - 1]:
                 return 0
-            if t.x[begin] != 0.0 or t.x[end - 1] != 1.0:
-                return 0
-            for point in range(begin + 1, end):
-                if t.x[point] <= t.x[point - 1]:
-                    return 0
     return 1
 
 
 check_fields = checking_fields(FIELDS)
-CHECKS = (check_fields, check_values, check_binds)
+CHECKS = (check_fields, check_values, check_binds, check_curves)

@@ -76,14 +76,14 @@ enum yehu_parameter {{
 {parameters}
 }};
 
-/* Codes of yehu_tables. A source is the number of a control change; PAIR and the coarse half of one
- * of 14 bits; NRPN and its number; CONTROL and the number of a named control; or one of the rest. */
+/* Codes of yehu_tables. A source is the number of a control change; PAIR and the coarse half of
+ * one of 14 bits; NRPN and its number; CONTROL and the number of a named control; or another. */
 enum yehu_code {{
 {codes}
 }};
 
-/* What yehu_map takes: a mapping, a tuning, presets. `yehu-server build tables` writes it for files,
- * for the version that it is of: this one has {table_bytes} bytes. */
+/* What yehu_map takes: a mapping, a tuning, presets. `yehu-server build tables` writes it for
+ * files; parameters have the numbers of its own version. It has {table_bytes} bytes. */
 struct yehu_tables {{
 {tables}
 }};

@@ -11,24 +11,13 @@ import numpy as np
 import pytest
 from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED
+from ahead.programs import compiled
 
 from yehu_server.ahead.sources import sources_hash
 from yehu_server.params.table import find
 from yehu_server.player.wishes import KINDS
 
-HERE = Path(__file__).parent
-STRICT = ["-std=c11", "-Wall", "-Wextra", "-pedantic", "-Werror"]
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
-
-
-def compiled(library: Path, into: Path, *sources: str) -> Path:
-    """A program of some of this folder's files and the library."""
-    libraries = ["-L", str(library), "-lyehu", f"-Wl,-rpath,{library}", "-rdynamic"]
-    files = [str(HERE / source) for source in sources]
-    command = ["cc", *STRICT, f"-I{library}", *files, "-o", str(into), *libraries]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return into
 
 
 @pytest.fixture(scope="module")

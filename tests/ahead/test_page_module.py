@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +10,6 @@ import pytest
 from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED, played
 
-from yehu_server.ahead.layout import look_length
 from yehu_server.ahead.section import section_of
 from yehu_server.ahead.sources import sources_hash
 from yehu_server.engine.look import LOOK, look
@@ -20,21 +17,6 @@ from yehu_server.params.table import SLOT, TABLE
 
 HERE = Path(__file__).parent
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
-
-
-@pytest.fixture
-def node(tmp_path, wasm):
-    """Runs one of this folder's scripts by Node, with a job; returns what it reports."""
-
-    def run(script: str, **job):
-        file = tmp_path / "job.json"
-        file.write_text(json.dumps({"wasm": str(wasm), "lookLength": look_length(), **job}))
-        command = ["node", str(HERE / script), str(file)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        return json.loads(done.stdout)
-
-    return run
 
 
 @pytest.fixture

@@ -18,14 +18,16 @@ from panel import streams
 
 from yehu_server.ahead.right_tables import CHECKS
 from yehu_server.midi import events
-from yehu_server.midi.tables import PROGRAMS, SLOTS, TABLES
+from yehu_server.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, PROGRAMS, SLOTS, TABLES
+from yehu_server.player.rows import ROWS
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, read_tuning
 
 TUNINGS = (EQUAL, read_tuning(Path("chaozhou-seven-equal")))
-WILD = (math.nan, math.inf, -math.inf, 1e308, -1e308, 1e-310, -1.0, 0.5, 3000.0, 1e9)
+WILD = (math.nan, math.inf, -math.inf, 1e308, -1e308, 1e-310, -1.0, 0.5, 1e9)
+ENDS = (ROWS, KEYS, MOST_BINDS, MOST_POINTS, 1 << 16)  # of arrays, and of channels
 USED = [name for name in TABLES.names or () if name not in ("x", "y")]
 MESSAGES = 12
 
@@ -54,7 +56,7 @@ def spoilt(chance: random.Random, tables: np.ndarray) -> np.ndarray:
         field = made[chance.choice(USED)].reshape(-1)
         place = chance.randrange(min(len(field), chance.choice([8, len(field)])))
         other = chance.choice(field.tolist())
-        field[place] = chance.choice([*WILD, other, other, chance.randrange(20)])
+        field[place] = chance.choice([*WILD, *ENDS, other, other, chance.randrange(20)])
     return made
 
 

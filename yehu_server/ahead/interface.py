@@ -116,7 +116,7 @@ def midi(rig: Any, frame: int, data: Any, n: int) -> int:
     read = carray(data, (n,), np.uint8)
     index, have, wanted, posted = 0, 0, 0, 0
     for i in range(n):
-        byte = np.int64(read[i])
+        byte: Any = np.int64(read[i])
         if byte >= REAL_TIME:  # these come between the bytes of others, too
             if byte == SYSTEM_RESET:
                 reset = SYSTEM_RESET | 1 << LENGTH_AT

@@ -1,7 +1,8 @@
 /* Counts the allocations of the library: as it is prepared, and while it plays so many frames, with
- * wishes of each kind between the blocks. Prints both counts, the frames, and one of its own.
+ * events of each kind, MIDI and mappings between the blocks. Prints one count of its own, those two,
+ * the frames, and how often the tables in a file were taken.
  *
- *     allocate FRAMES KINDS
+ *     allocate FRAMES KINDS TABLES
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,12 +12,17 @@
 
 #define BLOCK 128
 
+static struct yehu_tables tables;
+
 int main(int count, char **words) {
-    if (count != 3) return 2;
+    if (count != 4) return 2;
+    FILE *file = fopen(words[3], "rb");
+    if (!file || fread(&tables, sizeof tables, 1, file) != 1) return 6;
     long frames = atol(words[1]), kinds = atol(words[2]), counted = allocations();
     void *yehu = aligned_alloc(64, (yehu_size() + 63) / 64 * 64);
     float out[2 * BLOCK];
     long own = allocations() - counted; /* it does count */
+    long taken = 0;
     struct yehu_look seen;
     if (!yehu) return 3;
     counted = allocations();
@@ -27,13 +33,17 @@ int main(int count, char **words) {
         long wish = done / BLOCK;
         yehu_post(yehu, done, YEHU_BEGIN, 0, 65.0 + wish % 24, 65.0 + wish % 24);
         yehu_post(yehu, done, wish % kinds, wish % 40, 0.1 * (wish % 9), 0.2);
+        uint8_t bytes[] = {0x90, 65 + wish % 24, 90, 0xB0, 1, wish % 128};
+        yehu_midi(yehu, done, bytes, sizeof bytes);
+        yehu_control(yehu, done, wish % 3, 0.5);
+        taken += yehu_map(yehu, done, &tables, sizeof tables) == 1;
         yehu_process(yehu, out, BLOCK);
         yehu_look(yehu, &seen);
         yehu_value(yehu, wish % 40);
         yehu_pitch(yehu);
     }
     long playing = allocations() - counted;
-    printf("%ld %ld %ld %ld\n", own, preparing, playing, (long)yehu_frame(yehu));
+    printf("%ld %ld %ld %ld %ld\n", own, preparing, playing, (long)yehu_frame(yehu), taken);
     free(yehu);
     return 0;
 }

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from ahead.phrases import PHRASES, played
 
 from yehu_server.ahead.build import build
 from yehu_server.ahead.kept import page_module
+from yehu_server.ahead.layout import look_length
 from yehu_server.ahead.link import page_linker
 
 HERE = Path(__file__).parent
@@ -52,3 +54,18 @@ def by_any_processor(tmp_path_factory) -> dict[str, np.ndarray]:
     subprocess.run(command, env=environment, check=True, capture_output=True)
     read = {name: np.fromfile(folder / f"{name}.f32", np.float32) for name in PHRASES}
     return {name: samples.reshape(-1, 2) for name, samples in read.items()}
+
+
+@pytest.fixture
+def node(tmp_path, wasm):
+    """Runs one of this folder's scripts by Node, with a job; returns what it reports."""
+
+    def run(script: str, **job):
+        file = tmp_path / "job.json"
+        file.write_text(json.dumps({"wasm": str(wasm), "lookLength": look_length(), **job}))
+        command = ["node", str(HERE / script), str(file)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return run

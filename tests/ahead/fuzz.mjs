@@ -1,17 +1,16 @@
-// Posts random wishes to the WebAssembly module, sensible and wild ones, and computes blocks between
+// Posts random events to the WebAssembly module, sensible and wild ones, and computes blocks between
 // them.
 //
 //   node fuzz.mjs JOB.json
 //
-// A job has: wasm, rate, lookLength, seed, count, rows.
+// A job has: wasm, rate, lookLength, seed, count, rows, kinds.
 
 import { readFileSync } from "node:fs";
 import { Kernel, NOW } from "../../web/sound/kernel.js";
 
 const BLOCK = 128;
-const AT_ONCE = 1000; // wishes before a block, below what a block takes from the ring
+const AT_ONCE = 1000; // events before a block, below what a block takes from the ring
 const WILD = [NaN, Infinity, -Infinity, 1e308, -1e308, 1e-308, 0, -0];
-const KINDS = 11;
 
 const job = JSON.parse(readFileSync(process.argv[2], "utf8"));
 let state = BigInt(job.seed);
@@ -38,7 +37,7 @@ let [posted, finite, loudest, worst] = [0, true, 0, 0];
 while (posted < job.count) {
   for (let i = 0; i < AT_ONCE && posted < job.count; i += 1) {
     const isWild = random() < 0.01;
-    const kind = isWild ? whole(1000) - 500 : whole(KINDS);
+    const kind = isWild ? whole(1000) - 500 : whole(job.kinds);
     const index = isWild ? whole(1e9) - 5e8 : whole(job.rows);
     const frame = random() < 0.9 ? NOW : Math.max(0, kernel.frame + whole(4000) - 1000);
     if (kernel.post(frame, kind, index, number(), number())) posted += 1;

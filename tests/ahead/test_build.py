@@ -4,13 +4,27 @@ from __future__ import annotations
 
 import hashlib
 import shutil
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from yehu_server.ahead.build import build
+from yehu_server.ahead.images import image
 from yehu_server.ahead.link import page_linker
 from yehu_server.ahead.section import section_of, with_section
+from yehu_server.cli import main
+from yehu_server.engine.mailbox import SERVER
+from yehu_server.engine.rig import RIG, memory_bytes
 from yehu_server.errors import ParameterError, YehuError
+from yehu_server.midi.events import START
+from yehu_server.midi.tables import TABLES
+from yehu_server.playing.mapping import load
+from yehu_server.playing.presets import Presets
+from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.style import Style
+from yehu_server.playing.tables import Controls
+from yehu_server.playing.tuning import read_tuning
 
 EMPTY = b"\0asm\1\0\0\0"
 
@@ -66,3 +80,82 @@ def test_a_build_is_the_same_to_the_byte_also_from_an_empty_cache(tmp_path, monk
         digests.add(tuple(hashlib.sha256(file.read_bytes()).hexdigest() for file in files))
         shutil.rmtree(tmp_path / "built")
     assert len(digests) == 1
+
+
+# -- tables ---------------------------------------------------------------------------------------
+
+FADERS = """
+[[bind]]
+source = "/tilt"
+target = "/playing/volume"
+
+[[bind]]
+source = "cc 1"
+target = "/playing/speed"
+
+[[bind]]
+source = "/touch/1"
+target = "/playing/speed"
+"""
+
+
+def test_build_tables_writes_what_a_style_has(tmp_path, capsys):
+    output = tmp_path / "wind.tables"
+    options = ["--mapping", "wind", "--tuning", "chaozhou-seven-equal", "--a4", "430"]
+    options += ["--range", "skip", "--preset", "sul-tasto", "--programs"]
+    assert main(["build", "tables", *options, "-o", str(output)]) == 0
+    style = Style(
+        mapping=load("wind"),
+        tuning=read_tuning(Path("chaozhou-seven-equal")),
+        a4=430.0,
+        policy=RangePolicy.SKIP,
+        start=tuple(Presets().load("sul-tasto").values.items()),
+        programs=True,
+    )
+    assert output.read_bytes() == style.tables(Controls()).tobytes()
+    assert len(output.read_bytes()) == TABLES.itemsize
+    assert capsys.readouterr().out.split() == [str(output)]
+
+
+def test_build_tables_tells_the_numbers_of_named_controls(tmp_path, capsys):
+    (tmp_path / "faders.toml").write_text(FADERS)
+    command = ["build", "tables", "--mapping", str(tmp_path / "faders.toml")]
+    assert main([*command, "-o", str(tmp_path / "out")]) == 0
+    assert capsys.readouterr().out.splitlines()[1:] == ["control 0: /tilt", "control 1: /touch/1"]
+
+
+def test_build_tables_replaces_nothing_unasked(tmp_path, capsys):
+    output = tmp_path / "out"
+    output.write_text("mine")
+    assert main(["build", "tables", "-o", str(output)]) == 2
+    assert output.read_text() == "mine"
+    assert "--overwrite" in capsys.readouterr().err
+    assert main(["build", "tables", "-o", str(output), "--overwrite"]) == 0
+    assert output.read_bytes() == Style().tables(Controls()).tobytes()
+
+
+def test_build_tables_names_what_is_wrong(tmp_path, capsys):
+    assert main(["build", "tables", "--mapping", "nothing", "-o", str(tmp_path / "out")]) == 2
+    assert "no mapping 'nothing'" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+# -- images ---------------------------------------------------------------------------------------
+
+
+def test_an_image_begins_as_serve_does():
+    memory = np.zeros(memory_bytes(1) // 8, np.int64)
+    words = image(48000.0)
+    while len(words):
+        first, count = words[:2]
+        memory[first : first + count] = words[2 : 2 + count]
+        words = words[2 + count :]
+    rig = np.frombuffer(memory, RIG, count=1)[0]
+    wanted = Style().tables(Controls())[0]
+    for name in TABLES.names or ():
+        if name != "program_row":  # not read, as there are no programs
+            assert np.array_equal(rig["tables"][0][name], wanted[name], equal_nan=True), name
+    assert rig["tables"][0]["binds"] > 0
+    assert (rig["midi"]["tables"], rig["midi"]["people"]) == (0, 1)
+    assert rig["ring"][0]["kind"] == START
+    assert rig["mail"]["posted"][SERVER, 0] == 1

@@ -11,24 +11,16 @@ import numpy as np
 import pytest
 from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED
+from ahead.programs import compiled
 
 from yehu_server.ahead.sources import sources_hash
+from yehu_server.midi.events import EVENTS
 from yehu_server.params.table import find
 from yehu_server.player.wishes import KINDS
+from yehu_server.playing.style import Style
+from yehu_server.playing.tables import Controls
 
-HERE = Path(__file__).parent
-STRICT = ["-std=c11", "-Wall", "-Wextra", "-pedantic", "-Werror"]
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
-
-
-def compiled(library: Path, into: Path, *sources: str) -> Path:
-    """A program of some of this folder's files and the library."""
-    libraries = ["-L", str(library), "-lyehu", f"-Wl,-rpath,{library}", "-rdynamic"]
-    files = [str(HERE / source) for source in sources]
-    command = ["cc", *STRICT, f"-I{library}", *files, "-o", str(into), *libraries]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return into
 
 
 @pytest.fixture(scope="module")
@@ -94,9 +86,12 @@ def test_it_needs_the_c_library_alone(library):
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="the counter is for glibc")
 def test_it_allocates_nothing_neither_as_it_is_prepared_nor_in_a_million_frames(library, tmp_path):
     program = compiled(library, tmp_path / "allocate", "allocate.c", "counted.c")
-    command = [program, str(1_000_000), str(len(KINDS))]
+    (tmp_path / "tables").write_bytes(Style().tables(Controls()).tobytes())
+    kinds = len(KINDS) + len(EVENTS) - 1  # but for TABLES_TO, which `yehu_map` posts
+    command = [program, str(1_000_000), str(kinds), tmp_path / "tables"]
     told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
-    own, preparing, playing, frames = map(int, told)
+    own, preparing, playing, frames, taken = map(int, told)
     assert own == 1  # of the program: it counts
     assert (preparing, playing) == (0, 0)
     assert frames >= 1_000_000
+    assert taken > 1000

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -12,29 +10,15 @@ import pytest
 from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED, played
 
-from yehu_server.ahead.layout import look_length
 from yehu_server.ahead.section import section_of
 from yehu_server.ahead.sources import sources_hash
 from yehu_server.engine.look import LOOK, look
+from yehu_server.midi.events import EVENTS
 from yehu_server.params.table import SLOT, TABLE
+from yehu_server.player.wishes import KINDS
 
 HERE = Path(__file__).parent
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")
-
-
-@pytest.fixture
-def node(tmp_path, wasm):
-    """Runs one of this folder's scripts by Node, with a job; returns what it reports."""
-
-    def run(script: str, **job):
-        file = tmp_path / "job.json"
-        file.write_text(json.dumps({"wasm": str(wasm), "lookLength": look_length(), **job}))
-        command = ["node", str(HERE / script), str(file)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        return json.loads(done.stdout)
-
-    return run
 
 
 @pytest.fixture
@@ -94,8 +78,9 @@ def test_a_rate_that_it_was_not_built_for_is_refused(node, tmp_path):
         node("play.mjs", rate=32000, frames=1, block=1, wishes=[], samples=str(tmp_path / "s"))
 
 
-def test_a_million_random_wishes_make_neither_a_trap_nor_a_number_that_is_not_finite(node):
-    report = node("fuzz.mjs", rate=RATE, seed=1, count=1_000_000, rows=len(TABLE))
+def test_a_million_random_events_make_neither_a_trap_nor_a_number_that_is_not_finite(node):
+    kinds = len(KINDS) + len(EVENTS)
+    report = node("fuzz.mjs", rate=RATE, seed=1, count=1_000_000, rows=len(TABLE), kinds=kinds)
     assert report["posted"] == 1_000_000
     assert report["finite"]
     assert report["loudest"] > 0.01

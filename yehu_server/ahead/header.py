@@ -1,16 +1,28 @@
-"""Write the C header of the library: its functions, wishes, parameters, and what `look` sees."""
+"""Write the C header of the library: functions, events, parameters, tables, what `look` sees."""
 
 from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Sequence
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from types import ModuleType
+from typing import Any
 
 from yehu_server.engine.look import LOOK
 from yehu_server.jit import Native
+from yehu_server.midi import events, packing, tables
+from yehu_server.midi.record import PORTS
 from yehu_server.params.table import TABLE
-from yehu_server.player.wishes import KINDS
+from yehu_server.player import wishes
 
+WIDTH = 100
+READ_ONLY = ("data", "tables")  # arguments that point to what a function reads
+CODES = {
+    "SOURCE": ("PAIR", "BEND", "PRESSURE", "POLY_PRESSURE", "VELOCITY", "NOTE", "NRPN", "CONTROL"),
+    "CURVE": ("LINEAR", "EXPONENTIAL", "S", "POINTS"),
+    "RANGE": ("TRANSPOSE", "CLAMP", "SKIP"),
+}
 KINDS_OF_C = {
     "void": "void",
     "voidptr": "void *",
@@ -20,13 +32,14 @@ KINDS_OF_C = {
 OUTLINE = """\
 /* The yehu, a Chinese fiddle, as a library: a physical model and its player, without Python.
  *
- * Give an instrument yehu_size() bytes aligned to 64, prepare it at a rate, post wishes for
- * numbered frames, and compute blocks of samples: left and right in turn, or one channel. Nothing
- * is allocated.
+ * Give an instrument yehu_size() bytes aligned to 64, prepare it at a rate, play MIDI at numbered
+ * frames, or post events, and compute blocks of samples: left and right in turn, or one channel.
+ * Nothing is allocated.
  *
  *     void *yehu = aligned_alloc(64, (yehu_size() + 63) / 64 * 64);
+ *     uint8_t note_on[] = {{0x90, 69, 100}};
  *     yehu_prepare(yehu, 48000.0, 2);
- *     yehu_post(yehu, 0, YEHU_BEGIN, 0, 69.0, 69.0);
+ *     yehu_midi(yehu, 0, note_on, sizeof note_on);
  *     yehu_process(yehu, out, 256);
  *
  * Made by yehu-server {version} from sources {sources}. Rates: {rates} Hz.
@@ -42,15 +55,37 @@ extern "C" {{
 
 #define YEHU_SOURCES "{sources}"
 
-/* Kinds of wishes: what each asks for, and what its index, value and other are.
-{wishes} */
-enum yehu_wish {{
+/* Kinds of events. Some say what the player is to do: what their index, value and other are.
+{wishes}
+ *
+ * The others are interpreted, by mapping and tuning. yehu_midi, yehu_control and yehu_map post
+ * MESSAGE (of port 0; see YEHU_PACKED), CONTROL and TABLES_TO.
+{events} */
+enum yehu_event {{
 {kinds}
 }};
 
-/* Parameters, by number: index of YEHU_WRITE, YEHU_HOLD and YEHU_EXPRESS. */
+/* The index of MESSAGE: the bytes of a MIDI message, 0 for those that it does not have, their
+ * number (1 to 3), and its port (0 to {last_port}), which has 16 channels of its own. */
+#define YEHU_PACKED(status, one, two, length, port) \\
+    ((int64_t)(status) | (int64_t)(one) << {byte} | (int64_t)(two) << {twice} \\
+     | (int64_t)(length) << {length_at} | (int64_t)(port) << {port_at})
+
+/* Parameters, by number: index of YEHU_WRITE, YEHU_HOLD, YEHU_EXPRESS, YEHU_SET and YEHU_LOAD. */
 enum yehu_parameter {{
 {parameters}
+}};
+
+/* Codes of yehu_tables. A source is the number of a control change; PAIR and the coarse half of
+ * one of 14 bits; NRPN and its number; CONTROL and the number of a named control; or another. */
+enum yehu_code {{
+{codes}
+}};
+
+/* What yehu_map takes: a mapping, a tuning, presets. `yehu-server build tables` writes it for
+ * files; parameters have the numbers of its own version. It has {table_bytes} bytes. */
+struct yehu_tables {{
+{tables}
 }};
 
 /* What yehu_look sees. */
@@ -80,17 +115,28 @@ def header(
     rates : sequence of float
         The rates (Hz) that it can be prepared at.
     """
-    from yehu_server.player import wishes
-
-    table = (wishes.__doc__ or "").partition("\n\n")[2].strip()
+    kinds = (*wishes.KINDS, *events.EVENTS)
     return OUTLINE.format(
         version=version,
         sources=sources,
         rates=", ".join(f"{rate:g}" for rate in rates),
-        wishes="\n".join(f" * {line}" for line in table.splitlines() if "---" not in line),
-        kinds="\n".join(f"    YEHU_{kind.upper()} = {i}," for i, kind in enumerate(KINDS)),
+        wishes=_table(wishes),
+        events=_table(events),
+        kinds="\n".join(f"    YEHU_{kind.upper()} = {i}," for i, kind in enumerate(kinds)),
+        last_port=PORTS - 1,
+        byte=packing.BYTE,
+        twice=2 * packing.BYTE,
+        length_at=packing.LENGTH_AT,
+        port_at=packing.PORT_AT,
         parameters="\n".join(map(_parameter, range(len(TABLE)))),
-        look="\n".join(map(_member, LOOK.names or ())),
+        codes="\n".join(
+            f"    YEHU_{group}_{name} = {getattr(tables, name)},"
+            for group, names in CODES.items()
+            for name in names
+        ),
+        table_bytes=tables.TABLES.itemsize,
+        tables="\n".join(_members(tables.TABLES, _comments(tables, "TABLES"))),
+        look="\n".join(_members(LOOK)),
         functions="\n\n".join(map(_prototype, functions)),
     )
 
@@ -105,17 +151,36 @@ def _parameter(row: int) -> str:
     )
 
 
-def _member(name: str) -> str:
-    shape = LOOK[name].shape
-    return f"    double {name}{''.join(f'[{size}]' for size in shape)};"
+def _table(module: ModuleType) -> str:
+    """The table of a module's docstring, as lines of a comment."""
+    lines = (module.__doc__ or "").splitlines()
+    text = "\n".join(f" * {line}" for line in lines if line.startswith("| "))
+    return text.replace("``packing.packed``", "YEHU_PACKED")
+
+
+def _members(record: Any, comments: Mapping[str, str] | None = None) -> Iterable[str]:
+    """The members of a record of numbers; those that have a comment, with it."""
+    for name in record.names:
+        sizes = "".join(f"[{size}]" for size in record[name].shape)
+        comment = (comments or {}).get(name)
+        yield f"    double {name}{sizes};" + (f" /* {comment} */" if comment else "")
+
+
+def _comments(module: ModuleType, record: str) -> dict[str, str]:
+    """The comments that stand beside the fields of a record in its module."""
+    source = inspect.getsource(module).partition(f"\n{record} = np.dtype(")[2].partition("\n)\n")[0]
+    return dict(re.findall(r'\("(\w+)", .*?\),  # (.+)', source))
 
 
 def _prototype(function: Native) -> str:
     returned, _, taken = function.signature.partition("(")
     names = list(inspect.signature(function.function).parameters)
     kinds = [KINDS_OF_C[kind.strip()] for kind in taken.rstrip(")").split(",") if kind.strip()]
-    arguments = ", ".join(f"{kind}{name}" for kind, name in zip(kinds, names, strict=True))
-    summary = inspect.cleandoc(function.function.__doc__ or "").partition("\n\n")[0]
-    about = " ".join(summary.replace("`", "").split())
+    arguments = ", ".join(
+        f"{'const ' if name in READ_ONLY else ''}{kind}{name}"
+        for kind, name in zip(kinds, names, strict=True)
+    )
+    about = inspect.cleandoc(function.function.__doc__ or "").partition("\n\nParameters\n")[0]
+    comment = textwrap.fill(f"/* {about.replace('`', '')} */", WIDTH, subsequent_indent=" * ")
     kind = "void " if returned == "void" else KINDS_OF_C[returned]
-    return f"/* {about} */\n{kind}{function.name}({arguments or 'void'});"
+    return f"{comment}\n{kind}{function.name}({arguments or 'void'});"

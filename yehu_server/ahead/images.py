@@ -12,8 +12,10 @@ import numpy as np
 
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.engine.rig import memory_bytes
+from yehu_server.midi.events import START
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
+from yehu_server.playing.tables import Controls
 
 Array = Any
 
@@ -22,7 +24,9 @@ SHORTEST_GAP = 3
 
 
 def image(rate: float) -> Array:
-    """Make the image of a calibrated instrument that is ready to play.
+    """Make the image of a calibrated instrument that is ready to play, as `serve` begins.
+
+    It has the default mapping, in equal temperament; program changes are ignored.
 
     Parameters
     ----------
@@ -33,8 +37,12 @@ def image(rate: float) -> Array:
     ndarray [dtype=int64]
         First word, number of words, the words; again; to the end.
     """
-    memory = bytearray(memory_bytes(1))
-    Ensemble([Style().spec(rate, calibration_for(rate))], memory=memory, is_live=True)
+    memory, style = bytearray(memory_bytes(1)), Style()
+    spec = style.spec(rate, calibration_for(rate))
+    first = Ensemble([spec], memory=memory, is_live=True).first
+    first.lead(style.tables(Controls()))
+    first.tables["program_row"] = 0.0  # not read, as there are no programs
+    first.post(START)
     words = np.frombuffer(memory, np.int64)
     return np.concatenate([np.zeros(0, np.int64), *_runs(words)])
 

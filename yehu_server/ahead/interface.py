@@ -1,8 +1,9 @@
 """The functions of an instrument that needs no Python. Compiled.
 
 A C program, or a page, gives the memory of an instrument (`size` bytes, aligned to 64), prepares
-it, posts wishes, and computes blocks; nothing is allocated. `post` may run beside `process`, on
-one other thread; so may `frame`, `value`, `pitch`, `look` and `lost`, which only read.
+it, posts events, and computes blocks; nothing is allocated. `post` may run beside `process`, on
+one other thread, and on that one `midi`, `control` and `map`, which post too; so may `frame`,
+`value`, `pitch`, `look` and `lost`, which only read.
 """
 
 from __future__ import annotations
@@ -12,14 +13,27 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.ahead.right_tables import (
+    CHECKS,
+    check_binds,
+    check_curves,
+    check_fields,
+    check_values,
+)
 from yehu_server.controls.record import CONTROLS
 from yehu_server.engine import native as engine
 from yehu_server.engine import rig as memory
-from yehu_server.engine.atomics import at
+from yehu_server.engine.atomics import at, load_acquire
 from yehu_server.engine.look import look
+from yehu_server.engine.mailbox import SERVER
+from yehu_server.engine.native import post_to
 from yehu_server.engine.output import OUTPUT
 from yehu_server.jit import Native, native
 from yehu_server.memory import carray
+from yehu_server.midi.events import CONTROL, MESSAGE, TABLES_TO
+from yehu_server.midi.packing import BYTE, LENGTH_AT
+from yehu_server.midi.record import MIDI
+from yehu_server.midi.tables import SLOTS, TABLES
 from yehu_server.physics.layout import STATE
 from yehu_server.player.notes import told_pitch
 from yehu_server.player.record import PLAYER
@@ -28,9 +42,19 @@ from yehu_server.stage.record import STAGE
 
 Array = Any
 
+WORD = 8  # bytes
 BYTES = memory.memory_bytes(1)
-WORDS = BYTES // 8
+WORDS = BYTES // WORD
+TABLES_BYTES = TABLES.itemsize
+# Numbers of the tables in use, and of those that `map` posted last: the latter lies beside the
+# cursor of the thread that posts, in the same cache line.
+_midi_fields: Any = MIDI.fields
+IN_USE_AT = memory.MIDI_AT + _midi_fields["tables"][1]
+LAST_AT = memory.POSTED_AT + SERVER * memory.CURSOR_BYTES + WORD
+STATUS, SYSTEM, REAL_TIME, SYSTEM_RESET = 0x80, 0xF0, 0xF8, 0xFF
 play_block = engine.callback.symbol
+fields_are_right, values_are_right = check_fields.symbol, check_values.symbol
+binds_are_right, curves_are_right = check_binds.symbol, check_curves.symbol
 
 
 @native("int64()")
@@ -78,6 +102,77 @@ def lost(rig: Any) -> int:
     output = carray(at(rig, memory.OUTPUT_AT), (1,), OUTPUT)[0]
     mix = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
     return int(state.lost + output.unsound + mix.unsound)
+
+
+@native("int64(voidptr, int64, voidptr, int64)")
+def midi(rig: Any, frame: int, data: Any, n: int) -> int:
+    """Play MIDI messages, n bytes in all, on port 0 from a frame on; return how many were posted.
+
+    Each has its status byte: what follows a whole message without one is skipped, as hosts fill
+    short messages up. So are system messages but for a reset, and what is cut off. Fewer are
+    posted than are there where the ring is full.
+    """
+    if n <= 0:
+        return 0
+    read = carray(data, (n,), np.uint8)
+    index, have, wanted, posted = 0, 0, 0, 0
+    for i in range(n):
+        byte: Any = np.int64(read[i])
+        if byte >= REAL_TIME:  # these come between the bytes of others, too
+            if byte == SYSTEM_RESET:
+                reset = SYSTEM_RESET | 1 << LENGTH_AT
+                posted += post_to(rig, SERVER, frame, MESSAGE, reset, 0.0, 0.0)
+        elif byte >= SYSTEM:
+            wanted = 0
+        elif byte >= STATUS:
+            index, have = byte, 1
+            wanted = 2 if 0xC0 <= byte < 0xE0 else 3
+        elif wanted > 0:
+            index |= byte << BYTE * have
+            have += 1
+            if have == wanted:
+                message = index | have << LENGTH_AT
+                posted += post_to(rig, SERVER, frame, MESSAGE, message, 0.0, 0.0)
+                wanted = 0
+    return posted
+
+
+@native("int64(voidptr, int64, int64, float64)")
+def control(rig: Any, frame: int, number: int, argument: float) -> int:
+    """Move a named control of the mapping, by its number; return 0 where the ring is full."""
+    if number < 0:
+        return 0
+    return post_to(rig, SERVER, frame, CONTROL, number, argument, 0.0)
+
+
+@native("int64(voidptr, int64, voidptr, int64)", calls=CHECKS)
+def use_tables(rig: Any, frame: int, tables: Any, size: int) -> int:
+    """Use other tables (struct yehu_tables, of some bytes) from a frame on; return 1.
+
+    They are copied. Returns 0 where those given before are not in use yet, or the ring is full: try
+    again later. Returns -1 where they are wrong, which changes nothing.
+    """
+    if size != TABLES_BYTES or fields_are_right(tables) == 0:
+        return -1
+    if min(values_are_right(tables), binds_are_right(tables), curves_are_right(tables)) == 0:
+        return -1
+    last = carray(at(rig, LAST_AT), (1,), np.int64)
+    if load_acquire(rig, IN_USE_AT) != last[0]:
+        return 0
+    # Nothing else is posted. Of three slots the next is neither in use nor the one before, which
+    # the callback still reads while it changes.
+    slot = (last[0] + 1) % SLOTS
+    given = carray(tables, (TABLES_BYTES // WORD,), np.float64)
+    free = carray(at(rig, memory.TABLES_AT + slot * TABLES_BYTES), given.shape, np.float64)
+    for i in range(len(given)):
+        free[i] = given[i]
+    if post_to(rig, SERVER, frame, TABLES_TO, slot, 0.0, 0.0) == 0:
+        return 0
+    last[0] = slot
+    return 1
+
+
+use_tables.name = "yehu_map"
 
 
 def preparing(rates: Sequence[float], images: Sequence[Array]) -> Native:
@@ -129,4 +224,5 @@ def telling(sources: str) -> Native:
 def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> list[Native]:
     """List all functions of the interface, for the images and the hash of sources given."""
     prepare, told = preparing(rates, images), telling(sources)
-    return [told, size, prepare, engine.post, process, frame, value, pitch, look, lost]
+    posting = [engine.post, midi, control, use_tables]
+    return [told, size, prepare, *posting, process, frame, value, pitch, look, lost]

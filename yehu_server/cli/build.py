@@ -6,15 +6,18 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_folder
-from yehu_server.cli.converters import positive
+from yehu_server.cli.arguments import Parser, add_command, add_folder
+from yehu_server.cli.converters import positive, target
+from yehu_server.cli.style_options import add_tables, interpreted_style_of
 from yehu_server.cli.terminal import tell
 
 EXAMPLES = """\
 examples:
   yehu-server build wasm -o page
   yehu-server build library -o lib --rate 48000 96000 --cpu native
+  yehu-server build tables --mapping wind --tuning chaozhou-seven-equal -o wind.tables
 
+build tables writes a mapping, a tuning and presets for both, as numbers.
 docs/ahead.md tells how pages and C programs use them.
 """
 
@@ -50,6 +53,40 @@ def add_to(commands: Any) -> None:
         help="processor of a library, by LLVM's name, such as x86-64-v3; "
         "native: this one (default: any of its kind)",
     )
+    _add_tables(parser)
+
+
+def _add_tables(command: Parser) -> None:
+    """Add `build tables` to the parser of `build`."""
+    parser = command.add_word(
+        "tables", write_tables, "write a mapping, tuning and presets as numbers, for yehu_map"
+    )
+    add_tables(parser)
+    parser.add_argument(
+        "-o", "--output", required=True, type=target, metavar="OUT", help="the file to write"
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace OUT if it exists")
+
+
+def write_tables(arguments: argparse.Namespace) -> int:
+    """Write tables to a file, and the numbers of named controls; return the exit code.
+
+    Raises
+    ------
+    YehuError
+        Where a file or value is wrong, or the file cannot be written.
+    """
+    from yehu_server.files import anything, nothing, replacing
+    from yehu_server.playing.tables import Controls
+
+    style, controls = interpreted_style_of(arguments), Controls()
+    tables = style.tables(controls)
+    with replacing(arguments.output, anything if arguments.overwrite else nothing) as partial:
+        partial.write_bytes(tables.tobytes())
+    tell(str(arguments.output))
+    for address in style.mapping.addresses:
+        tell(f"control {controls.number(address)}: {address}")
+    return 0
 
 
 def run(arguments: argparse.Namespace) -> int:

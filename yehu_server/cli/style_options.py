@@ -19,6 +19,37 @@ if TYPE_CHECKING:
 
 def add_playing(group: Any) -> None:
     """Add the options of playing that serve and render share; see `style_of`."""
+    add_tables(group)
+    group.add_argument(
+        "--practice",
+        type=Path,
+        metavar="FILE",
+        help="how notes are bowed: what yehu-server practise wrote (default: as shipped)",
+    )
+    group.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="ADDRESS=VALUE",
+        help="hold a parameter at a value, such as /playing/bow_position=0.1; may be repeated",
+    )
+    group.add_argument(
+        "--open-strings",
+        choices=("always", "on-pitch", "never"),
+        default="always",
+        help="when C5 is played on the open outer string, not on the inner one (default: always)",
+    )
+    group.add_argument(
+        "--seed",
+        type=seed,
+        default=0,
+        metavar="N",
+        help="seed of the random variation between notes, 0 to 65535 (default: 0)",
+    )
+
+
+def add_tables(group: Any) -> None:
+    """Add the options of how messages are interpreted; see `interpreted_style_of`."""
     group.add_argument(
         "--mapping",
         metavar="FILE",
@@ -44,19 +75,6 @@ def add_playing(group: Any) -> None:
     )
     add_presets_folder(group)
     group.add_argument(
-        "--practice",
-        type=Path,
-        metavar="FILE",
-        help="how notes are bowed: what yehu-server practise wrote (default: as shipped)",
-    )
-    group.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="ADDRESS=VALUE",
-        help="hold a parameter at a value, such as /playing/bow_position=0.1; may be repeated",
-    )
-    group.add_argument(
         "--a4",
         type=a4,
         default=440.0,
@@ -69,19 +87,6 @@ def add_playing(group: Any) -> None:
         choices=("transpose", "clamp", "skip"),
         default="transpose",
         help="what happens to notes outside F4 to F6 (default: transpose, by octaves)",
-    )
-    group.add_argument(
-        "--open-strings",
-        choices=("always", "on-pitch", "never"),
-        default="always",
-        help="when C5 is played on the open outer string, not on the inner one (default: always)",
-    )
-    group.add_argument(
-        "--seed",
-        type=seed,
-        default=0,
-        metavar="N",
-        help="seed of the random variation between notes, 0 to 65535 (default: 0)",
     )
 
 
@@ -142,7 +147,29 @@ def add_presets_folder(group: Any) -> None:
 
 
 def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
-    """The style of playing given by the options of `add_playing`.
+    """The style of playing given by the options of `add_playing`; see `interpreted_style_of`.
+
+    Raises
+    ------
+    YehuError
+        Where a file or value is wrong.
+    """
+    from yehu_server.params.table import assignment
+    from yehu_server.player.fingering import OpenStrings
+    from yehu_server.playing.practices import read_practice
+
+    return replace(
+        interpreted_style_of(arguments, is_live=is_live),
+        settings=tuple(assignment(text) for text in arguments.set),
+        open_strings=OpenStrings(arguments.open_strings),
+        seed=arguments.seed,
+        bowing=None if arguments.practice is None else read_practice(arguments.practice),
+        practice=arguments.practice,
+    )
+
+
+def interpreted_style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
+    """The part of a style that the options of `add_tables` give.
 
     In live playing, mappings and presets of the user's own precede shipped ones of the same
     name. Else they must be named explicitly, so that the result of a rendering depends on its
@@ -153,9 +180,6 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
     YehuError
         Where a file or value is wrong.
     """
-    from yehu_server.params.table import assignment
-    from yehu_server.player.fingering import OpenStrings
-    from yehu_server.playing.practices import read_practice
     from yehu_server.playing.presets import Presets
     from yehu_server.playing.range_policy import RangePolicy
     from yehu_server.playing.style import Style
@@ -176,12 +200,7 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
         preset=file,
         start=start,
         programs=arguments.programs,
-        settings=tuple(assignment(text) for text in arguments.set),
         a4=arguments.a4,
         tuning=tuning_of(arguments),
         policy=RangePolicy(arguments.range),
-        open_strings=OpenStrings(arguments.open_strings),
-        seed=arguments.seed,
-        bowing=None if arguments.practice is None else read_practice(arguments.practice),
-        practice=arguments.practice,
     )

@@ -18,6 +18,7 @@ from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.practices import shipped_practice
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, Tuning
 from yehu_server.playing.wishes import Wishes
 
@@ -88,6 +89,18 @@ class Style:
     def wishes(self, instruments: Instrument | Sequence[Instrument]) -> Wishes:
         """What posts wishes of this style to an instrument, or to those of a section."""
         return Wishes(instruments, self.policy, self.tuning, self.a4)
+
+    def tables(self, controls: Controls) -> Any:
+        """The tables of this style (``midi.tables``), with named controls numbered as given."""
+        return make_tables(
+            self.mapping,
+            controls,
+            start=self.start,
+            tuning=self.tuning,
+            a4=self.a4,
+            policy=self.policy,
+            programs=self.presets.programs() if self.programs else None,
+        )
 
     def midi(self, wishes: Wishes, channels: set[int] | None = None) -> MidiPlayer:
         """A MIDI player of this style; `channels` as in `MidiPlayer`."""

@@ -1,0 +1,19 @@
+"""Compiles this folder's C programs with the library."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+HERE = Path(__file__).parent
+STRICT = ["-std=c11", "-Wall", "-Wextra", "-pedantic", "-Werror"]
+
+
+def compiled(library: Path, into: Path, *sources: str) -> Path:
+    """A program of some of this folder's files and the library."""
+    libraries = ["-L", str(library), "-lyehu", f"-Wl,-rpath,{library}", "-rdynamic"]
+    files = [str(HERE / source) for source in sources]
+    command = ["cc", *STRICT, f"-I{library}", *files, "-o", str(into), *libraries]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return into

@@ -1,0 +1,61 @@
+// Plays steps by the WebAssembly module, for the tests, and writes the memory of the instrument at the
+// end; as streams.c does.
+//
+//   node streams.mjs JOB.json
+//
+// A job has: wasm, rate, lookLength, steps and tables (files), blocks, reporting, memory (file to
+// write).
+
+import { readFileSync, writeFileSync } from "node:fs";
+import { Kernel } from "../../web/sound/kernel.js";
+
+const BLOCK = 128;
+const ROOM = 1 << 15; // frames: the samples leave room for tables
+
+const job = JSON.parse(readFileSync(process.argv[2], "utf8"));
+const kernel = new Kernel(
+  new WebAssembly.Module(readFileSync(job.wasm)),
+  job.rate,
+  ROOM,
+  job.lookLength,
+);
+const wasm = kernel.exported;
+const given = new Uint8Array(kernel.view.buffer, kernel.outAt, 8 * ROOM);
+const tables = readFileSync(job.tables);
+const size = tables.length / job.count;
+
+/** Do what a line says; returns what the function does. */
+function step(name, frame, ...numbers) {
+  const at = BigInt(frame);
+  if (name === "map") {
+    const first = size * Number(numbers[0]);
+    given.set(tables.subarray(first, first + size));
+    return wasm.yehu_map(kernel.rig, at, kernel.outAt, BigInt(size));
+  }
+  if (name === "midi") {
+    const [count, ...bytes] = numbers.map(Number);
+    given.set(bytes);
+    return wasm.yehu_midi(kernel.rig, at, kernel.outAt, BigInt(count)) >= 0n ? 1n : 0n;
+  }
+  if (name === "control") {
+    return wasm.yehu_control(kernel.rig, at, BigInt(numbers[0]), Number(numbers[1]));
+  }
+  const [kind, index, value, other] = numbers;
+  return wasm.yehu_post(kernel.rig, at, BigInt(kind), BigInt(index), Number(value), Number(other));
+}
+
+kernel.view.setBigInt64(kernel.rig + 8 * job.reporting, 1n, true);
+const lines = readFileSync(job.steps, "utf8").trimEnd().split("\n");
+let finite = true;
+let next = 0;
+for (let block = 1; block <= job.blocks; block += 1) {
+  while (next < lines.length && Number(lines[next].split(" ")[1]) < block * BLOCK) {
+    if (step(...lines[next].split(" ")) !== 1n) throw new Error(`line ${next + 1} was not taken`);
+    next += 1;
+  }
+  kernel.compute(BLOCK);
+  finite &&= kernel.out.subarray(0, 2 * BLOCK).every(Number.isFinite);
+}
+const length = Number(wasm.yehu_size());
+writeFileSync(job.memory, new Uint8Array(kernel.view.buffer, kernel.rig, length));
+process.stdout.write(JSON.stringify({ finite, lost: kernel.lost }));

@@ -1,0 +1,265 @@
+"""Long streams of MIDI and other events by chance, and what they come to in this process.
+
+Run as a program it writes what some come to: without the JIT, in plain Python.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from interpreted import Leader
+from panel import streams as calls
+
+from yehu_server.engine.ensemble import Ensemble
+from yehu_server.engine.rig import RIG
+from yehu_server.midi import events
+from yehu_server.midi.packing import packed
+from yehu_server.midi.tables import SLOTS
+from yehu_server.params.table import find
+from yehu_server.player import wishes
+from yehu_server.player.rows import ROW
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.mapping import Mapping, load, shipped_mappings
+from yehu_server.playing.presets import Presets
+from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.style import Style
+from yehu_server.playing.tables import Controls, make_tables
+from yehu_server.playing.tuning import EQUAL, Tuning, read_tuning
+
+RATE, BLOCK = 48000.0, 128
+APART = 40  # frames from one step to the next
+SYSEX, CLOCK = (0xF0, 0x7E, 0x09, 0xF7), (0xF8,)
+TUNINGS = {"equal": EQUAL, "seven": read_tuning(Path("chaozhou-seven-equal"))}
+Event = tuple[int, int, float, float]  # kind, index, value, other
+
+
+@dataclass(frozen=True)
+class Step:
+    """A call of the C interface: its name, frame and arguments; and the events that it posts."""
+
+    name: str
+    frame: int
+    arguments: tuple[Any, ...]
+    events: tuple[Event, ...]
+
+    def line(self) -> str:
+        """The step for programs: its name, frame and arguments."""
+        numbers = [repr(number) for number in self.arguments]
+        count = [str(len(numbers))] if self.name == "midi" else []
+        return " ".join([self.name, str(self.frame), *count, *numbers])
+
+
+@dataclass
+class Stream:
+    """Steps, and the tables that they take."""
+
+    steps: list[Step]
+    tables: list[Any]
+
+    @property
+    def frames(self) -> int:
+        """Length in whole blocks, with some after the last step."""
+        return (self.steps[-1].frame // BLOCK + 4) * BLOCK
+
+    def write(self, folder: Path) -> tuple[Path, Path]:
+        """Write steps and tables to files for programs."""
+        steps, tables = folder / "steps", folder / "tables"
+        steps.write_text("".join(f"{step.line()}\n" for step in self.steps))
+        tables.write_bytes(b"".join(each.tobytes() for each in self.tables))
+        return steps, tables
+
+
+# In text with a character for each byte: whole messages, and a reset inside one, which comes first.
+WHOLE = re.compile("[\x80-\xbf\xe0-\xef][\0-\x7f]{2}|[\xc0-\xdf][\0-\x7f]|\xff")
+INSIDE = re.compile("([\x80-\xbf\xe0-\xef][\0-\x7f]?|[\xc0-\xdf])\xff")
+
+
+def messages_of(data: Sequence[int]) -> list[int]:
+    """The messages in some bytes that are posted (``packing.packed``)."""
+    text, was = bytes(byte for byte in data if not 0xF8 <= byte < 0xFF).decode("latin-1"), ""
+    while was != text:
+        was, text = text, INSIDE.sub("\xff\\1", text)
+    return [packed(whole.encode("latin-1")) for whole in WHOLE.findall(text)]
+
+
+class Maker:
+    """Makes the stream of a seed."""
+
+    def __init__(self, seed: int, parts: int) -> None:
+        self._chance = random.Random(seed)
+        some = {str(n): calls.some_mapping(self._chance, str(n)) for n in range(parts)}
+        shipped = {name: load(name) for name in shipped_mappings()}
+        self._mappings: dict[str, Mapping] = some | shipped
+        self._parts = calls.Streams(seed, [*some, *shipped])
+        self._controls, self._presets = Controls(), Presets()
+        self._style: dict[str, Any] = {}
+        self._frame = 0
+        self.stream = Stream([], [])
+        for _ in range(parts):
+            part = self._parts.next()
+            self._style = part["style"] | {"tuning": self._chance.choice([*TUNINGS])}
+            self._map()
+            self._post(events.START, 0, 0.0, 0.0)
+            for name, *arguments in part["calls"]:
+                self._call(name, arguments)
+
+    def _step(self, name: str, arguments: tuple[Any, ...], *posted: Event) -> None:
+        self._frame += APART
+        self.stream.steps.append(Step(name, self._frame, arguments, posted))
+
+    def _post(self, kind: int, index: int, value: float, other: float) -> None:
+        event = (kind, index, float(value), float(other))
+        self._step("post", event, event)
+
+    def _map(self) -> None:
+        style, programs = self._style, self._presets.programs()
+        tuning: Tuning = TUNINGS[style["tuning"]]
+        made = make_tables(
+            self._mappings[style["mapping"]],
+            self._controls,
+            start=self._presets.load(style["preset"]).values.items() if "preset" in style else (),
+            tuning=tuning,
+            a4=style["a4"],
+            policy=RangePolicy(style["policy"]),
+            received=style["channels"],
+            programs=programs if style["programs"] else None,
+        )
+        self.stream.tables.append(made)
+        count = len(self.stream.tables)
+        self._frame += 2 * BLOCK  # those before are in use
+        self._step("map", (count - 1,), (events.TABLES_TO, count % SLOTS, 0.0, 0.0))
+
+    def _call(self, name: str, given: list[Any]) -> None:
+        *arguments, _frame = given
+        if name == "midi":
+            self._midi(arguments[0], given[2])
+        elif name == "move":
+            number, argument = self._controls.number(arguments[0]), float(arguments[1])
+            posted = (events.CONTROL, number, argument, 0.0)
+            self._step("control", (number, argument), posted)
+        elif name in ("applyMapping", "applyTuning"):
+            key, value = ("mapping", given[0]) if name == "applyMapping" else ("a4", given[1])
+            self._style[key] = value
+            self._map()
+        elif name == "applyPreset":
+            for address, value in self._presets.load(given[0]).values.items():
+                self._post(events.LOAD, ROW[address], value, 0.0)
+        else:
+            self._by_hand(name, arguments)
+
+    def _midi(self, data: Sequence[int], port: int) -> None:
+        if port != 0:
+            message = (events.MESSAGE, packed(data, port), 0.0, 0.0)
+            self._post(*message)
+            return
+        chance = self._chance.random()
+        if chance < 0.1:
+            data = (*SYSEX, *data, *CLOCK)
+        elif chance < 0.2 and len(data) > 1:
+            data = (data[0], *CLOCK, *data[1:], 0)  # a byte more than there is
+        last = self.stream.steps[-1]
+        if chance > 0.6 and last.name == "midi":  # several at a time
+            self.stream.steps.pop()
+            self._frame -= APART
+            data = (*last.arguments, *data)
+        posted = [(events.MESSAGE, message, 0.0, 0.0) for message in messages_of(data)]
+        self._step("midi", tuple(data), *posted)
+
+    def _by_hand(self, name: str, given: list[Any]) -> None:
+        address = given[0] if given and isinstance(given[0], str) and given[0][0] == "/" else None
+        if address is not None:
+            kind = wishes.HOLD if name == "hold" else events.SET
+            self._post(kind, ROW[address], find(address).accept(given[1]), 0.0)
+        elif name == "noteOn":
+            self._key = given[1]
+            self._post(events.NOTE_ON, -1, given[1], given[2])
+        elif name == "noteOff":
+            self._post(events.NOTE_OFF, -1, self._key, 0.0)
+        elif name == "slide":
+            self._post(wishes.SLIDE, 0, given[0], 0.0)
+        elif name == "draw":
+            self._post(wishes.DRAW, 0, *given)
+        elif name == "letGoOf":
+            self._post(events.DISCONNECT, given[0], 0.0, 0.0)
+        elif name in ("lift", "release"):
+            self._post(wishes.LIFT if name == "lift" else wishes.RELEASE, 0, 0.0, 0.0)
+        elif name in ("endNotes", "panic", "reset"):
+            self._post(events.RELEASE_ALL, 0, float(name != "endNotes"), 0.0)
+            if name == "panic":
+                self._post(wishes.STOP, 0, 1.0, 0.0)
+            if name == "reset":
+                self._post(events.START, 0, 1.0, 0.0)
+
+
+def stream_of(seed: int, parts: int) -> Stream:
+    """The stream of a seed: the same in every process."""
+    return Maker(seed, parts).stream
+
+
+def interpreted(stream: Stream) -> list[list[Event]]:
+    """What each event of a stream comes to, interpreted alone."""
+    leader = Leader()
+    leader.lead(Style().tables(Controls()))
+    found = [leader.interpret(0, events.START, 0, 0.0, 0.0)]
+    tables = iter(stream.tables)
+    for step in stream.steps:
+        for kind, *fields in step.events:
+            if kind == events.TABLES_TO:
+                leader.tables[fields[0]] = next(tables)[0]
+            found.append(leader.interpret(step.frame, kind, *fields))
+    return found
+
+
+def played(stream: Stream) -> np.ndarray:
+    """Play a stream by the server's instrument; return its record [shape=(1,), dtype=RIG]."""
+    ensemble = Ensemble([Style().spec(RATE, calibration_for(RATE))], is_live=True)
+    first = ensemble.first
+    first.lead(Style().tables(Controls()))
+    first.report_wishes()
+    assert first.post(events.START)
+    tables = iter(stream.tables)
+    out = np.zeros((BLOCK, 2), np.float32)
+    steps = list(reversed(stream.steps))
+    for done in range(0, stream.frames, BLOCK):
+        while steps and steps[-1].frame < done + BLOCK:
+            step = steps.pop()
+            for kind, index, value, other in step.events:
+                if kind == events.TABLES_TO:
+                    assert first.midi["tables"] == (index - 1) % SLOTS
+                    first.tables[index] = next(tables)[0]
+                assert first.post(kind, frame=step.frame, index=index, value=value, other=other)
+        ensemble.process(out)
+    assert np.isfinite(out).all()
+    return first._rig.copy()
+
+
+def wishes_in(rig: np.ndarray) -> np.ndarray:
+    """The wishes that were fulfilled, in order: ndarray [shape=(wishes,), dtype=WISH]."""
+    mail = rig["mail"][0]
+    assert mail["unreported"] == 0
+    assert mail["dropped"].sum() == 0
+    return rig["reports"][0, : mail["reported"][0]]
+
+
+def record_in(memory: Path) -> np.ndarray:
+    """The record of an instrument, in a file with all its memory."""
+    return np.fromfile(memory, np.uint8)[: RIG.itemsize].view(RIG)
+
+
+def numbers(found: Sequence[Sequence[Event]]) -> Iterator[list[float]]:
+    """All wishes of `interpreted`, as lists."""
+    return (list(wish) for wished in found for wish in wished)
+
+
+if __name__ == "__main__":
+    output, parts, *seeds = sys.argv[1:]
+    made = {seed: interpreted(stream_of(int(seed), int(parts))) for seed in seeds}
+    Path(output).write_text(json.dumps(made))

@@ -1,0 +1,104 @@
+"""Tables by chance, right and wrong.
+
+Run as a program it plays random messages through those that are taken: without the JIT, in plain
+Python.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+import sys
+from pathlib import Path
+
+import numpy as np
+from interpreted import Leader
+from panel import streams
+
+from yehu_server.ahead.right_tables import CHECKS
+from yehu_server.midi import events
+from yehu_server.midi.packing import packed
+from yehu_server.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, PROGRAMS, SLOTS, TABLES
+from yehu_server.player.rows import ROWS
+from yehu_server.playing.presets import Presets
+from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.tables import Controls, make_tables
+from yehu_server.playing.tuning import EQUAL, read_tuning
+
+TUNINGS = (EQUAL, read_tuning(Path("chaozhou-seven-equal")))
+WILD = (math.nan, math.inf, -math.inf, 1e308, -1e308, 1e-310, -1.0, 0.5, 1e9)
+ENDS = (ROWS, KEYS, MOST_BINDS, MOST_POINTS, 1 << 16)  # of arrays, and of channels
+USED = [name for name in TABLES.names or () if name not in ("x", "y")]
+MESSAGES = 12
+
+
+def some_tables(seed: int, count: int) -> list[np.ndarray]:
+    """Right tables of any mappings, tunings and policies, some with programs."""
+    chance, controls, programs = random.Random(seed), Controls(), Presets().programs()
+    return [
+        make_tables(
+            streams.some_mapping(chance, "some"),
+            controls,
+            tuning=chance.choice(TUNINGS),
+            a4=chance.uniform(390.0, 480.0),
+            policy=chance.choice([*RangePolicy]),
+            received=chance.choice([None, None, None, {0, 9}]),
+            programs=chance.choice([programs, None]),
+        )
+        for _ in range(count)
+    ]
+
+
+def spoilt(chance: random.Random, tables: np.ndarray) -> np.ndarray:
+    """Tables with some other numbers, mostly where they are used."""
+    made = tables.copy()
+    for _ in range(chance.choice([0, 1, 1, 2, 3])):
+        field = made[chance.choice(USED)].reshape(-1)
+        place = chance.randrange(min(len(field), chance.choice([8, len(field)])))
+        other = chance.choice(field.tolist())
+        field[place] = chance.choice([*WILD, *ENDS, other, other, chance.randrange(20)])
+    return made
+
+
+def are_right(tables: np.ndarray) -> bool:
+    """Whether `yehu_map` takes tables."""
+    return all(check.call(tables.ctypes.data) for check in CHECKS)
+
+
+def message(chance: random.Random) -> int:
+    """A channel message."""
+    status = chance.choice([0x80, 0x90, 0x90, 0xA0, 0xB0, 0xB0, 0xC0, 0xD0, 0xE0])
+    first = chance.choice([*streams.LISTENED, chance.randrange(128)])
+    data = [status | chance.choice([0, 0, 1, 9, 15]), first, chance.randrange(128)]
+    return packed(data[: 2 if status in (0xC0, 0xD0) else 3], chance.choice([0, 0, 1]))
+
+
+def play(count: int) -> dict[str, int]:
+    """Play messages through one after another of random tables; count what came of it."""
+    chance, leader, told = random.Random(2), Leader(), {"taken": 0, "refused": 0, "wishes": 0}
+    right = some_tables(3, 30)
+    leader.lead(right[0])
+    for _ in range(count):
+        tables = spoilt(chance, chance.choice(right))
+        if not are_right(tables):
+            told["refused"] += 1
+            continue
+        told["taken"] += 1
+        slot = (int(leader.midi["tables"]) + 1) % SLOTS
+        leader.tables[slot] = tables[0]
+        posted = [(events.TABLES_TO, slot, 0.0), (events.START, 0, float(chance.randrange(2)))]
+        posted += [(events.MESSAGE, message(chance), 0.0) for _ in range(MESSAGES)]
+        posted += [(events.CONTROL, n, chance.uniform(-1e9, 1e9)) for n in range(2)]
+        posted += [(events.MESSAGE, packed([0xC0, chance.randrange(PROGRAMS)]), 0.0)]
+        for frame, event in enumerate(posted):
+            found = leader.interpret(frame, *event, 0.0)
+            assert np.isfinite([wish[2:] for wish in found]).all(), (tables, event, found)
+            told["wishes"] += len(found)
+        assert np.isfinite(leader.midi["value"]).all()
+    return told
+
+
+if __name__ == "__main__":
+    np.seterr(all="raise", under="ignore")
+    Path(sys.argv[2]).write_text(json.dumps(play(int(sys.argv[1]))))

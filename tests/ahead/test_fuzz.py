@@ -1,0 +1,49 @@
+"""Random bytes through random mappings: no trap, no number that is not finite, no note left."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from ahead.programs import compiled
+from ahead.tables import some_tables
+
+from yehu_server.engine.rig import MIDI_AT
+from yehu_server.midi.record import MIDI
+
+HERE = Path(__file__).parent
+midi_fields = MIDI.fields or {}
+HELD, SOUNDING = ((MIDI_AT + midi_fields[name][1]) // 8 for name in ("held", "sounding"))
+SOME, MANY = 200_000, 1_000_000
+TABLES = 200  # that plain Python plays through
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+def test_no_random_bytes_through_random_mappings_leave_a_note(library, tmp_path, everything):
+    made = [tables for tables in some_tables(1, 40) if tables["received"] == -1.0]
+    (tmp_path / "tables").write_bytes(b"".join(each.tobytes() for each in made))
+    program = compiled(library, tmp_path / "fuzz", "fuzz.c")
+    count = MANY if everything else SOME
+    command = [program, str(count), "1", tmp_path / "tables", str(HELD), str(SOUNDING)]
+    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    posted, taken, refused, wrong, left, beyond, lost = map(int, told)
+    assert posted >= count
+    assert min(taken, refused) >= count // 1000 // 10
+    assert (wrong, left, beyond, lost) == (0, 0, 0, 0)
+
+
+def test_no_tables_that_are_taken_lead_outside_an_array_or_to_a_number_that_is_not_finite(tmp_path):
+    # Plain Python checks each index, and tells of a division by zero.
+    command = [sys.executable, str(HERE / "tables.py"), str(TABLES), tmp_path / "told"]
+    paths = os.pathsep.join(map(str, (HERE.parent, HERE.parents[1])))
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": paths}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    told = json.loads((tmp_path / "told").read_text())
+    assert min(told["taken"], told["refused"]) > TABLES // 5
+    assert told["wishes"] > 10 * TABLES

@@ -1,0 +1,154 @@
+"""Whether tables that a program gives are right, so that compiled code may index by them. Compiled.
+
+The tables of ``midi.tables`` hold numbers of rows, binds and points. Those that Python writes are
+right; others could lead outside the arrays, or to values that are no numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.jit import native
+from yehu_server.memory import carray
+from yehu_server.midi.record import IN_PORT
+from yehu_server.midi.tables import (
+    BEND,
+    CONTROL,
+    EXPONENTIAL,
+    KEYS,
+    MOST_BINDS,
+    MOST_POINTS,
+    NOTE,
+    NRPN,
+    PAIR,
+    POINTS,
+    SKIP,
+    TABLES,
+)
+from yehu_server.player.rows import HIGHEST, LOWEST, ROWS
+
+WORD = 8  # bytes
+PAIRS, NRPNS = 32, 1 << 14
+MOST = 1e9
+TINY = 1e-200  # what a number of the tables divides by is larger
+ANY, WHOLE, WHOLE_OR_NONE, ANY_OR_NONE = range(4)  # NaN stands for none
+SWITCHES = ("invert", "soft", "by_range", "for_all", "mpe", "is_equal", "has_programs")
+# What each field may hold: kind, lowest, highest.
+FIELDS = {
+    "binds": (WHOLE, 0, MOST_BINDS),
+    "source": (WHOLE, 0, MOST),
+    "first": (WHOLE, 0, MOST_BINDS - 1),
+    "target": (WHOLE, 0, ROWS - 1),
+    "lo": (ANY, -MOST, MOST),
+    "hi": (ANY, -MOST, MOST),
+    "curve": (WHOLE, 0, POINTS),
+    "first_point": (WHOLE, 0, MOST_POINTS),
+    "points": (WHOLE, 0, MOST_POINTS),
+    "smoothing_ms": (ANY, 0, MOST),
+    "channels": (WHOLE, 0, (1 << IN_PORT) - 1),
+    "input_lo": (ANY, -1e307, 1e307),
+    "input_hi": (ANY, -1e307, 1e307),
+    "same": (ANY, -1e307, 1e307),
+    "x": (ANY, 0, 1),
+    "y": (ANY, 0, 1),
+    "starts": (WHOLE, 0, ROWS),
+    "start_row": (WHOLE, 0, ROWS - 1),
+    "start_value": (ANY, -MOST, MOST),
+    "usual": (ANY, -MOST, MOST),
+    "pitch": (ANY_OR_NONE, -MOST, MOST),
+    "policy": (WHOLE, 0, SKIP),
+    "received": (WHOLE, -1, (1 << IN_PORT) - 1),
+    "has_program": (WHOLE, 0, 1),
+    "program_row": (WHOLE_OR_NONE, 0, ROWS - 1),
+    "program_value": (ANY, -MOST, MOST),
+    **dict.fromkeys(SWITCHES, (WHOLE, 0, 1)),
+}
+
+
+def checking_fields(rules: dict[str, tuple[int, float, float]]) -> Any:
+    """Make the function `check_fields`, which closes over what fields may hold."""
+    fields: Any = TABLES.fields
+    begin = np.array([fields[name][1] // WORD for name in rules])
+    end = begin + np.array([fields[name][0].itemsize // WORD for name in rules])
+    kind = np.array([rule[0] for rule in rules.values()])
+    lowest = np.array([float(rule[1]) for rule in rules.values()])
+    highest = np.array([float(rule[2]) for rule in rules.values()])
+    words = TABLES.itemsize // WORD
+
+    def check_fields(tables: Any) -> int:
+        """Tell whether each number of some tables may be where it is."""
+        numbers = carray(tables, (words,), np.float64)
+        for field in range(len(begin)):
+            is_whole = kind[field] in (WHOLE, WHOLE_OR_NONE)
+            for place in range(begin[field], end[field]):
+                number = numbers[place]
+                if math.isnan(number) and kind[field] in (WHOLE_OR_NONE, ANY_OR_NONE):
+                    continue
+                if not lowest[field] <= number <= highest[field]:  # also refuses NaN
+                    return 0
+                if is_whole and number != math.floor(number):
+                    return 0
+        return 1
+
+    return native("int64(voidptr)")(check_fields)
+
+
+@native("int64(voidptr)")
+def check_values(tables: Any) -> int:
+    """Tell whether values are within the ranges of their parameters, once each field is right."""
+    t = carray(tables, (1,), TABLES)[0]
+    for n in range(int(t.starts)):
+        row = int(t.start_row[n])
+        if not LOWEST[row] <= t.start_value[n] <= HIGHEST[row]:
+            return 0
+    for row in range(ROWS):
+        is_divisor = t.usual[row] > 0.0
+        if not LOWEST[row] <= t.usual[row] <= HIGHEST[row] or (is_divisor and t.usual[row] < TINY):
+            return 0
+    return 1
+
+
+@native("int64(voidptr)")
+def check_binds(tables: Any) -> int:
+    """Tell whether sources and targets of binds are right, once each field is."""
+    t = carray(tables, (1,), TABLES)[0]
+    for n in range(int(t.binds)):
+        source, row = int(t.source[n]), int(t.target[n])
+        is_change = source < KEYS or PAIR <= source < PAIR + PAIRS
+        is_other = BEND <= source <= NOTE or NRPN <= source < NRPN + NRPNS or source >= CONTROL
+        first = 0
+        while int(t.source[first]) != source:
+            first += 1
+        if not (is_change or is_other) or int(t.first[n]) != first:
+            return 0
+        if not LOWEST[row] <= min(t.lo[n], t.hi[n]) <= max(t.lo[n], t.hi[n]) <= HIGHEST[row]:
+            return 0
+    return 1
+
+
+@native("int64(voidptr)")
+def check_curves(tables: Any) -> int:
+    """Tell whether the curves of binds are right, once each field is."""
+    t = carray(tables, (1,), TABLES)[0]
+    for n in range(int(t.binds)):
+        curve = int(t.curve[n])
+        if curve == EXPONENTIAL and (min(t.lo[n], t.hi[n]) < TINY or t.by_range[n] != 0.0):
+            return 0
+        if curve != POINTS:
+            continue
+        begin, end = int(t.first_point[n]), int(t.first_point[n] + t.points[n])
+        if end > MOST_POINTS or end - begin < 2:
+            return 0
+        if t.x[begin] != 0.0 or t.x[end - 1] != 1.0:
+            return 0
+        for point in range(begin + 1, end):
+            if t.x[point] <= t.x[point - 1]:
+                return 0
+    return 1
+
+
+check_fields = checking_fields(FIELDS)
+CHECKS = (check_fields, check_values, check_binds, check_curves)

@@ -16,6 +16,7 @@ const { Learner } = await import(new URL('playing/learner.js', web).href);
 const { bindOf, fileOf, merged, readLearned, withBind } = await import(
   new URL('playing/learned.js', web).href
 );
+const { rowOf } = await import(new URL('playing/tables.js', web).href);
 
 /** The first source that is meant. */
 function heard(messages) {
@@ -25,6 +26,13 @@ function heard(messages) {
     if (source !== null) return source;
   }
   return null;
+}
+
+/** A bind with its row of the tables, without what is 0. */
+function told(bind) {
+  const row = Object.entries(rowOf(bind)).filter(([, value]) => value !== 0);
+  const { source, target, channels } = bind;
+  return { source, target, channels, row: Object.fromEntries(row) };
 }
 
 for await (const line of createInterface({ input: process.stdin })) {
@@ -39,6 +47,6 @@ for await (const line of createInterface({ input: process.stdin })) {
     if (!messages) learned = learned.filter((bind) => bind.target !== target);
   }
   learned = readLearned(JSON.parse(JSON.stringify(learned))); // as a browser keeps them
-  const binds = merged(mapping, learned).binds;
+  const binds = merged(mapping, learned).binds.map(told);
   console.log(JSON.stringify({ sources, binds, file: fileOf(name, mapping, learned) }));
 }

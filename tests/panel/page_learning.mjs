@@ -1,7 +1,7 @@
 /** Teaches the page's MIDI keyboard what its knobs move, by keys alone; prints what followed. */
 
 import { readFileSync } from "node:fs";
-import { open, pretendMidi, run, sendMidi, wishes } from "./browser.mjs";
+import { READY, open, pretendMidi, run, sendMidi, wishes } from "./browser.mjs";
 
 const KNOB = 0xb0;
 const WHEEL = 0xe0;
@@ -114,7 +114,7 @@ await run(async (browser, url) => {
   found.ofWind = await list();
   await mapping.selectOption("keyboard");
   await page.reload();
-  await page.waitForSelector("#ways input");
+  await page.waitForSelector(READY);
   await page.click("#tab-connect");
   found.reloaded = await list();
   await panel.getByRole("button", { name: "Use MIDI keyboards" }).press("Enter");

@@ -78,11 +78,22 @@ def expected(given: dict[str, Any], folder: Path) -> tuple[list[str | None], Map
     return sources, mapping, folder / "yehu-server" / "mappings" / f"{given['name']}.toml"
 
 
-def test_the_page_learns_what_the_server_learns(node, playing, settings):
+def placeless(bind: dict[str, Any]) -> dict[str, Any]:
+    """A bind, wherever its points lie: the page leaves those of binds that were overridden."""
+    row = {name: value for name, value in bind["row"].items() if name != "first_point"}
+    return bind | {"row": row}
+
+
+def rows_of(mapping: Mapping) -> list[dict[str, Any]]:
+    """The binds of a mapping, as the page has them."""
+    return [placeless(bind) for bind in styles.mapping(mapping)["binds"]]
+
+
+def test_the_page_learns_what_the_server_learns(node, page, settings):
     chance = random.Random(3)
     streams = [stream(chance) for _ in range(STREAMS)]
     result = subprocess.run(
-        [node, Path(__file__).with_name("learning.mjs"), playing],
+        [node, Path(__file__).with_name("learning.mjs"), page],
         input="\n".join(map(json.dumps, streams)),
         capture_output=True,
         text=True,
@@ -91,12 +102,12 @@ def test_the_page_learns_what_the_server_learns(node, playing, settings):
     assert result.returncode == 0, result.stderr
     kinds: set[str] = set()
     for given, line in zip(streams, result.stdout.splitlines(), strict=True):
-        page = json.loads(line)
+        told = json.loads(line)
         sources, mapping, path = expected(given, settings)
-        assert page["sources"] == sources, given
-        assert page["binds"] == styles.mapping(mapping)["binds"], given
+        assert told["sources"] == sources, given
+        assert [*map(placeless, told["binds"])] == rows_of(mapping), given
         own = Path(given["name"])
-        contents = mapping_file_from(own, toml_of(own, page["file"]))
+        contents = mapping_file_from(own, toml_of(own, told["file"]))
         if path.exists():
             kept = read_mapping_file(path)
             assert contents == kept

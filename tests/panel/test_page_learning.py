@@ -21,7 +21,6 @@ VIBRATO, BOW_POSITION = ROW["/playing/vibrato"], ROW["/playing/bow_position"]
 def found(tmp_path_factory) -> Any:
     """What followed as the page was taught."""
     generated = tmp_path_factory.mktemp("generated")
-    facts.write(generated)
     with served(generated) as url:
         return drive("page_learning.mjs", url)
 

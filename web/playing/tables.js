@@ -64,11 +64,11 @@ export function writeTuning(tables, { keys }) {
 }
 
 /**
- * A bind's row of the tables.
+ * A bind's row of the tables, but for what depends on its place among others.
  * @param {Bind} bind
  * @returns {{source: number} & Record<string, number>}
  */
-function rowOf(bind) {
+export function rowOf(bind) {
   if ('row' in bind) return bind.row;
   const { source, target, span, isSoft, isGlobal } = bind;
   const { lo, hi, curve } = find(target);

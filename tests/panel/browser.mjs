@@ -18,8 +18,8 @@ export const FLAGS = [
 /** What a browser calls requests that it drops itself, such as an icon's when the page is left. */
 const ABORTED = "net::ERR_ABORTED";
 
-/** Shows that the page can be played, or that a server is still preparing what it needs for that. */
-export const READY = "#page:not([aria-busy]) #ways input";
+/** Is there once the page can be played, or never will be. */
+export const READY = "#play:not([aria-busy]) #ways input";
 
 export const SIZES = {
   phone: { width: 360, height: 740 },

@@ -28,13 +28,6 @@ function heard(messages) {
   return null;
 }
 
-/** A bind with its row of the tables, without what is 0. */
-function told(bind) {
-  const row = Object.entries(rowOf(bind)).filter(([, value]) => value !== 0);
-  const { source, target, channels } = bind;
-  return { source, target, channels, row: Object.fromEntries(row) };
-}
-
 for await (const line of createInterface({ input: process.stdin })) {
   const { name, lessons } = JSON.parse(line);
   const mapping = facts.mappings[name];
@@ -47,6 +40,9 @@ for await (const line of createInterface({ input: process.stdin })) {
     if (!messages) learned = learned.filter((bind) => bind.target !== target);
   }
   learned = readLearned(JSON.parse(JSON.stringify(learned))); // as a browser keeps them
-  const binds = merged(mapping, learned).binds.map(told);
+  const binds = merged(mapping, learned).binds.map((bind) => {
+    const { source, target, channels } = bind;
+    return { source, target, channels, row: rowOf(bind) };
+  });
   console.log(JSON.stringify({ sources, binds, file: fileOf(name, mapping, learned) }));
 }

@@ -102,9 +102,11 @@ await run(async (browser, url) => {
   found.file = await saved(page);
   found.merged = await page.evaluate(async () => {
     const { merged, readLearned } = await import("/playing/learned.js");
+    const { rowOf } = await import("/playing/tables.js");
     const { default: facts } = await import("/facts.js");
     const { learned } = JSON.parse(localStorage.getItem("yehu"));
-    return merged(facts.mappings.keyboard, readLearned(learned.keyboard)).binds;
+    const { binds } = merged(facts.mappings.keyboard, readLearned(learned.keyboard));
+    return binds.map((bind) => ({ source: bind.source, target: bind.target, row: rowOf(bind) }));
   });
 
   // Another mapping has nothing learned; the first has it again, also after loading the page anew.

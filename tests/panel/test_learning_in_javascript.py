@@ -10,9 +10,9 @@ from typing import Any
 
 import mido
 import pytest
+from panel.bound import placeless, rows_of
 from panel.streams import FREE
 
-from yehu_server.panel import styles
 from yehu_server.playing import learned
 from yehu_server.playing.learner import Learner
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
@@ -76,17 +76,6 @@ def expected(given: dict[str, Any], folder: Path) -> tuple[list[str | None], Map
             mapping, _ = learned.learn(mapping, target, found, soft=rest[0])
         sources.append(None if found is None else found.source)
     return sources, mapping, folder / "yehu-server" / "mappings" / f"{given['name']}.toml"
-
-
-def placeless(bind: dict[str, Any]) -> dict[str, Any]:
-    """A bind, wherever its points lie: the page leaves those of binds that were overridden."""
-    row = {name: value for name, value in bind["row"].items() if name != "first_point"}
-    return bind | {"row": row}
-
-
-def rows_of(mapping: Mapping) -> list[dict[str, Any]]:
-    """The binds of a mapping, as the page has them."""
-    return [placeless(bind) for bind in styles.mapping(mapping)["binds"]]
 
 
 def test_the_page_learns_what_the_server_learns(node, page, settings):

@@ -58,7 +58,7 @@ function showNotice(instrument) {
       key = event === "ready" ? "" : `header.${event}`;
       why = String(instrument.error);
       tell();
-      find("page", HTMLElement).removeAttribute("aria-busy");
+      if (event !== "prepare") find("play", HTMLElement).removeAttribute("aria-busy");
     });
   }
   inWords(tell);

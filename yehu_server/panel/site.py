@@ -81,7 +81,7 @@ class Site:
         if kept is None and request.path == f"/{MODULE}":
             if self._lacks is not None:
                 raise web.HTTPNotFound(text=f"{self._lacks}\n")
-            raise web.HTTPServiceUnavailable(headers={"Retry-After": "5"}, text="not built yet\n")
+            raise web.HTTPServiceUnavailable(headers={"Retry-After": "1"}, text="not built yet\n")
         if kept is None:
             raise web.HTTPNotFound(text="nothing here\n")
         headers = HEADERS | {"ETag": kept.tag, "Vary": "Accept-Encoding"}

@@ -2,7 +2,11 @@
 
 import { createInterface } from "node:readline";
 
-import { fingersOf, open, run } from "./browser.mjs";
+import { fingersOf, keepAnalysers, open, run } from "./browser.mjs";
+
+const STEADY_MS = 2000;
+const PATIENCE_MS = 40_000;
+const LOUD = 0.01;
 
 const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
 
@@ -12,7 +16,32 @@ async function reach(step) {
   return (await lines.next()).value;
 }
 
+/**
+ * Wait until the server's note is heard, and until it has gone on for a while without another gap: a
+ * busy machine has some, until enough of the sound waits.
+ * @param {import("playwright-core").Page} page
+ * @returns {Promise<boolean>} whether it came to that
+ */
+async function isHeardSteadily(page) {
+  await page.waitForFunction((limit) => {
+    const analyser = globalThis.analysers.at(-1);
+    const samples = new Float32Array(analyser.fftSize);
+    analyser.getFloatTimeDomainData(samples);
+    return samples.some((sample) => Math.abs(sample) > limit);
+  }, LOUD);
+  const gaps = async () => /drop-outs (\d+)/.exec(await page.locator("#status").textContent())?.[1];
+  let [before, since] = [await gaps(), Date.now()];
+  for (const end = Date.now() + PATIENCE_MS; Date.now() < end; ) {
+    await page.waitForTimeout(100);
+    const now = await gaps();
+    if (now !== before) [before, since] = [now, Date.now()];
+    else if (Date.now() - since > STEADY_MS) return true;
+  }
+  return false;
+}
+
 await run(async (browser, url) => {
+  await browser.addInitScript(keepAnalysers);
   const { page, errors } = await open(browser, url);
   const touch = await fingersOf(page);
   const found = {};
@@ -47,7 +76,7 @@ await run(async (browser, url) => {
   await page.click("#way-listen");
   await page.waitForFunction(() => /listen|heard/i.test(document.querySelector("#panel-connect").textContent));
   await reach("listens");
-  await page.waitForTimeout(3000);
+  found.isSteady = await isHeardSteadily(page);
   found.listening = await status();
   found.panel = await page.locator("#panel-connect").textContent();
   await reach("has listened");

@@ -16,6 +16,29 @@ async function reach(step) {
   return (await lines.next()).value;
 }
 
+/** Wait until something is heard. @param {import("playwright-core").Page} page */
+function heard(page) {
+  return page.waitForFunction((limit) => {
+    const analyser = globalThis.analysers.at(-1);
+    const samples = new Float32Array(analyser?.fftSize ?? 0);
+    analyser?.getFloatTimeDomainData(samples);
+    return samples.some((sample) => Math.abs(sample) > limit);
+  }, LOUD);
+}
+
+/** Whether a page that cannot be played is heard, and sees. @param {import("playwright-core").BrowserContext} browser */
+async function listensWithoutModule(browser, url) {
+  await browser.route("**/yehu.wasm", (route) => route.fulfill({ status: 404, body: "none" }));
+  const { page } = await open(browser, url);
+  await page.click("#start");
+  await heard(page);
+  await page.click("#tab-see");
+  await page.waitForFunction(() => /cents/.test(document.querySelector("#tuner").ariaLabel));
+  await page.close();
+  await browser.unroute("**/yehu.wasm");
+  return true;
+}
+
 /**
  * Wait until the server's note is heard, and until it has gone on for a while without another gap: a
  * busy machine has some, until enough of the sound waits.
@@ -23,12 +46,7 @@ async function reach(step) {
  * @returns {Promise<boolean>} whether it came to that
  */
 async function isHeardSteadily(page) {
-  await page.waitForFunction((limit) => {
-    const analyser = globalThis.analysers.at(-1);
-    const samples = new Float32Array(analyser.fftSize);
-    analyser.getFloatTimeDomainData(samples);
-    return samples.some((sample) => Math.abs(sample) > limit);
-  }, LOUD);
+  await heard(page);
   const gaps = async () => /drop-outs (\d+)/.exec(await page.locator("#status").textContent())?.[1];
   let [before, since] = [await gaps(), Date.now()];
   for (const end = Date.now() + PATIENCE_MS; Date.now() < end; ) {
@@ -76,6 +94,7 @@ await run(async (browser, url) => {
   await page.click("#way-listen");
   await page.waitForFunction(() => /listen|heard/i.test(document.querySelector("#panel-connect").textContent));
   await reach("listens");
+  found.listensWithoutModule = await listensWithoutModule(browser, url);
   found.isSteady = await isHeardSteadily(page);
   found.listening = await status();
   found.panel = await page.locator("#panel-connect").textContent();

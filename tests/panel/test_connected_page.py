@@ -71,6 +71,10 @@ def test_listening_the_page_has_the_sound_and_no_more_gaps_once_enough_of_it_wai
     assert seen[0]["isSteady"]
 
 
+def test_a_page_that_cannot_be_played_listens_and_sees(seen) -> None:
+    assert seen[0]["listensWithoutModule"]
+
+
 def test_here_the_page_sounds_and_the_server_plays_along(seen) -> None:
     _, server = seen
     assert server["plays here"]

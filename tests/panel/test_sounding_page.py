@@ -57,6 +57,10 @@ def test_it_sounds_soon_and_without_an_error(found):
     assert "ms" in found["status"]
 
 
+def test_the_module_is_asked_for_once_to_play_by_and_to_sound_by(found):
+    assert found["asked"] == 1
+
+
 @pytest.mark.parametrize("name", ["recorded.wav", "script.wav"])
 def test_what_is_recorded_is_the_note_that_was_played(found, folder, name):
     assert found

@@ -58,8 +58,8 @@ def served(generated: Path) -> Iterator[str]:
     Parameters
     ----------
     generated : Path
-        The folder to write ``facts.js``, ``examples.js`` and the WebAssembly module into; it may have
-        ``captures/``.
+        The folder to write ``facts.js``, ``examples.js`` and the WebAssembly module into; it may
+        have ``captures/``.
     """
     facts.write(generated)
     shutil.copy(page_module(), generated / MODULE)

@@ -229,6 +229,25 @@ test("a control with smoothing is not undone by the next note", async () => {
   assert.equal(player.value(LOUDNESS), 38 / 127);
 });
 
+test("whatever events come, each comes to an end, and all wishes are finite", async () => {
+  const interpreter = await Interpreter.open(module);
+  const player = new Player({ post() {} });
+  player.playBy(interpreter);
+  let seed = 1;
+  const chance = (most) => (seed = (seed * 16807) % 2147483647) % most;
+  const WILD = [NaN, Infinity, -Infinity, 1e308, -1e308, 1e-308, 0, -1];
+  const kinds = Object.keys(facts.kinds).length + Object.keys(facts.events).length;
+  for (let step = 0; step < 100_000; step += 1) {
+    const [value, other] = [0, 1].map(() => (chance(20) ? chance(1280) / 10 : WILD[chance(WILD.length)]));
+    const isMessage = chance(2) === 0;
+    const bytes = 0x80 + chance(0x80) + (chance(130) << 8) + (chance(130) * 2 ** 16);
+    const index = isMessage ? bytes + 3 * 2 ** 24 + chance(17) * 2 ** 32 : chance(chance(9) ? 100 : 2e9) - 5;
+    const kind = isMessage ? facts.events.MESSAGE : chance(kinds);
+    const wishes = interpreter.take(chance(1e6) - 1000, kind, index, value, other);
+    if (kind >= Object.keys(facts.kinds).length) assert.ok(wishes.flat().every(Number.isFinite));
+  }
+});
+
 test("what does not exist or is no number is refused, and changes nothing", async () => {
   const { player, wishes } = await playing();
   const count = wishes.length;

@@ -31,8 +31,8 @@ from yehu_server.playing.wishes import UNMAPPED, Key, Wishes
 STREAMS, MANY_STREAMS = 200, 4_000
 SOME_MAPPINGS = 20
 HAND = -1  # channel of the only hand
-# Those of named controls, which nothing moves on a page, and of programs, which it ignores; points may
-# lie elsewhere, where somebody has taught the mapping something in place of their bind.
+# Those of named controls, which nothing moves on a page, and of programs, which it ignores; points
+# may lie elsewhere, where somebody has taught the mapping something in place of their bind.
 UNUSED = {"same", "input_lo", "input_hi", "program_row", "first_point", "x", "y"}
 
 Wished = tuple[float, ...]  # frame, kind, index, value, other

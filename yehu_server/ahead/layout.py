@@ -35,8 +35,9 @@ def look_length() -> int:
 
 
 def interpreter_layout() -> dict[str, Any]:
-    """Tell the same of an interpreter's record, and of its tables: `slots` of them, one after
-    another from `tablesAt`, each of `length` words.
+    """Tell the same of an interpreter's record, and of its tables.
+
+    There are `slots` of them, one after another from `tablesAt`, each of `length` words.
     """
     return {
         "record": _layout(MIDI, OF_RECORD),

@@ -21,9 +21,7 @@ from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, Tuning, read_tu
 # mapping, and for what is of named controls: nothing moves those of a page.
 FOUND = {"first", "target", "same", "input_lo", "input_hi"}
 OF_BIND = [
-    name
-    for name in TABLES.names or ()
-    if TABLES[name].shape == (MOST_BINDS,) and name not in FOUND
+    name for name in TABLES.names or () if TABLES[name].shape == (MOST_BINDS,) and name not in FOUND
 ]
 
 

@@ -158,6 +158,9 @@ test("panic lets go of what hands hold", async () => {
   const count = of(END).length;
   player.noteOff("hand");
   assert.equal(of(END).length, count);
+  player.fingerOn("other", 70, 0.5);
+  const [before, after] = of(BEGIN);
+  assert.equal(after.index, before.index); // the channel is free again
 });
 
 test("a written parameter of the bow is told at once, later as it moves", async () => {

@@ -2,21 +2,23 @@
 
 /** @typedef {import('./interfaces.js').Sound} Sound */
 /** @typedef {import('./interfaces.js').Post} Post */
-/** @typedef {import('./playing/mapping.js').MappingFacts} MappingFacts */
+/** @typedef {import('./playing/learned.js').Mapping} Mapping */
 
 import facts from "./facts.js";
+import { Interpreter } from "./playing/interpreter.js";
+import { MAPPINGS } from "./playing/learned.js";
 import { Player } from "./playing/player.js";
+import { fetchModule } from "./sound/module.js";
 
 /** Wishes before the sound is open wait for it; more than these are of no use to anybody. */
 const MOST_WAITING = 1000;
-/** @type {Record<string, MappingFacts>} */
-const MAPPINGS = facts.mappings;
 const AHEAD_S = 0.25;
 const AHEAD_HIDDEN_S = 1.5;
 
 /**
- * Tells by events: 'start' when it sounds, 'fail' when it cannot (with the error as `error`),
- * 'silence' when all has to end, and 'wish' of each wish (a `CustomEvent<Wish>`).
+ * Tells by events: 'prepare' while a server prepares what the page plays by, 'ready' once it can be
+ * played, 'lack' when it cannot (with the error as `error`); 'start' when it sounds, 'fail' when it
+ * cannot; 'silence' when all has to end, and 'wish' of each wish (a `CustomEvent<Wish>`).
  *
  * @typedef {object} Wish
  * @property {number} frame
@@ -36,17 +38,30 @@ export class Instrument extends EventTarget {
     /** @type {unknown} */
     this.error = null;
     /** How the sound is opened; `change` takes another way. @type {() => Promise<Sound>} */
-    this.way = openHere;
+    this.way = () => this.openHere();
     /** @type {Parameters<Post>[]} */
     this.waiting = [];
-    this.player = new Player(facts, this.#sink());
-    /** What controllers move while no tune brings its own. @type {MappingFacts} */
+    this.player = new Player(this.#sink());
+    /** The instrument in WebAssembly: the page plays by it, and may sound by it. */
+    this.module = fetchModule(() => this.dispatchEvent(new Event("prepare")));
+    this.#prepare();
+    /** What controllers move while no tune brings its own. @type {Mapping} */
     this.mapping = MAPPINGS[facts.defaultMapping];
+  }
+
+  async #prepare() {
+    try {
+      this.player.playBy(await Interpreter.open(await this.module));
+      this.dispatchEvent(new Event("ready"));
+    } catch (error) {
+      this.error = error;
+      this.dispatchEvent(new Event("lack"));
+    }
   }
 
   /**
    * Where the player's wishes go.
-   * @returns {import('./playing/wishes.js').Sink}
+   * @returns {import('./playing/player.js').Sink}
    */
   #sink() {
     const instrument = this;
@@ -124,6 +139,15 @@ export class Instrument extends EventTarget {
     this.player.panic();
   }
 
+  /**
+   * Open a sound of this page.
+   * @returns {Promise<Sound>}
+   */
+  async openHere() {
+    const { Sound } = await import("./sound/sound.js");
+    return Sound.open(this.module);
+  }
+
   async #open() {
     const { way } = this;
     try {
@@ -144,10 +168,4 @@ export class Instrument extends EventTarget {
       this.dispatchEvent(new Event("fail"));
     }
   }
-}
-
-/** @returns {Promise<Sound>} */
-export async function openHere() {
-  const { Sound } = await import("./sound/sound.js");
-  return Sound.open();
 }

@@ -1,16 +1,22 @@
 /** What MIDI controllers move: the mapping that was chosen, with what this browser has learned over it. */
 
 /** @typedef {import('./instrument.js').Instrument} Instrument */
-/** @typedef {import('./playing/binds.js').BindFacts} BindFacts */
+/** @typedef {import('./playing/learned.js').LearnedBind} LearnedBind */
 
 import facts from "./facts.js";
-import { bindOf, fileOf, merged, readLearned, spanned, withBind } from "./playing/learned.js";
+import {
+  MAPPINGS,
+  bindOf,
+  fileOf,
+  merged,
+  readLearned,
+  spanned,
+  withBind,
+} from "./playing/learned.js";
 import { Learner } from "./playing/learner.js";
 import { remember, settings } from "./settings.js";
 
 const PATIENCE = 60_000; // ms to wait for something to be moved
-/** @type {Record<string, import('./playing/mapping.js').MappingFacts>} */
-const MAPPINGS = facts.mappings;
 
 /**
  * Tells by events: 'change' of the binds or the mapping, and 'wait' when a wait begins or ends.
@@ -29,12 +35,12 @@ export class Taught extends EventTarget {
   constructor(instrument) {
     super();
     this.instrument = instrument;
-    /** What the last wait has found; null: nothing was moved. @type {BindFacts | null} */
+    /** What the last wait has found; null: nothing was moved. @type {LearnedBind | null} */
     this.found = null;
     this.isSoft = false; // whether what is learned next waits for its target
     /** Name of the mapping. */
     this.name = Object.hasOwn(MAPPINGS, settings.mapping) ? settings.mapping : facts.defaultMapping;
-    /** Learned binds over this mapping. @type {readonly BindFacts[]} */
+    /** Learned binds over this mapping. @type {readonly LearnedBind[]} */
     this.binds = readLearned(settings.learned[this.name]);
     this.#apply();
     instrument.addEventListener("silence", () => this.cancel());
@@ -95,14 +101,14 @@ export class Taught extends EventTarget {
 
   // -- what was learned --------------------------------------------------------------------
 
-  /** @param {BindFacts} bind */
+  /** @param {LearnedBind} bind */
   forget(bind) {
     this.#keep(this.binds.filter((own) => own !== bind));
   }
 
   /**
    * Give a bind other values of its target at the two ends.
-   * @param {BindFacts} bind
+   * @param {LearnedBind} bind
    * @param {number} from
    * @param {number} to
    */
@@ -117,7 +123,7 @@ export class Taught extends EventTarget {
     return { name: `my-${this.name}.toml`, blob: new Blob([text], { type: "application/toml" }) };
   }
 
-  /** @param {readonly BindFacts[]} binds */
+  /** @param {readonly LearnedBind[]} binds */
   #keep(binds) {
     this.binds = binds;
     remember({ learned: { ...settings.learned, [this.name]: binds } });

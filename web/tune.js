@@ -3,7 +3,8 @@
 /** @typedef {import('./instrument.js').Instrument} Instrument */
 
 import facts from "./facts.js";
-import { fit } from "./playing/range_policy.js";
+import { MAPPINGS } from "./playing/learned.js";
+import { transposed } from "./playing/range.js";
 
 /**
  * @typedef {object} Tune As `examples.js` has it.
@@ -46,7 +47,7 @@ export class TunePlayer extends EventTarget {
 
   /** Begin; the sound has to be open. */
   start() {
-    this.instrument.player.applyMapping(this.tune.mapping);
+    this.instrument.player.remap(MAPPINGS[this.tune.mapping]);
     this.begun = this.instrument.horizon;
     this.timer = window.setInterval(() => this.#play(), EVERY);
   }
@@ -127,15 +128,14 @@ export class TuneGuide extends EventTarget {
 }
 
 /**
- * The pitches of a tune's notes, in order, as far as the instrument has them.
+ * The pitches of a tune's notes, in order, within the instrument's range.
  * @param {Tune} tune
  */
 function notesOf(tune) {
   const notes = [];
   for (const [, [status, key, velocity]] of tune.events) {
     const isNote = (status & 0xf0) === NOTE_ON && velocity > 0 && (status & 0x0f) !== PERCUSSION;
-    const pitch = isNote ? fit("transpose", key) : null;
-    if (pitch !== null) notes.push(pitch);
+    if (isNote) notes.push(transposed(key));
   }
   return notes;
 }

@@ -18,6 +18,9 @@ export const FLAGS = [
 /** What a browser calls requests that it drops itself, such as an icon's when the page is left. */
 const ABORTED = "net::ERR_ABORTED";
 
+/** Is there once the page can be played, or never will be. */
+export const READY = "#play:not([aria-busy]) #ways input";
+
 export const SIZES = {
   phone: { width: 360, height: 740 },
   tablet: { width: 1180, height: 820 },
@@ -59,7 +62,8 @@ export async function open(browser, url) {
   /** @type {string[]} */
   const errors = [];
   page.on("console", (message) => {
-    if (["error", "warning"].includes(message.type())) errors.push(message.text());
+    const isWaiting = message.location().url.endsWith("yehu.wasm") && message.text().includes("503");
+    if (["error", "warning"].includes(message.type()) && !isWaiting) errors.push(message.text());
   });
   page.on("pageerror", (error) => errors.push(String(error)));
   page.on("requestfailed", (request) => {
@@ -67,7 +71,7 @@ export async function open(browser, url) {
     if (text !== ABORTED) errors.push(`failed: ${request.url()} (${text})`);
   });
   await page.goto(url);
-  await page.waitForSelector("#ways input");
+  await page.waitForSelector(READY);
   return { page, errors };
 }
 

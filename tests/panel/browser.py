@@ -12,6 +12,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from yehu_server.ahead.kept import page_module
+from yehu_server.ahead.link import page_linker
+from yehu_server.panel import facts
+from yehu_server.panel.files import MODULE
+
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 WEB = ROOT / "web"
@@ -24,6 +29,8 @@ def missing() -> str | None:
     """Why no browser can be driven here; None if one can."""
     if NODE is None or CHROMIUM is None:
         return "needs node and chromium"
+    if page_linker() is None:
+        return "needs wasm-ld"
     return None if PLAYWRIGHT.is_dir() else "needs playwright-core: npm ci"
 
 
@@ -51,10 +58,13 @@ def served(generated: Path) -> Iterator[str]:
     Parameters
     ----------
     generated : Path
-        The folder that ``facts.js``, ``examples.js`` and ``captures/`` were written into.
+        The folder to write ``facts.js``, ``examples.js`` and the WebAssembly module into; it may
+        have ``captures/``.
     """
+    facts.write(generated)
+    shutil.copy(page_module(), generated / MODULE)
     replaced = {"/sound/sound.js": HERE / "imitation.js"}
-    for file in generated.rglob("*.js*"):
+    for file in generated.rglob("*.*"):
         replaced[f"/{file.relative_to(generated)}"] = file
     handler = type("Handler", (_Handler,), {"replaced": replaced})
     server = http.server.ThreadingHTTPServer(

@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from yehu_server.ahead.kept import page_module
+from yehu_server.ahead.link import page_linker
 from yehu_server.panel import facts
+from yehu_server.panel.files import MODULE, page_files, page_folder
 
-ROOT = Path(__file__).parents[2]
+TYPES = ("jsconfig.json", "sound/worklet.d.ts")
 
 
 @pytest.fixture(scope="session")
@@ -22,11 +25,21 @@ def node() -> str:
 
 
 @pytest.fixture(scope="session")
-def playing(tmp_path_factory) -> Path:
-    """A folder with what means MIDI in the page, and the facts generated for it."""
+def page(tmp_path_factory) -> Path:
+    """A folder with the page's modules, and what is generated for them, but for WebAssembly."""
     folder = tmp_path_factory.mktemp("web")
-    shutil.copytree(ROOT / "web" / "playing", folder / "playing")
-    shutil.copy(ROOT / "web" / "jsconfig.json", folder)
+    for file in (*page_files(), *TYPES):
+        (folder / file).parent.mkdir(exist_ok=True)
+        shutil.copy(page_folder() / file, folder / file)
     (folder / "package.json").write_text('{"type": "module"}')
     facts.write(folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def playing(page) -> Path:
+    """That folder, with the interpreter and the instrument in WebAssembly."""
+    if page_linker() is None:
+        pytest.skip("there is no wasm-ld")
+    shutil.copy(page_module(), page / MODULE)
+    return page

@@ -16,6 +16,7 @@ const { Learner } = await import(new URL('playing/learner.js', web).href);
 const { bindOf, fileOf, merged, readLearned, withBind } = await import(
   new URL('playing/learned.js', web).href
 );
+const { rowOf } = await import(new URL('playing/tables.js', web).href);
 
 /** The first source that is meant. */
 function heard(messages) {
@@ -39,6 +40,9 @@ for await (const line of createInterface({ input: process.stdin })) {
     if (!messages) learned = learned.filter((bind) => bind.target !== target);
   }
   learned = readLearned(JSON.parse(JSON.stringify(learned))); // as a browser keeps them
-  const binds = merged(mapping, learned).binds;
+  const binds = merged(mapping, learned).binds.map((bind) => {
+    const { source, target, channels } = bind;
+    return { source, target, channels, row: rowOf(bind) };
+  });
   console.log(JSON.stringify({ sources, binds, file: fileOf(name, mapping, learned) }));
 }

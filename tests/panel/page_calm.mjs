@@ -3,7 +3,7 @@
  * diagram on a narrow phone.
  */
 
-import { SIZES, fingersOf, open, run, wishes } from "./browser.mjs";
+import { READY, SIZES, fingersOf, open, run, wishes } from "./browser.mjs";
 
 const SECOND = 1000;
 
@@ -84,7 +84,7 @@ async function look(browser, url, reducedMotion) {
   const { page, errors } = await open(browser, url);
   await page.emulateMedia({ reducedMotion });
   await page.reload();
-  await page.waitForSelector("#ways input");
+  await page.waitForSelector(READY);
   const found = { pressed: await pressed(page), transition: await longestTransition(page) };
   const silent = new Map(await shown(page));
   await page.keyboard.down("KeyC");
@@ -97,7 +97,7 @@ async function look(browser, url, reducedMotion) {
   found.clicked = { pressed: await pressed(page), drawn: await perSecond(page) };
   await page.keyboard.up("KeyC");
   await page.reload();
-  await page.waitForSelector("#ways input");
+  await page.waitForSelector(READY);
   found.again = await pressed(page);
   await page.close();
   return { ...found, errors };

@@ -2,7 +2,11 @@
 
 import { createInterface } from "node:readline";
 
-import { fingersOf, open, run } from "./browser.mjs";
+import { fingersOf, keepAnalysers, open, run } from "./browser.mjs";
+
+const STEADY_MS = 2000;
+const PATIENCE_MS = 40_000;
+const LOUD = 0.01;
 
 const lines = createInterface({ input: process.stdin })[Symbol.asyncIterator]();
 
@@ -12,7 +16,50 @@ async function reach(step) {
   return (await lines.next()).value;
 }
 
+/** Wait until something is heard. @param {import("playwright-core").Page} page */
+function heard(page) {
+  return page.waitForFunction((limit) => {
+    const analyser = globalThis.analysers.at(-1);
+    const samples = new Float32Array(analyser?.fftSize ?? 0);
+    analyser?.getFloatTimeDomainData(samples);
+    return samples.some((sample) => Math.abs(sample) > limit);
+  }, LOUD);
+}
+
+/** Whether a page that cannot be played is heard, and sees. @param {import("playwright-core").BrowserContext} browser */
+async function listensWithoutModule(browser, url) {
+  await browser.route("**/yehu.wasm", (route) => route.fulfill({ status: 404, body: "none" }));
+  const { page } = await open(browser, url);
+  await page.click("#start");
+  await heard(page);
+  await page.click("#tab-see");
+  await page.waitForFunction(() => /cents/.test(document.querySelector("#tuner").ariaLabel));
+  await page.close();
+  await browser.unroute("**/yehu.wasm");
+  return true;
+}
+
+/**
+ * Wait until the server's note is heard, and until it has gone on for a while without another gap: a
+ * busy machine has some, until enough of the sound waits.
+ * @param {import("playwright-core").Page} page
+ * @returns {Promise<boolean>} whether it came to that
+ */
+async function isHeardSteadily(page) {
+  await heard(page);
+  const gaps = async () => /drop-outs (\d+)/.exec(await page.locator("#status").textContent())?.[1];
+  let [before, since] = [await gaps(), Date.now()];
+  for (const end = Date.now() + PATIENCE_MS; Date.now() < end; ) {
+    await page.waitForTimeout(100);
+    const now = await gaps();
+    if (now !== before) [before, since] = [now, Date.now()];
+    else if (Date.now() - since > STEADY_MS) return true;
+  }
+  return false;
+}
+
 await run(async (browser, url) => {
+  await browser.addInitScript(keepAnalysers);
   const { page, errors } = await open(browser, url);
   const touch = await fingersOf(page);
   const found = {};
@@ -47,7 +94,8 @@ await run(async (browser, url) => {
   await page.click("#way-listen");
   await page.waitForFunction(() => /listen|heard/i.test(document.querySelector("#panel-connect").textContent));
   await reach("listens");
-  await page.waitForTimeout(3000);
+  found.listensWithoutModule = await listensWithoutModule(browser, url);
+  found.isSteady = await isHeardSteadily(page);
   found.listening = await status();
   found.panel = await page.locator("#panel-connect").textContent();
   await reach("has listened");

@@ -1,6 +1,6 @@
 /** Changes the page's language while it sounds; prints what was said before, after, and after loading it anew. */
 
-import { held, open, pretendMidi, run, sendMidi } from "./browser.mjs";
+import { READY, held, open, pretendMidi, run, sendMidi } from "./browser.mjs";
 
 /** All that the page says, by element, without the numbers that move; runs in the page. */
 function said() {
@@ -55,7 +55,7 @@ await run(async (browser, url) => {
   found.after = await end();
 
   await page.reload();
-  await page.waitForSelector("#ways input");
+  await page.waitForSelector(READY);
   await use();
   found.anew = await end();
   found.errors = errors;

@@ -1,7 +1,7 @@
 /** Teaches the page's MIDI keyboard what its knobs move, by keys alone; prints what followed. */
 
 import { readFileSync } from "node:fs";
-import { open, pretendMidi, run, sendMidi, wishes } from "./browser.mjs";
+import { READY, open, pretendMidi, run, sendMidi, wishes } from "./browser.mjs";
 
 const KNOB = 0xb0;
 const WHEEL = 0xe0;
@@ -102,9 +102,11 @@ await run(async (browser, url) => {
   found.file = await saved(page);
   found.merged = await page.evaluate(async () => {
     const { merged, readLearned } = await import("/playing/learned.js");
+    const { rowOf } = await import("/playing/tables.js");
     const { default: facts } = await import("/facts.js");
     const { learned } = JSON.parse(localStorage.getItem("yehu"));
-    return merged(facts.mappings.keyboard, readLearned(learned.keyboard)).binds;
+    const { binds } = merged(facts.mappings.keyboard, readLearned(learned.keyboard));
+    return binds.map((bind) => ({ source: bind.source, target: bind.target, row: rowOf(bind) }));
   });
 
   // Another mapping has nothing learned; the first has it again, also after loading the page anew.
@@ -114,7 +116,7 @@ await run(async (browser, url) => {
   found.ofWind = await list();
   await mapping.selectOption("keyboard");
   await page.reload();
-  await page.waitForSelector("#ways input");
+  await page.waitForSelector(READY);
   await page.click("#tab-connect");
   found.reloaded = await list();
   await panel.getByRole("button", { name: "Use MIDI keyboards" }).press("Enter");

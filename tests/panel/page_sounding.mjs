@@ -62,8 +62,10 @@ async function playAndKeep(page) {
 await run(
   async (browser, url) => {
     await browser.addInitScript(keepAnalysers);
+    let asked = 0;
+    browser.on("request", (request) => (asked += request.url().endsWith("yehu.wasm") ? 1 : 0));
     const { page, errors } = await open(browser, url);
-    const found = { seconds: (await start(page)) / 1e3 };
+    const found = { seconds: (await start(page)) / 1e3, asked };
     await page.keyboard.up(KEY);
     if (tune) {
       await page.click("#tab-tunes");

@@ -1,6 +1,6 @@
 /** Looks at the page in every size, theme and language; prints what it finds. */
 
-import { SIZES, held, open, pretendMidi, run, wishes } from "./browser.mjs";
+import { READY, SIZES, held, open, pretendMidi, run, wishes } from "./browser.mjs";
 
 /** Elements that a finger should be able to touch, and their sizes. */
 const TARGETS = "button:not([hidden]), select, input, summary, canvas[tabindex]";
@@ -168,7 +168,7 @@ await run(async (browser, url) => {
   found.theme = await page.evaluate(() => document.documentElement.dataset.theme);
   await page.click("#language");
   await page.waitForFunction(() => document.title === "椰胡");
-  await page.waitForSelector("#ways input");
+  await page.waitForSelector(READY);
   found.language = await page.evaluate(() => ({
     lang: document.documentElement.lang,
     start: document.querySelector("#start").textContent,

@@ -1,26 +1,33 @@
 /**
- * What the page's player does beside the server's: hands, and calls without a frame.
+ * What the page's player does beside interpreting: hands, calls without a frame, what others set.
  *
  * WEB is the page's folder.
  */
 
-import assert from 'node:assert/strict';
-import test from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { resolve } from 'node:path';
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import test from "node:test";
+import { pathToFileURL } from "node:url";
+import { resolve } from "node:path";
 
-const web = pathToFileURL(`${resolve(process.env.WEB ?? 'web')}/`);
-const { default: facts } = await import(new URL('facts.js', web).href);
-const { Player } = await import(new URL('playing/player.js', web).href);
-const { ParameterError } = await import(new URL('playing/table.js', web).href);
+const web = pathToFileURL(`${resolve(process.env.WEB ?? "web")}/`);
+const module = readFileSync(new URL("yehu.wasm", web));
+const { default: facts } = await import(new URL("facts.js", web).href);
+const { Interpreter } = await import(new URL("playing/interpreter.js", web).href);
+const { MAPPINGS, bindOf, merged } = await import(new URL("playing/learned.js", web).href);
+const { Player } = await import(new URL("playing/player.js", web).href);
+const { ParameterError } = await import(new URL("playing/table.js", web).href);
+const { Kernel } = await import(new URL("sound/kernel.js", web).href);
 
-const { BEGIN, END, STOP, LIFT, WRITE } = facts.kinds;
+const { BEGIN, END, STOP, LIFT, WRITE, EXPRESS } = facts.kinds;
 const ROW = Object.fromEntries(facts.parameters.map(({ address, row }) => [address, row]));
 const NAMES = Object.fromEntries(Object.entries(facts.kinds).map(([name, kind]) => [kind, name]));
 const RATE = 48000;
+const LOUDNESS = "/playing/expression";
+const PEOPLE = "/playing/section";
 
 /** A player, and what is wished through it. */
-function playing(style = {}, members = {}) {
+async function playing(members = {}) {
   const wishes = [];
   const sink = {
     post: (frame, kind, index, value, other) => wishes.push({ frame, kind, index, value, other }),
@@ -28,9 +35,12 @@ function playing(style = {}, members = {}) {
     rate: RATE,
     ...members,
   };
-  const player = new Player(facts, sink, style);
+  const player = new Player(sink);
+  player.playBy(await Interpreter.open(module));
   const of = (...kinds) => wishes.filter((wish) => kinds.includes(wish.kind));
-  return { player, wishes, sink, of };
+  const values = (kind, address) =>
+    of(kind).filter(({ index }) => index === ROW[address]).map(({ value }) => value);
+  return { player, wishes, sink, of, values };
 }
 
 /** The keys that are held after some wishes. */
@@ -43,34 +53,34 @@ function heldAfter(wishes) {
   return held.size;
 }
 
-test('two fingers at one pitch are two notes', () => {
-  const { player, wishes } = playing();
-  player.noteOn('left', 70, 0.5);
-  player.noteOn('right', 70, 0.5);
-  player.noteOff('left');
+test("two fingers at one pitch are two notes", async () => {
+  const { player, wishes } = await playing();
+  player.fingerOn("left", 70, 0.5);
+  player.fingerOn("right", 70, 0.5);
+  player.noteOff("left");
   assert.equal(heldAfter(wishes), 1);
-  player.noteOff('right');
+  player.noteOff("right");
   assert.equal(heldAfter(wishes), 0);
 });
 
-test('a hand that takes another key slurs: the old note ends after the new one has begun', () => {
-  const { player, of } = playing();
-  player.noteOn('hand', 70, 0.5);
-  player.noteOn('hand', 72, 0.5);
+test("a hand that takes another pitch slurs: the old note ends after the new one has begun", async () => {
+  const { player, of } = await playing();
+  player.fingerOn("hand", 70, 0.5);
+  player.fingerOn("hand", 72, 0.5);
   const order = of(BEGIN, END).map(({ kind, value }) => [NAMES[kind], value]);
-  assert.deepEqual(order, [['BEGIN', 70], ['BEGIN', 72], ['END', 70]]);
-  player.noteOff('hand');
-  player.noteOff('hand');
+  assert.deepEqual(order, [["BEGIN", 70], ["BEGIN", 72], ["END", 70]]);
+  player.noteOff("hand");
+  player.noteOff("hand");
   assert.equal(of(END).length, 2);
 });
 
-test('whatever ten fingers do, no note is left when all are up', () => {
-  const { player, wishes, of } = playing();
+test("whatever ten fingers do, no note is left when all are up", async () => {
+  const { player, wishes, of } = await playing();
   let seed = 1;
   const chance = (most) => (seed = (seed * 16807) % 2147483647) % most;
   for (let step = 0; step < 5000; step += 1) {
     const id = chance(10);
-    if (chance(2)) player.noteOn(id, 60 + chance(35), 0.5);
+    if (chance(2)) player.fingerOn(id, 60 + chance(35), 0.5);
     else player.noteOff(id);
   }
   for (let id = 0; id < 10; id += 1) player.noteOff(id);
@@ -78,55 +88,50 @@ test('whatever ten fingers do, no note is left when all are up', () => {
   assert.equal(heldAfter(wishes), 0);
 });
 
-test('a key is tuned, a finger at a pitch is not', () => {
-  const { player, of } = playing({ tuning: 'chaozhou-seven-equal' });
-  player.noteOn('key', 67, 0.5);
-  player.fingerOn('finger', 67, 0.5);
-  const [key, finger] = of(BEGIN).map((wish) => wish.other);
-  assert.ok(Math.abs(key - facts.tunings['chaozhou-seven-equal'].keys[67]) % 12 < 1e-9);
+test("a key of MIDI is tuned, from the next note on; a finger is not", async () => {
+  const { player, of } = await playing();
+  player.applyTuning("chaozhou-seven-equal");
+  player.midi([0x90, 67, 90]);
+  player.fingerOn("finger", 67, 0.5);
+  player.applyTuning("equal");
+  player.midi([0x90, 67, 90]);
+  const [key, finger, equal] = of(BEGIN).map((wish) => wish.other);
+  assert.equal(key, facts.tunings["chaozhou-seven-equal"].keys[67]);
   assert.notEqual(key, 67);
-  assert.equal(finger, 67);
+  assert.deepEqual([finger, equal], [67, 67]);
 });
 
-test('a key that a hand takes after a finger is tuned again', () => {
-  const { player, of } = playing({ tuning: 'chaozhou-seven-equal' });
-  player.fingerOn('hand', 67, 0.5);
-  player.noteOff('hand');
-  player.noteOn('hand', 67, 0.5);
-  const [finger, key] = of(BEGIN);
-  assert.equal(finger.index, key.index);
-  assert.notEqual(finger.other, key.other);
-});
-
-test('a tuning applies from the next note on, and null is equal temperament', () => {
-  const { player, of } = playing();
-  player.applyTuning('chaozhou-seven-equal');
-  player.noteOn('key', 67, 0.5);
-  player.applyTuning(null);
-  player.noteOn('key', 67, 0.5);
-  const [tuned, equal] = of(BEGIN).map((wish) => wish.other);
-  assert.notEqual(tuned, 67);
-  assert.equal(equal, 67);
-});
-
-test('without a frame wishes are for now', () => {
-  const { player, wishes } = playing();
-  player.noteOn('hand', 70, 0.5);
-  player.write('/playing/vibrato', 20);
-  player.noteOff('hand');
+test("without a frame wishes are for now", async () => {
+  const { player, wishes } = await playing();
+  player.fingerOn("hand", 70, 0.5);
+  player.write("/playing/vibrato", 20);
+  player.noteOff("hand");
   player.panic();
   assert.ok(wishes.every((wish) => wish.frame === null));
 });
 
-test('a note that is to begin ends no sooner, also where its end is for now', () => {
-  const { player, of } = playing({}, { frame: 1000 });
-  player.midi([0x90, 70, 90], 5000);
-  player.midi([0x80, 70, 0]);
-  assert.equal(of(END)[0].frame, 5000);
+test("a key that is struck twice for now ends once it is released", async () => {
+  const { player, of } = await playing();
+  for (const velocity of [90, 91, 0]) player.midi([0x90, 70, velocity]);
+  assert.equal(of(END).length, 1);
 });
 
-test('panic comes after what is wished ahead, unless that is far ahead', () => {
-  const { player, of } = playing({}, { frame: 1000 });
+test("a note that is to begin is silent where its end is for now", async () => {
+  for (const [ended, isSilent] of [[() => {}, false], [({ player }) => player.midi([0x80, 70, 0]), true]]) {
+    const kernel = new Kernel(new WebAssembly.Module(module), RATE, 4800, facts.lookLength);
+    const made = await playing();
+    made.player.midi([0x90, 70, 90], 960);
+    ended(made);
+    for (const { frame, kind, index, value, other } of made.wishes) {
+      kernel.post(frame ?? 0, kind, index, value, other);
+    }
+    kernel.compute(4800);
+    assert.equal(Math.max(...kernel.out) < 1e-3, isSilent);
+  }
+});
+
+test("panic comes after what is wished ahead, unless that is far ahead", async () => {
+  const { player, of } = await playing({ frame: 1000 });
   player.midi([0x90, 70, 90], 5000);
   player.panic();
   assert.equal(of(STOP)[0].frame, 5000);
@@ -135,64 +140,156 @@ test('panic comes after what is wished ahead, unless that is far ahead', () => {
   assert.equal(of(LIFT)[1].frame, null);
 });
 
-test('a port that is gone ends what it wished ahead', () => {
-  const { player, of } = playing();
+test("a port that is gone ends what it wished ahead", async () => {
+  const { player, of, values } = await playing();
   player.midi([0x90, 70, 90], 4000, 3);
   player.midi([0x90, 72, 90], 5000, 3);
   player.letGoOf(3);
   assert.deepEqual(of(END).map((wish) => wish.frame), [5000, 5000]);
   player.midi([0xe0, 0, 127], 6000, 4);
   player.letGoOf(4);
-  const bends = of(WRITE).filter((wish) => wish.index === ROW['/playing/bend']);
-  assert.deepEqual(bends.map(({ frame, value }) => [frame, value > 1]), [[6000, true], [6000, false]]);
+  assert.deepEqual(values(WRITE, "/playing/bend").map((bend) => bend > 1), [true, false]);
 });
 
-test('panic lets go of what hands hold', () => {
-  const { player, of } = playing();
-  player.noteOn('hand', 70, 0.5);
+test("panic lets go of what hands hold", async () => {
+  const { player, of } = await playing();
+  player.fingerOn("hand", 70, 0.5);
   player.panic();
   const count = of(END).length;
-  player.noteOff('hand');
+  player.noteOff("hand");
   assert.equal(of(END).length, count);
+  player.fingerOn("other", 70, 0.5);
+  const [before, after] = of(BEGIN);
+  assert.equal(after.index, before.index); // the channel is free again
 });
 
-test('a written parameter of the bow is told at once, later as it moves', () => {
-  const { player, sink } = playing({}, { target: () => 0.25 });
-  assert.equal(player.value('/bow/speed'), 0.25);
-  player.write('/bow/speed', 0.1);
+test("a written parameter of the bow is told at once, later as it moves", async () => {
+  const { player, sink } = await playing({ target: () => 0.25 });
+  assert.equal(player.value("/bow/speed"), 0.25);
+  player.write("/bow/speed", 0.1);
   player.draw(0.2, 1);
-  assert.equal(player.value('/bow/speed'), 0.2);
-  assert.equal(player.value('/bow/assist'), 0);
+  assert.equal(player.value("/bow/speed"), 0.2);
+  assert.equal(player.value("/bow/assist"), 0);
   sink.frame += RATE;
-  assert.equal(player.value('/bow/speed'), 0.25);
+  assert.equal(player.value("/bow/speed"), 0.25);
 });
 
-test('what does not exist or is no number is refused, and changes nothing', () => {
-  const { player, wishes } = playing();
+test("a written force of the bow is heard without assist", async () => {
+  const { player } = await playing({ target: () => 0.25 });
+  player.write("/bow/force", 1);
+  assert.equal(player.value("/bow/assist"), 0);
+});
+
+test("with others the value they set counts, but one just written here is told at once", async () => {
+  const set = { [LOUDNESS]: 0.8 };
+  const { player, sink } = await playing({ told: (address) => set[address] });
+  assert.equal(player.value(LOUDNESS), 0.8);
+  player.write(LOUDNESS, 0.6);
+  assert.equal(player.value(LOUDNESS), 0.6);
+  sink.frame += RATE;
+  assert.equal(player.value(LOUDNESS), 0.8);
+});
+
+test("a soft control waits for the value that others set", async () => {
+  const set = { [LOUDNESS]: 0.2 };
+  const { player, sink, values } = await playing({ told: (address) => set[address] });
+  player.remap(merged(MAPPINGS.keyboard, [bindOf(LOUDNESS, "cc 74", true)]));
+  sink.frame += RATE;
+  for (const position of [120, 100]) player.midi([0xb0, 74, position]);
+  assert.ok(values(WRITE, LOUDNESS).every((value) => value === 0.2));
+  player.midi([0xb0, 74, 20]); // passes 0.2
+  assert.equal(values(WRITE, LOUDNESS).at(-1), 20 / 127);
+});
+
+test("how many play a section is as the server can, and no more than one here", async () => {
+  const here = await playing();
+  here.player.write(PEOPLE, 5);
+  assert.equal(here.player.value(PEOPLE), 1);
+  const there = await playing({ people: Infinity });
+  there.player.write(PEOPLE, 5.4);
+  assert.equal(there.player.value(PEOPLE), 5);
+  there.player.fingerOn("hand", 70, 0.5);
+  assert.deepEqual(there.values(WRITE, PEOPLE), [5]);
+  assert.deepEqual(there.values(EXPRESS, PEOPLE), []);
+  there.player.remap(merged(MAPPINGS.keyboard, [bindOf(PEOPLE, "cc 74", false)]));
+  there.player.midi([0xb0, 74, 127]);
+  assert.equal(there.values(WRITE, PEOPLE).at(-1), 16);
+  assert.equal(there.player.value(PEOPLE), 16);
+});
+
+test("a control with smoothing is not undone by the next note", async () => {
+  const { player, values, of } = await playing();
+  const { binds, ...mapping } = MAPPINGS.keyboard;
+  const smoothed = binds.map((bind) =>
+    bind.target === LOUDNESS ? { ...bind, row: { ...bind.row, smoothing_ms: 20 } } : bind,
+  );
+  player.remap({ ...mapping, binds: smoothed });
+  player.midi([0xb0, 11, 38]);
+  const written = of(WRITE).at(-1);
+  assert.deepEqual([written.value, written.other], [38 / 127, 20]);
+  player.midi([0x90, 70, 90]);
+  assert.equal(values(EXPRESS, LOUDNESS).at(-1), 38 / 127);
+  assert.equal(player.value(LOUDNESS), 38 / 127);
+});
+
+test("whatever events come, each comes to an end, and all wishes are finite", async () => {
+  const interpreter = await Interpreter.open(module);
+  const player = new Player({ post() {} });
+  player.playBy(interpreter);
+  let seed = 1;
+  const chance = (most) => (seed = (seed * 16807) % 2147483647) % most;
+  const WILD = [NaN, Infinity, -Infinity, 1e308, -1e308, 1e-308, 0, -1];
+  const kinds = Object.keys(facts.kinds).length + Object.keys(facts.events).length;
+  for (let step = 0; step < 100_000; step += 1) {
+    const [value, other] = [0, 1].map(() => (chance(20) ? chance(1280) / 10 : WILD[chance(WILD.length)]));
+    const isMessage = chance(2) === 0;
+    const bytes = 0x80 + chance(0x80) + (chance(130) << 8) + (chance(130) * 2 ** 16);
+    const index = isMessage ? bytes + 3 * 2 ** 24 + chance(17) * 2 ** 32 : chance(chance(9) ? 100 : 2e9) - 5;
+    const kind = isMessage ? facts.events.MESSAGE : chance(kinds);
+    const wishes = interpreter.take(chance(1e6) - 1000, kind, index, value, other);
+    if (kind >= Object.keys(facts.kinds).length) assert.ok(wishes.flat().every(Number.isFinite));
+  }
+});
+
+test("what does not exist or is no number is refused, and changes nothing", async () => {
+  const { player, wishes } = await playing();
   const count = wishes.length;
   const refused = [
-    () => player.write('/playing/nothing', 1),
-    () => player.write('/playing/vibrato', NaN),
-    () => player.value('/nothing'),
-    () => player.noteOn('hand', 128, 0.5),
-    () => player.noteOn('hand', 70, NaN),
+    () => player.write("/playing/nothing", 1),
+    () => player.write("/playing/vibrato", NaN),
+    () => player.value("/nothing"),
+    () => player.fingerOn("hand", 128, 0.5),
+    () => player.fingerOn("hand", 70, NaN),
     () => player.slide(-1),
-    () => player.applyPreset('nothing'),
-    () => player.applyPreset('constructor'),
-    () => player.applyMapping('nothing'),
-    () => player.applyTuning('nothing'),
+    () => player.applyPreset("nothing"),
+    () => player.applyPreset("constructor"),
+    () => player.applyTuning("nothing"),
   ];
   for (const call of refused) assert.throws(call, ParameterError);
   assert.equal(wishes.length, count);
 });
 
-test('a preset sets what it names, but nothing that is held', () => {
-  const { player } = playing();
-  player.hold('/playing/pressure', 0.7);
-  player.applyPreset('flautando');
+test("a preset sets what it names", async () => {
+  const { player } = await playing();
+  player.applyPreset("flautando");
   const { values } = facts.presets.shipped.flautando;
-  for (const [address, value] of Object.entries(values)) {
-    const expected = address === '/playing/pressure' ? 0.7 : value;
-    assert.equal(player.value(address), expected, address);
-  }
+  for (const [address, value] of Object.entries(values)) assert.equal(player.value(address), value);
+});
+
+test("without an interpreter only silence can be wished, and what was chosen waits for it", async () => {
+  const wishes = [];
+  const player = new Player({ post: (...wish) => wishes.push(wish) });
+  player.fingerOn("hand", 70, 0.5);
+  player.write(LOUDNESS, 0.5);
+  player.applyTuning("chaozhou-seven-equal");
+  player.remap(MAPPINGS.wind);
+  player.panic();
+  assert.deepEqual(wishes, [[null, STOP, 0, 1, 0]]);
+  assert.equal(player.value(LOUDNESS), facts.parameters[ROW[LOUDNESS]].default);
+  player.playBy(await Interpreter.open(module));
+  player.midi([0xb0, 2, 127]); // a breath controller
+  player.midi([0x90, 67, 90]);
+  const [, , , , pitch] = wishes.find(([, kind]) => kind === BEGIN);
+  assert.equal(pitch, facts.tunings["chaozhou-seven-equal"].keys[67]);
+  assert.ok(wishes.length > 5);
 });

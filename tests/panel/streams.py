@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import itertools
 import random
+from functools import partial
 from typing import Any
 
-from yehu_server.params.spec import Curve
+from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import TABLE
 from yehu_server.playing import sources
 from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.mapping_file import MappingFile
 
 Call = list[Any]
 FREE = [param for param in TABLE if not param.owned]
 ADDRESSES = ("/tilt", "/touch/1")
 PRESETS = ("flautando", "ordinary", "pizzicato", "scratch", "sul-tasto", "tremolo", "vibrato")
 TUNINGS = ("equal", "chaozhou-seven-equal", "chaozhou-seven-equal, chaozhou-keys")
+LEARNED = ("bend", "pressure", "poly-pressure", "cc 1", "cc 1/33", "cc 11", "cc 74", "nrpn 300")
 LISTENED = (0, 1, 2, 5, 7, 11, 32, 33, 34, 39, 65, 67, 71, 74, 76, 77, 78, 92, *range(20, 24))
 NRPNS = (3, 300)
-RATE = 48000.0
 
 
 def some_mapping(chance: random.Random, name: str) -> Mapping:
@@ -61,6 +63,31 @@ def some_bind(chance: random.Random) -> Bind:
     )
 
 
+def some_learned(chance: random.Random, base: str) -> MappingFile:
+    """What somebody has taught a shipped mapping."""
+    controls = chance.sample(LEARNED, 3)
+    targets = chance.sample(FREE, 3)
+    binds = tuple(map(partial(learned_bind, chance), controls, targets))
+    return MappingFile(base, binds, base=base)
+
+
+def learned_bind(chance: random.Random, source: str, param: Param) -> Bind:
+    """A bind as the page learns it, and perhaps with ends of its own."""
+    is_of_note = source in sources.OF_ONE_NOTE
+    is_by_range = (source, param.address) == (sources.BEND, "/playing/bend")
+    lo = max(param.lo, 0.01) if param.curve is Curve.EXP else param.lo
+    spanned = chance.random() < 0.5 and not is_by_range
+    return Bind(
+        source,
+        param.address,
+        (chance.uniform(lo, param.hi), chance.uniform(lo, param.hi)) if spanned else None,
+        param.curve,
+        is_soft=chance.random() < 0.5 and not is_of_note and not is_by_range,
+        is_exclusive=True,
+        is_global=not is_of_note,
+    )
+
+
 def ends_of(address: str) -> tuple[float, float]:
     param = next(each for each in FREE if each.address == address)
     return param.lo, param.hi
@@ -89,36 +116,20 @@ class Streams:
         self._chance = random.Random(seed)
         self._mappings = mappings
 
-    def next(self) -> dict[str, Any]:
-        """A stream: its style, and calls of JavaScript's methods, each with its frame."""
+    def next(self) -> list[Call]:
+        """A stream: calls of JavaScript's methods, each with its frame."""
         chance = self._chance
-        style = {
-            "mapping": chance.choice(self._mappings),
-            "tuning": chance.choice([*TUNINGS, None, None]),
-            "a4": chance.choice([440.0, 440.0, 392.0, 480.5]),
-            "policy": chance.choice(["transpose", "transpose", "clamp", "skip"]),
-            "programs": chance.random() < 0.5,
-            "channels": chance.choice([None, None, None, [0, 9]]),
-        }
-        if chance.random() < 0.2:
-            style["preset"] = chance.choice(PRESETS)
         self._is_timed = chance.random() < 0.7
         self._frame = 0
         self._in_hand = False
         self._ports = chance.choice([(0,), (0,), (0, 1, 2)])
         self._own_channels = chance.choice([(0,), (0, 1, 9), (0, 1, 2, 15), (0, 14, 15)])
         self._keys = chance.sample(range(55, 101), 3)
-        calls = [["hold", address, value, self._at()] for address, value in self._held()]
-        while len(calls) < 20:
+        calls = [["remap", chance.choice(self._mappings), self._at()]]
+        calls.append(["applyTuning", chance.choice(TUNINGS)])
+        while len(calls) < 40:
             calls += self._some()
-        return {"style": style, "calls": calls}
-
-    def _held(self) -> list[tuple[str, float]]:
-        chance = self._chance
-        if chance.random() < 0.9:
-            return []
-        params = [chance.choice(FREE), next(p for p in FREE if p.address == "/playing/bend_range")]
-        return [(param.address, chance.uniform(param.lo, param.hi)) for param in params]
+        return calls
 
     def _at(self) -> int | None:
         """The frame of the next call, which may be that of the one before."""
@@ -227,8 +238,7 @@ class Streams:
         if kind < 4 and was_in_hand:
             return ["noteOff", "hand", at]
         if kind < 4:
-            note = chance.choice([67, 72.4567, 60.0625, chance.uniform(50.0, 100.0)])
-            return ["noteOn", "hand", note, chance.random(), at]
+            return ["fingerOn", "hand", round(chance.uniform(50.0, 100.0), 2), chance.random(), at]
         self._in_hand = was_in_hand
         param = chance.choice(TABLE)
         return [
@@ -240,24 +250,14 @@ class Streams:
 
     def _of_style(self) -> Call:
         chance, at = self._chance, self._at()
-        kind = chance.randrange(9)
-        if kind >= 6 and chance.random() < 0.5:
-            kind = 0
-        if kind in (6, 7):
+        kind = chance.randrange(6)
+        if kind == 4:
             self._in_hand = False
         return [
             ["applyPreset", chance.choice(PRESETS), at],
-            ["applyMorph", *chance.sample(PRESETS, 2), chance.uniform(-0.2, 1.2), at],
-            ["applyMapping", chance.choice(self._mappings), at],
-            ["applyTuning", chance.choice(TUNINGS), chance.choice([440.0, 431.5])],
-            [
-                "move",
-                chance.choice(ADDRESSES),
-                chance.choice([0.0, 1.0, chance.uniform(0, 127)]),
-                at,
-            ],
-            ["move", chance.choice(ADDRESSES), chance.random(), at],
+            ["remap", chance.choice(self._mappings), at],
+            ["remap", chance.choice(self._mappings), at],
+            ["applyTuning", chance.choice(TUNINGS)],
             [chance.choice(["endNotes", "panic"]), at],
-            ["reset", at],
             ["letGoOf", chance.choice(self._ports), at],
         ][kind]

@@ -10,16 +10,19 @@ import sys
 from pathlib import Path
 
 import mido
+import numpy as np
 import pytest
 
 from yehu_server.errors import ParameterError
+from yehu_server.midi import events
+from yehu_server.midi.record import MIDI
+from yehu_server.midi.tables import MOST_BINDS, TABLES
 from yehu_server.panel import examples, facts
 from yehu_server.panel.styles import tunings
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.player.rows import IS_ENGINES, IS_OWNED, ROW
 from yehu_server.player.wishes import KINDS
-from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.tuning import read_tuning
@@ -74,31 +77,33 @@ def test_each_kind_of_wish_has_its_number(known):
     assert sorted(known["kinds"].values()) == list(range(len(KINDS)))
 
 
-def bind_of(settings: dict) -> Bind:
-    curve = settings["curve"]
-    return Bind(
-        settings["source"],
-        settings["target"],
-        settings["span"] and tuple(settings["span"]),
-        Curve(curve) if isinstance(curve, str) else Breakpoints(tuple(map(tuple, curve))),
-        settings["invert"],
-        settings["smoothingMs"],
-        tuple(settings["channels"]),
-        settings["isSoft"],
-        tuple(settings["inputRange"]),
-        settings["isExclusive"],
-        settings["isGlobal"],
-    )
+def test_each_other_kind_of_event_has_its_number(known):
+    assert {name: getattr(events, name) for name in known["events"]} == known["events"]
+    assert len(known["events"]) == len(events.EVENTS)
 
 
-def test_each_mapping_can_be_made_again(known):
+def test_each_mapping_is_there_and_leaves_room_for_what_may_be_learned(known):
     assert list(known["mappings"]) == shipped_mappings()
     for name, settings in known["mappings"].items():
         mapping = load(name)
-        assert tuple(map(bind_of, settings["binds"])) == mapping.binds
+        bound = [(bind["source"], bind["target"]) for bind in settings["binds"]]
+        assert bound == [(bind.source, bind.target) for bind in mapping.binds]
         assert tuple(settings["start"].items()) == mapping.start
         assert (settings["mpe"], settings["about"]) == (mapping.mpe, mapping.about)
-    assert {known["defaultMapping"], known["mpeMapping"]} <= set(known["mappings"])
+        assert len(bound) + len(TABLE) <= MOST_BINDS
+    assert known["defaultMapping"] in known["mappings"]
+
+
+def test_the_layout_of_the_interpreter_is_that_of_its_records(known):
+    layout = known["interpreter"]
+    for dtype, fields in ((MIDI, layout["record"]), (TABLES, layout["tables"])):
+        for name, (at, size) in fields.items():
+            made = np.zeros(1, dtype)
+            made[name] = 1
+            words = made.view(np.int64) if dtype is MIDI else made.view(np.float64)
+            assert np.flatnonzero(words).tolist() == list(range(at, at + size))
+    assert layout["length"] * 8 == TABLES.itemsize
+    assert layout["tablesAt"] * 8 >= MIDI.itemsize
 
 
 def test_each_preset_is_there(known, tmp_path):
@@ -117,7 +122,6 @@ def test_each_tuning_is_there(known):
             continue
         tuning = read_tuning(*map(Path, name.split(", ")))
         assert settings["keys"] == [tuning.pitch(key, 440.0) for key in range(128)]
-        assert settings["fixed"] == (", " in name)
 
 
 def test_every_shipped_map_of_keys_is_offered(known):

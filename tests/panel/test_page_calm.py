@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 from panel.browser import drive, missing, served
 
-from yehu_server.panel import facts
 from yehu_server.params.table import TABLE
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
@@ -21,7 +20,6 @@ PLACE = TABLE.index(next(param for param in TABLE if param.address == "/bow/posi
 def found(tmp_path_factory) -> Any:
     """What was drawn."""
     generated = tmp_path_factory.mktemp("generated")
-    facts.write(generated)
     with served(generated) as url:
         return drive("page_calm.mjs", url)
 

@@ -7,8 +7,6 @@ from typing import Any
 import pytest
 from panel.browser import drive, missing, served
 
-from yehu_server.panel import facts
-
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
 TEN = [67.0 + 2 * finger for finger in range(10)]
@@ -19,7 +17,6 @@ QUANTITIES = 1e-6
 def played(tmp_path_factory) -> Any:
     """What was wished while the page was played, by what was done."""
     generated = tmp_path_factory.mktemp("generated")
-    facts.write(generated)
     with served(generated) as url:
         return drive("page_hands.mjs", url)
 

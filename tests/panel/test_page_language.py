@@ -8,8 +8,6 @@ from typing import Any
 import pytest
 from panel.browser import drive, missing, served
 
-from yehu_server.panel import facts
-
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
 # What every language writes with Latin letters, or that is no word.
@@ -23,7 +21,6 @@ LATIN = re.compile(
 def found(tmp_path_factory) -> Any:
     """What the page said."""
     generated = tmp_path_factory.mktemp("generated")
-    facts.write(generated)
     with served(generated) as url:
         return drive("page_language.mjs", url)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from panel.bound import placeless, rows_of
 from panel.browser import drive, missing, served
 
-from yehu_server.panel import facts, styles
 from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
 
@@ -21,7 +21,6 @@ VIBRATO, BOW_POSITION = ROW["/playing/vibrato"], ROW["/playing/bow_position"]
 def found(tmp_path_factory) -> Any:
     """What followed as the page was taught."""
     generated = tmp_path_factory.mktemp("generated")
-    facts.write(generated)
     with served(generated) as url:
         return drive("page_learning.mjs", url)
 
@@ -72,7 +71,7 @@ def test_the_file_is_a_mapping_of_the_server_s(found, tmp_path) -> None:
     path = tmp_path / found["file"]["name"]
     path.write_text(found["file"]["text"])
     mapping = load(str(path))
-    assert styles.mapping(mapping)["binds"] == found["merged"]
+    assert [*map(placeless, found["merged"])] == rows_of(mapping)
     (bind,) = mapping.of("cc 74")
     assert (bind.target, bind.span) == ("/playing/vibrato", (40.0, 5.0))
     assert [bind.is_soft for bind in mapping.of("pressure") + mapping.of("bend")] == [True, False]

@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 from panel.browser import drive, missing, served
 
-from yehu_server.panel import facts
 from yehu_server.panel.beginnings import write_beginnings
 from yehu_server.params.table import TABLE
 from yehu_server.playing.presets import Presets
@@ -22,7 +21,6 @@ ROW = {param.address: row for row, param in enumerate(TABLE)}
 def found(tmp_path_factory) -> Any:
     """What a visitor found."""
     generated = tmp_path_factory.mktemp("generated")
-    facts.write(generated)
     write_beginnings(generated / "captures")
     with served(generated) as url:
         return drive("page_views.mjs", url)

@@ -1,19 +1,16 @@
 /** The tuning, as hands meet it: which pitch a key has, and on which a finger lands. */
 
 import facts from "../facts.js";
-import { pitch } from "../playing/tuning.js";
 import { HIGHEST, LOWEST } from "./scale.js";
 
-/** @typedef {import('../playing/tuning.js').Tuning} Tuning */
-
-const A4 = facts.tuning.STANDARD_A4;
+/** @typedef {import('../playing/tables.js').Tuning} Tuning */
 
 export class Tuned {
   constructor() {
     /** @type {Record<string, Tuning>} */
     this.all = facts.tunings;
     /** @type {Tuning} */
-    this.tuning = { name: "", keys: null, fixed: false };
+    this.tuning = facts.tunings.equal;
     /** Pitches of the keys within the instrument's range. @type {number[]} */
     this.pitches = [];
     this.#collect();
@@ -26,9 +23,8 @@ export class Tuned {
   }
 
   #collect() {
-    const [first, last] = facts.tuning.KEYS;
     this.pitches = [];
-    for (let key = first; key <= last; key++) {
+    for (let key = 0; key < facts.notes.KEYS; key++) {
       const found = this.pitchOf(key);
       if (found !== null && found > LOWEST - 0.5 && found < HIGHEST + 0.5) this.pitches.push(found);
     }
@@ -39,7 +35,8 @@ export class Tuned {
    * @param {number} key
    */
   pitchOf(key) {
-    return pitch(this.tuning, key, A4);
+    const { keys } = this.tuning;
+    return keys === null ? key : (keys[key] ?? null);
   }
 
   /**

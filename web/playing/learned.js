@@ -5,11 +5,35 @@ import { BEND, controller, isOfOneNote, isSource } from './sources.js';
 import { ParameterError, TABLE, find } from './table.js';
 
 /**
- * @typedef {import('./binds.js').BindFacts} BindFacts
- * @typedef {import('./mapping.js').MappingFacts} MappingFacts
+ * A bind of a shipped mapping: one source that moves one target.
+ * @typedef {object} ShippedBind
+ * @property {string} source its name
+ * @property {string} target address of the parameter
+ * @property {readonly number[]} [channels] MIDI channels, 1 to 16, that it receives on; by default all
+ * @property {{source: number} & Readonly<Record<string, number>>} row of the tables
+ *
+ * @typedef {object} LearnedBind One for all notes, along the curve of its target.
+ * @property {string} source
+ * @property {string} target
+ * @property {readonly number[] | null} span the target's values at the two ends; null: its range
+ * @property {boolean} isSoft the target moves only once the source has reached its value
+ * @property {boolean} isGlobal whether it moves every note, wherever the source is moved
+ *
+ * @typedef {ShippedBind | LearnedBind} Bind
+ *
+ * @typedef {object} Mapping As `facts.mappings` have it, merged with its bases.
+ * @property {string} name
+ * @property {string} about what it is for, in a line
+ * @property {boolean} mpe whether every port starts as an MPE zone
+ * @property {Readonly<Record<string, number>>} start values that parameters start with
+ * @property {readonly number[]} x points of curves: positions of the source
+ * @property {readonly number[]} y the same: fractions of the span
+ * @property {readonly Bind[]} binds
  */
 
-const { EXP } = facts.spec.CURVES;
+/** The shipped mappings, by name. @type {Readonly<Record<string, Mapping>>} */
+export const MAPPINGS = /** @type {any} */ (facts.mappings);
+const EXPONENTIAL = 'exp';
 /** The parameters that may be bound: the player moves the others itself. */
 export const FREE = TABLE.filter(({ owned }) => !owned);
 
@@ -18,33 +42,27 @@ export const FREE = TABLE.filter(({ owned }) => !owned);
  * @param {string} target
  * @param {string} source
  * @param {boolean} isSoft
- * @returns {BindFacts}
+ * @returns {LearnedBind}
  */
 export function bindOf(target, source, isSoft) {
-  const { address, curve, owned } = find(target);
+  const { address, owned } = find(target);
   if (owned) throw new ParameterError(`${address} is moved by the player`);
   const isByRange = source === BEND && address === '/playing/bend';
   return {
     source,
     target: address,
     span: null,
-    curve,
-    invert: false,
-    smoothingMs: 0,
-    channels: [],
     isSoft: isSoft && !isOfOneNote(source) && !isByRange, // these cannot wait
-    inputRange: [0, 1],
-    isExclusive: true,
     isGlobal: !isOfOneNote(source),
   };
 }
 
 /**
  * The bind with other values of its target at the two ends; from high to low inverts.
- * @param {BindFacts} bind
+ * @param {LearnedBind} bind
  * @param {number} from
  * @param {number} to
- * @returns {BindFacts}
+ * @returns {LearnedBind}
  */
 export function spanned(bind, from, to) {
   const { lo, hi } = find(bind.target);
@@ -54,18 +72,19 @@ export function spanned(bind, from, to) {
 
 /**
  * Whether a bind may have a span.
- * @param {{target: string, curve: BindFacts['curve']}} bind
+ * @param {{target: string}} bind
  * @param {readonly number[]} span
  */
-function isWithin({ target, curve }, span) {
-  const { lo, hi } = find(target);
-  return span.every((end) => lo <= end && end <= hi && (curve !== EXP || end > 0)); // refuses NaN
+function isWithin({ target }, span) {
+  const { lo, hi, curve } = find(target);
+  const isAbove = (/** @type {number} */ end) => curve !== EXPONENTIAL || end > 0;
+  return span.every((end) => lo <= end && end <= hi && isAbove(end)); // refuses NaN
 }
 
 /**
  * Learned binds with one more, which replaces those of its controller and of its target.
- * @param {readonly BindFacts[]} learned
- * @param {BindFacts} bind
+ * @param {readonly LearnedBind[]} learned
+ * @param {LearnedBind} bind
  */
 export function withBind(learned, bind) {
   const key = overrideKey(bind);
@@ -74,33 +93,35 @@ export function withBind(learned, bind) {
 }
 
 /**
- * A mapping overridden by learned binds, as one is by a file that has it as its base.
- * @param {MappingFacts} mapping
- * @param {readonly BindFacts[]} learned
- * @returns {MappingFacts}
+ * A mapping overridden by learned binds, as one is by a file that has it as its base; each replaces
+ * all that moved its target.
+ * @param {Mapping} mapping
+ * @param {readonly LearnedBind[]} learned
+ * @returns {Mapping}
  */
 export function merged(mapping, learned) {
   const overridden = new Set(learned.map(overrideKey));
-  const exclusive = new Set(learned.filter((bind) => bind.isExclusive).map((bind) => bind.target));
+  const moved = new Set(learned.map((bind) => bind.target));
   const kept = mapping.binds.filter(
-    (bind) => !overridden.has(overrideKey(bind)) && !exclusive.has(bind.target),
+    (bind) => !overridden.has(overrideKey(bind)) && !moved.has(bind.target),
   );
   return { ...mapping, binds: [...kept, ...learned] };
 }
 
 /**
  * Controller and channels: binds of equal keys replace each other.
- * @param {BindFacts} bind
+ * @param {Bind} bind
  */
-function overrideKey({ source, channels }) {
-  return `${controller(source)}; ${channels.join()}`;
+function overrideKey(bind) {
+  const channels = 'row' in bind ? bind.channels : undefined;
+  return `${controller(bind.source)}; ${channels ?? ''}`;
 }
 
 /**
  * The text of a mapping file (TOML) with a shipped mapping as its base.
  * @param {string} base its name
- * @param {MappingFacts} mapping
- * @param {readonly BindFacts[]} learned
+ * @param {Mapping} mapping
+ * @param {readonly LearnedBind[]} learned
  */
 export function fileOf(base, mapping, learned) {
   const about = `${mapping.about} With what you have taught it.`;
@@ -111,15 +132,15 @@ export function fileOf(base, mapping, learned) {
 
 /**
  * The entries of a bind, without those at their defaults.
- * @param {BindFacts} bind
+ * @param {LearnedBind} bind
  */
-function entriesOf({ source, target, span, isSoft, isExclusive, isGlobal }) {
+function entriesOf({ source, target, span, isSoft, isGlobal }) {
   return {
     source,
     target,
     ...(span && { span }),
     ...(isSoft && { soft: true }),
-    ...(isExclusive && { alone: true }),
+    alone: true,
     ...(isGlobal && { global: true }),
   };
 }
@@ -137,11 +158,11 @@ function lines(entries) {
 /**
  * The binds of what a browser has kept, of which any part may be wrong or of an older version.
  * @param {unknown} kept
- * @returns {BindFacts[]}
+ * @returns {LearnedBind[]}
  */
 export function readLearned(kept) {
   if (!Array.isArray(kept)) return [];
-  /** @type {BindFacts[]} */
+  /** @type {LearnedBind[]} */
   let learned = [];
   for (const one of kept) {
     const { source, target, span, isSoft } = Object(one);

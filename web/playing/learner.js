@@ -3,11 +3,12 @@
 import facts from '../facts.js';
 import { DefaultMap } from './default_map.js';
 import * as midi from './midi_bytes.js';
-import { DATA_ENTRY, NRPN, NRPN_FINE, RPN, RPN_FINE } from './midi_channel.js';
 import * as sources from './sources.js';
 
 const { DISTANCE, AT_REST } = facts.learner;
-const { RESERVED, NO_NRPN } = facts.sources;
+const { RESERVED, NO_NRPN, DATA_ENTRY } = facts.sources;
+const [NRPN, NRPN_FINE] = facts.sources.NRPN;
+const [RPN, RPN_FINE] = facts.sources.RPN;
 /** @type {ReadonlyMap<string, number>} */
 const REST = new Map(Object.entries(AT_REST));
 

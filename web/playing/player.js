@@ -1,84 +1,88 @@
 /** The player: all control of the instrument, by hands, MIDI and presets, goes through it. */
 
-import constants from '../facts.js';
-import { keyOf } from './keys.js';
-import { Mapping } from './mapping.js';
-import { MidiPlayer } from './messages.js';
-import { roundHalfEven } from './numbers.js';
-import { morph, ofProgram } from './presets.js';
-import { CHANNELS } from './sources.js';
-import { ParameterError } from './table.js';
-import { pitch } from './tuning.js';
-import { Wishes } from './wishes.js';
+import facts from '../facts.js';
+import { MAPPINGS } from './learned.js';
+import { clamp } from './numbers.js';
+import { ParameterError, TABLE, accept, find } from './table.js';
+import { writeTables, writeTuning } from './tables.js';
 
-const { ELSEWHERE } = constants.live;
-const { STANDARD_A4 } = constants.tuning;
-const EQUAL = { name: '', keys: null, fixed: false };
+const { WRITE, DRAW, LIFT, SLIDE, STOP, RELEASE } = facts.kinds;
+const { MESSAGE, FINGER_ON, NOTE_OFF, SET, LOAD, DISCONNECT, RELEASE_ALL, TABLES_TO } = facts.events;
+const { LOWEST_NOTE, HIGHEST_NOTE, ELSEWHERE } = facts.notes;
+const HIGHEST_KEY = facts.notes.KEYS - 1;
+const { CHANNELS } = facts.sources;
+const MOST_BYTES = 3; // of a message
+/** @type {Readonly<Record<string, Tuning>>} */
+const TUNINGS = facts.tunings;
+/** @type {Readonly<Record<string, {values: Readonly<Record<string, number>>}>>} */
+const PRESETS = facts.presets.shipped;
+const { row: SECTION } = find('/playing/section');
+const [BOW_SPEED, BOW_FORCE, BOW_ASSIST] = ['/bow/speed', '/bow/force', '/bow/assist'].map(find);
+// Within this time the sound has a write, and tells the value that it moves to.
+const TOLD_WITHIN_S = 0.1;
 
 /**
- * @typedef {import('./keys.js').Key} Key
- * @typedef {import('./presets.js').Preset} Preset
- * @typedef {import('./tuning.js').Tuning} Tuning
+ * @typedef {import('./interpreter.js').Interpreter} Interpreter
+ * @typedef {import('./learned.js').Mapping} Mapping
+ * @typedef {import('./tables.js').Tuning} Tuning
  *
- * @typedef {object} Shipped The styles to choose from, as `facts.js` has them.
- * @property {Readonly<Record<string, import('./mapping.js').MappingFacts>>} mappings
- * @property {string} defaultMapping
- * @property {{shipped: Readonly<Record<string, Preset>>}} presets
- * @property {Readonly<Record<string, Tuning>>} tunings
- *
- * @typedef {object} Style How to play.
- * @property {string} [mapping] its name
- * @property {string | null} [tuning] its name; null: equal temperament
- * @property {number} [a4] Hz
- * @property {import('./wishes.js').RangePolicy} [policy] what happens to notes out of range
- * @property {string} [preset] its name
- * @property {boolean} [programs] whether program changes select presets
- * @property {readonly number[] | null} [channels] MIDI channels to receive, counted from 0; null:
- *   all but that of percussion
+ * @typedef {object} Sink What wishes are posted to.
+ * @property {(frame: number | null, kind: number, index: number, value: number, other: number)
+ *   => unknown} post one wish; frame null is now
+ * @property {number} [frame] number of the next sample, as far as the page knows
+ * @property {number} [rate] Hz
+ * @property {(address: string) => number | undefined} [target] where a parameter of bow and
+ *   fingers moves to
+ * @property {number} [people] how many may play it; by default one
+ * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
+ *   others set them too
  *
  * @typedef {number | string} NoteId Tells notes that hands hold at one time apart.
+ *
+ * @typedef {object} Key
+ * @property {number} channel
+ * @property {number} note
  */
 
 /**
- * Plays the instrument: each call becomes wishes at a frame, or now.
+ * Plays the instrument: each call is an event for the interpreter, which makes wishes of it at a
+ * frame, or now. Before there is an interpreter calls do nothing, but for `panic`.
  *
- * Frames may lie ahead, as of a tune that is played; `endNotes`, `panic` and `reset` come after
- * all of them.
+ * Frames may lie ahead, as of a tune that is played; `endNotes` and `panic` come after all of them.
  */
 export class Player {
-  #facts;
   #sink;
-  #wishes;
-  #midi;
-  #latest = 0; // the latest frame of any call
+  /** @type {Interpreter | null} */
+  #interpreter = null;
+  #mapping = MAPPINGS[facts.defaultMapping];
   /** @type {Tuning} */
-  #tuning = EQUAL;
-  #a4 = STANDARD_A4;
+  #tuning = TUNINGS.equal;
+  #latest = 0; // the latest frame of any call
+  #now = 0; // frame of the last event for now
   /** The keys that hands hold. @type {Map<NoteId, Key>} */
   #inHand = new Map();
-  /** Channels of fingers put at a pitch, which no tuning moves. @type {Set<number>} */
-  #atPitch = new Set();
+  /** The last writes, by row. @type {Map<number, {value: number, frame: number}>} */
+  #written = new Map();
+
+  /** @param {Sink} sink */
+  constructor(sink) {
+    this.#sink = sink;
+  }
 
   /**
-   * @param {Shipped} facts
-   * @param {import('./wishes.js').Sink} sink
-   * @param {Style} style
+   * Play by an interpreter that was sent nothing.
+   * @param {Interpreter} interpreter
    */
-  constructor(facts, sink, style = {}) {
-    const { mapping = facts.defaultMapping, tuning = null, a4 = STANDARD_A4 } = style;
-    this.#facts = facts;
-    this.#sink = sink;
-    this.#wishes = new Wishes(sink, style.policy, (key) => this.#pitchOf(key));
-    const preset = style.preset === undefined ? null : this.#preset(style.preset);
-    this.#midi = new MidiPlayer(this.#wishes, new Mapping(named(facts.mappings, mapping)), {
-      start: Object.entries(preset?.values ?? {}),
-      chosen: style.channels ? new Set(style.channels) : null,
-      programs: style.programs ? (program) => this.#valuesOf(program) : undefined,
-    });
-    this.applyTuning(tuning, a4);
+  playBy(interpreter) {
+    this.#interpreter = interpreter;
+    this.remap(this.#mapping);
   }
 
   // -- frames ------------------------------------------------------------------------------
+
+  get #frame() {
+    return this.#sink.frame ?? 0;
+  }
 
   /**
    * The frame itself; remembers the latest.
@@ -100,9 +104,92 @@ export class Player {
    */
   #afterAll(frame) {
     if (frame !== null) return Math.max(this.#at(frame) ?? frame, this.#latest);
-    const now = this.#sink.frame ?? 0;
+    const now = this.#frame;
     if (this.#latest > now + (this.#sink.rate ?? 0)) this.#latest = now;
     return this.#latest > now ? this.#latest : null;
+  }
+
+  // -- events and wishes -------------------------------------------------------------------
+
+  /**
+   * Have an event interpreted, and post what it comes to.
+   * @param {number | null} frame
+   * @param {number} kind
+   * @param {number} [index]
+   * @param {number} [value]
+   * @param {number} [other]
+   */
+  #take(frame, kind, index = 0, value = 0, other = 0) {
+    const interpreter = this.#interpreter;
+    if (interpreter === null) return;
+    this.#learnValues(interpreter);
+    // What is for now has a frame of its own, before all others.
+    const wishes = interpreter.take(frame ?? --this.#now, kind, index, value, other);
+    for (const [kind, index, value, other] of wishes) {
+      const isSection = kind === WRITE && index === SECTION;
+      this.#post(frame, kind, index, isSection ? this.#people(interpreter, value) : value, other);
+    }
+  }
+
+  /**
+   * Let the interpreter know what others have set.
+   * @param {Interpreter} interpreter
+   */
+  #learnValues({ values }) {
+    for (const { address, row, owned } of TABLE) {
+      const told = owned || this.#isRecent(row) ? undefined : this.#sink.told?.(address);
+      if (told !== undefined) values[row] = told;
+    }
+  }
+
+  /**
+   * How many shall play: the interpreter knows of one only.
+   * @param {Interpreter} interpreter
+   * @param {number} one
+   */
+  #people({ found, values }, one) {
+    const { people = 1 } = this.#sink;
+    return people > 1 ? (values[SECTION] = Math.min(Math.round(found[SECTION]), people)) : one;
+  }
+
+  /**
+   * @param {number | null} frame
+   * @param {number} kind
+   * @param {number} index
+   * @param {number} value
+   * @param {number} other
+   */
+  #post(frame, kind, index, value, other) {
+    if (kind === WRITE) this.#note(index, value, frame);
+    if (kind === DRAW) {
+      this.#note(BOW_SPEED.row, value, frame);
+      this.#note(BOW_FORCE.row, other, frame);
+    }
+    // Raw newtons are heard only without assist.
+    if (kind === DRAW || (kind === WRITE && index === BOW_FORCE.row)) {
+      this.#note(BOW_ASSIST.row, 0, frame);
+    }
+    this.#sink.post(frame, kind, index, value, other);
+  }
+
+  /**
+   * @param {number} row
+   * @param {number} value
+   * @param {number | null} frame
+   */
+  #note(row, value, frame) {
+    this.#written.set(row, { value, frame: frame ?? this.#frame });
+  }
+
+  /**
+   * Whether a parameter was written so lately that the sound may not tell it yet.
+   * @param {number} row
+   */
+  #isRecent(row) {
+    const written = this.#written.get(row);
+    return (
+      written !== undefined && this.#frame < written.frame + TOLD_WITHIN_S * (this.#sink.rate ?? 0)
+    );
   }
 
   // -- parameters --------------------------------------------------------------------------
@@ -114,29 +201,28 @@ export class Player {
    * @returns {number}
    */
   value(address) {
-    return this.#wishes.value(address);
+    const param = find(address);
+    const { row, owned } = param;
+    const known = owned ? this.#written.get(row)?.value : this.#interpreter?.values[row];
+    const told = owned ? this.#sink.target?.(address) : this.#sink.told?.(address);
+    return (this.#isRecent(row) ? known : (told ?? known)) ?? param.default;
   }
 
   /**
-   * Set a parameter; return the value accepted. Throws ParameterError as `Wishes.write`.
+   * Set a parameter, until a controller moves it. Throws ParameterError where the address is unknown
+   * or the value is not finite.
    * @param {string} address
    * @param {number} value
    * @param {number | null} frame
-   * @returns {number}
    */
   write(address, value, frame = null) {
-    return this.#midi.write(address, value, this.#at(frame));
-  }
-
-  /**
-   * Set a parameter, and hold it through notes, presets and moves until `release`.
-   * @param {string} address
-   * @param {number} value
-   * @param {number | null} frame
-   * @returns {number}
-   */
-  hold(address, value, frame = null) {
-    return this.#wishes.write(address, value, this.#at(frame), 0, true);
+    const param = find(address);
+    const accepted = accept(param, value);
+    const interpreter = this.#interpreter;
+    if (interpreter && param.row === SECTION && (this.#sink.people ?? 1) > 1) {
+      interpreter.found[SECTION] = accepted;
+      this.#post(this.#at(frame), WRITE, SECTION, this.#people(interpreter, 1), 0);
+    } else this.#take(this.#at(frame), SET, param.row, accepted);
   }
 
   /**
@@ -144,92 +230,43 @@ export class Player {
    * @param {number | null} frame
    */
   release(frame = null) {
-    this.#wishes.release(this.#at(frame));
-  }
-
-  /** The values that a preset keeps: see `Controllers.sound`. */
-  sound() {
-    return this.#midi.sound();
+    this.#take(this.#at(frame), RELEASE);
   }
 
   // -- style -------------------------------------------------------------------------------
 
   /**
-   * Set the parameters of a preset, except held ones.
+   * Set the parameters of a preset.
    * @param {string} name
    * @param {number | null} frame
    */
   applyPreset(name, frame = null) {
-    this.#midi.load(new Map(Object.entries(this.#preset(name).values)), this.#at(frame));
+    const { values } = named(PRESETS, name);
+    for (const [address, value] of Object.entries(values)) {
+      this.#take(this.#at(frame), LOAD, find(address).row, value);
+    }
   }
 
   /**
-   * Set what lies between two presets; `amount` is 0 for the first and 1 for the other.
-   * @param {string} one
-   * @param {string} other
-   * @param {number} amount
-   * @param {number | null} frame
-   */
-  applyMorph(one, other, amount, frame = null) {
-    this.#midi.load(morph(this.#preset(one), this.#preset(other), amount), this.#at(frame));
-  }
-
-  /**
-   * Tune the keys, from the next note on.
-   * @param {string | null} name null: equal temperament
-   * @param {number} a4 Hz
-   */
-  applyTuning(name, a4 = this.#a4) {
-    this.#tuning = name === null ? EQUAL : named(this.#facts.tunings, name);
-    this.#a4 = a4;
-  }
-
-  /**
-   * Take a shipped mapping while notes sound.
+   * Tune the keys of MIDI, from the next note on.
    * @param {string} name
-   * @param {number | null} frame
    */
-  applyMapping(name, frame = null) {
-    this.remap(named(this.#facts.mappings, name), frame);
+  applyTuning(name) {
+    this.#tuning = named(TUNINGS, name);
+    if (this.#interpreter) writeTuning(this.#interpreter.tables(), this.#tuning);
   }
 
   /**
-   * Take a mapping that is not shipped, while notes sound.
-   * @param {import('./mapping.js').MappingFacts} settings
+   * Take another mapping while notes sound.
+   * @param {Mapping} mapping
    * @param {number | null} frame
    */
-  remap(settings, frame = null) {
-    this.#midi.remap(new Mapping(settings), this.#at(frame));
-  }
-
-  /** The mapping in use. */
-  get mapping() {
-    return this.#midi.mapping;
-  }
-
-  /**
-   * Each bind, the position (0 to 1) its source was last moved to, and the target's value.
-   * @returns {[import('./binds.js').Bind, number | null, number][]}
-   */
-  bindings() {
-    const positions = this.#midi.positions();
-    return positions.map(([bind, position]) => [bind, position, this.value(bind.target)]);
-  }
-
-  /** @param {string} name */
-  #preset(name) {
-    return named(this.#facts.presets.shipped, name);
-  }
-
-  /** @param {number} program */
-  #valuesOf(program) {
-    const preset = ofProgram(Object.values(this.#facts.presets.shipped), program);
-    return preset && new Map(Object.entries(preset.values));
-  }
-
-  /** @param {Key} key */
-  #pitchOf(key) {
-    return this.#atPitch.has(key.channel) ? key.note : pitch(this.#tuning, key.note, this.#a4);
+  remap(mapping, frame = null) {
+    this.#mapping = mapping;
+    if (this.#interpreter === null) return;
+    const { nextSlot } = this.#interpreter;
+    writeTables(this.#interpreter.tables(nextSlot), mapping, this.#tuning);
+    this.#take(this.#at(frame), TABLES_TO, nextSlot);
   }
 
   // -- notes -------------------------------------------------------------------------------
@@ -241,7 +278,10 @@ export class Player {
    * @param {number} port
    */
   midi(bytes, frame = null, port = 0) {
-    this.#midi.receive(bytes, this.#at(frame), port);
+    const { length, 0: status = 0, 1: one = 0, 2: two = 0 } = bytes;
+    if (length > MOST_BYTES) return;
+    const packed = status + one * 2 ** 8 + two * 2 ** 16 + length * 2 ** 24 + port * 2 ** 32;
+    this.#take(this.#at(frame), MESSAGE, packed);
   }
 
   /**
@@ -250,43 +290,30 @@ export class Player {
    * @param {number | null} frame
    */
   letGoOf(port, frame = null) {
-    this.#midi.letGoOf(port, frame === null ? this.#afterAll(null) : this.#at(frame));
+    this.#take(frame === null ? this.#afterAll(null) : this.#at(frame), DISCONNECT, port);
   }
 
   /**
-   * Move the targets of an address of the mapping, such as a sensor of the device.
-   * @param {string} address
-   * @param {number} argument
-   * @param {number | null} frame
-   */
-  move(address, argument, frame = null) {
-    this.#midi.move(address, argument, this.#at(frame));
-  }
-
-  /**
-   * Press a key: begin a note of the tuning. One that the same hand still holds ends, slurred.
-   * @param {NoteId} id
-   * @param {number} note fractional MIDI note
-   * @param {number} velocity 0 to 1
-   * @param {number | null} frame
-   */
-  noteOn(id, note, velocity, frame = null) {
-    this.#begin(id, note, velocity, frame, false);
-  }
-
-  /**
-   * Put a finger at a pitch, whatever the tuning, and begin a note there; as `noteOn`.
+   * Put a finger at a pitch, whatever the tuning, and begin a note there. One that the same hand
+   * still holds ends, slurred.
    * @param {NoteId} id
    * @param {number} at fractional MIDI note
    * @param {number} velocity 0 to 1
    * @param {number | null} frame
    */
   fingerOn(id, at, velocity, frame = null) {
-    this.#begin(id, at, velocity, frame, true);
+    const before = this.#inHand.get(id);
+    // Rounded so that the key is the same in single and double precision.
+    const note = Math.round(within('pitch', at, HIGHEST_KEY) * 1000) / 1000;
+    const strength = within('velocity', velocity, 1);
+    const key = { channel: this.#freeChannel(), note };
+    this.#inHand.set(id, key);
+    this.#take(this.#at(frame), FINGER_ON, key.channel, note, strength);
+    if (before !== undefined) this.#take(frame, NOTE_OFF, before.channel, before.note);
   }
 
   /**
-   * End a note that `noteOn` or `fingerOn` began.
+   * End a note that `fingerOn` began.
    * @param {NoteId} id
    * @param {number | null} frame
    */
@@ -294,27 +321,7 @@ export class Player {
     const key = this.#inHand.get(id);
     if (key === undefined) return;
     this.#inHand.delete(id);
-    this.#midi.noteOff(key, this.#at(frame));
-  }
-
-  /**
-   * @param {NoteId} id
-   * @param {number} note
-   * @param {number} velocity
-   * @param {number | null} frame
-   * @param {boolean} isAtPitch
-   */
-  #begin(id, note, velocity, frame, isAtPitch) {
-    const before = this.#inHand.get(id);
-    // Rounded so that the key is the same in single and double precision.
-    const rounded = roundHalfEven(within('note', note, 127) * 1000) / 1000;
-    const strength = within('velocity', velocity, 1);
-    const key = keyOf(this.#freeChannel(), rounded);
-    if (isAtPitch) this.#atPitch.add(key.channel);
-    else this.#atPitch.delete(key.channel);
-    this.#inHand.set(id, key);
-    this.#midi.noteOn(key, strength, this.#at(frame));
-    if (before !== undefined) this.#midi.noteOff(before, frame);
+    this.#take(this.#at(frame), NOTE_OFF, key.channel, key.note);
   }
 
   /**
@@ -330,32 +337,33 @@ export class Player {
   }
 
   /**
-   * See `Wishes.slide`.
+   * Slide the finger to a pitch: the sounding note slides; in silence, the finger waits there for
+   * the bow.
    * @param {number} at fractional MIDI note
    * @param {number | null} frame
-   * @returns {number}
    */
   slide(at, frame = null) {
-    return this.#wishes.slide(within('pitch', at, 127), this.#at(frame));
+    const pitch = clamp(within('pitch', at, HIGHEST_KEY), LOWEST_NOTE, HIGHEST_NOTE);
+    this.#take(this.#at(frame), SLIDE, 0, pitch);
   }
 
   /**
-   * See `Wishes.draw`.
+   * Draw the bow by hand at a speed (m/s) and force (N), on the string of the fingering. Takes the
+   * bow over as direct writes do; 0 and 0 lift it.
    * @param {number} speed
    * @param {number} force
    * @param {number | null} frame
-   * @returns {[number, number]}
    */
   draw(speed, force, frame = null) {
-    return this.#wishes.draw(speed, force, this.#at(frame));
+    this.#take(this.#at(frame), DRAW, 0, accept(BOW_SPEED, speed), accept(BOW_FORCE, force));
   }
 
   /**
-   * See `Wishes.lift`.
+   * Lift a bow drawn by hand, and return it to the player.
    * @param {number | null} frame
    */
   lift(frame = null) {
-    this.#wishes.lift(this.#at(frame));
+    this.#take(this.#at(frame), LIFT);
   }
 
   /**
@@ -365,26 +373,19 @@ export class Player {
   endNotes(frame = null) {
     const after = this.#afterAll(frame);
     this.#inHand.clear();
-    this.#midi.reset(after);
-    this.#wishes.lift(after);
+    this.#take(after, RELEASE_ALL, 0, 1);
+    this.#take(after, LIFT);
   }
 
   /**
-   * End all notes and all sound at once.
+   * End all notes and all sound at once, whoever plays.
    * @param {number | null} frame
    */
   panic(frame = null) {
     this.endNotes(frame);
-    this.#wishes.stopSound(this.#afterAll(frame), true);
-  }
-
-  /**
-   * As `panic`, and set every parameter to its start value.
-   * @param {number | null} frame
-   */
-  reset(frame = null) {
-    this.#midi.beginAgain(this.#afterAll(frame));
-    this.panic(frame);
+    const after = this.#afterAll(frame);
+    if (this.#interpreter) this.#take(after, STOP, 0, 1);
+    else this.#post(after, STOP, 0, 1, 0);
   }
 }
 

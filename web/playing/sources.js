@@ -1,9 +1,11 @@
-/** The names of sources: MIDI controllers, properties of a note, addresses of the page's own. */
+/** The names of sources: MIDI controllers, and properties of a note. */
 
 import facts from '../facts.js';
-import { floorDivide, modulo } from './numbers.js';
 
-export const { BEND, PRESSURE, POLY_PRESSURE, VELOCITY, NOTE } = facts.sources;
+/** The code of each, in tables; beside words, where those of pairs and of parameters begin. @type {Record<string, number>} */
+const CODES = facts.codes;
+const { PAIR, NRPN } = facts.codes;
+export const [BEND, PRESSURE, POLY_PRESSURE] = ['bend', 'pressure', 'poly-pressure'];
 export const { FINE_ABOVE, STEPS, FINEST, CHANNELS } = facts.sources;
 const [FIRST_COARSE, LAST_COARSE] = facts.sources.COARSE;
 
@@ -75,13 +77,14 @@ export function isSource(name) {
 export const isOfOneNote = (source) => facts.sources.OF_ONE_NOTE.includes(source);
 
 /**
- * The port of a channel, both counted from 0, channels over all ports.
- * @param {number} channel
+ * The code that tables have for a source.
+ * @param {string} source
+ * @returns {number}
  */
-export const portOf = (channel) => floorDivide(channel, CHANNELS);
-
-/**
- * A channel as its port counts it, 0 to 15.
- * @param {number} channel
- */
-export const withinPort = (channel) => modulo(channel, CHANNELS);
+export function codeOf(source) {
+  if (Object.hasOwn(CODES, source)) return CODES[source];
+  const [kind, number] = source.split(' ');
+  if (kind === 'nrpn') return NRPN + Number(number);
+  const [coarse, fine] = number.split('/');
+  return (fine ? PAIR : 0) + Number(coarse);
+}

@@ -22,7 +22,7 @@ export const WISH = 5;
  * What the module needs of its surroundings.
  * @param {() => DataView} view of its memory
  */
-function surroundings(view) {
+export function surroundings(view) {
   return {
     asin: Math.asin,
     sin: Math.sin,
@@ -46,6 +46,24 @@ function surroundings(view) {
   };
 }
 
+/**
+ * Room in the module's memory, behind what it has for itself.
+ * @param {any} exported by the module
+ * @param {number[]} sizes of some pieces, in bytes
+ * @returns {number[]} where each begins
+ */
+export function room(exported, ...sizes) {
+  let end = exported.__heap_base.value;
+  const places = sizes.map((size) => {
+    const at = Math.ceil(end / ALIGNED) * ALIGNED;
+    end = at + size;
+    return at;
+  });
+  const missing = end - exported.memory.buffer.byteLength;
+  if (missing > 0) exported.memory.grow(Math.ceil(missing / PAGE_BYTES));
+  return places;
+}
+
 export class Kernel {
   /**
    * @param {WebAssembly.Module} module
@@ -60,12 +78,11 @@ export class Kernel {
     }).exports;
     this.exported = exported;
     this.most = most;
-    const aligned = (/** @type {number} */ at) => Math.ceil(at / ALIGNED) * ALIGNED;
-    this.rig = aligned(exported.__heap_base.value);
-    this.outAt = aligned(this.rig + Number(exported.yehu_size()));
-    this.lookAt = aligned(this.outAt + 4 * CHANNELS * most);
-    const missing = this.lookAt + 8 * lookLength - exported.memory.buffer.byteLength;
-    if (missing > 0) exported.memory.grow(Math.ceil(missing / PAGE_BYTES));
+    const sizes = [Number(exported.yehu_size()), 4 * CHANNELS * most, 8 * lookLength];
+    const [rig, outAt, lookAt] = room(exported, ...sizes);
+    this.rig = rig;
+    this.outAt = outAt;
+    this.lookAt = lookAt;
     const memory = exported.memory.buffer; // it grows no more
     this.view = new DataView(memory);
     this.out = new Float32Array(memory, this.outAt, CHANNELS * most);

@@ -18,15 +18,14 @@ const FADE_S = 0.01;
 export class Sound extends EventTarget {
   /**
    * Open the sound, after a touch: else browsers keep silent.
+   * @param {Promise<ArrayBuffer>} module the instrument in WebAssembly
    * @returns {Promise<Sound>}
    */
-  static async open() {
+  static async open(module) {
     const context = newContext();
     const resumed = context.resume(); // while the touch counts
     try {
-      const answer = await fetch(new URL("../yehu.wasm", import.meta.url));
-      if (!answer.ok) throw new Error(`yehu.wasm: ${answer.status} ${answer.statusText}`);
-      const bytes = await answer.arrayBuffer();
+      const bytes = await module;
       const sound = new Sound(context);
       await sound.#connect(bytes);
       await resumed;

@@ -10,6 +10,8 @@ export default {
   "header.start": "Start",
   "header.silence": "Silence",
   "header.fail": "The sound did not start: {why}",
+  "header.prepare": "The server is still preparing the instrument: it can be played in a minute.",
+  "header.lack": "The instrument cannot be played in this page: {why}",
   "header.language": "切换到中文",
   "header.other": "中文",
   "header.theme": "Dark or light",

@@ -7,6 +7,8 @@ export default {
   "header.start": "开始",
   "header.silence": "静音",
   "header.fail": "声音没有启动：{why}",
+  "header.prepare": "服务器仍在准备乐器，大约一分钟后即可演奏。",
+  "header.lack": "本页不能演奏乐器：{why}",
   "header.language": "Switch to English",
   "header.other": "English",
   "header.theme": "深色或浅色",

@@ -21,11 +21,7 @@ export function showHeader({ instrument, gallery }) {
     start.textContent = say("header.silence");
     start.classList.remove("main");
   });
-  instrument.addEventListener("fail", () => {
-    const notice = find("notice", HTMLElement);
-    notice.hidden = false;
-    notice.textContent = say("header.fail", { why: String(instrument.error) });
-  });
+  showNotice(instrument);
   const tell = () => {
     status.textContent = statusText(instrument.sound?.status ?? null);
   };
@@ -44,6 +40,28 @@ export function showHeader({ instrument, gallery }) {
   });
   inWords(() => gallery.renew());
   darkSystem.addEventListener("change", () => gallery.renew());
+}
+
+/**
+ * What stands in the way of playing, in a line at the top.
+ * @param {import('../instrument.js').Instrument} instrument
+ */
+function showNotice(instrument) {
+  const notice = find("notice", HTMLElement);
+  let [key, why] = ["", ""];
+  const tell = () => {
+    notice.hidden = key === "";
+    notice.textContent = key && say(key, { why });
+  };
+  for (const event of ["prepare", "ready", "lack", "fail"]) {
+    instrument.addEventListener(event, () => {
+      key = event === "ready" ? "" : `header.${event}`;
+      why = String(instrument.error);
+      tell();
+      if (event !== "prepare") find("play", HTMLElement).removeAttribute("aria-busy");
+    });
+  }
+  inWords(tell);
 }
 
 const darkSystem = matchMedia("(prefers-color-scheme: dark)");

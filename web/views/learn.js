@@ -3,7 +3,7 @@
 /** @typedef {import('../main.js').Page} Page */
 /** @typedef {import('../taught.js').Taught} Taught */
 /** @typedef {import('../midi.js').Midi} Midi */
-/** @typedef {import('../playing/binds.js').BindFacts} BindFacts */
+/** @typedef {import('../playing/learned.js').LearnedBind} LearnedBind */
 
 import { allow, make, makeSwitch, offer } from "../elements.js";
 import { FREE } from "../playing/learned.js";
@@ -65,7 +65,7 @@ export function showLearning({ taught, midi }) {
     if (awaited) word.textContent = `${nameFor(awaited)}: ${say("learn.move")}`;
     else word.textContent = found ? `${nameFor(found.target)}: ${movedBy(found)}` : "";
   };
-  /** @type {{key: string, element: HTMLElement, show: (bind: BindFacts) => void}[]} */
+  /** @type {{key: string, element: HTMLElement, show: (bind: LearnedBind) => void}[]} */
   let rows = [];
   const renew = () => {
     const hadFocus = list.contains(document.activeElement);
@@ -137,14 +137,14 @@ function groups() {
   );
 }
 
-/** @param {BindFacts} bind */
+/** @param {LearnedBind} bind */
 function keyOf({ source, target }) {
   return `${source} ${target}`;
 }
 
 /**
  * A bind, with the values at its ends, and a button that ends it.
- * @param {BindFacts} bind
+ * @param {LearnedBind} bind
  * @param {Taught} taught
  */
 function row(bind, taught) {
@@ -162,7 +162,7 @@ function row(bind, taught) {
     });
     return input;
   });
-  const show = (/** @type {BindFacts} */ present) => {
+  const show = (/** @type {LearnedBind} */ present) => {
     bind = present;
     ends = [...(bind.span ?? [param.lo, param.hi])];
     inputs.forEach((input, end) => {
@@ -189,7 +189,7 @@ function row(bind, taught) {
   return { key: keyOf(bind), element, show };
 }
 
-/** @param {BindFacts} bind */
+/** @param {LearnedBind} bind */
 function movedBy({ source }) {
   return say("learn.by", { source: sourceName(source) });
 }

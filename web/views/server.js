@@ -5,7 +5,6 @@
 
 import facts from "../facts.js";
 import { make } from "../elements.js";
-import { openHere } from "../instrument.js";
 import { TABLE } from "../playing/table.js";
 import { remember, settings } from "../settings.js";
 import { Line } from "../sound/line.js";
@@ -57,7 +56,7 @@ export function showServer(instrument) {
 
   /** The sound of this page, with the parameters that its player knows. */
   async function openAlike() {
-    const sound = await openHere();
+    const sound = await instrument.openHere();
     for (const { address, row, owned } of TABLE) {
       if (!owned) sound.post(null, facts.kinds.WRITE, row, instrument.player.value(address), 0);
     }

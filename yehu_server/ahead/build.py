@@ -18,6 +18,7 @@ from yehu_server import __version__
 from yehu_server.ahead import interface, link
 from yehu_server.ahead.header import header
 from yehu_server.ahead.images import image
+from yehu_server.ahead.interpreter import INTERPRETER
 from yehu_server.ahead.module import joined
 from yehu_server.ahead.section import with_section
 from yehu_server.ahead.sources import sources_hash
@@ -67,6 +68,7 @@ def build_here(what: str, folder: Path, cpu: str, rates: Sequence[float]) -> lis
         with tempfile.TemporaryDirectory() as scratch:
             code, linked = Path(scratch) / "yehu.o", Path(scratch) / "linked"
             if what == "wasm":
+                functions += INTERPRETER
                 code.write_bytes(compiled(functions, PAGE))
                 link.link_page(code, [function.name for function in functions], linked)
                 module = with_section(linked.read_bytes(), f"{__version__} {sources_hash()}")

@@ -44,10 +44,11 @@ def image(rate: float) -> Array:
     first.tables["program_row"] = 0.0  # not read, as there are no programs
     first.post(START)
     words = np.frombuffer(memory, np.int64)
-    return np.concatenate([np.zeros(0, np.int64), *_runs(words)])
+    return np.concatenate([np.zeros(0, np.int64), *runs(words)])
 
 
-def _runs(words: Array) -> Iterable[Array]:
+def runs(words: Array) -> Iterable[Array]:
+    """The runs of words of a record [dtype=int64] that are not zero, each with its heading."""
     places = np.flatnonzero(words)
     for run in np.split(places, np.flatnonzero(np.diff(places) > SHORTEST_GAP) + 1):
         if len(run):

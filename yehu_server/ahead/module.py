@@ -33,6 +33,10 @@ COUNTED_DOWN = re.compile(
     r"(?P<into>%\S+) = (?:tail )?call i8 @llvm\.x86\.atomic\.sub\.cc\.i64"
     r"\(ptr (?:nonnull )?(?P<at>%\S+), i64 (?P<by>\d+), i32 \d+\)"
 )
+# numba's callers by name give a truth as a byte, and what they call takes a bit: WebAssembly, which
+# checks the types of a call, would stop there.
+ENTRY = re.compile(r"^define [^\n]*@cfunc\.[^\n]*\bi1 %[^\n]*\{\n[^\n]*:[^\n]*\n", re.MULTILINE)
+TRUTH = re.compile(r"\bi1 (?P<name>%[\w.]+)")
 MODE = re.compile(r"^ *(?:tail )?call void @llvm\.x86\.sse\.(?:st|ld)mxcsr\(.*\)$", re.MULTILINE)
 # Callers give a truth value as a byte, but numba's function for C takes one bit: a processor passes
 # both in a register, WebAssembly refuses to call.
@@ -120,10 +124,17 @@ def _module(function: Native) -> Any:
     made = function.compiled
     # `inspect_llvm()` shows nothing of what came from the cache.
     text = str(made._library._get_module_for_linking())  # noqa: SLF001
-    module = binding.parse_assembly(text)
+    module = binding.parse_assembly(ENTRY.sub(_take_bytes, text))
     entry = module.get_function(made.native_name)
     entry.name, entry.linkage = function.name, binding.Linkage.external
     return module
+
+
+def _take_bytes(entry: re.Match[str]) -> str:
+    """The beginning of a function that takes truths as bytes."""
+    truths = TRUTH.findall(entry[0])
+    bits = (f"  {name} = trunc i8 {name}.byte to i1\n" for name in truths)
+    return TRUTH.sub(r"i8 \g<name>.byte", entry[0]) + "".join(bits)
 
 
 def _for_machine(text: str, target: Target, layout: str) -> str:

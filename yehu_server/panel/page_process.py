@@ -61,6 +61,7 @@ class Pages:
         elif event["event"] == "beginning":
             self._site.add_beginning(event["name"], event["text"])
         elif self._sounds == PREPARING:
+            self._site.lack_module(event.get("reason", "what prepares it has ended"))
             self._sounds = NONE
 
     def hear(self, orders: Iterator[Message]) -> None:

@@ -1,4 +1,4 @@
-"""The parameter table and the kinds of wishes, as the page has them."""
+"""The parameter table and the kinds of wishes and events, as the page has them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import fields
 from enum import Enum
 from typing import Any
 
+from yehu_server.midi.events import EVENTS
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.player.rows import ROW
@@ -15,6 +16,11 @@ from yehu_server.player.wishes import KINDS
 def kinds() -> dict[str, int]:
     """The number of each kind of wish, by its name."""
     return {name.upper(): number for number, name in enumerate(KINDS)}
+
+
+def events() -> dict[str, int]:
+    """The number of each other kind of event, by its name."""
+    return {name.upper(): number for number, name in enumerate(EVENTS, len(KINDS))}
 
 
 def parameters() -> list[dict[str, Any]]:

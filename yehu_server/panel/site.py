@@ -54,6 +54,7 @@ class Site:
 
     def __init__(self) -> None:
         self._files: dict[str, Kept] = {}
+        self._lacks: str | None = None
         folder = page_folder()
         for name in map(Path.as_posix, page_files()):
             self._keep(name, (folder / name).read_bytes())
@@ -66,6 +67,10 @@ class Site:
         """Add the instrument in WebAssembly, once it is there."""
         self._keep(MODULE, data)
 
+    def lack_module(self, reason: str) -> None:
+        """Answer with a reason that there is none, and that there won't be one."""
+        self._lacks = reason
+
     def add_beginning(self, name: str, text: str) -> None:
         """Add a file that captures of pages begin with."""
         self._keep(f"{CAPTURES}/{name}", text.encode())
@@ -74,7 +79,9 @@ class Site:
         """Answer with the file of a request's path."""
         kept = self._files.get(request.path.removeprefix("/") or INDEX)
         if kept is None and request.path == f"/{MODULE}":
-            raise web.HTTPServiceUnavailable(headers={"Retry-After": "5"}, text="not built yet\n")
+            if self._lacks is not None:
+                raise web.HTTPNotFound(text=f"{self._lacks}\n")
+            raise web.HTTPServiceUnavailable(headers={"Retry-After": "1"}, text="not built yet\n")
         if kept is None:
             raise web.HTTPNotFound(text="nothing here\n")
         headers = HEADERS | {"ETag": kept.tag, "Vary": "Accept-Encoding"}

@@ -1,0 +1,87 @@
+/**
+ * What MIDI, mappings and hands mean: the server's own code, in WebAssembly, on the page's thread.
+ *
+ * Events go in (`facts.events`), and wishes come out (`facts.kinds`).
+ */
+
+import facts from '../facts.js';
+import { room, surroundings } from '../sound/kernel.js';
+
+const { record, tablesAt, length, slots } = facts.interpreter;
+const HALVES = 2; // of a whole number, whose lower one holds all that pages read
+
+/** @typedef {[kind: number, index: number, value: number, other: number]} Wished */
+
+export class Interpreter {
+  /**
+   * Make one of a part that was sent nothing, and has no tables yet.
+   * @param {BufferSource} bytes of the WebAssembly module
+   * @returns {Promise<Interpreter>}
+   */
+  static async open(bytes) {
+    /** @type {any} */
+    let exported = null;
+    const env = surroundings(() => new DataView(exported.memory.buffer));
+    exported = (await WebAssembly.instantiate(bytes, { env })).instance.exports;
+    return new Interpreter(exported);
+  }
+
+  /** @param {any} exported by the module */
+  constructor(exported) {
+    const [at] = room(exported, Number(exported.yehu_interpreter_size()));
+    exported.yehu_interpreter_prepare(at);
+    this.exported = exported;
+    this.at = at;
+    const memory = exported.memory.buffer; // it grows no more
+    this.numbers = new Float64Array(memory, at);
+    this.halves = new Int32Array(memory, at);
+    /** The values of parameters, by row. */
+    this.values = this.#of(record.value);
+    /** Values that binds came to last, by row, as they were before a section has taken them. */
+    this.found = this.#of(record.found_value);
+  }
+
+  /** @param {number[]} field */
+  #of([at, size]) {
+    return this.numbers.subarray(at, at + size);
+  }
+
+  /** @param {number[]} field */
+  #whole([at], place = 0) {
+    return this.halves[HALVES * (at + place)];
+  }
+
+  /** The number of the tables that are used next after those in use. */
+  get nextSlot() {
+    return (this.#whole(record.tables) + 1) % slots;
+  }
+
+  /**
+   * Some tables: see `writeTables`.
+   * @param {number} [slot] by default those in use
+   */
+  tables(slot = this.#whole(record.tables)) {
+    return this.#of([tablesAt + slot * length, length]);
+  }
+
+  /**
+   * Interpret an event; return what it comes to.
+   * @param {number} frame
+   * @param {number} kind
+   * @param {number} index
+   * @param {number} value
+   * @param {number} other
+   * @returns {Wished[]}
+   */
+  take(frame, kind, index, value, other) {
+    const { out_kind, out_index, out_value, out_other } = record;
+    const whole = [frame, kind, index].map(BigInt);
+    const count = this.exported.yehu_interpreter_take(this.at, ...whole, value, other);
+    return Array.from({ length: Number(count) }, (_, place) => [
+      this.#whole(out_kind, place),
+      this.#whole(out_index, place),
+      this.numbers[out_value[0] + place],
+      this.numbers[out_other[0] + place],
+    ]);
+  }
+}

@@ -33,18 +33,7 @@ COUNTED_DOWN = re.compile(
     r"(?P<into>%\S+) = (?:tail )?call i8 @llvm\.x86\.atomic\.sub\.cc\.i64"
     r"\(ptr (?:nonnull )?(?P<at>%\S+), i64 (?P<by>\d+), i32 \d+\)"
 )
-# numba's callers by name give a truth as a byte, and what they call takes a bit: WebAssembly, which
-# checks the types of a call, would stop there.
-ENTRY = re.compile(r"^define [^\n]*@cfunc\.[^\n]*\bi1 %[^\n]*\{\n[^\n]*:[^\n]*\n", re.MULTILINE)
-TRUTH = re.compile(r"\bi1 (?P<name>%[\w.]+)")
 MODE = re.compile(r"^ *(?:tail )?call void @llvm\.x86\.sse\.(?:st|ld)mxcsr\(.*\)$", re.MULTILINE)
-# Callers give a truth value as a byte, but numba's function for C takes one bit: a processor passes
-# both in a register, WebAssembly refuses to call.
-ENTRY = re.compile(
-    r"^(?P<head>define [^\n]*@yehu_\w+\()(?P<takes>[^\n]*\bi1 [^\n]*)(?P<body>\)[^\n)]*\{\n\w+:\n)",
-    re.MULTILINE,
-)
-TRUTH = re.compile(r"\bi1 (?P<name>%[\w.]+)")
 # LLVM calls it for products of 128 bits, which WebAssembly has none of.
 MULTIPLY = "__multi3"
 MULTIPLY_128 = f"""
@@ -124,17 +113,10 @@ def _module(function: Native) -> Any:
     made = function.compiled
     # `inspect_llvm()` shows nothing of what came from the cache.
     text = str(made._library._get_module_for_linking())  # noqa: SLF001
-    module = binding.parse_assembly(ENTRY.sub(_take_bytes, text))
+    module = binding.parse_assembly(text)
     entry = module.get_function(made.native_name)
     entry.name, entry.linkage = function.name, binding.Linkage.external
     return module
-
-
-def _take_bytes(entry: re.Match[str]) -> str:
-    """The beginning of a function that takes truths as bytes."""
-    truths = TRUTH.findall(entry[0])
-    bits = (f"  {name} = trunc i8 {name}.byte to i1\n" for name in truths)
-    return TRUTH.sub(r"i8 \g<name>.byte", entry[0]) + "".join(bits)
 
 
 def _for_machine(text: str, target: Target, layout: str) -> str:
@@ -143,7 +125,6 @@ def _for_machine(text: str, target: Target, layout: str) -> str:
     text = TRIPLE.sub(f'target triple = "{target.triple}"', text)
     text = COMMON.sub("= internal global", text)
     text = PYTHONS_GLOBAL.sub(r"@\g<name> = internal global i8 0", text)
-    text = ENTRY.sub(_take_bytes, text)
     text = COUNTED_DOWN.sub(_count_down, text)
     text = PYTHONS.sub(_trap, text)
     text += f"\n{TRAP}\n" if TRAP not in text else ""
@@ -160,14 +141,6 @@ def _count_down(found: re.Match[str]) -> str:
         f"  {last} = icmp eq i64 {was}, {found['by']}\n"
         f"  {into} = zext i1 {last} to i8"
     )
-
-
-def _take_bytes(entry: re.Match[str]) -> str:
-    """Begin a function that takes its truth values as bytes."""
-    takes = TRUTH.sub(r"i8 \g<name>.byte", entry["takes"])
-    bits = [found["name"] for found in TRUTH.finditer(entry["takes"])]
-    truncated = "".join(f"  {name} = trunc i8 {name}.byte to i1\n" for name in bits)
-    return entry["head"] + takes + entry["body"] + truncated
 
 
 def _trap(declared: re.Match[str]) -> str:

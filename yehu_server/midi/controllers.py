@@ -57,14 +57,15 @@ DEFAULTS = np.array([param.default for param in TABLE])
 
 
 @native(
-    "void(voidptr, voidptr, int64, int64, int64, boolean)", calls=[find_values_apart, write_apart]
+    "void(voidptr, voidptr, int64, int64, int64, int64)", calls=[find_values_apart, write_apart]
 )
 def follow_apart(
-    midi_at: Any, tables_at: Any, frame: int, source: int, channel: int, glides: bool
+    midi_at: Any, tables_at: Any, frame: int, source: int, channel: int, gliding: int
 ) -> None:
     """See `follow`."""
     m = carray(midi_at, (1,), MIDI)[0]
     t = carray(tables_at, (1,), TABLES)[0]
+    glides = gliding != 0  # a bit is passed otherwise by WebAssembly than by numba
     keep_targets_of(m, t, source)
     if m.sounding == NONE:
         if m.has_last != 0:
@@ -93,7 +94,7 @@ def follow(m: Any, t: Any, frame: int, source: int, channel: int, glides: bool) 
     glides : bool
         Whether the binds that receive it give their smoothing.
     """
-    _follow(address_of(m), address_of(t), frame, source, channel, glides)
+    _follow(address_of(m), address_of(t), frame, source, channel, 1 if glides else 0)
 
 
 @compiled_exactly

@@ -45,12 +45,13 @@ def pass_on(m: Any, frame: int, kind: int, index: int, value: float, other: floa
         tell_all(m, frame, kind, index, value, other, False, 0, 0.0)
 
 
-@native("float64(voidptr, int64, int64, float64, boolean, float64, int64)")
+@native("float64(voidptr, int64, int64, float64, int64, float64, int64)")
 def write_apart(
-    midi_at: Any, frame: int, row: int, value: float, hold: bool, glide_ms: float, of_key: int
+    midi_at: Any, frame: int, row: int, value: float, holding: int, glide_ms: float, of_key: int
 ) -> float:
     """See `write`."""
     m = carray(midi_at, (1,), MIDI)[0]
+    hold = holding != 0  # a bit is passed otherwise by WebAssembly than by numba
     value = in_range(row, value)
     if row == SECTION:
         value = min(np.rint(value), float(m.people))
@@ -98,7 +99,7 @@ def write(
     of_key : int
         Where a section divides: the number of the held key that it is for, or NONE for all.
     """
-    return float(_write(address_of(m), frame, row, value, hold, glide_ms, of_key))
+    return float(_write(address_of(m), frame, row, value, 1 if hold else 0, glide_ms, of_key))
 
 
 @compiled_exactly

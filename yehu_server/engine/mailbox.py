@@ -23,7 +23,7 @@ HEAP = 1 << 14
 ROOM = 1 << 12  # entries that a heap of wishes has room for before another event is interpreted
 # Limits on the work of a callback: events moved to the heap for each 64 frames, and wishes
 # fulfilled at one frame. The rest waits for the next.
-LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 10, 64
+LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 8, 64
 # The writers of events. Those of MIDI have the time of their arrival (ns) in place of a frame.
 SERVER, MIDI_INPUTS, PAGES = range(3)
 WRITERS = 3

@@ -137,14 +137,14 @@ def interpret(
     elif kind == MESSAGE:
         receive(m, t, frame, index)
     elif kind == TABLES_TO and 0 <= index < SLOTS:
-        m.tables = index
         change_tables(m, t, all_tables[index], frame)
+        m.tables = index  # from now on the others may be written
     elif kind in (NOTE_ON, FINGER_ON, NOTE_OFF):
         act_on_key(m, t, frame, kind, index, value, min(other, 1.0))
     elif kind in (SET, LOAD) and 0 <= index < ROWS:
         if kind == SET or m.kept[index] == 0:
             set_directly(m, frame, index, value, max(other, 0.0))
-    elif kind == CONTROL:
+    elif kind == CONTROL and index >= 0:
         move_control(m, t, frame, CONTROL_SOURCE + index, value)
     elif kind in (DISCONNECT, LEAVE, RELEASE_ALL):
         act_on_end(m, t, frame, kind, index, value)

@@ -61,7 +61,7 @@ export class Instrument extends EventTarget {
 
   /**
    * Where the player's wishes go.
-   * @returns {import('./playing/player.js').Sink}
+   * @returns {import('./playing/part.js').Sink}
    */
   #sink() {
     const instrument = this;

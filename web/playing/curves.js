@@ -1,6 +1,6 @@
 /** Curves, by which 0 to 1 is mapped to a range. */
 
-import { clamp } from './numbers.js';
+import { clamp } from './range.js';
 
 /** @typedef {string} Curve Its name: 'lin', 'exp' or 's'. */
 

@@ -37,7 +37,7 @@ export class Interpreter {
     this.halves = new Int32Array(memory, at);
     /** The values of parameters, by row. */
     this.values = this.#of(record.value);
-    /** Values that binds came to last, by row, as they were before a section has taken them. */
+    /** Values that binds came to last, by row; one of how many play is as large as was asked. */
     this.found = this.#of(record.found_value);
   }
 

@@ -1,7 +1,6 @@
 /** MIDI learn: detects which source somebody moves, so that it can be bound. */
 
 import facts from '../facts.js';
-import { DefaultMap } from './default_map.js';
 import * as midi from './midi_bytes.js';
 import * as sources from './sources.js';
 
@@ -22,8 +21,8 @@ const REST = new Map(Object.entries(AT_REST));
 export class Learner {
   /** @type {Map<string, number>} by channel and source */
   #beganAt = new Map();
-  /** @type {DefaultMap<number, Channel>} */
-  #channels = new DefaultMap(() => ({ before: null, nrpn: [null, null] }));
+  /** @type {Map<number, Channel>} */
+  #channels = new Map();
   /** Channels and coarse halves of which a fine half was heard. @type {Set<string>} */
   #pairs = new Set();
 
@@ -57,7 +56,8 @@ export class Learner {
    * @returns {string | null}
    */
   #control(channel, control, value) {
-    const state = this.#channels.at(channel);
+    const state = this.#channels.get(channel) ?? { before: null, nrpn: [null, null] };
+    this.#channels.set(channel, state);
     const { before } = state;
     state.before = control;
     if (control === NRPN) state.nrpn[0] = value;

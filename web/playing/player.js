@@ -2,12 +2,12 @@
 
 import facts from '../facts.js';
 import { MAPPINGS } from './learned.js';
-import { clamp } from './numbers.js';
-import { ParameterError, TABLE, accept, find } from './table.js';
-import { writeTables, writeTuning } from './tables.js';
+import { Part } from './part.js';
+import { clamp } from './range.js';
+import { ParameterError, accept, find } from './table.js';
 
-const { WRITE, DRAW, LIFT, SLIDE, STOP, RELEASE } = facts.kinds;
-const { MESSAGE, FINGER_ON, NOTE_OFF, SET, LOAD, DISCONNECT, RELEASE_ALL, TABLES_TO } = facts.events;
+const { DRAW, LIFT, SLIDE, RELEASE } = facts.kinds;
+const { MESSAGE, FINGER_ON, NOTE_OFF, LOAD, DISCONNECT, RELEASE_ALL } = facts.events;
 const { LOWEST_NOTE, HIGHEST_NOTE, ELSEWHERE } = facts.notes;
 const HIGHEST_KEY = facts.notes.KEYS - 1;
 const { CHANNELS } = facts.sources;
@@ -16,26 +16,12 @@ const MOST_BYTES = 3; // of a message
 const TUNINGS = facts.tunings;
 /** @type {Readonly<Record<string, {values: Readonly<Record<string, number>>}>>} */
 const PRESETS = facts.presets.shipped;
-const { row: SECTION } = find('/playing/section');
-const [BOW_SPEED, BOW_FORCE, BOW_ASSIST] = ['/bow/speed', '/bow/force', '/bow/assist'].map(find);
-// Within this time the sound has a write, and tells the value that it moves to.
-const TOLD_WITHIN_S = 0.1;
+const [BOW_SPEED, BOW_FORCE] = ['/bow/speed', '/bow/force'].map(find);
 
 /**
  * @typedef {import('./interpreter.js').Interpreter} Interpreter
  * @typedef {import('./learned.js').Mapping} Mapping
  * @typedef {import('./tables.js').Tuning} Tuning
- *
- * @typedef {object} Sink What wishes are posted to.
- * @property {(frame: number | null, kind: number, index: number, value: number, other: number)
- *   => unknown} post one wish; frame null is now
- * @property {number} [frame] number of the next sample, as far as the page knows
- * @property {number} [rate] Hz
- * @property {(address: string) => number | undefined} [target] where a parameter of bow and
- *   fingers moves to
- * @property {number} [people] how many may play it; by default one
- * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
- *   others set them too
  *
  * @typedef {number | string} NoteId Tells notes that hands hold at one time apart.
  *
@@ -52,21 +38,18 @@ const TOLD_WITHIN_S = 0.1;
  */
 export class Player {
   #sink;
-  /** @type {Interpreter | null} */
-  #interpreter = null;
+  #part;
   #mapping = MAPPINGS[facts.defaultMapping];
   /** @type {Tuning} */
   #tuning = TUNINGS.equal;
   #latest = 0; // the latest frame of any call
-  #now = 0; // frame of the last event for now
   /** The keys that hands hold. @type {Map<NoteId, Key>} */
   #inHand = new Map();
-  /** The last writes, by row. @type {Map<number, {value: number, frame: number}>} */
-  #written = new Map();
 
-  /** @param {Sink} sink */
+  /** @param {import('./part.js').Sink} sink */
   constructor(sink) {
     this.#sink = sink;
+    this.#part = new Part(sink);
   }
 
   /**
@@ -74,15 +57,11 @@ export class Player {
    * @param {Interpreter} interpreter
    */
   playBy(interpreter) {
-    this.#interpreter = interpreter;
+    this.#part.interpreter = interpreter;
     this.remap(this.#mapping);
   }
 
   // -- frames ------------------------------------------------------------------------------
-
-  get #frame() {
-    return this.#sink.frame ?? 0;
-  }
 
   /**
    * The frame itself; remembers the latest.
@@ -104,92 +83,9 @@ export class Player {
    */
   #afterAll(frame) {
     if (frame !== null) return Math.max(this.#at(frame) ?? frame, this.#latest);
-    const now = this.#frame;
+    const now = this.#sink.frame ?? 0;
     if (this.#latest > now + (this.#sink.rate ?? 0)) this.#latest = now;
     return this.#latest > now ? this.#latest : null;
-  }
-
-  // -- events and wishes -------------------------------------------------------------------
-
-  /**
-   * Have an event interpreted, and post what it comes to.
-   * @param {number | null} frame
-   * @param {number} kind
-   * @param {number} [index]
-   * @param {number} [value]
-   * @param {number} [other]
-   */
-  #take(frame, kind, index = 0, value = 0, other = 0) {
-    const interpreter = this.#interpreter;
-    if (interpreter === null) return;
-    this.#learnValues(interpreter);
-    // What is for now has a frame of its own, before all others.
-    const wishes = interpreter.take(frame ?? --this.#now, kind, index, value, other);
-    for (const [kind, index, value, other] of wishes) {
-      const isSection = kind === WRITE && index === SECTION;
-      this.#post(frame, kind, index, isSection ? this.#people(interpreter, value) : value, other);
-    }
-  }
-
-  /**
-   * Let the interpreter know what others have set.
-   * @param {Interpreter} interpreter
-   */
-  #learnValues({ values }) {
-    for (const { address, row, owned } of TABLE) {
-      const told = owned || this.#isRecent(row) ? undefined : this.#sink.told?.(address);
-      if (told !== undefined) values[row] = told;
-    }
-  }
-
-  /**
-   * How many shall play: the interpreter knows of one only.
-   * @param {Interpreter} interpreter
-   * @param {number} one
-   */
-  #people({ found, values }, one) {
-    const { people = 1 } = this.#sink;
-    return people > 1 ? (values[SECTION] = Math.min(Math.round(found[SECTION]), people)) : one;
-  }
-
-  /**
-   * @param {number | null} frame
-   * @param {number} kind
-   * @param {number} index
-   * @param {number} value
-   * @param {number} other
-   */
-  #post(frame, kind, index, value, other) {
-    if (kind === WRITE) this.#note(index, value, frame);
-    if (kind === DRAW) {
-      this.#note(BOW_SPEED.row, value, frame);
-      this.#note(BOW_FORCE.row, other, frame);
-    }
-    // Raw newtons are heard only without assist.
-    if (kind === DRAW || (kind === WRITE && index === BOW_FORCE.row)) {
-      this.#note(BOW_ASSIST.row, 0, frame);
-    }
-    this.#sink.post(frame, kind, index, value, other);
-  }
-
-  /**
-   * @param {number} row
-   * @param {number} value
-   * @param {number | null} frame
-   */
-  #note(row, value, frame) {
-    this.#written.set(row, { value, frame: frame ?? this.#frame });
-  }
-
-  /**
-   * Whether a parameter was written so lately that the sound may not tell it yet.
-   * @param {number} row
-   */
-  #isRecent(row) {
-    const written = this.#written.get(row);
-    return (
-      written !== undefined && this.#frame < written.frame + TOLD_WITHIN_S * (this.#sink.rate ?? 0)
-    );
   }
 
   // -- parameters --------------------------------------------------------------------------
@@ -201,11 +97,7 @@ export class Player {
    * @returns {number}
    */
   value(address) {
-    const param = find(address);
-    const { row, owned } = param;
-    const known = owned ? this.#written.get(row)?.value : this.#interpreter?.values[row];
-    const told = owned ? this.#sink.target?.(address) : this.#sink.told?.(address);
-    return (this.#isRecent(row) ? known : (told ?? known)) ?? param.default;
+    return this.#part.value(address);
   }
 
   /**
@@ -217,12 +109,7 @@ export class Player {
    */
   write(address, value, frame = null) {
     const param = find(address);
-    const accepted = accept(param, value);
-    const interpreter = this.#interpreter;
-    if (interpreter && param.row === SECTION && (this.#sink.people ?? 1) > 1) {
-      interpreter.found[SECTION] = accepted;
-      this.#post(this.#at(frame), WRITE, SECTION, this.#people(interpreter, 1), 0);
-    } else this.#take(this.#at(frame), SET, param.row, accepted);
+    this.#part.set(this.#at(frame), param, accept(param, value));
   }
 
   /**
@@ -230,7 +117,7 @@ export class Player {
    * @param {number | null} frame
    */
   release(frame = null) {
-    this.#take(this.#at(frame), RELEASE);
+    this.#part.take(this.#at(frame), RELEASE);
   }
 
   // -- style -------------------------------------------------------------------------------
@@ -243,7 +130,7 @@ export class Player {
   applyPreset(name, frame = null) {
     const { values } = named(PRESETS, name);
     for (const [address, value] of Object.entries(values)) {
-      this.#take(this.#at(frame), LOAD, find(address).row, value);
+      this.#part.take(this.#at(frame), LOAD, find(address).row, value);
     }
   }
 
@@ -253,7 +140,7 @@ export class Player {
    */
   applyTuning(name) {
     this.#tuning = named(TUNINGS, name);
-    if (this.#interpreter) writeTuning(this.#interpreter.tables(), this.#tuning);
+    this.#part.tune(this.#tuning);
   }
 
   /**
@@ -263,10 +150,7 @@ export class Player {
    */
   remap(mapping, frame = null) {
     this.#mapping = mapping;
-    if (this.#interpreter === null) return;
-    const { nextSlot } = this.#interpreter;
-    writeTables(this.#interpreter.tables(nextSlot), mapping, this.#tuning);
-    this.#take(this.#at(frame), TABLES_TO, nextSlot);
+    this.#part.remap(this.#at(frame), mapping, this.#tuning);
   }
 
   // -- notes -------------------------------------------------------------------------------
@@ -281,7 +165,7 @@ export class Player {
     const { length, 0: status = 0, 1: one = 0, 2: two = 0 } = bytes;
     if (length > MOST_BYTES) return;
     const packed = status + one * 2 ** 8 + two * 2 ** 16 + length * 2 ** 24 + port * 2 ** 32;
-    this.#take(this.#at(frame), MESSAGE, packed);
+    this.#part.take(this.#at(frame), MESSAGE, packed);
   }
 
   /**
@@ -290,7 +174,7 @@ export class Player {
    * @param {number | null} frame
    */
   letGoOf(port, frame = null) {
-    this.#take(frame === null ? this.#afterAll(null) : this.#at(frame), DISCONNECT, port);
+    this.#part.take(frame === null ? this.#afterAll(null) : this.#at(frame), DISCONNECT, port);
   }
 
   /**
@@ -308,8 +192,8 @@ export class Player {
     const strength = within('velocity', velocity, 1);
     const key = { channel: this.#freeChannel(), note };
     this.#inHand.set(id, key);
-    this.#take(this.#at(frame), FINGER_ON, key.channel, note, strength);
-    if (before !== undefined) this.#take(frame, NOTE_OFF, before.channel, before.note);
+    this.#part.take(this.#at(frame), FINGER_ON, key.channel, note, strength);
+    if (before !== undefined) this.#part.take(frame, NOTE_OFF, before.channel, before.note);
   }
 
   /**
@@ -321,7 +205,7 @@ export class Player {
     const key = this.#inHand.get(id);
     if (key === undefined) return;
     this.#inHand.delete(id);
-    this.#take(this.#at(frame), NOTE_OFF, key.channel, key.note);
+    this.#part.take(this.#at(frame), NOTE_OFF, key.channel, key.note);
   }
 
   /**
@@ -344,7 +228,7 @@ export class Player {
    */
   slide(at, frame = null) {
     const pitch = clamp(within('pitch', at, HIGHEST_KEY), LOWEST_NOTE, HIGHEST_NOTE);
-    this.#take(this.#at(frame), SLIDE, 0, pitch);
+    this.#part.take(this.#at(frame), SLIDE, 0, pitch);
   }
 
   /**
@@ -355,7 +239,7 @@ export class Player {
    * @param {number | null} frame
    */
   draw(speed, force, frame = null) {
-    this.#take(this.#at(frame), DRAW, 0, accept(BOW_SPEED, speed), accept(BOW_FORCE, force));
+    this.#part.take(this.#at(frame), DRAW, 0, accept(BOW_SPEED, speed), accept(BOW_FORCE, force));
   }
 
   /**
@@ -363,7 +247,7 @@ export class Player {
    * @param {number | null} frame
    */
   lift(frame = null) {
-    this.#take(this.#at(frame), LIFT);
+    this.#part.take(this.#at(frame), LIFT);
   }
 
   /**
@@ -373,8 +257,8 @@ export class Player {
   endNotes(frame = null) {
     const after = this.#afterAll(frame);
     this.#inHand.clear();
-    this.#take(after, RELEASE_ALL, 0, 1);
-    this.#take(after, LIFT);
+    this.#part.take(after, RELEASE_ALL, 0, 1);
+    this.#part.take(after, LIFT);
   }
 
   /**
@@ -383,9 +267,7 @@ export class Player {
    */
   panic(frame = null) {
     this.endNotes(frame);
-    const after = this.#afterAll(frame);
-    if (this.#interpreter) this.#take(after, STOP, 0, 1);
-    else this.#post(after, STOP, 0, 1, 0);
+    this.#part.stop(this.#afterAll(frame));
   }
 }
 

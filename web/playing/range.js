@@ -1,10 +1,20 @@
-/** The range of the instrument. */
+/** Ranges: of any number, and of the instrument. */
 
 import facts from '../facts.js';
-import { clamp } from './numbers.js';
 
 const { LOWEST_NOTE, HIGHEST_NOTE, OPEN_WITHIN } = facts.notes;
 const OCTAVE = 12;
+
+/**
+ * A number, moved to the nearer end of a range if it lies outside.
+ * @param {number} number
+ * @param {number} lo
+ * @param {number} hi
+ * @returns {number}
+ */
+export function clamp(number, lo, hi) {
+  return Math.min(Math.max(number, lo), hi);
+}
 
 /**
  * The note that is played for one that may be out of range: some octaves higher or lower.

@@ -2,7 +2,7 @@
 
 import facts from '../facts.js';
 import * as curves from './curves.js';
-import { clamp } from './numbers.js';
+import { clamp } from './range.js';
 
 /** @typedef {typeof facts.parameters[number]} Param A row of the table. */
 

@@ -13,15 +13,8 @@ from yehu_server.midi.tables import SLOTS, TABLES
 
 # What a page reads and writes of the record of a part.
 OF_RECORD = (
-    "tables",
-    "value",
-    "found_value",
-    "wishes",
-    "out_kind",
-    "out_index",
-    "out_value",
-    "out_other",
-)
+    "tables", "value", "found_value", "out_kind", "out_index", "out_value", "out_other",
+)  # fmt: skip
 
 
 def look_layout() -> dict[str, list[int]]:

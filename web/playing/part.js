@@ -1,0 +1,187 @@
+/** The part that the page plays: events come to wishes for it, and values are known of it. */
+
+import facts from '../facts.js';
+import { TABLE, find } from './table.js';
+import { writeTables, writeTuning } from './tables.js';
+
+const { WRITE, DRAW, STOP } = facts.kinds;
+const { SET, TABLES_TO } = facts.events;
+const { row: SECTION } = find('/playing/section');
+const [BOW_SPEED, BOW_FORCE, BOW_ASSIST] = ['/bow/speed', '/bow/force', '/bow/assist'].map(find);
+// Within this time the sound has a write, and tells the value that it moves to.
+const TOLD_WITHIN_S = 0.1;
+
+/**
+ * @typedef {import('./interpreter.js').Interpreter} Interpreter
+ * @typedef {import('./learned.js').Mapping} Mapping
+ * @typedef {import('./tables.js').Tuning} Tuning
+ *
+ * @typedef {object} Sink What wishes are posted to.
+ * @property {(frame: number | null, kind: number, index: number, value: number, other: number)
+ *   => unknown} post one wish; frame null is now
+ * @property {number} [frame] number of the next sample, as far as the page knows
+ * @property {number} [rate] Hz
+ * @property {(address: string) => number | undefined} [target] where a parameter of bow and
+ *   fingers moves to
+ * @property {number} [people] how many may play it; by default one
+ * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
+ *   others set them too
+ */
+
+/** Has events interpreted, and posts what they come to; a frame of null is now. */
+export class Part {
+  #sink;
+  #now = 0; // frame of the last event for now
+  /** The last writes, by row. @type {Map<number, {value: number, frame: number}>} */
+  #written = new Map();
+  /** Before there is one, events come to nothing. @type {Interpreter | null} */
+  interpreter = null;
+
+  /** @param {Sink} sink */
+  constructor(sink) {
+    this.#sink = sink;
+  }
+
+  get #frame() {
+    return this.#sink.frame ?? 0;
+  }
+
+  /**
+   * Have an event interpreted, and post what it comes to.
+   * @param {number | null} frame
+   * @param {number} kind
+   * @param {number} [index]
+   * @param {number} [value]
+   * @param {number} [other]
+   */
+  take(frame, kind, index = 0, value = 0, other = 0) {
+    const { interpreter } = this;
+    if (interpreter === null) return;
+    this.#learnValues(interpreter);
+    // What is for now has a frame of its own, before all others.
+    const wishes = interpreter.take(frame ?? --this.#now, kind, index, value, other);
+    for (const [kind, index, value, other] of wishes) {
+      const isSection = kind === WRITE && index === SECTION;
+      this.#post(frame, kind, index, isSection ? this.#people(interpreter, value) : value, other);
+    }
+  }
+
+  /**
+   * Let the interpreter know what others have set.
+   * @param {Interpreter} interpreter
+   */
+  #learnValues({ values }) {
+    for (const { address, row, owned } of TABLE) {
+      const told = owned || this.#isRecent(row) ? undefined : this.#sink.told?.(address);
+      if (told !== undefined) values[row] = told;
+    }
+  }
+
+  /**
+   * How many shall play: the interpreter knows of one only.
+   * @param {Interpreter} interpreter
+   * @param {number} one
+   */
+  #people({ found, values }, one) {
+    const { people = 1 } = this.#sink;
+    return people > 1 ? (values[SECTION] = Math.min(Math.round(found[SECTION]), people)) : one;
+  }
+
+  /**
+   * @param {number | null} frame
+   * @param {number} kind
+   * @param {number} index
+   * @param {number} value
+   * @param {number} other
+   */
+  #post(frame, kind, index, value, other) {
+    if (kind === WRITE) this.#note(index, value, frame);
+    if (kind === DRAW) {
+      this.#note(BOW_SPEED.row, value, frame);
+      this.#note(BOW_FORCE.row, other, frame);
+    }
+    // Raw newtons are heard only without assist.
+    if (kind === DRAW || (kind === WRITE && index === BOW_FORCE.row)) {
+      this.#note(BOW_ASSIST.row, 0, frame);
+    }
+    this.#sink.post(frame, kind, index, value, other);
+  }
+
+  /**
+   * @param {number} row
+   * @param {number} value
+   * @param {number | null} frame
+   */
+  #note(row, value, frame) {
+    this.#written.set(row, { value, frame: frame ?? this.#frame });
+  }
+
+  /**
+   * Whether a parameter was written so lately that the sound may not tell it yet.
+   * @param {number} row
+   */
+  #isRecent(row) {
+    const written = this.#written.get(row);
+    return (
+      written !== undefined && this.#frame < written.frame + TOLD_WITHIN_S * (this.#sink.rate ?? 0)
+    );
+  }
+
+  /**
+   * The value of a parameter, or the one it is moving to. Throws ParameterError where there is
+   * none.
+   * @param {string} address
+   * @returns {number}
+   */
+  value(address) {
+    const param = find(address);
+    const { row, owned } = param;
+    const known = owned ? this.#written.get(row)?.value : this.interpreter?.values[row];
+    const told = owned ? this.#sink.target?.(address) : this.#sink.told?.(address);
+    return (this.#isRecent(row) ? known : (told ?? known)) ?? param.default;
+  }
+
+  /**
+   * Set a parameter, until a controller moves it.
+   * @param {number | null} frame
+   * @param {import('./table.js').Param} param
+   * @param {number} value within its range
+   */
+  set(frame, { row }, value) {
+    const { interpreter } = this;
+    if (interpreter && row === SECTION && (this.#sink.people ?? 1) > 1) {
+      interpreter.found[SECTION] = value;
+      this.#post(frame, WRITE, SECTION, this.#people(interpreter, 1), 0);
+    } else this.take(frame, SET, row, value);
+  }
+
+  /**
+   * Take another mapping while notes sound.
+   * @param {number | null} frame
+   * @param {Mapping} mapping
+   * @param {Tuning} tuning
+   */
+  remap(frame, mapping, tuning) {
+    if (this.interpreter === null) return;
+    const { nextSlot } = this.interpreter;
+    writeTables(this.interpreter.tables(nextSlot), mapping, tuning);
+    this.take(frame, TABLES_TO, nextSlot);
+  }
+
+  /**
+   * Tune keys, from the next note on.
+   * @param {Tuning} tuning
+   */
+  tune(tuning) {
+    if (this.interpreter) writeTuning(this.interpreter.tables(), tuning);
+  }
+
+  /**
+   * End all that sounds, at once, whoever plays; also where nothing is interpreted.
+   * @param {number | null} frame
+   */
+  stop(frame) {
+    if (this.interpreter) this.take(frame, STOP, 0, 1);
+    else this.#post(frame, STOP, 0, 1, 0);
+  }
+}

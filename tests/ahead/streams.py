@@ -35,6 +35,7 @@ from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, Tuning, read_tuning
 
 RATE, BLOCK = 48000.0, 128
+OWN_CALLS = 0.05  # a chance after each
 APART = 40  # frames from one step to the next
 SYSEX, CLOCK = (0xF0, 0x7E, 0x09, 0xF7), (0xF8,)
 TUNINGS = {"equal": EQUAL, "seven": read_tuning(Path("chaozhou-seven-equal"))}
@@ -101,15 +102,47 @@ class Maker:
         self._parts = calls.Streams(seed, [*some, *shipped])
         self._controls, self._presets = Controls(), Presets()
         self._style: dict[str, Any] = {}
-        self._frame = 0
+        self._frame, self._key = 0, 60.0
         self.stream = Stream([], [])
         for _ in range(parts):
-            part = self._parts.next()
-            self._style = part["style"] | {"tuning": self._chance.choice([*TUNINGS])}
+            self._style = self._some_style()
             self._map()
             self._post(events.START, 0, 0.0, 0.0)
-            for name, *arguments in part["calls"]:
+            for name, *arguments in self._parts.next():
                 self._call(name, arguments)
+                if self._chance.random() < OWN_CALLS:
+                    self._call_own()
+
+    def _some_style(self) -> dict[str, Any]:
+        chance = self._chance
+        style = {
+            "mapping": chance.choice([*self._mappings]),
+            "tuning": chance.choice([*TUNINGS]),
+            "a4": chance.choice([440.0, 440.0, 392.0, 480.5]),
+            "policy": chance.choice(["transpose", "transpose", "clamp", "skip"]),
+            "programs": chance.random() < 0.5,
+            "channels": chance.choice([None, None, None, [0, 9]]),
+        }
+        if chance.random() < 0.2:
+            style["preset"] = chance.choice(calls.PRESETS)
+        return style
+
+    def _call_own(self) -> None:
+        """Call what no page calls: named controls, holds, and a beginning anew."""
+        chance = self._chance
+        kind = chance.randrange(4)
+        if kind < 2:
+            number, argument = (
+                self._controls.number(chance.choice(calls.ADDRESSES)),
+                chance.random(),
+            )
+            self._step("control", (number, argument), (events.CONTROL, number, argument, 0.0))
+        elif kind == 2:
+            param = chance.choice(calls.FREE)
+            self._post(wishes.HOLD, ROW[param.address], chance.uniform(param.lo, param.hi), 0.0)
+        else:
+            self._post(events.RELEASE_ALL, 0, 1.0, 0.0)
+            self._post(events.START, 0, 1.0, 0.0)
 
     def _step(self, name: str, arguments: tuple[Any, ...], *posted: Event) -> None:
         self._frame += APART
@@ -141,13 +174,11 @@ class Maker:
         *arguments, _frame = given
         if name == "midi":
             self._midi(arguments[0], given[2])
-        elif name == "move":
-            number, argument = self._controls.number(arguments[0]), float(arguments[1])
-            posted = (events.CONTROL, number, argument, 0.0)
-            self._step("control", (number, argument), posted)
-        elif name in ("applyMapping", "applyTuning"):
-            key, value = ("mapping", given[0]) if name == "applyMapping" else ("a4", given[1])
-            self._style[key] = value
+        elif name == "remap":
+            self._style["mapping"] = given[0]
+            self._map()
+        elif name == "applyTuning":
+            self._style["tuning"] = self._chance.choice([*TUNINGS])
             self._map()
         elif name == "applyPreset":
             for address, value in self._presets.load(given[0]).values.items():
@@ -174,13 +205,12 @@ class Maker:
         self._step("midi", tuple(data), *posted)
 
     def _by_hand(self, name: str, given: list[Any]) -> None:
-        address = given[0] if given and isinstance(given[0], str) and given[0][0] == "/" else None
-        if address is not None:
-            kind = wishes.HOLD if name == "hold" else events.SET
-            self._post(kind, ROW[address], find(address).accept(given[1]), 0.0)
-        elif name == "noteOn":
+        if name == "write":
+            address, value = given
+            self._post(events.SET, ROW[address], find(address).accept(value), 0.0)
+        elif name == "fingerOn":
             self._key = given[1]
-            self._post(events.NOTE_ON, -1, given[1], given[2])
+            self._post(events.FINGER_ON, -1, given[1], given[2])
         elif name == "noteOff":
             self._post(events.NOTE_OFF, -1, self._key, 0.0)
         elif name == "slide":
@@ -191,12 +221,10 @@ class Maker:
             self._post(events.DISCONNECT, given[0], 0.0, 0.0)
         elif name in ("lift", "release"):
             self._post(wishes.LIFT if name == "lift" else wishes.RELEASE, 0, 0.0, 0.0)
-        elif name in ("endNotes", "panic", "reset"):
-            self._post(events.RELEASE_ALL, 0, float(name != "endNotes"), 0.0)
+        elif name in ("endNotes", "panic"):
+            self._post(events.RELEASE_ALL, 0, float(name == "panic"), 0.0)
             if name == "panic":
                 self._post(wishes.STOP, 0, 1.0, 0.0)
-            if name == "reset":
-                self._post(events.START, 0, 1.0, 0.0)
 
 
 def stream_of(seed: int, parts: int) -> Stream:

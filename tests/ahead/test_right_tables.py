@@ -10,6 +10,7 @@ from ahead.tables import TUNINGS, are_right, some_tables
 from yehu_server.ahead.interface import use_tables
 from yehu_server.ahead.right_tables import FIELDS
 from yehu_server.engine.instrument import Instrument
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.midi import tables as layout
 from yehu_server.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, TABLES
 from yehu_server.params.spec import Curve
@@ -114,7 +115,7 @@ WRONG = [
 
 @pytest.mark.parametrize(("field", "place", "wrong"), WRONG)
 def test_what_would_lead_astray_is_refused_and_changes_nothing(right, field, place, wrong):
-    instrument = Instrument(48000.0, is_live=True)
+    instrument = Instrument(InstrumentSpec(48000.0), is_live=True)
     before = instrument.tables.tobytes()
     right[field].reshape(-1)[place] = wrong
     given = instrument.address, 0, right.ctypes.data, right.nbytes

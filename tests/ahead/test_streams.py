@@ -29,6 +29,7 @@ from yehu_server.ahead.interface import control, midi, use_tables
 from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.mailbox import RING
 from yehu_server.engine.rig import RIG
+from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.midi import events
 from yehu_server.midi.packing import packed
 from yehu_server.midi.tables import SLOTS, TABLES
@@ -122,7 +123,7 @@ def test_plain_python_gives_the_same(tmp_path):
 
 @pytest.fixture
 def instrument() -> Instrument:
-    return Instrument(RATE, is_live=True)
+    return Instrument(InstrumentSpec(RATE), is_live=True)
 
 
 def posted(instrument: Instrument, since: int = 0) -> list[tuple]:

@@ -199,9 +199,10 @@ class LivePlayer:
             self._midi.remap(mapping, frame=self._at(frame))
 
     def know_programs(self) -> None:
-        """Read again which presets MIDI programs select, where they do."""
+        """Read again which presets MIDI programs select, where they do; those that changed."""
         with self._lock:
-            self._midi.know_programs(self.presets.programs(), frame=self._at(self.frame_of()))
+            if self._midi.has_programs:
+                self._midi.know_programs(self.presets.programs(), frame=self._at(self.frame_of()))
 
     def bindings(self) -> list[tuple[Bind, float | None, float]]:
         """Each bind, the position (0 to 1) its source was last moved to, and the target's value."""

@@ -79,11 +79,6 @@ class Mapping:
         return tuple(source for source in self._by_source if is_address(source))
 
     @cached_property
-    def has_global(self) -> bool:
-        """Whether any bind is global."""
-        return any(bind.is_global for bind in self.binds)
-
-    @cached_property
     def _by_source(self) -> dict[str, tuple[Bind, ...]]:
         found: dict[str, tuple[Bind, ...]] = {}
         for bind in self.binds:

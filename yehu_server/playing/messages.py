@@ -140,6 +140,11 @@ class MidiPlayer:
         self.mapping = mapping
         self._change_tables(frame)
 
+    @property
+    def has_programs(self) -> bool:
+        """Whether program changes select presets."""
+        return self._programs is not None
+
     def know_programs(self, programs: Values[int, Preset], *, frame: int | None = None) -> None:
         """Take other presets of MIDI programs, where program changes select presets."""
         if self._programs is not None and programs != self._programs:

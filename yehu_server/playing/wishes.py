@@ -14,7 +14,6 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.rig import RIG_BYTES
 from yehu_server.midi.events import NOTE_ON, RELEASE_ALL, SET
 from yehu_server.midi.record import NONE, SECTION
-from yehu_server.midi.section import sounds
 from yehu_server.midi.tables import plain_tables
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, find
@@ -241,12 +240,6 @@ class Wishes:
         """The key whose note sounds, if any."""
         record = self.record
         return None if record["sounding"] == NONE else self._key(record, record["sounding"])
-
-    @property
-    def all_sounding(self) -> list[Key]:
-        """The keys that sound at once: more than one where a section divides."""
-        record = self.record
-        return [self._key(record, n) for n in range(record["held"]) if sounds(record, n)]
 
     def holds(self, key: Key) -> bool:
         """Whether a key is held."""

@@ -7,6 +7,7 @@ goes wrong is told.
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Sequence
 
 from yehu_server.control.mapping_follower import MappingFollower
@@ -18,10 +19,11 @@ from yehu_server.playing.live import LivePlayer
 from yehu_server.score.live_capture import LiveCapture
 
 KEEP_EVERY_S = 0.05
+PROGRAMS_EVERY_S = 1.0  # between looks whether files of presets changed
 
 
 class Keeper:
-    """Keeps a server's delay, capture and mappings up to date, from `start` to `stop`.
+    """Keeps a server's delay, capture, mappings and programs up to date, from `start` to `stop`.
 
     Parameters
     ----------
@@ -53,6 +55,7 @@ class Keeper:
         self._osc_drops = osc_drops
         self._troubles = Troubles(said)
         self._ending = threading.Event()
+        self._next_programs = 0.0  # monotonic s
         keep = (self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", said)
         self._thread = threading.Thread(target=keep_on, args=keep, name="keeper", daemon=True)
 
@@ -94,3 +97,7 @@ class Keeper:
         )
         for follower in self._followers:
             follower.look()
+        if time.monotonic() > self._next_programs:
+            self._next_programs = time.monotonic() + PROGRAMS_EVERY_S
+            for player in self._players:
+                player.know_programs()

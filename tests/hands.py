@@ -166,7 +166,7 @@ class Watched(Instrument):
     def pitch_at(self, string: int, position: float) -> float:
         """Pitch (fractional MIDI note) of an ideal string, 0 or 1, stopped at a position (m)."""
         silk = self.spec.quantities.strings[string]
-        length = self.quantities.bridge_x - position
+        length = self.spec.quantities.bridge_x - position
         frequency = math.sqrt(silk.T / silk.rho_A) / (2.0 * length)
         return 69.0 + 12.0 * math.log2(frequency / 440.0)
 

@@ -43,7 +43,10 @@ def test_a_calibration_is_of_its_rate_its_instrument_and_its_pitch():
     assert len(keys) == 12
 
 
-def calibrated_player(calibration: Calibration, quantities: Quantities | None = None) -> np.void:
+MEASURED = Quantities()
+
+
+def calibrated_player(calibration: Calibration, quantities: Quantities = MEASURED) -> np.void:
     """The record of a player who knows a calibration."""
     instrument = Watched(quantities=quantities, calibration=calibration)
     return instrument._rig["player"][0]

@@ -94,7 +94,7 @@ def position_of(t: Any, bind: int, fraction: float) -> float:
         if y0 == fraction:
             return float(x0)
         if min(y0, y1) <= fraction <= max(y0, y1):
-            return float(x0 + (x1 - x0) * (fraction - y0) / (y1 - y0))
+            return float(min(x0 + (x1 - x0) * (fraction - y0) / (y1 - y0), x1))
     return 1.0  # by rounding, past the last point
 
 

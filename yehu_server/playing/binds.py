@@ -48,7 +48,7 @@ class Breakpoints:
             if y0 == fraction:
                 return x0
             if min(y0, y1) <= fraction <= max(y0, y1):
-                return x0 + (x1 - x0) * (fraction - y0) / (y1 - y0)
+                return min(x0 + (x1 - x0) * (fraction - y0) / (y1 - y0), x1)
         return 1.0  # by rounding, past the last point
 
 

@@ -10,7 +10,7 @@ import pytest
 from yehu_server.control.midi_feed import PORTS, MidiFeed, SharedRing
 from yehu_server.control.midi_routes import Route, Router
 from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.mailbox import MIDI_INPUTS, SMALL_RING
+from yehu_server.engine.mailbox import LIVE_BUDGET, MIDI_INPUTS, SMALL_RING
 from yehu_server.engine.rig import ring_place
 from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.midi.events import DISCONNECT, MESSAGE
@@ -117,6 +117,6 @@ def test_threads_of_several_inputs_lose_nothing(shared):
     out = np.zeros(64, np.float32)
     while any(thread.is_alive() for thread in threads):
         instrument.process(out)
-    for _ in range(4):
+    for _ in range(2 * count // LIVE_BUDGET):
         instrument.process(out)
     assert instrument.midi["messages"] == 2 * count

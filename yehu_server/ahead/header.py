@@ -181,6 +181,7 @@ def _prototype(function: Native) -> str:
         for kind, name in zip(kinds, names, strict=True)
     )
     about = inspect.cleandoc(function.function.__doc__ or "").partition("\n\nParameters\n")[0]
-    comment = textwrap.fill(f"/* {about.replace('`', '')} */", WIDTH, subsequent_indent=" * ")
+    about = " ".join(about.replace("`", "").split())
+    comment = textwrap.fill(f"/* {about} */", WIDTH, subsequent_indent=" * ")
     kind = "void " if returned == "void" else KINDS_OF_C[returned]
     return f"{comment}\n{kind}{function.name}({arguments or 'void'});"

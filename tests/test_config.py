@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from ipaddress import IPv4Interface
 from pathlib import Path
 
 import pytest
@@ -153,15 +154,14 @@ def test_a_wrong_option_is_one_clear_line(words, reason, capsys):
 
 
 def test_a_phone_is_told_the_exact_line():
-    local = connect_lines("127.0.0.1", 9000, "192.168.1.5", is_open=True)
-    assert "--osc 192.168.1.5:9000 --osc-allow 192.168.1.0/24" in local[1]
-    far = connect_lines("::", 9000, "192.168.1.5", is_open=True)
-    assert "host 192.168.1.5, send port 9000" in far[1]
+    lan = IPv4Interface("192.168.5.5/22")
+    local = connect_lines("127.0.0.1", 9000, lan, is_open=True)
+    assert "--osc 192.168.5.5:9000 --osc-allow 192.168.4.0/22" in local[1]
+    far = connect_lines("::", 9000, lan, is_open=True)
+    assert "host 192.168.5.5, send port 9000" in far[1]
     assert "anyone" in far[2]
-    assert connect_lines("::1", 9000, "192.168.1.5", is_open=True)[0].startswith(
-        "OSC at [::1]:9000 "
-    )
-    assert len(connect_lines("192.168.1.5", 9000, "192.168.1.5", is_open=False)) == 2
+    assert connect_lines("::1", 9000, lan, is_open=True)[0].startswith("OSC at [::1]:9000 ")
+    assert len(connect_lines("192.168.5.5", 9000, lan, is_open=False)) == 2
 
 
 def test_pitches_have_names():

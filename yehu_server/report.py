@@ -209,16 +209,17 @@ def status_line(status: Mapping[str, float | str]) -> str:
     return one_line(" | ".join(parts))
 
 
-def connect_lines(host: str, port: int, lan: str, *, is_open: bool) -> list[str]:
+def connect_lines(
+    host: str, port: int, lan: ipaddress.IPv4Interface, *, is_open: bool
+) -> list[str]:
     """Lines that tell how to reach the server; `is_open` where it accepts any sender."""
     lines = [f"OSC at {shown(host, port)} (UDP and TCP), such as {PREFIX}/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
-        network = ipaddress.ip_network(f"{lan}/24", strict=False)
-        hint = f"yehu-server serve --osc {lan}:{port} --osc-allow {network}"
+        hint = f"yehu-server serve --osc {lan.ip}:{port} --osc-allow {lan.network}"
         lines.append(f"for a phone on this network: {hint}")
     else:
-        where = lan if address.is_unspecified else host
+        where = lan.ip if address.is_unspecified else host
         lines.append(f"on a phone (TouchOSC): host {where}, send port {port}")
         if is_open:
             lines.append("anyone on this network may play; --osc-allow restricts it")

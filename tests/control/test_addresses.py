@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yehu_server.control.addresses import Allowed, parse_address, shown
+from yehu_server.control import addresses
+from yehu_server.control.addresses import Allowed, lan_interface, parse_address, shown
 from yehu_server.errors import ParameterError
 
 
@@ -74,3 +77,15 @@ def test_any_text_is_an_address_or_refused(text):
         return
     assert host
     assert 0 <= port <= 65535
+
+
+@pytest.mark.parametrize(
+    ("own", "network"),
+    [("192.168.5.5", "192.168.4.0/22"), ("10.1.2.3", "10.1.2.3/32")],
+)
+def test_the_network_is_as_wide_as_the_interface_says(monkeypatch, own, network):
+    told = [("::1", 128), ("127.0.0.1", 8), ("192.168.5.5", 22)]
+    ips = [SimpleNamespace(ip=ip, network_prefix=prefix) for ip, prefix in told]
+    monkeypatch.setattr(addresses, "lan_address", lambda: own)
+    monkeypatch.setattr(addresses.ifaddr, "get_adapters", lambda: [SimpleNamespace(ips=ips)])
+    assert str(lan_interface().network) == network

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ipaddress import IPv4Interface
+
 import pytest
 
 from yehu_server import cli
@@ -16,7 +18,7 @@ LAN = "192.168.1.5"
 
 @pytest.fixture(autouse=True)
 def _lan(monkeypatch) -> None:
-    monkeypatch.setattr(serve_options, "lan_address", lambda: LAN)
+    monkeypatch.setattr(serve_options, "lan_interface", lambda: IPv4Interface(f"{LAN}/22"))
 
 
 def page_of(*words: str):
@@ -52,7 +54,7 @@ def test_no_page_cannot_be_opened(words) -> None:
 
 
 def test_the_lan_is_this_machines_network_and_nobody_else() -> None:
-    assert list(page_of("--lan").networks) == ["192.168.1.0/24", "127.0.0.0/8", "::1"]
+    assert list(page_of("--lan").networks) == ["192.168.0.0/22", "127.0.0.0/8", "::1"]
     assert list(page_of("--http-allow", "10.0.0.0/8").networks) == ["10.0.0.0/8"]
 
 
@@ -61,7 +63,7 @@ def test_what_is_said_tells_who_may_play() -> None:
     assert page_lines(*page.address, LAN, networks=page.networks) == [
         "the page at http://127.0.0.1:9002/",
         "on a phone: http://192.168.1.5:9002/",
-        "anyone at 192.168.1.0/24 may play and listen, without a password",
+        "anyone at 192.168.0.0/22 may play and listen, without a password",
     ]
     assert page_lines(LAN, 9002, LAN, networks=[]) == [
         "the page at http://192.168.1.5:9002/",

@@ -88,7 +88,7 @@ class _Ending:
 
 def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     """Serve until a signal or the end of --duration; return the exit code."""
-    from yehu_server.control.addresses import lan_address
+    from yehu_server.control.addresses import lan_interface
     from yehu_server.playing.mapping import is_own
     from yehu_server.report import connect_lines, query_line
     from yehu_server.server import Server
@@ -107,11 +107,12 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     server.start()
     ending.server = server
     try:
-        where = (server.osc.host, server.osc.port, lan_address())
+        lan = lan_interface()
+        where = (server.osc.host, server.osc.port, lan)
         for line in connect_lines(*where, is_open=not arguments.osc_allow):
             say(line)
         if server.web is not None:
-            say(query_line(server.web.host, server.web.port, lan_address()))
+            say(query_line(server.web.host, server.web.port, str(lan.ip)))
         if server.pages is not None and options.page is not None:
             _tell_of_page(server.pages, options.page.networks, say, arguments)
         buffer_kb = server.osc.traffic.buffer_bytes // 1000

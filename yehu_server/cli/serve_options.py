@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from ipaddress import ip_network
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from yehu_server.control.addresses import (
     ANYWHERE,
     HTTP_ADDRESS,
     OSC_ADDRESS,
-    lan_address,
+    lan_interface,
     parse_address,
     shown,
 )
@@ -280,8 +279,7 @@ def _page_of(arguments: argparse.Namespace) -> Any:
     number = wished if wished is not None else (beside + 1) % (1 << 16) if beside else 0
     networks = list(arguments.http_allow)
     if arguments.lan:
-        lan = str(ip_network(f"{lan_address()}/24", strict=False))
-        host, networks = ANYWHERE, [*networks, lan, *HERE]
+        host, networks = ANYWHERE, [*networks, str(lan_interface().network), *HERE]
     return PageOptions((host, number), networks, wished is not None)
 
 

@@ -10,6 +10,8 @@ import socket
 from collections.abc import Iterable
 from functools import lru_cache
 
+import ifaddr
+
 from yehu_server.errors import ParameterError
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
@@ -84,6 +86,16 @@ def lan_address() -> str:
         probe.connect(("192.0.2.1", 9))  # a network reserved for documentation
         return str(probe.getsockname()[0])
     return ANYWHERE  # there is no network
+
+
+def lan_interface() -> ipaddress.IPv4Interface:
+    """Find this machine's address on its network, with that network's mask."""
+    address = lan_address()
+    for adapter in ifaddr.get_adapters():
+        for own in adapter.ips:
+            if own.ip == address:
+                return ipaddress.IPv4Interface(f"{address}/{own.network_prefix}")
+    return ipaddress.IPv4Interface(address)  # a network of this machine alone
 
 
 def shown(host: str, port: int) -> str:

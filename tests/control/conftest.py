@@ -101,6 +101,9 @@ class Desk:
     def soon(self, action: Callable[[], None]) -> None:
         action()
 
+    def aside(self, action: Callable[[], None]) -> None:
+        action()
+
     def tree_changed(self, path: str) -> None:
         self.changed.append(path)
 

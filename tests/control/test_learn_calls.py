@@ -46,6 +46,20 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(stage, address):
     assert not stage.player.mapping.of("cc 21")
 
 
+def test_the_file_is_written_aside_so_that_a_slow_disk_holds_up_nothing(stage, monkeypatch):
+    waiting = []
+    monkeypatch.setattr(stage.desk, "aside", waiting.append)
+    stage.ask("/learn", "/playing/vibrato")
+    turn(stage, 20, 10, 20, 64)
+    assert told(stage.ear.heard(), "/learned") == []
+    assert told(stage.ask("/unlearn", "/playing/vibrato"), "/unlearned") == []
+    for write in waiting:
+        write()
+    heard = stage.ear.heard()
+    assert told(heard, "/learned")[0][:2] == ["/yehu/playing/vibrato", "cc 20"]
+    assert told(heard, "/unlearned") == [["/yehu/playing/vibrato", 1]]
+
+
 def test_a_knob_of_another_box_moves_the_note_that_sounds(stage):
     for port in (0, 1):  # keyboards, both of them
         receive(stage.player, mido.Message("note_on", note=70), frame=0, port=port)

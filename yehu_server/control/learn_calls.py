@@ -62,31 +62,48 @@ class LearnCalls:
         wants, until = self._wants, time.monotonic() + PATIENCE_S
 
         def found(source: Found) -> None:
-            self._desk.soon(lambda: self._found(call.peer, target, source, soft, wants, until))
+            if wants == self._wants and time.monotonic() <= until:
+                self._desk.aside(lambda: self._found(call.peer, target, source, soft))
 
         self._player.listen(found)
         call.peer.send(pack(f"{self._prefix}/learning", self._prefix + target))
 
-    def _found(
-        self, peer: Peer, target: str, source: Found, soft: bool, wants: int, until: float
-    ) -> None:
-        if wants != self._wants or time.monotonic() > until:
-            return
+    def _found(self, peer: Peer, target: str, source: Found, soft: bool) -> None:
+        """Write what was found to the user's file; aside, as a disk may be slow."""
         try:
             mapping, path = learned.learn(self._player.mapping, target, source, soft=soft)
         except YehuError as error:
-            self._complain(peer, f"{self._prefix}/learn", str(error))
+            reason = str(error)
+            self._desk.soon(lambda: self._complain(peer, f"{self._prefix}/learn", reason))
             return
-        self._take(mapping)
-        self._desk.say(f"{source.source} moves {target} from now on ({path})")
-        peer.send(pack(f"{self._prefix}/learned", self._prefix + target, source.source, str(path)))
+        learnt = (self._prefix + target, source.source, str(path))
+
+        def take() -> None:
+            self._take(mapping)
+            self._desk.say(f"{source.source} moves {target} from now on ({path})")
+            peer.send(pack(f"{self._prefix}/learned", *learnt))
+
+        self._desk.soon(take)
 
     def _unlearn(self, call: Request) -> None:
         target = self._target(call.word(), "forget one")
-        mapping, count = learned.unlearn(self._player.mapping, target)
-        if count:
-            self._take(mapping)
-        call.peer.send(pack(f"{self._prefix}/unlearned", self._prefix + target, count))
+        self._desk.aside(lambda: self._forget(call.peer, target))
+
+    def _forget(self, peer: Peer, target: str) -> None:
+        """Remove what moves a target from the user's file; aside, as a disk may be slow."""
+        try:
+            mapping, count = learned.unlearn(self._player.mapping, target)
+        except YehuError as error:
+            reason = str(error)
+            self._desk.soon(lambda: self._complain(peer, f"{self._prefix}/unlearn", reason))
+            return
+
+        def take() -> None:
+            if count:
+                self._take(mapping)
+            peer.send(pack(f"{self._prefix}/unlearned", self._prefix + target, count))
+
+        self._desk.soon(take)
 
     def _take(self, mapping: Mapping) -> None:
         self._remap(self._player, mapping)

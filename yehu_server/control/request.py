@@ -29,6 +29,12 @@ class Desk(Protocol):
     def soon(self, action: Callable[[], None]) -> None:
         """Call a function in the thread that handles packets; any thread may call."""
 
+    def aside(self, action: Callable[[], None]) -> None:
+        """Call a function that may take long, such as one that writes a file, in another thread.
+
+        Those that are given one after another are called in this order.
+        """
+
     def tree_changed(self, path: str) -> None:
         """Announce that the tree of addresses has changed at a path or below."""
 

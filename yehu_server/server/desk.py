@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from yehu_server.control.part_status import PartSources, read_part_status
@@ -23,10 +24,15 @@ class ServerDesk:
         self._server = server
         self._said = said
         self._started = time.monotonic()
+        self._aside = ThreadPoolExecutor(1, "files")
 
     def soon(self, action: Callable[[], None]) -> None:
         """See `request.Desk`."""
         self._server.osc.call_soon(action)
+
+    def aside(self, action: Callable[[], None]) -> None:
+        """See `request.Desk`."""
+        self._aside.submit(action)
 
     def say(self, line: str) -> None:
         """See `request.Desk`."""

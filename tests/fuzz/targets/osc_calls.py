@@ -51,6 +51,9 @@ class Desk:
     def soon(self, action: Callable[[], None]) -> None:
         action()
 
+    def aside(self, action: Callable[[], None]) -> None:
+        action()
+
     def tree_changed(self, path: str) -> None:
         assert path.startswith("/")
 

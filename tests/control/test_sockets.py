@@ -19,6 +19,7 @@ from yehu_server.control import listening, sockets
 from yehu_server.control.addresses import Allowed
 from yehu_server.control.backlog import MOST_BYTES
 from yehu_server.control.packets import pack
+from yehu_server.control.peers import ANSWERED_AT_ONCE_BYTES
 from yehu_server.control.schedule import AHEAD_S
 from yehu_server.control.sockets import OscPorts
 from yehu_server.errors import DeviceError
@@ -389,6 +390,29 @@ def test_who_sends_no_packets_is_hung_up_on_and_others_play_on(listen, client, k
     patience(lambda: len(keeper.packets) == 3, "all whole packets")
     assert sorted(keeper.bodies) == [b"/a\0\0", b"/b\0\0", b"/c\0\0"]
     assert ports.traffic.connections == 1
+
+
+class Net:
+    """A socket that counts what it is given to send."""
+
+    def __init__(self) -> None:
+        self.sent_bytes = 0
+
+    def sendto(self, packet: bytes, _address: object) -> None:
+        self.sent_bytes += len(packet)
+
+
+@pytest.mark.parametrize(("is_here", "most"), [(False, 2), (True, 1000)])
+def test_all_ports_of_another_host_get_as_much_as_two(listen, monkeypatch, is_here, most):
+    """An address may be forged: a thousand ports of one host must not get a thousand answers."""
+    ports, net = listen(), Net()
+    monkeypatch.setattr(sockets, "is_here", lambda _host: is_here)
+    monkeypatch.setattr(ports, "_udp", net)
+    for port in range(1, 1001):
+        peer = ports._peer(("203.0.113.5", port))
+        while peer.takes_more:
+            peer.send(b"x" * 10_000)
+    assert most <= net.sent_bytes / ANSWERED_AT_ONCE_BYTES < 1.2 * most + 0.2
 
 
 def test_who_never_reads_misses_answers_and_others_play_on(listen, client, keeper, patience):

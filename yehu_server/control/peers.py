@@ -1,7 +1,8 @@
 """The peers that send OSC, and how each is answered: by datagram, or over a connection.
 
-Answers are limited. A sender of datagrams gets so many bytes a second, since a small request may
-have large answers, and its address may be forged; a connection gets what its other end reads.
+Answers are limited. A sender of datagrams gets so many bytes a second, and another host twice as
+many for all of its ports, since a small request may have large answers, and its address may be
+forged; a connection gets what its other end reads.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from yehu_server.control.framing import Framing
 
 MOST_UNSENT_BYTES = 1 << 18  # waiting for one peer
 ANSWERED_AT_ONCE_BYTES, ANSWERED_BYTES_A_SECOND = 1 << 17, 1 << 17
+SENDERS_OF_A_HOST = 2  # that are answered in full; of this machine, all
 
 
 class Peer(Protocol):
@@ -68,19 +70,19 @@ class WebTraffic:
     web_sockets: int = 0  # open now
 
 
-def _answers() -> Allowance:
-    """The bytes of answers to one sender of datagrams."""
-    return Allowance(ANSWERED_BYTES_A_SECOND, ANSWERED_AT_ONCE_BYTES)
+def answers(senders: int = 1) -> Allowance:
+    """The bytes of answers to as many senders of datagrams, taken together."""
+    return Allowance(senders * ANSWERED_BYTES_A_SECOND, senders * ANSWERED_AT_ONCE_BYTES)
 
 
 @dataclass(frozen=True)
 class UdpPeer:
-    """A sender of datagrams."""
+    """A sender of datagrams; what it is sent counts for all of its `allowances`."""
 
     socket: socket.socket = field(compare=False)
     address: Address
     traffic: Traffic = field(compare=False)
-    allowance: Allowance = field(default_factory=_answers, compare=False)
+    allowances: tuple[Allowance, ...] = field(default_factory=lambda: (answers(),), compare=False)
 
     @property
     def name(self) -> str:
@@ -95,14 +97,16 @@ class UdpPeer:
     @property
     def takes_more(self) -> bool:
         """See `Peer`."""
-        return self.allowance.left(time.monotonic()) > 0.0
+        now = time.monotonic()
+        return all(allowance.left(now) > 0.0 for allowance in self.allowances)
 
     def send(self, packet: bytes) -> None:
         """See `Peer`."""
         if not self.takes_more:
             self.traffic.unsent += 1
             return
-        self.allowance.spend(len(packet))
+        for allowance in self.allowances:
+            allowance.spend(len(packet))
         try:
             self.socket.sendto(packet, self.address)
         except OSError:
@@ -111,7 +115,7 @@ class UdpPeer:
     def at(self, port: int) -> UdpPeer:
         """See `Peer`; bytes sent there count for this peer too."""
         address = (self.address[0], port, *self.address[2:])
-        return UdpPeer(self.socket, address, self.traffic, self.allowance)
+        return UdpPeer(self.socket, address, self.traffic, self.allowances)
 
 
 class TcpPeer:

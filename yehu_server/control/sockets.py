@@ -21,6 +21,7 @@ from collections.abc import Callable, Iterator
 from typing import Protocol
 
 from yehu_server.control.addresses import Address, Allowed, is_here
+from yehu_server.control.allowance import Allowance
 from yehu_server.control.backlog import Backlog
 from yehu_server.control.datagrams import datagrams
 from yehu_server.control.framing import FramingError
@@ -29,7 +30,14 @@ from yehu_server.control.listening import (
     open_both,
     widen,
 )
-from yehu_server.control.peers import Peer, TcpPeer, Traffic, UdpPeer
+from yehu_server.control.peers import (
+    SENDERS_OF_A_HOST,
+    Peer,
+    TcpPeer,
+    Traffic,
+    UdpPeer,
+    answers,
+)
 
 log = logging.getLogger(__name__)
 
@@ -37,7 +45,7 @@ STREAM_BYTES = 1 << 16  # of a connection, read at a time
 BEHIND_BYTES = 1 << 16  # waiting of one WebSocket, before it has to wait
 MOST_ASKED = 64
 READ_FOR_NS = 4_000_000  # before packets are handled in between
-MOST_PEERS = 1024  # UDP peers that are kept
+MOST_PEERS = 1024  # UDP peers that are kept, and hosts
 ACCEPT_AGAIN_S = 1.0
 MOST_CONNECTIONS, MOST_OF_A_HOST = 64, 32
 # Where there are too many connections, a new one replaces one that has sent nothing for the first
@@ -85,6 +93,7 @@ class OscPorts:
         self._accept_from = math.inf  # monotonic s
         self._warned = 0.0  # monotonic s
         self._peers: dict[Address, UdpPeer] = {}
+        self._hosts: dict[str, Allowance] = {}
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
         self._udp, self._tcp = open_both(host, port)
@@ -249,8 +258,19 @@ class OscPorts:
         if peer is None:
             if len(self._peers) >= MOST_PEERS:
                 del self._peers[next(iter(self._peers))]
-            peer = self._peers[address] = UdpPeer(self._udp, address, self.traffic)
+            allowances: tuple[Allowance, ...] = (answers(),)
+            if not is_here(address[0]):
+                allowances += (self._answers_to(address[0]),)
+            peer = self._peers[address] = UdpPeer(self._udp, address, self.traffic, allowances)
         return peer
+
+    def _answers_to(self, host: str) -> Allowance:
+        """The bytes of answers to all ports of another host."""
+        if host not in self._hosts:
+            if len(self._hosts) >= MOST_PEERS:
+                del self._hosts[next(iter(self._hosts))]
+            self._hosts[host] = answers(SENDERS_OF_A_HOST)
+        return self._hosts[host]
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
         self.traffic.packets += 1

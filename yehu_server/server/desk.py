@@ -34,6 +34,10 @@ class ServerDesk:
         """See `request.Desk`."""
         self._aside.submit(action)
 
+    def close(self) -> None:
+        """Wait until all is done that was to be done aside."""
+        self._aside.shutdown()
+
     def say(self, line: str) -> None:
         """See `request.Desk`."""
         self._said(line)

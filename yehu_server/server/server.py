@@ -231,6 +231,7 @@ class Server:
         finally:
             self.is_interruptible = False
             self._keeper.stop()
+            self.desk.close()
             self.takes.close()
 
     def hurry(self) -> None:

@@ -20,8 +20,8 @@ from yehu_server.engine.mailbox import (
     ROOM,
     WAITING,
     WRITERS,
-    leave,
-    wait,
+    pop,
+    push,
 )
 from yehu_server.engine.rig import (
     CONTROLS_AT,
@@ -89,7 +89,7 @@ def take_in_part(rigs: Any, part: int, now: int, end: int) -> int:
         event, order = events[0].wish, events[0].order
         frame, kind, index = max(event.frame, now), event.kind, event.index
         value, other = event.value, event.other
-        leave(events, mail.coming)
+        pop(events, mail.coming)
         mail.coming -= 1
         if kind in (NOTE_OFF, END, RELEASE_ALL):
             cancel(events, mail.coming, m, order, kind, index, value)
@@ -117,7 +117,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
                 frame = frame_of_arrival(rigs, mail, frame)
             mail.late[writer] += 1 if frame < now else 0
             mail.most_late[writer] = max(mail.most_late[writer], now - frame)
-            wait(
+            push(
                 events,
                 mail.coming,
                 frame,
@@ -168,7 +168,7 @@ def hand_over(rigs: Any, part: int, m: Any) -> None:
             mail.dropped[0, 0] += 1
             continue
         heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
-        wait(
+        push(
             heap,
             mail.waiting,
             m.out_frame[n],

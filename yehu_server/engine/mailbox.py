@@ -74,7 +74,7 @@ def mend(heap: Array, mail: Any, count: str) -> None:
 
 
 @compiled
-def wait(
+def push(
     heap: Array,
     waiting: int,
     frame: int,
@@ -106,7 +106,7 @@ def copy_wish(wish: Any, into: Any) -> None:
 
 
 @compiled
-def leave(heap: Array, waiting: int) -> None:
+def pop(heap: Array, waiting: int) -> None:
     """Remove the first wish from a heap of `waiting` entries. Real time: safe."""
     end = waiting - 1
     last = heap[end]

@@ -20,7 +20,7 @@ from yehu_server.engine.mailbox import (
     RING,
     WAITING,
     copy_wish,
-    leave,
+    pop,
 )
 from yehu_server.engine.output import OUTPUT, STILL, fall_silent, play_out
 from yehu_server.engine.processor import flush_denormals, restore_denormals
@@ -66,7 +66,7 @@ def apply(rig: Any, mail: Any, c: Any) -> None:
         if mail.reporting != 0:
             report(rig, mail, c.frame, wish)
         mail.applied += 1
-        leave(heap, mail.waiting)
+        pop(heap, mail.waiting)
         mail.waiting -= 1
 
 

@@ -1,6 +1,6 @@
 """End-to-end latency: from sending a message to the first sample that it changes.
 
-    .venv/bin/python bench/latency.py [--trials N] [--save bench/results/NAME.json]
+    .venv/bin/python bench/latency.py [--trials N] [--busy] [--save bench/results/NAME.json]
 
 A JACK client in another process sends OSC or MIDI at random times and listens. A note sounds
 throughout, and each message opens or closes its volume, so the message is heard at the first sample
@@ -159,6 +159,12 @@ class Witness:
         ]
 
 
+def compute() -> None:
+    """Keep Python busy."""
+    while True:
+        sum(number * number for number in range(1000))
+
+
 def run(kind: str, block: int, trials: int) -> dict[str, Any]:
     """One row of the table."""
     options = ServeOptions(
@@ -220,7 +226,10 @@ def main() -> None:
     """Measure and print everything."""
     parser = report.options(__doc__)
     parser.add_argument("--trials", type=int, default=200, help="of each (default: 200)")
+    parser.add_argument("--busy", action="store_true", help="beside a thread that computes")
     arguments = parser.parse_args()
+    if arguments.busy:
+        threading.Thread(target=compute, daemon=True).start()
 
     figures = {}
     for block in BLOCKS:

@@ -69,8 +69,9 @@ class Player:
 
     @property
     def waits(self) -> bool:
-        """Whether events or wishes wait."""
-        return int(self._first.meters()["waiting"]) > 0
+        """Whether events or wishes wait: in the ring, or in a heap."""
+        meters = self._first.meters()
+        return bool(meters["drained"] < self._first.posted or meters["waiting"] > 0)
 
 
 def measure(player: Player, kind: str, blocks: int) -> dict[str, float]:

@@ -44,7 +44,8 @@ def serve(pipe: Any, has_midi: bool) -> None:
     """Serve until told to stop; answer each request with the notes received and the status."""
     from yehu_server.audio.output import NULL, OutputOptions
     from yehu_server.control.ports import MidiOptions
-    from yehu_server.server import ServeOptions, Server
+    from yehu_server.server.options import ServeOptions
+    from yehu_server.server.server import Server
 
     output = OutputOptions(device=NULL, rate=RATE)
     midi = MidiOptions(api="jack") if has_midi else None

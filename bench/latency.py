@@ -37,7 +37,8 @@ from yehu_server.engine.mailbox import MIDI_INPUTS, SMALL_RING
 from yehu_server.midi.packing import PORT_AT, packed
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import WRITE
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server.options import ServeOptions
+from yehu_server.server.server import Server
 
 RATE = 48000
 BLOCKS = (64, 128)

@@ -36,7 +36,8 @@ from yehu_server.control.web import WebOptions
 from yehu_server.engine.mailbox import MIDI_INPUTS, SERVER
 from yehu_server.engine.warming import warm_up
 from yehu_server.playing import delay as delays
-from yehu_server.server import PartOptions, ServeOptions, Server
+from yehu_server.server.options import PartOptions, ServeOptions
+from yehu_server.server.server import Server
 
 RATE = 48000
 BLOCKS = (64, 128)

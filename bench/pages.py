@@ -31,7 +31,8 @@ from yehu_server.engine.warming import warm_up
 from yehu_server.panel.pages import PageOptions
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import WRITE
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server.options import ServeOptions
+from yehu_server.server.server import Server
 
 HOST = "127.0.0.1"
 FILL = 512  # frames

@@ -27,7 +27,8 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.spec import InstrumentSpec
 from yehu_server.physics import kernel, layout
 from yehu_server.physics.quantities import Quantities
-from yehu_server.rendering import Options, Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.score.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parent.parent

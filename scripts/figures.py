@@ -22,7 +22,8 @@ import numpy as np
 from yehu_server.physics import kernel
 from yehu_server.physics.bridge import advance_bridge
 from yehu_server.physics.quantities import Quantities
-from yehu_server.rendering import Options, Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.score.gesture import Gesture, gesture_from
 from yehu_server.score.smf.reader import read_score
 from yehu_server.simulation import simulate

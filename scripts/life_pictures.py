@@ -22,7 +22,8 @@ from measures.life import HOP_S, WINDOW_S, pitch_track
 
 from yehu_server.player.calibration import frequency_hz
 from yehu_server.playing.style import Style
-from yehu_server.rendering import Options, Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.score.phrasing import phrased
 from yehu_server.score.score import Score, ScoreEvent
 from yehu_server.score.score_notes import notes_of

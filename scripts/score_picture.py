@@ -29,7 +29,8 @@ from yehu_server.midi.channels import PERCUSSION
 from yehu_server.player.calibration import frequency_hz
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.style import Style
-from yehu_server.rendering import Options, Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.score.score import Score
 from yehu_server.score.smf.reader import read_score
 

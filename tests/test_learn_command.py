@@ -15,7 +15,8 @@ from yehu_server.cli import main
 from yehu_server.control.packets import pack
 from yehu_server.playing.mapping import load
 from yehu_server.playing.style import Style
-from yehu_server.server import PartOptions, ServeOptions, Server
+from yehu_server.server.options import PartOptions, ServeOptions
+from yehu_server.server.server import Server
 
 PLAIN, WIND = (PartOptions(Style(mapping=load(name))) for name in ("keyboard", "wind"))
 

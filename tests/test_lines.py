@@ -143,7 +143,7 @@ def test_serve_tells_what_is_no_news_to_a_player_only_where_it_is_asked_to(
         stop=lambda: None,
         kept_all=True,
     )
-    monkeypatch.setattr("yehu_server.server.Server", lambda *_: server)
+    monkeypatch.setattr("yehu_server.server.server.Server", lambda *_: server)
     arguments = _parser().parse_args(["serve", "--duration", "0", *words])
     arguments.quiet = True
     with caplog.at_level(arguments.log_level.upper(), logger="yehu_server"):

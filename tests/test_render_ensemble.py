@@ -13,8 +13,9 @@ from scores import midi_file, notes
 
 from yehu_server.engine.ensemble import Ensemble
 from yehu_server.playing.style import Style
-from yehu_server.rendering import Options, Part, Performance
 from yehu_server.rendering.cores import Cores
+from yehu_server.rendering.options import Options, Part
+from yehu_server.rendering.performance import Performance
 from yehu_server.score.parts import part_of
 from yehu_server.score.smf.reader import read_score
 

@@ -107,7 +107,8 @@ def test_the_same_rendering_has_the_same_picture_which_it_may_replace(tune, comm
 
 
 def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
-    from yehu_server.rendering import Options, Performance
+    from yehu_server.rendering.options import Options
+    from yehu_server.rendering.performance import Performance
     from yehu_server.score.smf.reader import read_score
 
     options = Options(is_dry=True, is_mono=True, tail_s=0.0, block=512)
@@ -124,7 +125,8 @@ def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
 
 
 def test_each_part_of_an_ensemble_is_asked_for_its_own_pitch(tune):
-    from yehu_server.rendering import Options, Part, Performance
+    from yehu_server.rendering.options import Options, Part
+    from yehu_server.rendering.performance import Performance
     from yehu_server.score.smf.reader import read_score
 
     options = Options(is_dry=True, tail_s=0.0, block=512)

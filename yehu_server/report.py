@@ -16,8 +16,7 @@ from yehu_server.control.addresses import shown
 from yehu_server.lines import one_line
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
-from yehu_server.playing.range_policy import RangePolicy
-from yehu_server.rendering import PartSummary, Summary
+from yehu_server.rendering.summary import FATE, PartSummary, Summary, counted
 from yehu_server.replay import Replayed
 from yehu_server.simulation import Simulation
 
@@ -25,21 +24,11 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 NOTABLE_BOUND = 1.2  # friction bound; the measured instrument at 44.1 kHz has 1.02
-FATE = {
-    RangePolicy.TRANSPOSE: "moved by octaves",
-    RangePolicy.CLAMP: "played as the nearest note",
-    RangePolicy.SKIP: "left out",
-}
 
 
 def decibels(level: float) -> str:
     """A level relative to full scale, in dB, for reading."""
     return f"{20.0 * math.log10(level):.1f} dBFS" if level > 0.0 else "silence"
-
-
-def counted(number: int, thing: str) -> str:
-    """A number of things, with a plural."""
-    return f"{number} {thing}" + ("" if number == 1 else "s")
 
 
 def render_report(target: Path, summary: Summary) -> str:

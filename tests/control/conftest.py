@@ -32,7 +32,8 @@ from yehu_server.player.record import SILENT
 from yehu_server.playing import live
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
-from yehu_server.server import PartOptions, ServeOptions, Server
+from yehu_server.server.options import PartOptions, ServeOptions
+from yehu_server.server.server import Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0  # for other threads, on a busy machine

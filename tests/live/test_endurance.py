@@ -24,7 +24,8 @@ from yehu_server.engine.instrument import Instrument
 from yehu_server.engine.telemetry import BINS_PER_DEADLINE
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import WRITE
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server.options import ServeOptions
+from yehu_server.server.server import Server
 
 RATE = 48000
 DEVICE = "system, JACK"

@@ -30,7 +30,8 @@ from yehu_server.replay import blocks
 from yehu_server.score.capture import read_capture
 from yehu_server.score.capture_beginning import beginning_of
 from yehu_server.score.capture_writer import CaptureWriter
-from yehu_server.server import PartOptions, ServeOptions, Server
+from yehu_server.server.options import PartOptions, ServeOptions
+from yehu_server.server.server import Server
 
 DEVICE = "system, JACK Audio Connection Kit"
 SOUNDS = 1e-3

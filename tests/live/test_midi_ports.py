@@ -25,7 +25,8 @@ from yehu_server.engine.rig import ring_place
 from yehu_server.midi.events import DISCONNECT, MESSAGE
 from yehu_server.player.bowing import ordinary_table
 from yehu_server.playing.style import Style
-from yehu_server.server import PartOptions, ServeOptions, Server
+from yehu_server.server.options import PartOptions, ServeOptions
+from yehu_server.server.server import Server
 
 RATE, PERIOD = 48000, 1024
 LISTENS_AFTER_S = 0.2  # see test_a_port_is_listened_to_before_it_is_open

@@ -13,7 +13,8 @@ from panel.browser import CHROMIUM, HERE, NODE
 
 from yehu_server.audio.output import OutputOptions
 from yehu_server.panel.pages import PageOptions
-from yehu_server.server import PartOptions, ServeOptions, Server
+from yehu_server.server.options import PartOptions, ServeOptions
+from yehu_server.server.server import Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 30.0

@@ -27,7 +27,8 @@ from yehu_server.panel.pages import PageOptions
 from yehu_server.params.table import TABLE
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
-from yehu_server.server import ServeOptions, Server
+from yehu_server.server.options import ServeOptions
+from yehu_server.server.server import Server
 
 PROCESSES = Path("/proc")
 HOST = "127.0.0.1"

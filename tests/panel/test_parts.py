@@ -19,7 +19,8 @@ from yehu_server.panel.pages import PageOptions
 from yehu_server.player.rows import ROW
 from yehu_server.player.wishes import BEGIN, STOP, WRITE
 from yehu_server.playing.style import Style
-from yehu_server.server import PartOptions, ServeOptions, Server
+from yehu_server.server.options import PartOptions, ServeOptions
+from yehu_server.server.server import Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from pitch import cents, pitch_of
 
-from yehu_server.rendering import Options, Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.score.written.mark_settings import HARMONICS
 from yehu_server.score.written.notated import Mark, Note, Part, Sign, Tempo, Written
 from yehu_server.score.written.performed import performed

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from pitch import frame_pitch
 
-from yehu_server.rendering import Options, Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.score.jianpu.reader import parse_jianpu
 from yehu_server.score.written.notated import Written
 from yehu_server.score.written.performed import performed

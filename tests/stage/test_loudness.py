@@ -8,7 +8,8 @@ import pytest
 from stages import Stage, told
 
 from yehu_server.analysis.level import a_weighting
-from yehu_server.rendering import Options, Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.score.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parent.parent.parent

@@ -18,11 +18,11 @@ from yehu_server.errors import ParameterError
 from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import DEFAULT
-from yehu_server.rendering import Options, Performance, Summary
 from yehu_server.rendering.asked import asked_pitch
 from yehu_server.rendering.levelled import NORMALIZED_PEAK
-from yehu_server.rendering.summary import summary_of
-from yehu_server.report import FATE, counted
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
+from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.score.phrasing import is_fingered, phrased
 from yehu_server.score.reading import read_any
 from yehu_server.score.score import Score

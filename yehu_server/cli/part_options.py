@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from yehu_server.control.midi_routes import Route
     from yehu_server.playing.style import Style
-    from yehu_server.server import PartOptions
+    from yehu_server.server.options import PartOptions
 
 MOST = 16  # engine.rig.MOST_PARTS, which takes a second to import
 
@@ -79,7 +79,7 @@ def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
     """
     from yehu_server.control.parts import no_part
     from yehu_server.playing.parts import number_of_instruments
-    from yehu_server.server import PartOptions
+    from yehu_server.server.options import PartOptions
 
     for option in ("part_mapping", "part_preset", "part_set"):
         for number, text in getattr(arguments, option):

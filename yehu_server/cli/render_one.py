@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from yehu_server.playing.style import Style
-    from yehu_server.rendering import Options, Part, PartSummary, Summary
+    from yehu_server.rendering.options import Options, Part
+    from yehu_server.rendering.summary import PartSummary, Summary
     from yehu_server.score.score import Score
 
 PHRASING = 0.5  # of files, where nothing else is asked for
@@ -67,7 +68,8 @@ def rendered(
     from yehu_server.physics.grid import check_rate
     from yehu_server.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibration import calibration_key
-    from yehu_server.rendering import Options, render
+    from yehu_server.rendering.options import Options
+    from yehu_server.rendering.to_files import render
 
     check_rate(arguments.rate)
     check_stage(arguments)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from yehu_server.rendering import Options, Part
+    from yehu_server.rendering.options import Options, Part
     from yehu_server.rendering.watch import Watch
 
 PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for

@@ -91,7 +91,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     from yehu_server.control.addresses import lan_interface
     from yehu_server.playing.mapping import is_own
     from yehu_server.report import connect_lines, query_line
-    from yehu_server.server import Server
+    from yehu_server.server.server import Server
 
     log = logging.getLogger("yehu_server")
     say = log.info

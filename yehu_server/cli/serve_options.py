@@ -219,7 +219,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
     from yehu_server.control.ports import MidiOptions
     from yehu_server.control.web import WebOptions
     from yehu_server.files import check_apart
-    from yehu_server.server import ServeOptions
+    from yehu_server.server.options import ServeOptions
 
     parts = part_options(arguments)
     outputs = {"--record": arguments.record, "--capture": arguments.capture}

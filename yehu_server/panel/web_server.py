@@ -10,7 +10,7 @@ from typing import Any
 from yehu_server.errors import OutputError
 
 HOST = "127.0.0.1"
-POLICY = "no-cache"  # another version may be written into the folder
+CACHING = "no-cache"  # another version may be written into the folder
 
 
 class _Handler(SimpleHTTPRequestHandler):
@@ -21,7 +21,7 @@ class _Handler(SimpleHTTPRequestHandler):
     }
 
     def end_headers(self) -> None:
-        self.send_header("Cache-Control", POLICY)
+        self.send_header("Cache-Control", CACHING)
         super().end_headers()
 
     def log_message(self, *_: Any) -> None:

@@ -10,6 +10,17 @@ from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.rendering.part_player import PartPlayer
 from yehu_server.rendering.performance import Performance
 
+FATE = {
+    RangePolicy.TRANSPOSE: "moved by octaves",
+    RangePolicy.CLAMP: "played as the nearest note",
+    RangePolicy.SKIP: "left out",
+}
+
+
+def counted(number: int, thing: str) -> str:
+    """A number of things, with a plural."""
+    return f"{number} {thing}" + ("" if number == 1 else "s")
+
 
 @dataclass(frozen=True)
 class PartSummary:

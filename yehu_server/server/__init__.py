@@ -5,8 +5,3 @@ web thread ─> OSC thread ──┐
                            ├─> LivePlayer ─> ring ─> C callback, in the audio process ─> device
               MIDI process ┘                              └─> meters, applied wishes, tape
 """
-
-from yehu_server.server.options import PartOptions, ServeOptions
-from yehu_server.server.server import Server
-
-__all__ = ["PartOptions", "ServeOptions", "Server"]

@@ -42,7 +42,7 @@ TEMPI: Mapping[str, float] = {
     "慢板": 56.0, "中板": 92.0, "快板": 132.0, "行板": 80.0, "小快板": 112.0, "急板": 176.0,
 }  # fmt: skip
 DYNAMICS = re.compile(r"(?:(?:sempre|subito|poco|più|piu|meno) )?(p{1,4}|f{1,4}|mp|mf)\.?")
-JUMPS = (
+JUMP_WORDS = (
     (r"d\.? ?c\.?\b|da capo", "dacapo"),
     (r"d\.? ?s\.?\b|dal segno", "dalsegno"),
     (r"(?:al |to |a )(?:the )?coda|to coda", "tocoda"),
@@ -69,7 +69,7 @@ def meaning_of(text: str) -> Meaning | None:
     for pattern, (name, value) in SIGNS:
         if re.match(pattern, words):
             return Meaning("sign", name, value)
-    for kind, table in (("hairpin", HAIRPINS), ("change", CHANGES), ("jump", JUMPS)):
+    for kind, table in (("hairpin", HAIRPINS), ("change", CHANGES), ("jump", JUMP_WORDS)):
         for pattern, name in table:
             if re.match(pattern, words):
                 return Meaning(kind, name)

@@ -41,10 +41,10 @@ from rich.console import Console
 from rich.table import Table
 from visitors import visit
 
-from yehu_server.audio.output import NULL, Output, OutputOptions
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.engine.warming import warm_up
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.engine.warming import warm_up
+from yehu_server.live.audio.output import NULL, Output, OutputOptions
 
 COMMAND = [sys.executable, "-c", "from yehu_server.cli import main; raise SystemExit(main())"]
 STARTED_WITHIN_S, ENDED_WITHIN_S = 120.0, 60.0

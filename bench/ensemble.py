@@ -19,8 +19,8 @@ import report
 from rich.console import Console
 from rich.table import Table
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 
 BLOCK, SECONDS, RUNS = 128, 0.5, 5
 COUNTS = (1, 2, 4, 8, 16, 32, 64)

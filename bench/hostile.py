@@ -26,7 +26,7 @@ import report
 from attacks import HOST, HOSTILE, KINDS, message, text
 from load import SPAWN, dummy_jack, midi_out
 
-from yehu_server.engine.mailbox import MIDI_INPUTS
+from yehu_server.core.engine.mailbox import MIDI_INPUTS
 
 RATE, PERIOD = 48000, 256
 EVERY_S = 0.01  # between a note and the next
@@ -42,10 +42,10 @@ LOWEST = 62  # the player's notes; hostile ones are lower
 
 def serve(pipe: Any, has_midi: bool) -> None:
     """Serve until told to stop; answer each request with the notes received and the status."""
-    from yehu_server.audio.output import NULL, OutputOptions
-    from yehu_server.control.ports import MidiOptions
-    from yehu_server.server.options import ServeOptions
-    from yehu_server.server.server import Server
+    from yehu_server.live.audio.output import NULL, OutputOptions
+    from yehu_server.live.midi.ports import MidiOptions
+    from yehu_server.live.options import ServeOptions
+    from yehu_server.live.server import Server
 
     output = OutputOptions(device=NULL, rate=RATE)
     midi = MidiOptions(api="jack") if has_midi else None

@@ -30,15 +30,15 @@ from load import JACK, SPAWN, dummy_jack, midi_out, start
 from rich.console import Console
 from rich.table import Table
 
-from yehu_server.audio.output import OutputOptions
-from yehu_server.control.packets import pack, unpack
-from yehu_server.control.ports import MidiOptions
-from yehu_server.engine.mailbox import MIDI_INPUTS, SMALL_RING
-from yehu_server.midi.packing import PORT_AT, packed
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import WRITE
-from yehu_server.server.options import ServeOptions
-from yehu_server.server.server import Server
+from yehu_server.core.engine.mailbox import MIDI_INPUTS, SMALL_RING
+from yehu_server.core.midi.packing import PORT_AT, packed
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import WRITE
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.options import ServeOptions
+from yehu_server.live.osc.packets import pack, unpack
+from yehu_server.live.server import Server
 
 RATE = 48000
 BLOCKS = (64, 128)

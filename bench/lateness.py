@@ -30,14 +30,14 @@ from load import CARD, SPAWN, send_load, sound_card
 from rich.console import Console
 from rich.table import Table
 
-from yehu_server.audio.output import OutputOptions
-from yehu_server.control.ports import MidiOptions
-from yehu_server.control.web import WebOptions
-from yehu_server.engine.mailbox import MIDI_INPUTS, SERVER
-from yehu_server.engine.warming import warm_up
+from yehu_server.core.engine.mailbox import MIDI_INPUTS, SERVER
+from yehu_server.core.engine.warming import warm_up
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.server import Server
+from yehu_server.live.web.server import WebOptions
 from yehu_server.playing import delay as delays
-from yehu_server.server.options import PartOptions, ServeOptions
-from yehu_server.server.server import Server
 
 RATE = 48000
 BLOCKS = (64, 128)

@@ -18,7 +18,7 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-from yehu_server.control.packets import pack
+from yehu_server.live.osc.packets import pack
 
 CARD = "system, JACK"
 JACK = "yehu-bench"

@@ -17,9 +17,9 @@ from dataclasses import replace
 import numpy as np
 import report
 
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.midi.events import MESSAGE, START
-from yehu_server.midi.packing import packed
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.midi.events import MESSAGE, START
+from yehu_server.core.midi.packing import packed
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls

@@ -25,14 +25,14 @@ import report
 from load import CARD, SPAWN, send_load, sound_card
 from visitors import PARAMETER, visit
 
-from yehu_server.audio.output import NULL, OutputOptions
-from yehu_server.control.ports import MidiOptions
-from yehu_server.engine.warming import warm_up
-from yehu_server.panel.pages import PageOptions
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import WRITE
-from yehu_server.server.options import ServeOptions
-from yehu_server.server.server import Server
+from yehu_server.core.engine.warming import warm_up
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import WRITE
+from yehu_server.live.audio.output import NULL, OutputOptions
+from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.options import ServeOptions
+from yehu_server.live.page.pages import PageOptions
+from yehu_server.live.server import Server
 
 HOST = "127.0.0.1"
 FILL = 512  # frames

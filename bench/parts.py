@@ -21,9 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server import jit
-from yehu_server.physics import finger, kernel, layout
-from yehu_server.physics.quantities import Quantities
+from yehu_server.compile import jit
+from yehu_server.core.physics import finger, kernel, layout
+from yehu_server.core.physics.quantities import Quantities
 
 RATE = 44100.0
 FRAMES, RUNS, STEPPED = 4410, 300, 100

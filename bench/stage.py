@@ -19,7 +19,7 @@ import report
 from rich.console import Console
 from rich.table import Table
 
-from yehu_server.engine.mixing import mix_block
+from yehu_server.core.engine.mixing import mix_block
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 stages: Any = import_module("stages")

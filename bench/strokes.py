@@ -21,10 +21,10 @@ import report
 from rich.console import Console
 from rich.table import Table
 
-from yehu_server.physics import kernel, layout
-from yehu_server.regimes.strokes import find
-from yehu_server.sweeps.running import sweep
-from yehu_server.sweeps.study import Study, study_of
+from yehu_server.core.physics import kernel, layout
+from yehu_server.lab.regimes.strokes import find
+from yehu_server.lab.sweeps.running import sweep
+from yehu_server.lab.sweeps.study import Study, study_of
 
 RUNS = 5
 DATA = {

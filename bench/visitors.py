@@ -10,8 +10,8 @@ from typing import Any
 import aiohttp
 import numpy as np
 
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import WRITE
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import WRITE
 
 WISH_S = 0.05
 PARAMETER, STEPS = "/playing/variation", 10_000  # whose values tell wishes apart

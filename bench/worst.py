@@ -15,8 +15,8 @@ import time
 import numpy as np
 import report
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.params.table import ENGINE
 
 RATE, BLOCK = 44100.0, 64

@@ -31,9 +31,9 @@ def main() -> None:
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as empty:
         os.environ["NUMBA_CACHE_DIR"] = empty
-        from yehu_server.bitcode.shipped import shipped_file, write_shipped
-        from yehu_server.engine.warming import capture
-        from yehu_server.jit import source_hash
+        from yehu_server.compile.bitcode.shipped import shipped_file, write_shipped
+        from yehu_server.compile.jit import source_hash
+        from yehu_server.core.engine.warming import capture
 
         shipped = capture()
     path = arguments.o or shipped_file()

@@ -3,7 +3,7 @@
     .venv/bin/python scripts/body_pictures.py [FOLDER]
 
 It writes body.png and body_sound.png to FOLDER (default: docs/figures). The taps are made of
-bodies whose modes are known; see `workshop.synthetic`.
+bodies whose modes are known; see `lab.body.synthetic`.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ import numpy as np
 import soundfile
 
 from yehu_server.cli import main as run
-from yehu_server.physics.quantities import Body, measured_body
-from yehu_server.workshop import made_taps
-from yehu_server.workshop.tap_files import write_taps
+from yehu_server.core.physics.quantities import Body, measured_body
+from yehu_server.lab.body import made_taps
+from yehu_server.lab.body.tap_files import write_taps
 
 ROOT = Path(__file__).resolve().parent.parent
 TUNE = ROOT / "examples" / "slow_air.mid"

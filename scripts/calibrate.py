@@ -12,7 +12,7 @@ import argparse
 import json
 import time
 
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.calibration import calibrate, calibration_key
 from yehu_server.playing.calibrations import SHIPPED, as_data
 

@@ -20,13 +20,12 @@ import numpy as np
 import soundfile
 from figures import draw_spectrogram, save
 
-from yehu_server.analysis.pitch import cents, track
 from yehu_server.cli import main as command
-from yehu_server.player.calibration import frequency_hz
-from yehu_server.score.parts import part_of
-from yehu_server.score.score import Score
-from yehu_server.score.score_notes import notes_of
-from yehu_server.score.smf.reader import read_score
+from yehu_server.core.player.calibration import frequency_hz
+from yehu_server.playing.pitch_and_level import cents, track
+from yehu_server.scores.reading import part_of
+from yehu_server.scores.score import Score, notes_of
+from yehu_server.scores.smf.reader import read_score
 
 SCORE = Path(__file__).resolve().parent.parent / "examples" / "mo_li_hua.mid"
 NAMES = ("plain", "with flowers", "its bones", "an octave higher")

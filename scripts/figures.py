@@ -19,14 +19,14 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from yehu_server.physics import kernel
-from yehu_server.physics.bridge import advance_bridge
-from yehu_server.physics.quantities import Quantities
-from yehu_server.rendering.options import Options
-from yehu_server.rendering.performance import Performance
-from yehu_server.score.gesture import Gesture, gesture_from
-from yehu_server.score.smf.reader import read_score
-from yehu_server.simulation import simulate
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.bridge import advance_bridge
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.lab.simulation import simulate
+from yehu_server.render.options import Options
+from yehu_server.render.performance import Performance
+from yehu_server.scores.gesture import Gesture, gesture_from
+from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parent.parent
 BLUE, RED, GREY = "#1f5fa8", "#c03a2b", "0.6"

@@ -20,14 +20,13 @@ import soundfile
 from figures import save
 from measures.life import HOP_S, WINDOW_S, pitch_track
 
-from yehu_server.player.calibration import frequency_hz
+from yehu_server.core.player.calibration import frequency_hz
 from yehu_server.playing.style import Style
-from yehu_server.rendering.options import Options
-from yehu_server.rendering.performance import Performance
-from yehu_server.score.phrasing import phrased
-from yehu_server.score.score import Score, ScoreEvent
-from yehu_server.score.score_notes import notes_of
-from yehu_server.score.smf.reader import read_score
+from yehu_server.render.options import Options
+from yehu_server.render.performance import Performance
+from yehu_server.scores.phrasing import phrased
+from yehu_server.scores.score import Score, ScoreEvent, notes_of
+from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parent.parent
 RATE = 44100

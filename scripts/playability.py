@@ -59,9 +59,9 @@ from measures.take import Setup
 from measures.transitions import clicks, legato
 from measures.tunes import tunes
 
+from yehu_server.core.physics.quantities import Quantities, read_quantities
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
-from yehu_server.physics.quantities import Quantities, read_quantities
 from yehu_server.playing.practices import read_practice
 
 MEASURES: dict[str, Callable[[Setup], list[Share]]] = {

@@ -14,8 +14,8 @@ import argparse
 import json
 import time
 
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import PLACES, ordinary_table
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.bowing import PLACES, ordinary_table
 from yehu_server.playing.calibration import calibrate
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.practice import DEFAULT, Practice

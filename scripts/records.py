@@ -1,4 +1,4 @@
-"""Generate yehu_server/physics/records.py, the types of the model's records, from layout.py.
+"""Generate yehu_server/core/physics/records.py, the types of the model's records, from layout.py.
 
 .venv/bin/python scripts/records.py
 """
@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from yehu_server.physics import layout
-from yehu_server.physics.power import TABLES
+from yehu_server.core.physics import layout
+from yehu_server.core.physics.power import TABLES
 
 TARGET = Path(__file__).resolve().parent.parent / "yehu_server" / "physics" / "records.py"
 RECORDS = {

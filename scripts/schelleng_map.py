@@ -17,13 +17,10 @@ import numpy as np
 from figures import save
 from matplotlib.lines import Line2D
 
-from yehu_server.analysis.pitch import note_name
-from yehu_server.controls.hands import FAST, FAST_SHARE
-from yehu_server.errors import ParameterError, YehuError
-from yehu_server.params.table import find
-from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.schelleng import upper_limit
-from yehu_server.player.bowing import (
+from yehu_server.core.controls.hands import FAST, FAST_SHARE
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.schelleng import upper_limit
+from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
@@ -35,16 +32,19 @@ from yehu_server.player.bowing import (
     manner,
     share,
 )
-from yehu_server.player.calibration import OPEN_NOTES, PITCHES
+from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES
+from yehu_server.errors import ParameterError, YehuError
+from yehu_server.lab.plot.axes import LABELS
+from yehu_server.lab.plot.cells import limit_lines, regime_patches
+from yehu_server.lab.plot.maps import map_of
+from yehu_server.lab.plot.study import draw_limits_over, draw_map
+from yehu_server.lab.sweeps.result import Result
+from yehu_server.lab.sweeps.running import sweep
+from yehu_server.lab.sweeps.study import study_of
+from yehu_server.params.table import find
 from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.playing.practices import shipped_practice
-from yehu_server.plot.cells import limit_lines, regime_patches
-from yehu_server.plot.colours import LABELS
-from yehu_server.plot.maps import map_of
-from yehu_server.plot.study import draw_limits_over, draw_map
-from yehu_server.sweeps.result import Result
-from yehu_server.sweeps.running import sweep
-from yehu_server.sweeps.study import study_of
 
 Array = Any
 

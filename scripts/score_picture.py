@@ -22,17 +22,16 @@ import matplotlib.pyplot as plt
 import numpy as np
 from figures import BLUE, RED, save
 
-from yehu_server.analysis.level import a_weighted_db
-from yehu_server.analysis.pitch import cents, note_name, pitch_hz
+from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.player.calibration import frequency_hz
 from yehu_server.errors import ScoreError, YehuError
-from yehu_server.midi.channels import PERCUSSION
-from yehu_server.player.calibration import frequency_hz
 from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.pitch_and_level import a_weighted_db, cents, note_name, pitch_hz
 from yehu_server.playing.style import Style
-from yehu_server.rendering.options import Options
-from yehu_server.rendering.performance import Performance
-from yehu_server.score.score import Score
-from yehu_server.score.smf.reader import read_score
+from yehu_server.render.options import Options
+from yehu_server.render.performance import Performance
+from yehu_server.scores.score import Score
+from yehu_server.scores.smf.reader import read_score
 
 Array = Any
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import shutil
 
-from yehu_server.ahead.kept import SHIPPED
-from yehu_server.panel.files import write_page
+from yehu_server.ahead.module_cache import SHIPPED
+from yehu_server.live.page.site import write_page
 
 
 def main() -> None:

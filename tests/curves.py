@@ -8,17 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.midi import curves, values
-from yehu_server.midi.events import CONTROL
-from yehu_server.midi.interpret import interpret
-from yehu_server.midi.record import MIDI, prepare_midi
-from yehu_server.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi import curves, values
+from yehu_server.core.midi.events import CONTROL
+from yehu_server.core.midi.interpret import interpret
+from yehu_server.core.midi.record import MIDI, prepare_midi
+from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.params.table import TABLE
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.tables import Controls, make_tables
-from yehu_server.playing.tuning import EQUAL
+from yehu_server.playing.tuning import EQUAL, RangePolicy
 
 RATE = 48000.0
 

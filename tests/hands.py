@@ -7,16 +7,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.midi.interpret import interpret
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.midi.interpret import interpret
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
+from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.record import SILENT
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import fulfil
 from yehu_server.params.table import ENGINE, FINGERS, SLOT, find
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
-from yehu_server.player.notes import told_pitch
-from yehu_server.player.record import SILENT
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import fulfil
 from yehu_server.playing.wishes import Key, Wishes
 
 RATE = 48000.0  # whole milliseconds are whole frames

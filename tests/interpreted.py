@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.midi.events import EVENTS
-from yehu_server.midi.interpret import interpret
-from yehu_server.midi.record import IN_PORT, MIDI, prepare_midi
-from yehu_server.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.events import EVENTS
+from yehu_server.core.midi.interpret import interpret
+from yehu_server.core.midi.record import IN_PORT, MIDI, prepare_midi
+from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.player.wishes import KINDS
 from yehu_server.params.table import TABLE
-from yehu_server.player.wishes import KINDS
 
 ALL_KINDS = (*KINDS, *EVENTS)
 DEFAULTS = {param.address: param.default for param in TABLE}

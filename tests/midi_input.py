@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import mido
 
-from yehu_server.midi.events import MESSAGE
-from yehu_server.midi.packing import packed
+from yehu_server.core.midi.events import MESSAGE
+from yehu_server.core.midi.packing import packed
 from yehu_server.playing.live import LivePlayer
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from yehu_server.score.score import Score
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.score import Score
+from yehu_server.scores.smf.reader import read_score
 
 
 def read_file(folder: Path, data: bytes) -> Score:

@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from yehu_server.controls.slots import FINGER_POSITION, PLUCK, SHARE, SPEED
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.controls.slots import FINGER_POSITION, PLUCK, SHARE, SPEED
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.player.rows import LISTENING
+from yehu_server.core.player.wishes import fulfil
 from yehu_server.params.table import SLOT
-from yehu_server.player.rows import LISTENING
-from yehu_server.player.wishes import fulfil
 
 BY_EAR = [*FINGER_POSITION, SHARE]
 ADDRESSES = {slot: address for address, slot in SLOT.items()}

@@ -1,6 +1,6 @@
 """A function that calls another, both so small that they compile at once."""
 
-from yehu_server.jit import Native, compiled
+from yehu_server.compile.jit import Native, compiled
 
 
 @compiled

@@ -1,6 +1,6 @@
 """One time step of the yehu, slow and dense, written straight from the equations.
 
-An independent oracle for tests: it shares no code with `yehu_server.physics`, uses numpy only,
+An independent oracle for tests: it shares no code with `yehu_server.core.physics`, uses numpy only,
 and prefers matrices and one dense solve to everything fast. [Yehu] is Zheng, Darabundit, Scavone,
 "Physical model of the Chinese yehu for sound synthesis", DAFx26, with the corrections of the
 project's physics notes; equation numbers are that paper's. Symbols are the paper's, in ASCII.

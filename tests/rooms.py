@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.jit import compiled_exactly
-from yehu_server.physics.layout import new_record
-from yehu_server.stage.record import EVERY
-from yehu_server.stage.room import ROOM, furnish, prepare_room, reverberate
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.layout import new_record
+from yehu_server.core.stage.record import EVERY
+from yehu_server.core.stage.room import ROOM, furnish, prepare_room, reverberate
 
 
 @dataclass(frozen=True)

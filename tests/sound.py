@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 
 
 def alone(rate: float, *, seed: int = 0, **how: object) -> Ensemble:

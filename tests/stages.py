@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.controls.slots import PLACED
-from yehu_server.engine.instrument import new_memory
-from yehu_server.engine.mixing import mix_block
-from yehu_server.engine.output import prepare_output
-from yehu_server.engine.rig import RIG, RIG_BYTES
-from yehu_server.engine.sounding import TOLD
+from yehu_server.core.controls.slots import PLACED
+from yehu_server.core.engine.instrument import new_memory
+from yehu_server.core.engine.mixing import mix_block
+from yehu_server.core.engine.output import prepare_output
+from yehu_server.core.engine.rig import RIG, RIG_BYTES
+from yehu_server.core.engine.sounding import TOLD
+from yehu_server.core.stage.record import STAGE, prepare_stage
+from yehu_server.core.stage.seat import prepare_seat
 from yehu_server.params.table import ENGINE
-from yehu_server.stage.record import STAGE, prepare_stage
-from yehu_server.stage.seat import prepare_seat
 
 NAMES = ("size", "decay", "damping", "level", "distance", "pan", "width")
 ADDRESSES = tuple(ENGINE[slot].address for slot in PLACED)

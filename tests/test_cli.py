@@ -20,7 +20,7 @@ from commands import COMMAND, is_one_line
 from scores import midi_file, notes
 
 import yehu_server
-from yehu_server.audio.file import sound_file
+from yehu_server.util.sound_file import sound_file
 
 ROOT = Path(__file__).resolve().parents[1]
 FULL = Path("/dev/full")
@@ -30,7 +30,7 @@ EXAMPLE = {
 }
 # A disk with 64 kB left. The kernel is compiled first: its cache needs more.
 FULL_DISK = (
-    "import resource; from yehu_server.engine.warming import warm_up; warm_up();"
+    "import resource; from yehu_server.core.engine.warming import warm_up; warm_up();"
     "resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));" + COMMAND
 )
 
@@ -540,7 +540,7 @@ def test_a_simulation_without_memory_says_so(refused, gesture, out, monkeypatch)
     def no_memory(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("yehu_server.simulation.simulate", no_memory)
+    monkeypatch.setattr("yehu_server.lab.simulation.simulate", no_memory)
     refused("simulate", gesture, "-o", out / "x.npz")
     assert not list(out.iterdir())
 

@@ -8,8 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numba
 import pytest
 
-from yehu_server import code_cache, jit, sealed
-from yehu_server.sealed import SealError, read_sealed, write_sealed
+from yehu_server.compile import cache, jit
+from yehu_server.util import sealed
+from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
 
 def third_of(number: int) -> int:
@@ -23,7 +24,7 @@ class Kept:
         self.folder = folder
         monkeypatch.setattr(jit, "cache_folder", lambda: folder)
         monkeypatch.setattr(jit, "IS_CACHED", True)
-        monkeypatch.setattr(code_cache, "_troubles", set())
+        monkeypatch.setattr(cache, "_troubles", set())
 
     def start(self, function=third_of) -> tuple[int, bool]:
         """Call the function with 12, as after a start; the result, and whether it was cached."""
@@ -115,7 +116,7 @@ def test_a_folder_in_the_place_of_the_code_is_no_reason_not_to_play(kept, caplog
 
 def test_code_of_another_processor_is_left_alone(kept, monkeypatch):
     kept.start()
-    codegen = type(code_cache.cpu_target.target_context.codegen())
+    codegen = type(cache.cpu_target.target_context.codegen())
     with monkeypatch.context() as patch:
         patch.setattr(codegen, "magic_tuple", lambda _: ("here", "another", "+none"))
         assert kept.start() == (4, False)
@@ -149,7 +150,7 @@ def test_a_full_disk_is_told_once_and_it_plays(kept, caplog, monkeypatch):
 
 def test_a_numba_unlike_ours_compiles_at_each_start_and_it_plays(kept, caplog, monkeypatch):
     with monkeypatch.context() as patch:
-        patch.delattr(code_cache.CompileResult, "_reduce")
+        patch.delattr(cache.CompileResult, "_reduce")
         assert kept.start() == (4, False)
     assert not list(kept.folder.iterdir())
     assert kept.start(third_of) == (4, False)

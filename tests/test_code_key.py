@@ -8,14 +8,15 @@ from pathlib import Path
 
 import pytest
 
-import yehu_server
-from yehu_server import code_cache, jit
-from yehu_server.code_key import key_of, without_prose
+from yehu_server.compile import jit
+from yehu_server.util import PACKAGE
+from yehu_server.util.source_key import key_of, without_prose
 
-PACKAGE = Path(yehu_server.__file__).parent
-KEYED = [PACKAGE / "jit.py", PACKAGE / "code_cache.py"]
-for folder in ("physics", "params", "engine", "playing"):
-    KEYED += sorted((PACKAGE / folder).glob("*.py"))
+KEYED = [
+    path
+    for folder in (*jit.FOLDERS, "playing")
+    for path in sorted((PACKAGE / folder).rglob("*.py"))
+]
 LAYOUT = {
     tokenize.ENCODING,
     tokenize.COMMENT,
@@ -102,7 +103,7 @@ def test_a_comment_compiles_nothing_anew(tmp_path, monkeypatch):
     cache.mkdir()
     monkeypatch.setattr(jit, "cache_folder", lambda: cache)
     monkeypatch.setattr(jit, "IS_CACHED", True)
-    monkeypatch.setattr(code_cache, "_troubles", set())
+    monkeypatch.setattr(cache, "_troubles", set())
 
     def was_there(source: str) -> bool:
         """Whether the code of `third` was cached, after a new start."""

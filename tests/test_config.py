@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from yehu_server import cli
-from yehu_server.analysis.pitch import note_name
 from yehu_server.cli.config import MOST_VALUES, parse
+from yehu_server.cli.report import connect_lines, query_line
 from yehu_server.cli.serve_options import options_of
 from yehu_server.errors import ParameterError
-from yehu_server.report import connect_lines, query_line
+from yehu_server.playing.pitch_and_level import note_name
 
 # MIDI systems of other machines, which RtMidi was not compiled for.
 ELSEWHERE = "core" if sys.platform != "darwin" else "windows"

@@ -42,7 +42,7 @@ def here() -> list[str]:
 
 
 def test_there_are_constants(here):
-    assert any(line.startswith("yehu_server.player.drift RADIUS") for line in here)
+    assert any(line.startswith("yehu_server.core.player.drift RADIUS") for line in here)
 
 
 @pytest.mark.parametrize("processor", PROCESSORS)

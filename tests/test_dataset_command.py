@@ -16,10 +16,10 @@ import soundfile
 from clusters import cluster_in, wait_until
 from commands import COMMAND
 
-from yehu_server.dataset import making
-from yehu_server.dataset.description import read_description
-from yehu_server.files import shipped_folder
-from yehu_server.jobs import there
+from yehu_server.lab.dataset import making
+from yehu_server.lab.dataset.description import read_description
+from yehu_server.render import cluster_worker
+from yehu_server.util.files import shipped_folder
 
 COUNT = 40
 TEXT = """\
@@ -173,7 +173,7 @@ def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum)
 
 def test_a_cluster_makes_the_same_bytes(made, command, tmp_path):
     pytest.importorskip("distributed")
-    there.identity.cache_clear()
+    cluster_worker.identity.cache_clear()
     with cluster_in(tmp_path) as processes:
         words = ("dataset", made / "d.toml", "-o", tmp_path / "out", "--dask", processes.file)
         code, _, err = command(*words)

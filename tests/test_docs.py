@@ -18,9 +18,9 @@ import pytest
 from pages import PACKAGE, PAGES, ROOT, Page, page
 
 from yehu_server.cli import _parser, main
-from yehu_server.control.calls import CALLS, PREFIX
-from yehu_server.control.part_status import PART_STATUS
-from yehu_server.control.status import STATUS
+from yehu_server.live.osc.calls import CALLS, PREFIX
+from yehu_server.live.osc.part_status import PART_STATUS
+from yehu_server.live.osc.status import STATUS
 from yehu_server.params.table import TABLE, UNIT
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -10,10 +10,15 @@ import pytest
 from fuzz import bounds, target
 from pages import ROOT, page
 
-from yehu_server import lasting
-from yehu_server.audio import recorder, wav
 from yehu_server.cli import _parser
-from yehu_server.control import (
+from yehu_server.core.engine import mailbox, output, telemetry
+from yehu_server.core.midi import channels, curves
+from yehu_server.core.physics import grid, layout
+from yehu_server.core.physics.quantities import FingerQuantities, read_body
+from yehu_server.core.player import left_hand, right_hand
+from yehu_server.core.stage.record import TAPE
+from yehu_server.live.audio import recorder
+from yehu_server.live.osc import (
     backlog,
     calls,
     clients,
@@ -25,29 +30,18 @@ from yehu_server.control import (
     preset_calls,
     schedule,
     sockets,
-    telling,
-    web,
-    web_sockets,
+    subscriptions,
 )
-from yehu_server.engine import mailbox, output, telemetry
-from yehu_server.files import MAX_LINE_BYTES
-from yehu_server.midi import channels, curves
+from yehu_server.live.web import server, web_sockets
 from yehu_server.params.table import find
-from yehu_server.physics import grid, layout
-from yehu_server.physics.quantities import FingerQuantities, read_body
-from yehu_server.player import left_hand, right_hand
-from yehu_server.playing import (
-    delay,
-    learner,
-    mapping_entries,
-    presets,
-)
+from yehu_server.playing import delay, learn, mapping_entries, presets
 from yehu_server.playing.calibrations import SHIPPED
-from yehu_server.score import capture, capture_format, gesture
-from yehu_server.stage.record import TAPE
+from yehu_server.scores import capture, capture_format, gesture
 from yehu_server.surfaces import layout as panel
 from yehu_server.surfaces import max as max_patch
-from yehu_server.surfaces import stage
+from yehu_server.surfaces import open_stage_control
+from yehu_server.util import retry, wav
+from yehu_server.util.files import MAX_LINE_BYTES
 
 KB, MB, GB = 1 << 10, 1 << 20, 1 << 30
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
@@ -90,7 +84,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
     },
     "docs/live.md": {
         "last {} seconds of sound": (TAPE_S,),
-        "after half a second to {} seconds": (words(lasting.AGAIN_AFTER_AT_MOST_S),),
+        "after half a second to {} seconds": (words(retry.AGAIN_AFTER_AT_MOST_S),),
         "at most {} events are drained for each {} frames, and {} are applied on one frame": (
             mailbox.LIVE_BUDGET,
             output.CHUNK,
@@ -108,7 +102,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
         "every change, at most {:g} times a second": (1.0 / clients.FLUSH_S,),
         "Lasts {:g} s by default": (part_calls.SUBSCRIBED_S,),
         "by default and {} at most": (TIMES[calls.LONGEST_SUBSCRIPTION_S],),
-        "VALUE`, at most {:g} times a second": (1.0 / telling.STATUS_S,),
+        "VALUE`, at most {:g} times a second": (1.0 / subscriptions.STATUS_S,),
         "Listens for {}": (TIMES[learn_calls.PATIENCE_S],),
         "REASON`, at most {:g} times": (clients.ERRORS_A_SECOND,),
         "{} presets can be saved at once and then {} a second": (
@@ -127,7 +121,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
             peers.ANSWERED_BYTES_A_SECOND // KB,
         ),
         "does not read | {} kB": (peers.MOST_UNSENT_BYTES // KB,),
-        "{} messages at a time, {:g} times": (telling.MOST_TOLD, 1.0 / clients.FLUSH_S),
+        "{} messages at a time, {:g} times": (subscriptions.MOST_TOLD, 1.0 / clients.FLUSH_S),
         "| subscribers | {}, {} of one host |": (
             clients.MOST_SUBSCRIBERS,
             clients.MOST_OF_A_HOST,
@@ -145,10 +139,10 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
         "answers at http://{} by": (SERVED.http,),
         "at most {:g} times a second, status values {:g} times": (
             1.0 / clients.FLUSH_S,
-            1.0 / telling.STATUS_S,
+            1.0 / subscriptions.STATUS_S,
         ),
         "not fit in {} kB": (peers.MOST_UNSENT_BYTES // KB,),
-        "At most {} WebSockets are open": (web.MOST_WEB_SOCKETS,),
+        "At most {} WebSockets are open": (server.MOST_WEB_SOCKETS,),
         "frames are {} kB at most": (web_sockets.FRAME_BYTES // KB,),
     },
     "docs/capture.md": {
@@ -212,12 +206,12 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
         "listens at port {}.": (max_patch.PORT,),
         "at velocity {};": (panel.VELOCITY,),
         "upwards, to {:g} N": (panel.HARDEST_N,),
-        "Open Stage Control {},": (stage.FORMAT.rpartition(".")[0],),
+        "Open Stage Control {},": (open_stage_control.FORMAT.rpartition(".")[0],),
     },
     "mappings/README.md": {
         "up to {:g}: what": (mapping_entries.LONGEST_SMOOTHING_MS,),
         "within a {:g}th of": (1.0 / curves.PICKUP_WINDOW,),
-        "by {} of its": (TIMES[learner.DISTANCE],),
+        "by {} of its": (TIMES[learn.DISTANCE],),
         "one zone of {} member channels": (channels.MOST_MEMBERS,),
         "±{:g} semitones a note, ±{:g} on the master": (channels.MEMBER_BEND, channels.MASTER_BEND),
     },

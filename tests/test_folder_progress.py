@@ -2,7 +2,7 @@
 
 import pytest
 
-from yehu_server.cli.folder_progress import Seconds
+from yehu_server.cli.folder_runs import Seconds
 
 
 def share(seconds: Seconds) -> float:

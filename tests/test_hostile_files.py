@@ -7,17 +7,16 @@ import pytest
 
 from yehu_server.cli import _parser, main
 from yehu_server.cli.config import read_config
-from yehu_server.documents import MOST_DEPTH, parse_json, parse_toml
-from yehu_server.errors import YehuError
-from yehu_server.lines import FIRST, LAST
-from yehu_server.physics.quantities import read_body, read_quantities
+from yehu_server.core.physics.quantities import read_body, read_quantities
+from yehu_server.errors import FIRST, LAST, YehuError
 from yehu_server.playing.mapping import load
 from yehu_server.playing.presets import read_preset
 from yehu_server.playing.tuning import read_tuning
-from yehu_server.score.capture import read_capture
-from yehu_server.score.gesture import read_gesture
-from yehu_server.score.musicxml.reader import read_musicxml
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.capture import read_capture
+from yehu_server.scores.gesture import read_gesture
+from yehu_server.scores.musicxml.reader import read_musicxml
+from yehu_server.scores.smf.reader import read_score
+from yehu_server.util.documents import MOST_DEPTH, parse_json, parse_toml
 
 SERVE = _parser().parse_args(["serve"]).command
 READERS = {

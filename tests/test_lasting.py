@@ -8,8 +8,8 @@ import threading
 
 import pytest
 
-from yehu_server import lasting
-from yehu_server.lasting import LONGEST_TURN_S, AwakeTime, Backoff, keep_on, why
+from yehu_server.util import retry
+from yehu_server.util.retry import LONGEST_TURN_S, AwakeTime, Backoff, keep_on, why
 
 TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE), "/somewhere")
 
@@ -84,7 +84,7 @@ def test_work_outlasts_that_nobody_can_be_told(monkeypatch):
 
 def test_what_is_longer_between_two_questions_was_sleep(monkeypatch):
     now = 100.0
-    monkeypatch.setattr(lasting.time, "monotonic", lambda: now)
+    monkeypatch.setattr(retry.time, "monotonic", lambda: now)
     awake = AwakeTime()
     before = awake()
     for _ in range(10):

@@ -10,13 +10,13 @@ import time
 
 import pytest
 
-from yehu_server.audio.output import OutputOptions
 from yehu_server.cli import main
-from yehu_server.control.packets import pack
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.server import Server
 from yehu_server.playing.mapping import load
 from yehu_server.playing.style import Style
-from yehu_server.server.options import PartOptions, ServeOptions
-from yehu_server.server.server import Server
 
 PLAIN, WIND = (PartOptions(Style(mapping=load(name))) for name in ("keyboard", "wind"))
 

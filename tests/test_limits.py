@@ -11,10 +11,13 @@ from commands import COMMAND
 
 resource = pytest.importorskip("resource", reason="there is no such limit on Windows")
 
-from yehu_server import limits  # noqa: E402
-from yehu_server.cli.serve import FILES_NEEDED  # noqa: E402
+from yehu_server.cli import serve as limits  # noqa: E402
+from yehu_server.cli.serve import (  # noqa: E402
+    FILES_NEEDED,
+    MOST_FILES,
+    allow_files,
+)
 from yehu_server.errors import YehuError  # noqa: E402
-from yehu_server.limits import MOST_FILES, allow_files  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[1]
 

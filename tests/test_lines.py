@@ -12,12 +12,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from yehu_server.audio.devices import AudioDevice
-from yehu_server.cli import _parser, log, main, serve
-from yehu_server.lines import FIRST, LAST, one_line, shortened
+from yehu_server.cli import _parser, main, serve, terminal
+from yehu_server.cli.report import bindings_table, devices_report, mapping_report, status_line
+from yehu_server.errors import FIRST, LAST, one_line, shortened
+from yehu_server.live.audio.devices import AudioDevice
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.report import bindings_table, devices_report, mapping_report, status_line
 
 EVIL = "\x1b]0;owned\x07\x1b[31mred\x9b2J\r\n\u202eevil\udcff[bold]:smile:"
 SPELLED = r"\x1b]0;owned\x07\x1b[31mred\x9b2J\r\n\u202eevil\udcff[bold]:smile:"
@@ -115,7 +115,7 @@ def test_log_lines_are_bounded_and_steer_nothing(monkeypatch, is_json):
     before = logging.getLogger().handlers[:]
     stderr = io.StringIO()
     try:
-        log.set_up_log(argparse.Namespace(json_log=is_json, log_level="info"))
+        terminal.set_up_log(argparse.Namespace(json_log=is_json, log_level="info"))
         monkeypatch.setattr(sys, "stderr", stderr)
         logging.getLogger("yehu_server").info("MIDI: %s", EVIL + "x" * 100_000)
         logging.getLogger("yehu_server").error("a defect", exc_info=ValueError(EVIL))
@@ -143,7 +143,7 @@ def test_serve_tells_what_is_no_news_to_a_player_only_where_it_is_asked_to(
         stop=lambda: None,
         kept_all=True,
     )
-    monkeypatch.setattr("yehu_server.server.server.Server", lambda *_: server)
+    monkeypatch.setattr("yehu_server.live.server.Server", lambda *_: server)
     arguments = _parser().parse_args(["serve", "--duration", "0", *words])
     arguments.quiet = True
     with caplog.at_level(arguments.log_level.upper(), logger="yehu_server"):

@@ -8,9 +8,9 @@ from yehu_server import cli
 from yehu_server.cli.config import parse
 from yehu_server.cli.part_options import MOST
 from yehu_server.cli.serve_options import options_of
-from yehu_server.control.midi_routes import Route
-from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.errors import YehuError
+from yehu_server.live.midi.routes import Route
 
 
 def served(*words: str):

@@ -9,7 +9,7 @@ import pytest
 from midi_bytes import END, midi, off, on
 
 from yehu_server.cli import _parser
-from yehu_server.score.duration import LONGEST_DURATION_H, MAX_DURATION_H
+from yehu_server.scores.score import LONGEST_DURATION_H, MAX_DURATION_H
 
 SONGS = midi(on(0, 67) + off(20, 67) + END, on(0, 69) + off(60, 69) + END, kind=2)
 DAMAGED = midi(on(0, 71, 200) + on(0, 67) + off(20, 67) + END, count=2)

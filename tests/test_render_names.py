@@ -9,8 +9,7 @@ import mido
 import pytest
 from scores import midi_file, notes
 
-from yehu_server.playing.learned import learn
-from yehu_server.playing.learner import Found
+from yehu_server.playing.learn import Found, learn
 from yehu_server.playing.mapping import load, mapping_folder
 
 # What a folder of presets may hold.

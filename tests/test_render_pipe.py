@@ -126,7 +126,7 @@ def test_a_wrong_pipe_gets_one_line(tmp_path, words, given, wrong):
 
 
 def test_an_input_without_end_is_refused(tmp_path):
-    limit = "import yehu_server.score.smf.reader as smf; smf.MAX_BYTES = 2**20;"
+    limit = "import yehu_server.scores.smf.reader as smf; smf.MAX_BYTES = 2**20;"
     with Path("/dev/zero").open("rb") as endless:
         words = [
             sys.executable,

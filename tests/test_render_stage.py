@@ -12,7 +12,7 @@ import soundfile
 from scores import midi_file, notes
 from sound import rms
 
-from yehu_server.analysis.level import a_weighted_db
+from yehu_server.playing.pitch_and_level import a_weighted_db
 
 RATE = 44100
 MOST_CHANGE_DB = 1.0  # of the loudness, by the usual room

@@ -7,8 +7,8 @@ import json
 import pytest
 from musicxml_text import dynamics, note, score, slur, technical, tempo, words
 
-from yehu_server.score.score_notes import notes_of
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.score import notes_of
+from yehu_server.scores.smf.reader import read_score
 
 BARS = (
     tempo(90)

@@ -13,8 +13,8 @@ from scipy.signal import lfilter
 
 from yehu_server.cli import main
 from yehu_server.errors import OutputError, ParameterError, ScoreError
-from yehu_server.score.gesture import gesture_from, read_gesture
-from yehu_server.simulation import simulate
+from yehu_server.lab.simulation import simulate
+from yehu_server.scores.gesture import gesture_from, read_gesture
 
 BODY = Path(__file__).resolve().parents[1] / "yehu_server" / "physics" / "body.json"
 GESTURE = {

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from yehu_server.cli import main
-from yehu_server.simulation import simulate
-from yehu_server.sweeps.result import Result
+from yehu_server.lab.simulation import simulate
+from yehu_server.lab.sweeps.result import Result
 
 GESTURE = {
     "duration": 0.1,

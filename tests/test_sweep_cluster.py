@@ -7,7 +7,7 @@ import json
 import pytest
 from clusters import cluster_in
 
-from yehu_server.jobs import there
+from yehu_server.render import cluster_worker
 
 pytest.importorskip("distributed")
 
@@ -17,7 +17,7 @@ VARIED = ("--vary", "bow_velocity=0.1,0.2", "--vary", "bow_force=0.2:2:4")
 
 
 def test_a_cluster_finds_to_the_byte_what_one_machine_does(command, tmp_path):
-    there.identity.cache_clear()  # code may be edited while tests run
+    cluster_worker.identity.cache_clear()  # code may be edited while tests run
     gesture = tmp_path / "gesture.json"
     gesture.write_text(json.dumps(BOWED))
     code, _, err = command("sweep", gesture, "-o", tmp_path / "here.npz", *VARIED)

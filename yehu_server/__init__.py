@@ -17,8 +17,9 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from yehu_server.util import __version__
+
 if TYPE_CHECKING:
-    from yehu_server import plot
     from yehu_server.api.instrument import Instrument
     from yehu_server.api.notes import Note
     from yehu_server.api.playback import Player, play
@@ -26,8 +27,7 @@ if TYPE_CHECKING:
     from yehu_server.api.simulated import Simulation, simulate
     from yehu_server.api.swept import Sweep, sweep
     from yehu_server.errors import YehuError
-
-__version__ = "0.1.0"
+    from yehu_server.lab import plot
 
 __all__ = [
     "Instrument",
@@ -54,7 +54,7 @@ _MODULES = {
     "Sweep": "api.swept",
     "YehuError": "errors",
     "play": "api.playback",
-    "plot": "plot",
+    "plot": "lab.plot",
     "render": "api.rendered",
     "simulate": "api.simulated",
     "sweep": "api.swept",
@@ -66,7 +66,7 @@ def __getattr__(name: str) -> Any:
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = import_module(f"{__name__}.{_MODULES[name]}")
-    value = module if name == _MODULES[name] else getattr(module, name)
+    value = module if name == "plot" else getattr(module, name)
     globals()[name] = value
     return value
 

@@ -1,10 +1,12 @@
-"""The errors that users see; each message is one line.
+"""The errors that users see, each of one line, and text made safe to print.
 
 Everything the package raises on purpose derives from :class:`YehuError`, so that
 the command line can print the message and leave with exit code 2.
 """
 
 from __future__ import annotations
+
+import unicodedata
 
 
 class YehuError(Exception):
@@ -53,3 +55,27 @@ class OutputError(YehuError):
 
 class MeasurementError(YehuError):
     """A measurement of a body that cannot be read, or cannot be what it is said to be."""
+
+
+FIRST, LAST = 600, 400  # characters kept of a long line; the reason may be at either end
+
+
+def shortened(text: str) -> str:
+    """Text with the middle cut out where it is long."""
+    return text if len(text) <= FIRST + LAST else f"{text[:FIRST]} ... {text[-LAST:]}"
+
+
+def one_line(text: str) -> str:
+    """Text for a terminal: shortened, with everything escaped that is not printable.
+
+    That is, control codes, line ends, marks of writing direction, and bytes of a file name that
+    are not valid text.
+    """
+    text = shortened(text)
+    return text if text.isprintable() else "".join(map(_escaped, text))
+
+
+def _escaped(character: str) -> str:
+    if character.isprintable() or unicodedata.category(character) == "Zs":
+        return character
+    return character.encode("unicode_escape").decode("ascii")

@@ -17,7 +17,7 @@ from places import NOTEBOOK, NOTEBOOKS, ROOT
 
 from yehu_server.cli.converters import port
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.panel.web_server import server_of, url_of
+from yehu_server.live.page.site import server_of, url_of
 
 MARK = ".yehu-site"  # lists the files of a site, which the next one may replace
 PORT = 8011

@@ -17,7 +17,7 @@ from notebooks import shown
 from places import ELSEWHERE, NOTEBOOK, PLAY, ROOT, linked_files, page_of_code, pages, place
 
 from yehu_server.errors import YehuError
-from yehu_server.panel.files import write_page
+from yehu_server.live.page.site import write_page
 
 ICON = "site/icon.svg"
 # Kept until MkDocs ends, which may build many times (mkdocs serve).

@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 
 from measures.take import Sound
-from yehu_server.analysis.pitch import cents, pitch_hz
-from yehu_server.player.calibration import OPEN_NOTES, frequency_hz
+from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz
+from yehu_server.playing.pitch_and_level import cents, pitch_hz
 
 LISTEN_S = 0.06
 MOMENTS_S = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)  # after the start of a note

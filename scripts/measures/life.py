@@ -9,7 +9,7 @@ from scipy.signal import fftconvolve
 
 from measures.shares import Share, told
 from measures.take import NOTES, Setup, Take, in_parallel
-from yehu_server.player.calibration import OPEN_NOTES, frequency_hz
+from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz
 
 Array = Any
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from measures.intonation import NONE
 from measures.take import Sound
-from yehu_server.player.calibration import frequency_hz
+from yehu_server.core.player.calibration import frequency_hz
 
 REACH_CENTS, STEP_CENTS = 150.0, 1.0
 HIGHEST_HZ, MOST = 6000.0, 12  # of the harmonics that count

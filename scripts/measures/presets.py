@@ -11,8 +11,8 @@ from measures.intonation import bound, in_words, off_by
 from measures.shares import Share, told
 from measures.take import NOTES, Setup, Take, in_parallel
 from measures.timbre import centroid_hz
-from yehu_server.analysis.level import a_weighted_db
 from yehu_server.cli.stage_options import is_of_room
+from yehu_server.playing.pitch_and_level import a_weighted_db
 from yehu_server.playing.presets import Presets
 
 VELOCITIES = (30, 64, 110)

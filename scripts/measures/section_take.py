@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.player.wishes import BEGIN
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.player.wishes import BEGIN
+from yehu_server.core.stage.geometry import EARS
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.section_people import SECTION, section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
-from yehu_server.rendering.cores import Cores, shared
-from yehu_server.stage.geometry import EARS
+from yehu_server.render.cores import Cores, shared
 
 BLOCK_S = 1.0
 

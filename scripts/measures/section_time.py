@@ -18,7 +18,7 @@ HOP_S = 0.001
 
 
 def fit(onsets: Any) -> tuple[Any, float]:
-    """Fit the law of ``midi.section_timing`` to onsets.
+    """Fit the law of ``midi.section_players`` to onsets.
 
     Parameters
     ----------

@@ -20,9 +20,9 @@ import numpy as np
 from measures.overtones import overtones_off_by
 from measures.shares import Share, told
 from measures.take import NOTES, Setup, Sound, Take, calibrated, in_parallel
-from yehu_server.analysis.level import a_weighted_db
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.calibration import frequency_hz, wave_speed
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import frequency_hz, wave_speed
+from yehu_server.playing.pitch_and_level import a_weighted_db
 
 EACH_S, REST_S = 0.4, 0.02
 SHUFFLED, ORDERS = 300, 3

@@ -8,9 +8,9 @@ from typing import Any
 from measures.intonation import CLOSE_CENTS, SETTLED_S, in_words, off_by
 from measures.shares import Share, told
 from measures.take import NOTES, Setup, Take, in_parallel
+from yehu_server.core.physics.quantities import Quantities, measured_body
+from yehu_server.core.player.calibration import OPEN_NOTES
 from yehu_server.params.table import STRING_NAMES
-from yehu_server.physics.quantities import Quantities, measured_body
-from yehu_server.player.calibration import OPEN_NOTES
 
 END_S = 0.75
 VELOCITIES = (50, 100)

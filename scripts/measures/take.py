@@ -13,11 +13,11 @@ from typing import Any
 import mido
 import numpy as np
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.rig import RIG
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import RIG
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import Calibration, wave_speed
 from yehu_server.params.table import FINGERS, find
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.calibration import Calibration, wave_speed
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.presets import Presets

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from measures.take import Setup, Sound, Take
-from yehu_server.analysis.level import a_weighted_db
 from yehu_server.playing.mapping import DEFAULT
+from yehu_server.playing.pitch_and_level import a_weighted_db
 
 STEADY_S, END_S = 0.3, 0.8
 RMS_S = 0.01

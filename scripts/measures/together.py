@@ -1,13 +1,13 @@
-"""The onsets of a section, as compiled code plans them (``midi.section_timing``)."""
+"""The onsets of a section, as compiled code plans them (``midi.section_players``)."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from yehu_server.midi.record import MIDI, prepare_midi
-from yehu_server.midi.section_timing import begin_sequence, plan_onset, plan_release
+from yehu_server.core.midi.record import MIDI, prepare_midi
+from yehu_server.core.midi.section_players import begin_sequence, plan_onset, plan_release
+from yehu_server.core.player.rows import VARIATION
 from yehu_server.params.table import TABLE
-from yehu_server.player.rows import VARIATION
 
 
 class Together:

@@ -17,11 +17,11 @@ import numpy as np
 from maps import band, median
 from tables import BETA, named, table, write_table
 
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.lab.regimes.names import HELMHOLTZ
+from yehu_server.lab.sweeps.running import sweep
+from yehu_server.lab.sweeps.study import study_of
 from yehu_server.params.table import find
-from yehu_server.physics.quantities import Quantities
-from yehu_server.regimes.names import HELMHOLTZ
-from yehu_server.sweeps.running import sweep
-from yehu_server.sweeps.study import study_of
 
 BOWS = list(range(9))  # seeds of the hair
 FORCES = {"from": 0.03, "to": 12.0, "steps": 161, "spread": "log"}  # N
@@ -60,7 +60,7 @@ def forces(
 
 def heavier(folder: Path) -> None:
     """Write a body whose bridge moves less, by a factor of HEAVY."""
-    body = json.loads(files("yehu_server.physics").joinpath("body.json").read_text("utf-8"))
+    body = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text("utf-8"))
     for mode in body["bridge_modes"]:
         mode["mass_kg"] *= HEAVY
         mode["damping_kg_per_s"] *= HEAVY

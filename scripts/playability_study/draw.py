@@ -21,17 +21,17 @@ from maps import KINDS, NEVER, Maps, bands, median, read
 from matplotlib.ticker import FormatStrFormatter
 from tables import STRINGS, named, write_tables
 
-from yehu_server.analysis.pitch import note_name
-from yehu_server.physics.quantities import measured_body
-from yehu_server.plot.cells import (
+from yehu_server.core.physics.quantities import measured_body
+from yehu_server.lab.plot.axes import LABELS
+from yehu_server.lab.plot.cells import (
     draw_cells,
     draw_limits,
     limit_lines,
     regime_colours,
     regime_patches,
 )
-from yehu_server.plot.colours import LABELS
-from yehu_server.plot.maps import PERIOD_COLOURS, PERIODS
+from yehu_server.lab.plot.maps import PERIOD_COLOURS, PERIODS
+from yehu_server.playing.pitch_and_level import note_name
 
 ROOT = Path(__file__).resolve().parents[2]
 BLUE, RED = "#1f5fa8", "#c03a2b"

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from run_study import HERE, ORDER
 
-from yehu_server.sweeps.limits import limits_of
-from yehu_server.sweeps.result import Result
+from yehu_server.lab.sweeps.limits import limits_of
+from yehu_server.lab.sweeps.result import Result
 
 NEVER, MOST = 255, 254  # periods to Helmholtz motion, by bytes
 ALONG = 23  # places at which limits are kept

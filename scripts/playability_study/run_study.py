@@ -12,10 +12,10 @@ import argparse
 import time
 from pathlib import Path
 
-from yehu_server.sweeps.journal import Journal
-from yehu_server.sweeps.result import result_of
-from yehu_server.sweeps.running import run_levels
-from yehu_server.sweeps.study import read_study
+from yehu_server.lab.sweeps.journal import Journal
+from yehu_server.lab.sweeps.result import result_of
+from yehu_server.lab.sweeps.running import run_levels
+from yehu_server.lab.sweeps.study import read_study
 
 HERE = Path(__file__).parent
 ORDER = (

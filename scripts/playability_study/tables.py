@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from maps import NEVER, Maps, bands, median, slope, usual
 
-from yehu_server.analysis.pitch import note_name
+from yehu_server.playing.pitch_and_level import note_name
 
 Array = Any
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from ahead.phrases import RATE
 
-from yehu_server.analysis.level import a_weighted_db
-from yehu_server.analysis.pitch import cents, pitch_hz
+from yehu_server.playing.pitch_and_level import a_weighted_db, cents, pitch_hz
 
 FIRST = 2000  # samples in which the model's chaos has not grown yet
 PART = 12000  # samples that are compared by pitch and level

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import BEGIN, END, HOLD
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import BEGIN, END, HOLD
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
 

@@ -18,21 +18,20 @@ import numpy as np
 from interpreted import Leader
 from panel import streams as calls
 
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.rig import RIG
-from yehu_server.midi import events
-from yehu_server.midi.packing import packed
-from yehu_server.midi.tables import SLOTS
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.rig import RIG
+from yehu_server.core.midi import events
+from yehu_server.core.midi.packing import packed
+from yehu_server.core.midi.tables import SLOTS
+from yehu_server.core.player import wishes
+from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import find
-from yehu_server.player import wishes
-from yehu_server.player.rows import ROW
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.presets import Presets
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls, make_tables
-from yehu_server.playing.tuning import EQUAL, Tuning, read_tuning
+from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning, read_tuning
 
 RATE, BLOCK = 48000.0, 128
 OWN_CALLS = 0.05  # a chance after each
@@ -84,7 +83,7 @@ INSIDE = re.compile("([\x80-\xbf\xe0-\xef][\0-\x7f]?|[\xc0-\xdf])\xff")
 
 
 def messages_of(data: Sequence[int]) -> list[int]:
-    """The messages in some bytes that are posted (``packing.packed``)."""
+    """The messages in some bytes that are posted (``midi.packing.packed``)."""
     text, was = bytes(byte for byte in data if not 0xF8 <= byte < 0xFF).decode("latin-1"), ""
     while was != text:
         was, text = text, INSIDE.sub("\xff\\1", text)

@@ -17,14 +17,13 @@ from interpreted import Leader
 from panel import streams
 
 from yehu_server.ahead.right_tables import CHECKS
-from yehu_server.midi import events
-from yehu_server.midi.packing import packed
-from yehu_server.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, PROGRAMS, SLOTS, TABLES
-from yehu_server.player.rows import ROWS
+from yehu_server.core.midi import events
+from yehu_server.core.midi.packing import packed
+from yehu_server.core.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, PROGRAMS, SLOTS, TABLES
+from yehu_server.core.player.rows import ROWS
 from yehu_server.playing.presets import Presets
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.tables import Controls, make_tables
-from yehu_server.playing.tuning import EQUAL, read_tuning
+from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
 TUNINGS = (EQUAL, read_tuning(Path("chaozhou-seven-equal")))
 WILD = (math.nan, math.inf, -math.inf, 1e308, -1e308, 1e-310, -1.0, 0.5, 1e9)

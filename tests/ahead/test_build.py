@@ -12,19 +12,18 @@ import pytest
 from yehu_server.ahead.build import build
 from yehu_server.ahead.images import image
 from yehu_server.ahead.link import page_linker
-from yehu_server.ahead.section import section_of, with_section
+from yehu_server.ahead.source_hash import section_of, with_section
 from yehu_server.cli import main
-from yehu_server.engine.mailbox import SERVER
-from yehu_server.engine.rig import RIG, memory_bytes
+from yehu_server.core.engine.mailbox import SERVER
+from yehu_server.core.engine.rig import RIG, memory_bytes
+from yehu_server.core.midi.events import START
+from yehu_server.core.midi.tables import TABLES
 from yehu_server.errors import ParameterError, YehuError
-from yehu_server.midi.events import START
-from yehu_server.midi.tables import TABLES
 from yehu_server.playing.mapping import load
 from yehu_server.playing.presets import Presets
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls
-from yehu_server.playing.tuning import read_tuning
+from yehu_server.playing.tuning import RangePolicy, read_tuning
 
 EMPTY = b"\0asm\1\0\0\0"
 

@@ -13,8 +13,8 @@ import pytest
 from ahead.programs import compiled
 from ahead.tables import some_tables
 
-from yehu_server.engine.rig import MIDI_AT
-from yehu_server.midi.record import MIDI
+from yehu_server.core.engine.rig import MIDI_AT
+from yehu_server.core.midi.record import MIDI
 
 HERE = Path(__file__).parent
 midi_fields = MIDI.fields or {}

@@ -13,10 +13,10 @@ from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED
 from ahead.programs import compiled
 
-from yehu_server.ahead.sources import sources_hash
-from yehu_server.midi.events import EVENTS
+from yehu_server.ahead.source_hash import sources_hash
+from yehu_server.core.midi.events import EVENTS
+from yehu_server.core.player.wishes import KINDS
 from yehu_server.params.table import find
-from yehu_server.player.wishes import KINDS
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls
 

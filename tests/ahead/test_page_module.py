@@ -10,12 +10,11 @@ import pytest
 from ahead.likeness import NEAR_CENTS, NEAR_DB, apart, begins_alike
 from ahead.phrases import BLOCK, FRAMES, PHRASES, RATE, STOPPED, played
 
-from yehu_server.ahead.section import section_of
-from yehu_server.ahead.sources import sources_hash
-from yehu_server.engine.look import LOOK, look
-from yehu_server.midi.events import EVENTS
+from yehu_server.ahead.source_hash import section_of, sources_hash
+from yehu_server.core.engine.look import LOOK, look
+from yehu_server.core.midi.events import EVENTS
+from yehu_server.core.player.wishes import KINDS
 from yehu_server.params.table import SLOT, TABLE
-from yehu_server.player.wishes import KINDS
 
 HERE = Path(__file__).parent
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node")

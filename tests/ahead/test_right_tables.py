@@ -9,18 +9,18 @@ from ahead.tables import TUNINGS, are_right, some_tables
 
 from yehu_server.ahead.interface import use_tables
 from yehu_server.ahead.right_tables import FIELDS
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.midi import tables as layout
-from yehu_server.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, TABLES
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.midi import tables as layout
+from yehu_server.core.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, TABLES
+from yehu_server.core.player.rows import ROW, ROWS
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
-from yehu_server.player.rows import ROW, ROWS
 from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.presets import Presets
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.tables import Controls, make_tables
+from yehu_server.playing.tuning import RangePolicy
 
 SPEED = find("/playing/speed")
 BINDS = (

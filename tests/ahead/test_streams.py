@@ -26,14 +26,14 @@ from ahead.streams import (
 )
 
 from yehu_server.ahead.interface import control, midi, use_tables
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.mailbox import RING
-from yehu_server.engine.rig import RIG
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.midi import events
-from yehu_server.midi.packing import packed
-from yehu_server.midi.tables import SLOTS, TABLES
-from yehu_server.player.wishes import KINDS, RAMP
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.mailbox import RING
+from yehu_server.core.engine.rig import RIG
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.midi import events
+from yehu_server.core.midi.packing import packed
+from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.player.wishes import KINDS, RAMP
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls
 

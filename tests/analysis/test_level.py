@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from yehu_server.analysis.level import SILENCE_DB, a_weighted_db, a_weighting
+from yehu_server.playing.pitch_and_level import SILENCE_DB, a_weighted_db, a_weighting
 
 # dB, from the table of IEC 61672-1.
 TABLE = {31.62: -39.4, 63.1: -26.2, 125.9: -16.1, 251.2: -8.6, 501.2: -3.2, 1000: 0.0, 1995: 1.2,

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from pitch import cents, pitch_of
 
-from yehu_server.analysis import pitch
-from yehu_server.analysis.pitch import pitch_hz, track
+from yehu_server.playing import pitch_and_level
+from yehu_server.playing.pitch_and_level import pitch_hz, track
 
 RATES = (22050.0, 44100.0, 48000.0, 96000.0)
 
@@ -83,4 +83,4 @@ def test_a_track_follows_a_glide():
 def test_where_no_later_period_is_like_the_first_the_first_one_stays():
     """A correlation that only falls has no later peak; its slope must not be taken for one."""
     falling = 0.8 + 0.2 * np.exp(-np.arange(200) / 50.0)
-    assert pitch._refine(falling, 13.77) == 13.77
+    assert pitch_and_level._refine(falling, 13.77) == 13.77

@@ -12,10 +12,10 @@ import pytest
 
 import yehu_server as yehu
 from yehu_server import YehuError
-from yehu_server.regimes.judge import FINDING
-from yehu_server.regimes.names import HELMHOLTZ
-from yehu_server.sweeps.result import Result, result_of
-from yehu_server.sweeps.study import study_of
+from yehu_server.lab.regimes.judge import FINDING
+from yehu_server.lab.regimes.names import HELMHOLTZ
+from yehu_server.lab.sweeps.result import Result, result_of
+from yehu_server.lab.sweeps.study import study_of
 
 mpl.use("Agg")
 

@@ -14,9 +14,10 @@ import matplotlib as mpl
 import pytest
 
 import yehu_server as yehu
-from yehu_server import api, plot
+from yehu_server import api
 from yehu_server.cli import converters
 from yehu_server.errors import YehuError
+from yehu_server.lab import plot
 
 HEAVY = {"numba", "llvmlite", "numpy", "matplotlib", "xarray", "scipy", "sounddevice", "IPython"}
 
@@ -37,7 +38,7 @@ def test_its_error_loads_nothing_heavy():
 
 
 def test_matplotlib_waits_for_a_picture():
-    names = "yehu_server.render, yehu_server.simulate, yehu_server.sweep, yehu_server.plot"
+    names = "yehu_server.render, yehu_server.simulate, yehu_server.sweep, yehu_server.lab.plot"
     assert not loaded(f"import yehu_server; {names}") & {"matplotlib", "xarray", "IPython"}
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from yehu_server.audio.devices import AudioDevice, choose
 from yehu_server.errors import DeviceError
+from yehu_server.live.audio.devices import AudioDevice, choose
 
 
 def device(index: int, name: str, host_api: str, *, is_default: bool = False) -> AudioDevice:

@@ -7,9 +7,9 @@ import pytest
 import soundfile
 from sound_files import MATRIX, STEP, few_and_many, matrix, noise
 
-from yehu_server.audio import wav
-from yehu_server.audio.file import check_format, is_rendered, sound_file
 from yehu_server.errors import OutputError
+from yehu_server.util import wav
+from yehu_server.util.sound_file import check_format, is_rendered, sound_file
 
 
 def write(target, samples, kind="wav", subtype="24", rate=44100):

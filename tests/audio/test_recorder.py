@@ -9,9 +9,10 @@ import pytest
 import soundfile
 from sound_files import KEPT_FRAMES, NoiseTape
 
-from yehu_server.audio import recorder, wav
-from yehu_server.audio.recorder import Recorder
 from yehu_server.errors import OutputError
+from yehu_server.live.audio import recorder
+from yehu_server.live.audio.recorder import Recorder
+from yehu_server.util import wav
 
 RATE = 48000
 

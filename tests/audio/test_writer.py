@@ -10,9 +10,9 @@ import pytest
 import soundfile
 from sound_files import STEP, few_and_many, matrix, noise
 
-from yehu_server.audio import wav
-from yehu_server.audio.file import SoundWriter
 from yehu_server.errors import OutputError
+from yehu_server.util import wav
+from yehu_server.util.sound_file import SoundWriter
 
 
 @matrix

@@ -4,8 +4,8 @@ import os
 
 import pytest
 
-from yehu_server.batch import kept
 from yehu_server.errors import OutputError
+from yehu_server.render import build_records
 
 
 @pytest.fixture
@@ -14,18 +14,18 @@ def target(tmp_path):
     (tmp_path / "settings").write_text("1")
     path = tmp_path / "a.wav"
     path.write_bytes(b"sound")
-    kept.make_folder_for(path)
-    kept.keep(path, "key", [tmp_path / "settings"], [path], {"file": "a.mid"})
+    build_records.make_folder_for(path)
+    build_records.keep(path, "key", [tmp_path / "settings"], [path], {"file": "a.mid"})
     return path
 
 
 def test_what_has_not_changed_is_up_to_date(target):
-    assert kept.up_to_date(target, "key", [target]) == {"file": "a.mid"}
+    assert build_records.up_to_date(target, "key", [target]) == {"file": "a.mid"}
 
 
 def test_a_time_alone_is_no_change(target):
     os.utime(target, (1, 1))
-    assert kept.up_to_date(target, "key", [target]) == {"file": "a.mid"}
+    assert build_records.up_to_date(target, "key", [target]) == {"file": "a.mid"}
 
 
 @pytest.mark.usefixtures("target")
@@ -34,7 +34,7 @@ def test_a_folder_may_be_moved(tmp_path):
     other.mkdir()
     for name in ("a.wav", ".yehu-server"):
         (tmp_path / name).rename(other / name)
-    assert kept.up_to_date(other / "a.wav", "key", [other / "a.wav"]) is not None
+    assert build_records.up_to_date(other / "a.wav", "key", [other / "a.wav"]) is not None
 
 
 def change_bytes(target):
@@ -48,47 +48,49 @@ CHANGES = {
     "another length": lambda target: target.write_bytes(b"soun"),
     "other settings": lambda target: (target.parent / "settings").write_text("2"),
     "no settings": lambda target: (target.parent / "settings").unlink(),
-    "no record": lambda target: kept.record_of(target).unlink(),
-    "a record cut short": lambda target: kept.record_of(target).write_text('{"key": "ke'),
-    "no record but JSON": lambda target: kept.record_of(target).write_text("[[]]"),
-    "a record of lists": lambda target: kept.record_of(target).write_text('{"line": [], "key": 1}'),
-    "deep": lambda target: kept.record_of(target).write_text("[" * 100_000),
+    "no record": lambda target: build_records.record_of(target).unlink(),
+    "a record cut short": lambda target: build_records.record_of(target).write_text('{"key": "ke'),
+    "no record but JSON": lambda target: build_records.record_of(target).write_text("[[]]"),
+    "a record of lists": lambda target: build_records.record_of(target).write_text(
+        '{"line": [], "key": 1}'
+    ),
+    "deep": lambda target: build_records.record_of(target).write_text("[" * 100_000),
 }
 
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_has_changed_is_not(target, change):
     CHANGES[change](target)
-    assert kept.up_to_date(target, "key", [target]) is None
+    assert build_records.up_to_date(target, "key", [target]) is None
 
 
 def test_another_key_or_another_result_is_a_change(target):
-    assert kept.up_to_date(target, "other", [target]) is None
-    assert kept.up_to_date(target, "key", [target, target.with_suffix(".png")]) is None
+    assert build_records.up_to_date(target, "other", [target]) is None
+    assert build_records.up_to_date(target, "key", [target, target.with_suffix(".png")]) is None
 
 
 def test_a_name_as_long_as_a_name_may_be_has_a_record(tmp_path):
     path = tmp_path / ("a" * 251 + ".wav")
     path.write_bytes(b"sound")
-    kept.make_folder_for(path)
-    kept.keep(path, "key", [], [path], {"file": "a"})
-    assert kept.up_to_date(path, "key", [path]) == {"file": "a"}
+    build_records.make_folder_for(path)
+    build_records.keep(path, "key", [], [path], {"file": "a"})
+    assert build_records.up_to_date(path, "key", [path]) == {"file": "a"}
 
 
 def test_what_a_killed_process_left_is_removed_and_records_stay(target):
-    left = kept.work_of(target).with_name(".yehu-server-0.part")
+    left = build_records.work_of(target).with_name(".yehu-server-0.part")
     left.touch()
-    kept.clear_work([target.parent])
+    build_records.clear_work([target.parent])
     assert not left.exists()
-    assert kept.up_to_date(target, "key", [target]) is not None
+    assert build_records.up_to_date(target, "key", [target]) is not None
 
 
 def test_one_at_a_time_writes_to_a_folder(tmp_path):
     with (
-        kept.alone_in(tmp_path),
+        build_records.alone_in(tmp_path),
         pytest.raises(OutputError, match="another command"),
-        kept.alone_in(tmp_path),
+        build_records.alone_in(tmp_path),
     ):
         pass
-    with kept.alone_in(tmp_path):
+    with build_records.alone_in(tmp_path):
         pass

@@ -4,9 +4,9 @@ import os
 
 import pytest
 
-from yehu_server.batch import tree
-from yehu_server.batch.tree import tree_of
 from yehu_server.errors import ScoreError
+from yehu_server.render import folder_tree
+from yehu_server.render.folder_tree import tree_of
 
 
 @pytest.fixture
@@ -79,7 +79,7 @@ def test_links_are_followed_but_not_in_a_circle(tmp_path):
 
 
 def test_there_is_a_bound(monkeypatch, made):
-    monkeypatch.setattr(tree, "MOST_SCORES", 2)
+    monkeypatch.setattr(folder_tree, "MOST_SCORES", 2)
     with pytest.raises(ScoreError, match="more than 2 scores"):
         made("a.mid", "b.mid", "c.mid")
 

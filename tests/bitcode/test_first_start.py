@@ -16,13 +16,13 @@ from types import SimpleNamespace
 import pytest
 from powers import cube
 
-from yehu_server import code_cache, jit
-from yehu_server.bitcode import shipped, start
-from yehu_server.bitcode.capture import CaptureError, capturing
-from yehu_server.bitcode.shipped import Shipped, read_shipped, write_shipped
 from yehu_server.cli.arguments import warn_of_compiling
-from yehu_server.jit import Native, source_hash
-from yehu_server.sealed import read_sealed, write_sealed
+from yehu_server.compile import cache, jit
+from yehu_server.compile.bitcode import shipped, start
+from yehu_server.compile.bitcode.capture import CaptureError, capturing
+from yehu_server.compile.bitcode.shipped import Shipped, read_shipped, write_shipped
+from yehu_server.compile.jit import Native, source_hash
+from yehu_server.util.sealed import read_sealed, write_sealed
 
 TESTS = Path(__file__).parents[1]
 CAPTURE = """
@@ -63,7 +63,7 @@ class Release:
         monkeypatch.setattr(shipped, "shipped_file", lambda: self.file)
         monkeypatch.setattr(jit, "cache_folder", lambda: self.cache)
         monkeypatch.setattr(jit, "IS_CACHED", True)
-        monkeypatch.setattr(code_cache, "_troubles", set())
+        monkeypatch.setattr(cache, "_troubles", set())
         self.content = captured
         self.write()
 
@@ -125,7 +125,7 @@ def instructions(file) -> bytes:
     """The section of a cached object file that holds the instructions."""
     from llvmlite.binding import ObjectFileRef
 
-    _, _, (code, _) = code_cache.pickle.loads(read_sealed(file))
+    _, _, (code, _) = cache.pickle.loads(read_sealed(file))
     sections = ObjectFileRef.from_data(code).sections()
     return b"".join(section.data() for section in sections if section.is_text())
 
@@ -155,7 +155,7 @@ def test_of_other_sources_it_is_compiled_and_nobody_is_warned(release, caplog):
 def test_for_another_version_or_machine_it_is_compiled(release, caplog, monkeypatch, what, name):
     other = "another" if what != "machine" else lambda: "another"
     with monkeypatch.context() as patch:
-        patch.setattr(f"yehu_server.bitcode.shipped.{name}", other)
+        patch.setattr(f"yehu_server.compile.bitcode.shipped.{name}", other)
         release.write()
     caplog.set_level(logging.DEBUG, "yehu_server")
     assert f"for {what} another" in compiled_anew(release, caplog)

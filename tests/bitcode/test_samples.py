@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from as_processor import CANNOT, PROCESSORS
 
-from yehu_server.sealed import read_sealed
+from yehu_server.util.sealed import read_sealed
 
 TESTS = Path(__file__).parents[1]
 PLAY = """

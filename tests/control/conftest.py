@@ -20,20 +20,20 @@ import pytest
 from moves import Moves
 from wire import Ear, Heard, StillTime, Wire
 
-from yehu_server.audio.output import OutputOptions
-from yehu_server.control import clients, osc, schedule
-from yehu_server.control.part_status import PART_STATUS
-from yehu_server.control.status import STATUS
-from yehu_server.control.web import WebOptions
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.player.record import SILENT
 from yehu_server.errors import OutputError
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.osc import clients, handler, schedule
+from yehu_server.live.osc.part_status import PART_STATUS
+from yehu_server.live.osc.status import STATUS
+from yehu_server.live.server import Server
+from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import SLOT
-from yehu_server.player.record import SILENT
 from yehu_server.playing import live
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
-from yehu_server.server.options import PartOptions, ServeOptions
-from yehu_server.server.server import Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0  # for other threads, on a busy machine
@@ -76,7 +76,7 @@ def ear() -> Ear:
 @pytest.fixture
 def still_time(monkeypatch) -> StillTime:
     clock = StillTime(time.monotonic() + 100.0)  # later than anything on the true clock
-    for module in (clients, schedule, osc, live):
+    for module in (clients, schedule, handler, live):
         monkeypatch.setattr(module, "time", clock)
     return clock
 
@@ -142,7 +142,7 @@ class Stage:
         )
         self.player.write("/playing/variation", 0.0, frame=0)
         self.desk = Desk()
-        self.handler = osc.OscHandler([self.player], self.desk)
+        self.handler = handler.OscHandler([self.player], self.desk)
         self.ear = Ear()
         self.events: list[tuple[int, str, float]] = []
 
@@ -342,10 +342,10 @@ class Hall:
     def __init__(self, folder: Path, ending: contextlib.ExitStack, **options: Any) -> None:
         self.said: list[str] = []
         output = OutputOptions(device="null", blocksize=options.pop("blocksize", 128))
-        osc = options.pop("osc", (HOST, 0))
+        handler = options.pop("osc", (HOST, 0))
         own = {name: options.pop(name) for name in ("style", "reread") if name in options}
         parts = [PartOptions(**own)] * options.pop("parts", 1)
-        serve = ServeOptions(output=output, osc=osc, midi=None, parts=parts, recordings=folder)
+        serve = ServeOptions(output=output, osc=handler, midi=None, parts=parts, recordings=folder)
         self.server = Server(replace(serve, **options), self.said.append)
         self.ports = self.server.osc
         self.handler = self.server.handler

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yehu_server.control import addresses
-from yehu_server.control.addresses import Allowed, lan_interface, parse_address, shown
 from yehu_server.errors import ParameterError
+from yehu_server.live import addresses
+from yehu_server.live.addresses import Allowed, lan_interface, parse_address, shown
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from yehu_server.control.allowance import Allowance
+from yehu_server.live.osc.limits import Allowance
 
 
 def test_a_burst_is_allowed_and_after_it_what_each_second_brings():

@@ -8,9 +8,9 @@ from types import SimpleNamespace
 import pytest
 from zeroconf import NonUniqueNameException, ServiceBrowser, Zeroconf
 
-from yehu_server.control import announce
-from yehu_server.control.announce import OSC, OSCQUERY, Announcer, Service, announced
-from yehu_server.control.web import WebOptions
+from yehu_server.live import announce
+from yehu_server.live.announce import OSC, OSCQUERY, Announcer, Service, announced
+from yehu_server.live.web.server import WebOptions
 
 HOST = "127.0.0.1"
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yehu_server.control import backlog
-from yehu_server.control.backlog import (
+from yehu_server.live.osc import backlog
+from yehu_server.live.osc.backlog import (
     FORGIVEN_NS,
     MOST_BYTES,
     MOST_KNOWN,

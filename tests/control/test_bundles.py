@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 from wire import errors
 
-from yehu_server.control.room import OVERHEAD_BYTES, Room
+from yehu_server.live.osc.limits import OVERHEAD_BYTES, Room
 
 
 def test_bundles_keep_their_distances_to_the_sample_and_their_time(stage, wire):

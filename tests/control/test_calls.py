@@ -10,8 +10,8 @@ import pytest
 from sound import rms
 from wire import errors, f32, values
 
-from yehu_server.control import osc
-from yehu_server.control.calls import CALLS
+from yehu_server.live.osc import handler
+from yehu_server.live.osc.calls import CALLS
 from yehu_server.params.table import TABLE
 
 HEARD_S = 0.01  # within which what arrives is played: the player's delay and a block
@@ -31,7 +31,7 @@ def test_every_call_is_described_and_every_described_call_is_there(stage):
 
 
 def test_osc_is_the_prefix_of_all_that_is_said():
-    assert osc.PREFIX == "/yehu"
+    assert handler.PREFIX == "/yehu"
 
 
 def test_every_call_is_heard(hall):

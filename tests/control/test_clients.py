@@ -7,16 +7,16 @@ from collections import Counter
 import pytest
 from wire import Ear
 
-from yehu_server.control import clients as clients_module
-from yehu_server.control import listener as listener_module
-from yehu_server.control.clients import (
+from yehu_server.live.osc import clients as clients_module
+from yehu_server.live.osc import subscriptions as listener_module
+from yehu_server.live.osc.clients import (
     MOST_KNOWN,
     MOST_OF_A_HOST,
     MOST_SUBSCRIBERS,
     SLICE_S,
     Clients,
 )
-from yehu_server.control.telling import MOST_TOLD
+from yehu_server.live.osc.subscriptions import MOST_TOLD
 
 
 class Values:

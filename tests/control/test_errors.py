@@ -8,7 +8,7 @@ import time
 import pytest
 from wire import errors
 
-from yehu_server.control import clients
+from yehu_server.live.osc import clients
 
 
 @pytest.mark.parametrize(

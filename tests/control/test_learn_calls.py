@@ -6,7 +6,7 @@ import mido
 import pytest
 from midi_input import receive
 
-from yehu_server.control import learn_calls
+from yehu_server.live.osc import learn_calls
 from yehu_server.playing.mapping import load
 
 

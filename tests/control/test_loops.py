@@ -10,10 +10,10 @@ import urllib.request
 
 import pytest
 
-from yehu_server.control import web
-from yehu_server.control.loops import LoopThread
-from yehu_server.control.web import WebOptions
-from yehu_server.lasting import Backoff
+from yehu_server.live.web import server
+from yehu_server.live.web.loops import LoopThread
+from yehu_server.live.web.server import WebOptions
+from yehu_server.util.retry import Backoff
 
 TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE))
 
@@ -74,7 +74,7 @@ def test_oscquery_answers_again_after_its_server_failed(make_hall, patience, mon
         if fails and (error := fails.pop(0)) is not None:
             raise error
 
-    monkeypatch.setattr(web.asyncio, "sleep", failing)
+    monkeypatch.setattr(server.asyncio, "sleep", failing)
     hall = make_hall(http=WebOptions(("127.0.0.1", 0)))
     patience(lambda: not fails, "a failure, and another try")
     with urllib.request.urlopen(f"http://127.0.0.1:{hall.server.web.port}/?HOST_INFO") as answer:

@@ -7,14 +7,14 @@ import threading
 import numpy as np
 import pytest
 
-from yehu_server.control.midi_feed import PORTS, MidiFeed, SharedRing
-from yehu_server.control.midi_routes import Route, Router
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.mailbox import LIVE_BUDGET, MIDI_INPUTS, SMALL_RING
-from yehu_server.engine.rig import ring_place
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.midi.events import DISCONNECT, MESSAGE
-from yehu_server.midi.packing import packed
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.mailbox import LIVE_BUDGET, MIDI_INPUTS, SMALL_RING
+from yehu_server.core.engine.rig import ring_place
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.midi.events import DISCONNECT, MESSAGE
+from yehu_server.core.midi.packing import packed
+from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
+from yehu_server.live.midi.routes import Route, Router
 
 NOTE = [0x90, 67, 90]
 

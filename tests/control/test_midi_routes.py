@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from yehu_server.control.midi_routes import Route, Router, check_routes, route_of
-from yehu_server.control.ports import MidiOptions, MidiPorts
 from yehu_server.errors import ParameterError
+from yehu_server.live.midi.ports import MidiOptions, MidiPorts
+from yehu_server.live.midi.routes import Route, Router, check_routes, route_of
 
 NOTE = [0x90, 67, 90]
 

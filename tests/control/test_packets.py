@@ -14,8 +14,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from yehu_server.control.framing import MOST_BYTES
-from yehu_server.control.packets import (
+from yehu_server.live.osc.framing import MOST_BYTES
+from yehu_server.live.osc.packets import (
     DEEPEST,
     MOST_ARGUMENTS,
     Message,

@@ -8,7 +8,7 @@ import math
 import pytest
 from wire import errors, f32, values
 
-from yehu_server.control import clients
+from yehu_server.live.osc import clients
 from yehu_server.params.spec import Place
 from yehu_server.params.table import TABLE as ALL
 

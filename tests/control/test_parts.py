@@ -8,18 +8,18 @@ import pytest
 from web_client import walk
 from wire import f32
 
-from yehu_server.control import osc
-from yehu_server.control.packets import pack
-from yehu_server.control.part_status import PART_STATUS
-from yehu_server.control.parts import OF_PARTS
-from yehu_server.control.query import LISTENABLE_OF_PARTS, Told, find, is_listenable, tree
-from yehu_server.control.status import STATUS
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.live.osc import handler
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.part_status import PART_STATUS
+from yehu_server.live.osc.status import STATUS
+from yehu_server.live.part_addresses import OF_PARTS
+from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Told, find, is_listenable, tree
 from yehu_server.params.preset import Preset
 from yehu_server.params.table import TABLE
-from yehu_server.playing import learned
+from yehu_server.playing import learn as learned
 from yehu_server.playing.binds import Bind
-from yehu_server.playing.learner import Found
+from yehu_server.playing.learn import Found
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.style import Style
@@ -38,7 +38,7 @@ def players(stage) -> list[LivePlayer]:
         instrument.frame_at = stage.instrument.frame_at
         stage.others.append(instrument)
         more.append(LivePlayer(instrument, Style(), delay_ms=3.0, part=part))
-    stage.handler = osc.OscHandler([stage.player, *more], stage.desk)
+    stage.handler = handler.OscHandler([stage.player, *more], stage.desk)
     return [stage.player, *more]
 
 

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 from web_client import walk
 
-from yehu_server.control.calls import CALLS, Argument, Call
-from yehu_server.control.part_status import PART_STATUS
-from yehu_server.control.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Told, find, tree
-from yehu_server.control.status import INT_MAX, STATUS, Kind, as_argument
+from yehu_server.live.osc.calls import CALLS, Argument, Call
+from yehu_server.live.osc.part_status import PART_STATUS
+from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
+from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Told, find, tree
 from yehu_server.params.table import TABLE
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -162,7 +162,7 @@ def test_the_documentation_has_the_status_table():
     assert f"| of a part | what |\n|---|---|\n{rows}\n" in text
 
 
-@pytest.mark.parametrize("module", ["yehu_server.cli", "yehu_server.rendering"])
+@pytest.mark.parametrize("module", ["yehu_server.cli", "yehu_server.render"])
 def test_only_a_server_loads_what_the_web_needs(module):
     code = f"import sys, {module}; print(*sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

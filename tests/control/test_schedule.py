@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yehu_server.control import schedule
-from yehu_server.control.room import OVERHEAD_BYTES
-from yehu_server.control.schedule import AHEAD_S, Schedule, TagClock
+from yehu_server.live.osc import schedule
+from yehu_server.live.osc.limits import OVERHEAD_BYTES
+from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 
 RATE = 48000
 MANY = 1 << 20

@@ -15,14 +15,14 @@ from collections.abc import Iterator
 
 import pytest
 
-from yehu_server.control import listening, sockets
-from yehu_server.control.addresses import Allowed
-from yehu_server.control.backlog import MOST_BYTES
-from yehu_server.control.packets import pack
-from yehu_server.control.peers import ANSWERED_AT_ONCE_BYTES
-from yehu_server.control.schedule import AHEAD_S
-from yehu_server.control.sockets import OscPorts
 from yehu_server.errors import DeviceError
+from yehu_server.live.addresses import Allowed
+from yehu_server.live.osc import listening, sockets
+from yehu_server.live.osc.backlog import MOST_BYTES
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.peers import ANSWERED_AT_ONCE_BYTES
+from yehu_server.live.osc.schedule import AHEAD_S
+from yehu_server.live.osc.sockets import OscPorts
 
 HOST = "127.0.0.1"
 BURST = 20_000

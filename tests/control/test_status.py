@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from wire import values
 
-from yehu_server.control.status import STATUS
+from yehu_server.live.osc.status import STATUS
 
 
 def test_the_status_is_asked_for_like_any_value(stage):

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 import pytest
 import soundfile
 
-from yehu_server.audio import recorder
 from yehu_server.errors import OutputError
-from yehu_server.score.capture import read_capture
+from yehu_server.live.audio import recorder
+from yehu_server.scores.capture import read_capture
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from web_client import WebSocket, ask
 
-from yehu_server.control.web import WebOptions
+from yehu_server.live.web.server import WebOptions
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from yehu_server.control import troubles
-from yehu_server.control.troubles import Troubles
+from yehu_server.live import housekeeper
+from yehu_server.live.housekeeper import Troubles
 
 DROPS, LOSSES = "packets were dropped", "the state was lost"
 
@@ -15,7 +15,7 @@ DROPS, LOSSES = "packets were dropped", "the state was lost"
 @pytest.fixture
 def clock(monkeypatch):
     clock = SimpleNamespace(now=1000.0)
-    monkeypatch.setattr(troubles, "time", SimpleNamespace(monotonic=lambda: clock.now))
+    monkeypatch.setattr(housekeeper, "time", SimpleNamespace(monotonic=lambda: clock.now))
     return clock
 
 

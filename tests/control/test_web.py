@@ -11,13 +11,13 @@ import subprocess
 import pytest
 from web_client import ask, walk
 
-from yehu_server.control.addresses import Allowed
-from yehu_server.control.calls import CALLS
-from yehu_server.control.status import STATUS, Kind
-from yehu_server.control.web import IDLE_S, MOST_CONNECTIONS, PARAMETERS, WebOptions
 from yehu_server.errors import DeviceError
-from yehu_server.files import shipped_folder
+from yehu_server.live.addresses import Allowed
+from yehu_server.live.osc.calls import CALLS
+from yehu_server.live.osc.status import STATUS, Kind
+from yehu_server.live.web.server import IDLE_S, MOST_CONNECTIONS, PARAMETERS, WebOptions
 from yehu_server.params.table import TABLE
+from yehu_server.util.files import shipped_folder
 
 HOST = "127.0.0.1"
 
@@ -344,8 +344,8 @@ def test_the_server_can_do_without(make_hall):
 def test_a_defect_is_counted_and_ends_one_request_only(web_house, port, monkeypatch):
     before = web_house.server.status()["http_failures"]
     with monkeypatch.context() as patch:
-        patch.setattr("yehu_server.control.web.query.tree", lambda *_: 1 / 0)
-        patch.setattr("yehu_server.control.web.log.exception", lambda *_: None)
+        patch.setattr("yehu_server.live.web.server.query.tree", lambda *_: 1 / 0)
+        patch.setattr("yehu_server.live.web.server.log.exception", lambda *_: None)
         assert ask(port, "/yehu").status == 500
     assert ask(port, "/yehu").status == 200
     web_house.server.web.traffic.failures = before

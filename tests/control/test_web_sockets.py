@@ -12,9 +12,9 @@ import pytest
 from web_client import BINARY, CLOSE, TEXT, Refused, WebSocket, ask
 from wire import Heard, Wire
 
-from yehu_server.control.peers import MOST_UNSENT_BYTES, WebTraffic
-from yehu_server.control.web import MOST_CONNECTIONS, MOST_WEB_SOCKETS, SWEEP_S, WebOptions
-from yehu_server.control.web_sockets import FRAME_BYTES, WebPeer
+from yehu_server.live.osc.peers import MOST_UNSENT_BYTES, WebTraffic
+from yehu_server.live.web.server import MOST_CONNECTIONS, MOST_WEB_SOCKETS, SWEEP_S, WebOptions
+from yehu_server.live.web.web_sockets import FRAME_BYTES, WebPeer
 from yehu_server.params.table import TABLE
 
 HOST = "127.0.0.1"

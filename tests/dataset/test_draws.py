@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from yehu_server.dataset.draws import chance, draw_of
 from yehu_server.errors import ParameterError
+from yehu_server.lab.dataset.draws import chance, draw_of
 
 MANY = 4000
 

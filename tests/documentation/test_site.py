@@ -15,8 +15,8 @@ from pages import PAGES, ROOT, Page
 from panel.browser import drive, missing
 
 import yehu_server as yehu
-from yehu_server import plot
-from yehu_server.panel.web_server import server_of, url_of
+from yehu_server.lab import plot
+from yehu_server.live.page.site import server_of, url_of
 
 HERE = Path(__file__).parent
 

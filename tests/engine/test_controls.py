@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from sound import run
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, V_B, X_B
 from yehu_server.params.table import ENGINE, SLOT
-from yehu_server.physics.layout import F_N, FINGER_CONTROLS, V_B, X_B
 
 RATE = 44100
 BRIDGE_X = 0.30  # m

@@ -8,7 +8,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from yehu_server.engine.delay_locked_loop import BANDWIDTH_HZ, LOOP, follow, predicted_ns, start
+from yehu_server.core.engine.delay_locked_loop import (
+    BANDWIDTH_HZ,
+    LOOP,
+    follow,
+    predicted_ns,
+    start,
+)
 
 RATE, FRAMES = 48000.0, 256
 PERIOD_NS = FRAMES * 1e9 / RATE

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from sound import alone, bow, run
 
-from yehu_server.engine import intake, mixing, sounding
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.rig import MOST_PARTS
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine import intake, mixing, sounding
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.wishes import BEGIN
 from yehu_server.errors import ParameterError
-from yehu_server.player.wishes import BEGIN
 
 RATE = 22050.0
 KEYS = (69.0, 74.0, 77.0)

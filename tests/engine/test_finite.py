@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from sound import bow, run
 
-from yehu_server.controls.record import CHUNK
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.rig import RIG
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.controls.record import CHUNK
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import RIG
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.rows import ROWS
+from yehu_server.core.player.wishes import BEGIN, KINDS, RAMP
+from yehu_server.core.stage.directivity import SIDES
+from yehu_server.core.stage.room import ROOM
+from yehu_server.core.stage.seat import SEAT
 from yehu_server.params.table import ENGINE, SLOT
-from yehu_server.player.rows import ROWS
-from yehu_server.player.wishes import BEGIN, KINDS, RAMP
-from yehu_server.stage.directivity import SIDES
-from yehu_server.stage.room import ROOM
-from yehu_server.stage.seat import SEAT
 
 BAD = (math.nan, math.inf, -math.inf, 1e308, -1e308)
 STAGES = ("state", "controls", "player", "output")

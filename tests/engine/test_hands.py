@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.physics.layout import (
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.layout import (
     CONTROLS_PER_FINGER,
     F_N,
     F_PLUCK,

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from sound import bow, rms, run, run_for
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.quantities import Quantities, StringQuantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import ENGINE, TABLE
-from yehu_server.physics.quantities import Quantities, StringQuantities
 
 RATE = 44100
 

@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.look import LOOK, NO_STRING, look
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.physics.layout import V_B, X_B
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import BEGIN, END, HOLD
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.look import LOOK, NO_STRING, look
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.layout import V_B, X_B
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import BEGIN, END, HOLD
 
 RATE = 44100.0
 

@@ -20,18 +20,18 @@ import sound
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from yehu_server.controls.slots import SILENCE
-from yehu_server.engine import native
-from yehu_server.engine import rig as memory
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.midi.events import TABLES_TO
+from yehu_server.core.controls.slots import SILENCE
+from yehu_server.core.engine import native
+from yehu_server.core.engine import rig as memory
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.midi.events import TABLES_TO
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.rows import ROW, ROWS
+from yehu_server.core.player.wishes import BEGIN, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.params.table import ENGINE, SLOT
-from yehu_server.player.record import PLAYER
-from yehu_server.player.rows import ROW, ROWS
-from yehu_server.player.wishes import BEGIN, EXPRESS, HOLD, RAMP, WRITE
 
 RATE = 22050
 PATIENCE_S = 120.0  # for other threads and processes; they took 20 s on a busy machine

@@ -15,19 +15,19 @@ import numpy as np
 import pytest
 from sound import alone, bow
 
-from yehu_server import jit
-from yehu_server.engine import native
-from yehu_server.engine import rig as memory
-from yehu_server.engine.ensemble import TAPE_FRAMES, Ensemble
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.engine.warming import PLAYED_BY
-from yehu_server.midi.interpret import APART as PARTS
-from yehu_server.midi.interpret import interpret
-from yehu_server.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
-from yehu_server.player.record import SILENT
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
+from yehu_server.compile import jit
+from yehu_server.core.engine import native
+from yehu_server.core.engine import rig as memory
+from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.engine.warming import PLAYED_BY
+from yehu_server.core.midi.interpret import APART as PARTS
+from yehu_server.core.midi.interpret import interpret
+from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
+from yehu_server.core.player.record import SILENT
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
 
 RATE = 22050
 CALLS = {call.function.__name__: call for call in PLAYED_BY}

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from yehu_server.controls.one_pole import one_pole, pole_of_cutoff, pole_of_time
+from yehu_server.core.controls.ramps import one_pole, pole_of_cutoff, pole_of_time
 
 RATE = 48000.0
 

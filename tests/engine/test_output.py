@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sound import bow, run
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.stage.limiter import limit
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.mixing import limit
+from yehu_server.core.engine.spec import InstrumentSpec
 
 RATE = 44100
 KNEE = 10.0 ** (-3.0 / 20.0)

@@ -13,10 +13,10 @@ import pytest
 from llvmlite import ir
 from sound import bow, run
 
-from yehu_server.engine import processor
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.physics.layout import GHOST
+from yehu_server.core.engine import processor
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.layout import GHOST
 
 RATE = 22050
 SMALLEST = np.finfo(np.float64).smallest_normal

@@ -12,16 +12,16 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.controls.record import CONTROLS
-from yehu_server.controls.slots import SLOTS
-from yehu_server.jit import FOLDERS
-from yehu_server.midi.record import MIDI
-from yehu_server.player.record import PLAYER
-from yehu_server.player.rows import ROWS
+from yehu_server.compile.jit import FOLDERS
+from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.controls.slots import SLOTS
+from yehu_server.core.midi.record import MIDI
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.rows import ROWS
 
 PACKAGE = Path(__file__).parents[2] / "yehu_server"
 SOURCES = [path for folder in (*FOLDERS, "playing") for path in (PACKAGE / folder).glob("*.py")]
-ROWS_MODULE, SLOTS_MODULE = "yehu_server.player.rows", "yehu_server.controls.slots"
+ROWS_MODULE, SLOTS_MODULE = "yehu_server.core.player.rows", "yehu_server.core.controls.slots"
 ROW, SLOT = "a row", "a slot"
 OTHER = {ROW: SLOT, SLOT: ROW}
 MAPS = {"ROW": ROW, "SLOT": SLOT, "SLOT_OF": SLOT}  # from an address, or a row
@@ -150,7 +150,7 @@ def functions_in(name: str, module: Module) -> Iterator[tuple[tuple[str, str], l
     for node in ast.walk(module.tree):
         if isinstance(node, ast.FunctionDef):
             arguments = [argument.arg for argument in node.args.args]
-            is_take = (name, node.name) == ("yehu_server.controls.ramps", "take")
+            is_take = (name, node.name) == ("yehu_server.core.controls.ramps", "take")
             yield (name, node.name), ["c", "slot"] if is_take else arguments
 
 
@@ -187,6 +187,8 @@ def test_most_places_are_known():
 
 
 ROWS_OF, SLOTS_OF = f"from {ROWS_MODULE} import", f"from {SLOTS_MODULE} import"
+TAKE = "from yehu_server.core.controls.ramps import take"
+MOVE = "from yehu_server.core.player.ownership import move"
 
 
 @pytest.mark.parametrize(
@@ -197,8 +199,8 @@ ROWS_OF, SLOTS_OF = f"from {ROWS_MODULE} import", f"from {SLOTS_MODULE} import"
         f"{ROWS_OF} FINGER_POSITION\nc.remaining[FINGER_POSITION[n]]",
         f"{SLOTS_OF} SPEED\np.value[SPEED]",
         f"{SLOTS_OF} ASSIST\nm.kept[ASSIST] = 1",
-        "from yehu_server.controls import slots\np.value[slots.TREMOLO]",
-        "from yehu_server.player import rows\nc.value[rows.TREMOLO]",
+        "from yehu_server.core.controls import slots\np.value[slots.TREMOLO]",
+        "from yehu_server.core.player import rows\nc.value[rows.TREMOLO]",
         "VOLUME, PAN = ROW['/playing/volume'], ROW['/room/pan']\nc.target[PAN]",
         "p.kept[SLOT['/bow/speed']]",
         "def f(c, row):\n    c.slope[row] = 0.0",
@@ -206,13 +208,15 @@ ROWS_OF, SLOTS_OF = f"from {ROWS_MODULE} import", f"from {SLOTS_MODULE} import"
         f"{SLOTS_OF} POSITION, SIDE\n{ROWS_OF} POSITION",
         f"{ROWS_OF} HIGHEST\n{SLOTS_OF} FORCE\nHIGHEST[FORCE]",
         f"{SLOTS_OF} LOWEST\nLOWEST[ROW['/bow/force']]",
-        "def f(slot):\n    return SLOT_OF[slot]\nfrom yehu_server.player.rows import SLOT_OF",
+        "def f(slot):\n    return SLOT_OF[slot]\nfrom yehu_server.core.player.rows import SLOT_OF",
         f"{ROWS_OF} SPEED\npost(RAMP, None, SPEED, 0.0)",
         "self.post(wishes.RAMP, index=ROW[address])",
         f"{SLOTS_OF} GAIN\nemit(m, 0, frame, WRITE, GAIN, 0.0, 0.0)",
         f"{SLOTS_OF} SILENCE\ninstrument.post(HOLD, index=SILENCE)",
-        f"{ROWS_OF} SPEED\nfrom yehu_server.controls.ramps import take\ntake(c, SPEED, 0.1, 0)",
-        f"{SLOTS_OF} SPEED\nfrom yehu_server.player.ownership import move\nmove(p, c, SPEED, 0, 0)",
+        ROWS_OF
+        + " SPEED\nfrom yehu_server.core.controls.ramps import take\ntake(c, SPEED, 0.1, 0)",
+        SLOTS_OF
+        + " SPEED\nfrom yehu_server.core.player.ownership import move\nmove(p, c, SPEED, 0, 0)",
     ],
 )
 def test_a_mix_up_is_found(text):

@@ -9,8 +9,8 @@ import pytest
 from pitch import cents, pitch_of
 from sound import run_for
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.params.table import ENGINE
 
 RATE = 44100

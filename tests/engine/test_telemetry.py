@@ -13,20 +13,15 @@ import numpy as np
 import pytest
 import sound
 
-from yehu_server.controls.record import CHUNK
-from yehu_server.engine import native, telemetry
-from yehu_server.engine.atomics import at, load_acquire
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.rig import METERS_AT, POSTED_AT
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.engine.telemetry import (
-    BINS_PER_DEADLINE,
-    LOAD_BINS,
-    METERS,
-    SHAPE_POINTS,
-)
-from yehu_server.physics.layout import GHOST, STRINGS
-from yehu_server.player.wishes import RAMP
+from yehu_server.core.controls.record import CHUNK
+from yehu_server.core.engine import native, telemetry
+from yehu_server.core.engine.atomics import at, load_acquire
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import METERS_AT, POSTED_AT
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.engine.telemetry import BINS_PER_DEADLINE, LOAD_BINS, METERS, SHAPE_POINTS
+from yehu_server.core.physics.layout import GHOST, STRINGS
+from yehu_server.core.player.wishes import RAMP
 
 RATE = 44100
 PATIENCE_S = 60.0  # for another thread, on a busy machine

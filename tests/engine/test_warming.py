@@ -8,9 +8,9 @@ import sys
 
 import pytest
 
-from yehu_server.engine import warming
-from yehu_server.engine.sounding import sound
-from yehu_server.jit import Native
+from yehu_server.compile.jit import Native
+from yehu_server.core.engine import warming
+from yehu_server.core.engine.sounding import sound
 
 
 def beginnings(monkeypatch) -> list[list[str]]:
@@ -48,7 +48,7 @@ def test_the_model_is_compiled_beside_where_there_is_a_second_processor(monkeypa
     monkeypatch.setattr(Native, "is_kept", property(lambda self: self is not sound))
     assert not warming.is_warm()
     warming.warm_up()
-    expected = [[sys.executable, "-m", "yehu_server.engine.warming"]]
+    expected = [[sys.executable, "-m", "yehu_server.core.engine.warming"]]
     assert begun == (expected if processors > 1 else [])
 
 

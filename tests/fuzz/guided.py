@@ -33,7 +33,7 @@ def watched() -> Iterator[None]:
     ]
     with (
         contextlib.redirect_stderr(io.StringIO()),  # a line for each module
-        atheris.instrument_imports(GUIDED_BY, [*compiled, "yehu_server.jit"]),
+        atheris.instrument_imports(GUIDED_BY, [*compiled, "yehu_server.compile.jit"]),
     ):
         yield
 

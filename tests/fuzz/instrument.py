@@ -8,14 +8,14 @@ import math
 import numpy as np
 from interpreted import ALL_KINDS, Leader, Wished
 
-from yehu_server.controls.record import prepare_controls
-from yehu_server.controls.slots import HIGHEST, LOWEST
+from yehu_server.core.controls.record import prepare_controls
+from yehu_server.core.controls.slots import HIGHEST, LOWEST
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.record import prepare_player
+from yehu_server.core.player.wishes import KINDS, fulfil
 from yehu_server.params.table import SLOT, TABLE
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration
-from yehu_server.player.notes import told_pitch
-from yehu_server.player.record import prepare_player
-from yehu_server.player.wishes import KINDS, fulfil
 from yehu_server.playing.live import LivePlayer
 
 # Near a measured calibration, which takes seconds to make.

@@ -297,9 +297,9 @@ def sound(*channels: Any) -> bytes:
 
 
 def result() -> bytes:
-    from yehu_server.regimes.judge import FINDING
-    from yehu_server.sweeps.result import result_of
-    from yehu_server.sweeps.study import study_of
+    from yehu_server.lab.regimes.judge import FINDING
+    from yehu_server.lab.sweeps.result import result_of
+    from yehu_server.lab.sweeps.study import study_of
 
     stroke = {"string": 1, "note": 75}
     study = study_of({"stroke": stroke, "vary": {"force": [0.1, 1.0], "position": [0.1, 0.2]}})
@@ -312,11 +312,11 @@ def result() -> bytes:
 def laboratory() -> dict[str, dict[str, bytes]]:
     from workshop.bodies import admittance
 
-    from yehu_server.physics.quantities import measured_body
-    from yehu_server.workshop.curve import Curve
-    from yehu_server.workshop.fitting import Fit
-    from yehu_server.workshop.kept import as_text
-    from yehu_server.workshop.measurement import Measurement
+    from yehu_server.core.physics.quantities import measured_body
+    from yehu_server.lab.body.body_file import as_text
+    from yehu_server.lab.body.curve import Curve
+    from yehu_server.lab.body.fitting import Fit
+    from yehu_server.lab.body.measurement import Measurement
 
     mobility = admittance(HZ)
     level, phase = 20.0 * np.log10(np.abs(mobility)), np.degrees(np.angle(mobility))

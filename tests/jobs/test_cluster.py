@@ -14,10 +14,9 @@ from clusters import Processes, cluster_in, wait_until
 
 import yehu_server
 from yehu_server.errors import YehuError
-from yehu_server.jobs import cluster as clusters
-from yehu_server.jobs import there
-from yehu_server.jobs.address import scheduler_address
-from yehu_server.jobs.cluster import Cluster
+from yehu_server.render import cluster as clusters
+from yehu_server.render import cluster_worker
+from yehu_server.render.cluster import Cluster, scheduler_address
 
 pytest.importorskip("distributed")
 
@@ -25,7 +24,7 @@ pytest.importorskip("distributed")
 @pytest.fixture(autouse=True)
 def _as_it_is_now() -> None:
     """Code may be edited while tests run: a test has what is there when it starts."""
-    there.identity.cache_clear()
+    cluster_worker.identity.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -229,11 +228,12 @@ def test_a_lock_keeps_processes_apart(tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
     program = (
-        "import sys; from pathlib import Path; from yehu_server.jobs.there import one_at_a_time\n"
+        "import sys; from pathlib import Path\n"
+        "from yehu_server.render.cluster_worker import one_at_a_time\n"
         "Path(sys.argv[1], 'wants').touch()\n"
         "with one_at_a_time(): Path(sys.argv[1], 'has').touch()"
     )
-    with there.one_at_a_time():
+    with cluster_worker.one_at_a_time():
         other = subprocess.Popen([sys.executable, "-c", program, str(tmp_path)])
         wait_until((tmp_path / "wants").exists)
         time.sleep(0.2)

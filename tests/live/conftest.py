@@ -25,9 +25,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from yehu_server.control.packets import pack, unpack
-from yehu_server.control.status import STATUS
-from yehu_server.engine.warming import warm_up
+from yehu_server.core.engine.warming import warm_up
+from yehu_server.live.osc.packets import pack, unpack
+from yehu_server.live.osc.status import STATUS
 
 ROOT = Path(__file__).resolve().parents[2]
 RATE = 48000

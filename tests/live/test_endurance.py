@@ -17,15 +17,15 @@ from pathlib import Path
 import numpy as np
 from sound import alone
 
-from yehu_server.audio.output import Output, OutputOptions
-from yehu_server.control.packets import unpack
-from yehu_server.control.ports import MidiOptions
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.telemetry import BINS_PER_DEADLINE
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import WRITE
-from yehu_server.server.options import ServeOptions
-from yehu_server.server.server import Server
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.telemetry import BINS_PER_DEADLINE
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import WRITE
+from yehu_server.live.audio.output import Output, OutputOptions
+from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.options import ServeOptions
+from yehu_server.live.osc.packets import unpack
+from yehu_server.live.server import Server
 
 RATE = 48000
 DEVICE = "system, JACK"

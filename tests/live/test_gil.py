@@ -12,12 +12,12 @@ import time
 import numpy as np
 from sound import alone
 
-from yehu_server.audio.output import Output, OutputOptions
-from yehu_server.engine.instrument import Instrument
-from yehu_server.replay import blocks
-from yehu_server.score.capture import read_capture
-from yehu_server.score.capture_beginning import beginning_of
-from yehu_server.score.capture_writer import CaptureWriter
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.live.audio.output import Output, OutputOptions
+from yehu_server.render.replay import blocks
+from yehu_server.scores.capture import read_capture
+from yehu_server.scores.capture_beginning import beginning_of
+from yehu_server.scores.capture_writer import CaptureWriter
 
 RATE, BLOCK = 48000, 128
 A_SECOND_US = 1_000_000

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from yehu_server.score.capture import read_capture
+from yehu_server.scores.capture import read_capture
 
 
 @pytest.mark.parametrize("name", ["take.wav", "take.flac"])

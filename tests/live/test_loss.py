@@ -17,21 +17,21 @@ import pytest
 import soundfile
 from sound import alone
 
-from yehu_server.audio import output
-from yehu_server.audio.output import Output, OutputOptions, SharedMemory
-from yehu_server.child import Child
 from yehu_server.cli import main
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.live.audio import output
+from yehu_server.live.audio.output import Output, OutputOptions, SharedMemory
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.server import Server
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes
-from yehu_server.replay import blocks
-from yehu_server.score.capture import read_capture
-from yehu_server.score.capture_beginning import beginning_of
-from yehu_server.score.capture_writer import CaptureWriter
-from yehu_server.server.options import PartOptions, ServeOptions
-from yehu_server.server.server import Server
+from yehu_server.render.replay import blocks
+from yehu_server.scores.capture import read_capture
+from yehu_server.scores.capture_beginning import beginning_of
+from yehu_server.scores.capture_writer import CaptureWriter
+from yehu_server.util.processes import Child
 
 DEVICE = "system, JACK Audio Connection Kit"
 SOUNDS = 1e-3
@@ -429,7 +429,7 @@ def open_files() -> set[str]:
 
 def test_a_helper_process_that_is_ended_leaves_no_pipe_open(until):
     before = open_files()
-    helper = Child("yehu_server.control.midi_process", lambda _event: None)
+    helper = Child("yehu_server.live.midi.process", lambda _event: None)
     helper.stop()
     until(lambda: open_files() <= before, 2.0, "its pipes to be closed")
 
@@ -437,7 +437,7 @@ def test_a_helper_process_that_is_ended_leaves_no_pipe_open(until):
 def test_a_helper_process_that_crashes_leaves_no_pipe_open(until):
     before = open_files()
     events = []
-    helper = Child("yehu_server.control.midi_process", events.append)
+    helper = Child("yehu_server.live.midi.process", events.append)
     helper._process.kill()
     until(lambda: {"event": "gone"} in events, 2.0, "its end")
     time.sleep(0.1)
@@ -456,7 +456,7 @@ def test_a_helper_process_that_nobody_could_listen_to_is_ended(monkeypatch, star
 
     monkeypatch.setattr(threading.Thread, "start", fail)
     with pytest.raises(RuntimeError, match="thread"):
-        Child("yehu_server.control.midi_process", lambda _event: None)
+        Child("yehu_server.live.midi.process", lambda _event: None)
     monkeypatch.undo()
     assert open_files() <= before
 

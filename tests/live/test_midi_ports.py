@@ -14,19 +14,18 @@ import pytest
 import rtmidi
 from moves import Moves
 
-from yehu_server.audio.output import OutputOptions
-from yehu_server.control.midi_feed import MidiFeed, SharedRing
-from yehu_server.control.midi_names import is_wanted, stable_names
-from yehu_server.control.midi_process import Inputs
-from yehu_server.control.midi_routes import Router
-from yehu_server.control.ports import MidiOptions, MidiPorts
-from yehu_server.engine.mailbox import MIDI_INPUTS
-from yehu_server.engine.rig import ring_place
-from yehu_server.midi.events import DISCONNECT, MESSAGE
-from yehu_server.player.bowing import ordinary_table
+from yehu_server.core.engine.mailbox import MIDI_INPUTS
+from yehu_server.core.engine.rig import ring_place
+from yehu_server.core.midi.events import DISCONNECT, MESSAGE
+from yehu_server.core.player.bowing import ordinary_table
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.midi.feed import MidiFeed, SharedRing
+from yehu_server.live.midi.ports import MidiOptions, MidiPorts
+from yehu_server.live.midi.process import Inputs
+from yehu_server.live.midi.routes import Router, is_wanted, stable_names
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.server import Server
 from yehu_server.playing.style import Style
-from yehu_server.server.options import PartOptions, ServeOptions
-from yehu_server.server.server import Server
 
 RATE, PERIOD = 48000, 1024
 LISTENS_AFTER_S = 0.2  # see test_a_port_is_listened_to_before_it_is_open

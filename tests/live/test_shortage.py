@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.control.packets import pack
+from yehu_server.live.osc.packets import pack
 
 DEVICE = "system, JACK Audio Connection Kit"
 if not hasattr(resource, "prlimit"):

@@ -18,8 +18,8 @@ import soundfile
 from commands import COMMAND
 
 from yehu_server.cli import main
-from yehu_server.replay import blocks
-from yehu_server.score.capture import read_capture
+from yehu_server.render.replay import blocks
+from yehu_server.scores.capture import read_capture
 
 ROOT = Path(__file__).resolve().parents[2]
 RATE = 48000

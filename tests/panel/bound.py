@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from yehu_server.panel import styles
+from yehu_server.live.page import facts
 from yehu_server.playing.mapping import Mapping
 
 
 def rows_of(mapping: Mapping) -> list[dict[str, Any]]:
     """The binds of a mapping, as the page has them."""
-    return [placeless(bind) for bind in styles.mapping(mapping)["binds"]]
+    return [placeless(bind) for bind in facts.mapping(mapping)["binds"]]
 
 
 def placeless(bind: dict[str, Any]) -> dict[str, Any]:

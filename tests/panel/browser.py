@@ -12,10 +12,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from yehu_server.ahead.kept import page_module
 from yehu_server.ahead.link import page_linker
-from yehu_server.panel import facts
-from yehu_server.panel.files import MODULE
+from yehu_server.ahead.module_cache import page_module
+from yehu_server.live.page import facts
+from yehu_server.live.page.site import MODULE
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]

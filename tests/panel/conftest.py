@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.ahead.kept import page_module
 from yehu_server.ahead.link import page_linker
-from yehu_server.panel import facts
-from yehu_server.panel.files import MODULE, page_files, page_folder
+from yehu_server.ahead.module_cache import page_module
+from yehu_server.live.page import facts
+from yehu_server.live.page.site import MODULE, page_files, page_folder
 
 TYPES = ("jsconfig.json", "sound/worklet.d.ts")
 

@@ -11,10 +11,10 @@ from typing import Any
 
 from panel.browser import CHROMIUM, HERE, NODE
 
-from yehu_server.audio.output import OutputOptions
-from yehu_server.panel.pages import PageOptions
-from yehu_server.server.options import PartOptions, ServeOptions
-from yehu_server.server.server import Server
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.page.pages import PageOptions
+from yehu_server.live.server import Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 30.0

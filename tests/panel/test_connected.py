@@ -18,17 +18,17 @@ import numpy as np
 import pytest
 from midi_input import receive
 
-from yehu_server.ahead.layout import look_layout, look_length
-from yehu_server.audio.output import OutputOptions
-from yehu_server.control.web import WebOptions
-from yehu_server.panel.page_players import CHANNELS, LOWEST
-from yehu_server.panel.page_sockets import LOOK, NOW, WISHES, WRONG
-from yehu_server.panel.pages import PageOptions
+from yehu_server.ahead.interpreter import look_layout, look_length
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.options import ServeOptions
+from yehu_server.live.page.pages import PageOptions
+from yehu_server.live.page.players import CHANNELS, LOWEST
+from yehu_server.live.page.sockets import LOOK, NOW, WISHES, WRONG
+from yehu_server.live.server import Server
+from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import TABLE
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import BEGIN, END, EXPRESS, HOLD, RAMP, STOP, WRITE
-from yehu_server.server.options import ServeOptions
-from yehu_server.server.server import Server
 
 PROCESSES = Path("/proc")
 HOST = "127.0.0.1"

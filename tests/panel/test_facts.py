@@ -13,20 +13,20 @@ import mido
 import numpy as np
 import pytest
 
+from yehu_server.core.midi import events
+from yehu_server.core.midi.record import MIDI
+from yehu_server.core.midi.tables import MOST_BINDS, TABLES
+from yehu_server.core.player.rows import IS_ENGINES, IS_OWNED, ROW
+from yehu_server.core.player.wishes import KINDS
 from yehu_server.errors import ParameterError
-from yehu_server.midi import events
-from yehu_server.midi.record import MIDI
-from yehu_server.midi.tables import MOST_BINDS, TABLES
-from yehu_server.panel import examples, facts
-from yehu_server.panel.styles import tunings
+from yehu_server.live.page import examples, facts
+from yehu_server.live.page.facts import tunings
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import SLOT, TABLE, find
-from yehu_server.player.rows import IS_ENGINES, IS_OWNED, ROW
-from yehu_server.player.wishes import KINDS
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.presets import Presets
 from yehu_server.playing.tuning import read_tuning
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).parents[2]
 FOR_SEVERAL = {"mo_li_hua"}
@@ -41,7 +41,7 @@ def known() -> dict:
 
 
 def test_the_facts_are_the_same_in_each_process():
-    program = "from yehu_server.panel import facts; print(facts.module(facts.facts()))"
+    program = "from yehu_server.live.page import facts; print(facts.module(facts.facts()))"
     texts = {
         subprocess.run(
             [sys.executable, "-c", program],
@@ -135,7 +135,7 @@ def test_a_scale_is_offered_on_the_maps_that_take_it_only(tmp_path, monkeypatch)
     head = "2\n0\n127\n60\n"
     (tmp_path / "second.kbm").write_text(f"{head}61\n300.\n5\n0\n1\n")
     (tmp_path / "first.kbm").write_text(f"{head}60\n300.\n5\n0\n1\n")
-    monkeypatch.setattr("yehu_server.panel.styles.shipped_folder", lambda _: tmp_path)
+    monkeypatch.setattr("yehu_server.live.page.facts.shipped_folder", lambda _: tmp_path)
     with pytest.raises(ParameterError, match="not mapped"):  # it has no degree 1
         read_tuning(tmp_path / "one.scl", tmp_path / "second.kbm")
     assert list(tunings()) == [

@@ -13,8 +13,8 @@ import pytest
 from panel.bound import placeless, rows_of
 from panel.streams import FREE
 
-from yehu_server.playing import learned
-from yehu_server.playing.learner import Learner
+from yehu_server.playing import learn
+from yehu_server.playing.learn import Learner
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.mapping_file import mapping_file_from, read_mapping_file, toml_of
 
@@ -67,13 +67,13 @@ def expected(given: dict[str, Any], folder: Path) -> tuple[list[str | None], Map
     for target, *rest in given["lessons"]:
         found = None
         if not rest:
-            mapping, _ = learned.unlearn(mapping, target)
+            mapping, _ = learn.unlearn(mapping, target)
         else:
             learner = Learner()
             heard = (learner.hear(mido.Message.from_bytes(data), port) for port, data in rest[1])
             found = next((one for one in heard if one is not None), None)
         if found is not None:
-            mapping, _ = learned.learn(mapping, target, found, soft=rest[0])
+            mapping, _ = learn.learn(mapping, target, found, soft=rest[0])
         sources.append(None if found is None else found.source)
     return sources, mapping, folder / "yehu-server" / "mappings" / f"{given['name']}.toml"
 

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.look import LOOK, look
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.panel import facts
-from yehu_server.physics.schelleng import bridge_resistance, lower_limit, upper_limit
-from yehu_server.player.wishes import BEGIN
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.look import LOOK, look
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
+from yehu_server.core.player.wishes import BEGIN
+from yehu_server.live.page import facts
 
 ROOT = Path(__file__).parents[2]
 RATE = 44100.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from panel.browser import ROOT, drive, missing, served
 
-from yehu_server.panel import facts
+from yehu_server.live.page import facts
 
 pytestmark = [
     pytest.mark.skipif(missing() is not None, reason=str(missing())),

@@ -9,7 +9,7 @@ import pytest
 from aiohttp import web
 from panel.browser import drive, missing, served
 
-from yehu_server.panel.site import Site
+from yehu_server.live.page.site import Site
 
 in_browser = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 

@@ -9,9 +9,9 @@ import pytest
 from yehu_server import cli
 from yehu_server.cli import serve_options
 from yehu_server.cli.config import parse
+from yehu_server.cli.report import page_lines
 from yehu_server.cli.serve_options import options_of
 from yehu_server.errors import ParameterError
-from yehu_server.report import page_lines
 
 LAN = "192.168.1.5"
 

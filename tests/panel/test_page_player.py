@@ -15,9 +15,10 @@ import pytest
 from interpreted import Leader
 from panel import streams
 
-from yehu_server.midi.events import FINGER_ON
-from yehu_server.midi.tables import TABLES
-from yehu_server.panel import facts, styles
+from yehu_server.core.midi.events import FINGER_ON
+from yehu_server.core.midi.tables import TABLES
+from yehu_server.live.page import facts
+from yehu_server.live.page import facts as styles
 from yehu_server.params.table import find
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings

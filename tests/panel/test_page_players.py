@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from midi_input import receive
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.panel.page_players import PagePlayers
-from yehu_server.params.table import FINGERS
-from yehu_server.player.record import MOST_HELD
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import (
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.player.record import MOST_HELD
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import (
     BEGIN,
     DRAW,
     END,
@@ -25,6 +23,8 @@ from yehu_server.player.wishes import (
     STOP,
     WRITE,
 )
+from yehu_server.live.page.players import PagePlayers
+from yehu_server.params.table import FINGERS
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.style import Style

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from panel.browser import drive, missing, served
 
-from yehu_server.panel.beginnings import write_beginnings
+from yehu_server.live.page.examples import write_beginnings
 from yehu_server.params.table import TABLE
 from yehu_server.playing.presets import Presets
 

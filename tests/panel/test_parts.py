@@ -12,15 +12,15 @@ import aiohttp
 import numpy as np
 import pytest
 
-from yehu_server.ahead.layout import look_layout, look_length
-from yehu_server.audio.output import OutputOptions
-from yehu_server.panel.page_sockets import LOOK, NO_PART, NOW
-from yehu_server.panel.pages import PageOptions
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import BEGIN, STOP, WRITE
+from yehu_server.ahead.interpreter import look_layout, look_length
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import BEGIN, STOP, WRITE
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.options import PartOptions, ServeOptions
+from yehu_server.live.page.pages import PageOptions
+from yehu_server.live.page.sockets import LOOK, NO_PART, NOW
+from yehu_server.live.server import Server
 from yehu_server.playing.style import Style
-from yehu_server.server.options import PartOptions, ServeOptions
-from yehu_server.server.server import Server
 
 HOST = "127.0.0.1"
 PATIENCE_S = 20.0

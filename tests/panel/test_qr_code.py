@@ -7,8 +7,8 @@ import re
 
 import segno
 
-from yehu_server.cli.qr_code import BLACK_ON_WHITE, PLAIN, QUIET, drawn, show
-from yehu_server.report import page_for_phones
+from yehu_server.cli.page import BLACK_ON_WHITE, PLAIN, QUIET, drawn, show
+from yehu_server.cli.report import page_for_phones
 
 URL = "http://192.168.1.5:9002/"
 LAN = "192.168.1.5"

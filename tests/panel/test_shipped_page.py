@@ -10,13 +10,11 @@ from typing import Any
 
 import pytest
 
-from yehu_server.ahead import kept
-from yehu_server.ahead.section import with_section
-from yehu_server.ahead.sources import sources_hash
+from yehu_server.ahead import module_cache
+from yehu_server.ahead.source_hash import sources_hash, with_section
 from yehu_server.errors import YehuError
-from yehu_server.panel import files, module_process
-from yehu_server.panel.files import write_page
-from yehu_server.panel.site import Site
+from yehu_server.live.page import module_process, site
+from yehu_server.live.page.site import Site, write_page
 
 EMPTY = b"\0asm\1\0\0\0"
 OLDER = {
@@ -34,10 +32,10 @@ def shipped(tmp_path, monkeypatch) -> Path:
     for name, content in OLDER.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content)
-    for module in (kept, files):
+    for module in (module_cache, site):
         monkeypatch.setattr(module, "SHIPPED", folder / "yehu.wasm")
-    monkeypatch.setattr(kept, "data_folder", lambda: tmp_path)
-    monkeypatch.setattr(kept, "page_linker", lambda: None)
+    monkeypatch.setattr(module_cache, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(module_cache, "page_linker", lambda: None)
     return folder
 
 

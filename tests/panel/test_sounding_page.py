@@ -10,11 +10,10 @@ import pytest
 import soundfile
 from panel.browser import drive, missing
 
-from yehu_server.analysis.pitch import cents, pitch_hz
 from yehu_server.cli import main
-from yehu_server.panel.files import write_page
-from yehu_server.panel.web_server import server_of, url_of
-from yehu_server.player.calibration import frequency_hz
+from yehu_server.core.player.calibration import frequency_hz
+from yehu_server.live.page.site import server_of, url_of, write_page
+from yehu_server.playing.pitch_and_level import cents, pitch_hz
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 B4, E5 = 71.0, 76.0

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import reference as ref
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.string import set_Delta_u
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.string import set_Delta_u
 
 
 def reference_params(quantities: Quantities, rate: float) -> ref.RefParams:

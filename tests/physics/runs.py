@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.energy import stored_energy
-from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.string import set_Delta_u
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.energy import stored_energy
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.string import set_Delta_u
 
 COLUMNS = {
     "F_N": layout.F_N,

@@ -9,14 +9,16 @@ import numpy as np
 import pytest
 from physics.runs import bump, play, shaped
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.bridge import advance_bridge
-from yehu_server.physics.quantities import Quantities, StringQuantities
-from yehu_server.score.gesture import Gesture
-from yehu_server.simulation import simulate
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.bridge import advance_bridge
+from yehu_server.core.physics.quantities import Quantities, StringQuantities
+from yehu_server.lab.simulation import simulate
+from yehu_server.scores.gesture import Gesture
 
 YEHU = Quantities()
-MODES = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())["bridge_modes"]
+MODES = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())[
+    "bridge_modes"
+]
 M = np.array([mode["mass_kg"] for mode in MODES])
 R = np.array([mode["damping_kg_per_s"] for mode in MODES])
 OMEGA = 2.0 * np.pi * np.array([mode["frequency_hz"] for mode in MODES])

@@ -14,8 +14,8 @@ from physics.runs import bump, rows, shaped
 from scipy.interpolate import CubicSpline
 from scipy.linalg import null_space
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.quantities import Quantities
 
 # The finger out of reach: only strings and bridge move.
 YEHU = replace(

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from yehu_server.physics.elementary import (
+from yehu_server.core.physics.elementary import (
     SLIGHT,
     one_minus_inverse_root,
     power_of_2,

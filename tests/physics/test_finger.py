@@ -8,9 +8,9 @@ import pytest
 from physics.runs import bump, play, rows, shaped
 from pitch import cents, pitch_of
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.finger import gradient, limited_gradient
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.finger import gradient, limited_gradient
+from yehu_server.core.physics.quantities import Quantities
 
 YEHU = Quantities()
 FINGER = YEHU.finger

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from physics.runs import play
 
-from yehu_server.physics import kernel
-from yehu_server.physics.friction import (
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.friction import (
     MAX_ITERATIONS,
     bound_third_derivative,
     bristle_residual,
     solve_friction,
 )
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics.quantities import Quantities
 
 YEHU = Quantities()
 BOW = YEHU.bow

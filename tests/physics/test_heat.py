@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from physics.runs import play
 
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.hair import static_coefficient
+from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError
-from yehu_server.physics import kernel
-from yehu_server.physics.heat import static_coefficient
-from yehu_server.physics.quantities import Quantities, override
 
 YEHU = Quantities()
 THERMAL = override(YEHU, {"bow": {"friction": "thermal"}})

@@ -7,11 +7,11 @@ import pytest
 from physics.runs import bump, play, rows, shaped
 from pitch import cents, pitch_of
 
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.quantities import Quantities, override
-from yehu_server.score.gesture import Gesture
-from yehu_server.simulation import simulate
+from yehu_server.lab.simulation import simulate
+from yehu_server.scores.gesture import Gesture
 
 YEHU = Quantities()
 RATE = 44100.0

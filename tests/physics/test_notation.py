@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.physics import layout
+from yehu_server.core.physics import layout
 
 NOTATION = Path(__file__).parents[2] / "docs" / "notation.md"
 

@@ -6,8 +6,8 @@ import sys
 
 import numpy as np
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.quantities import Quantities
 
 RATE = 44100.0
 FRAMES = 40

@@ -5,8 +5,8 @@ import pytest
 from physics.runs import play
 from pitch import cents, pitch_of
 
-from yehu_server.physics import layout
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics import layout
+from yehu_server.core.physics.quantities import Quantities
 
 YEHU = Quantities()
 RATE = 44100.0

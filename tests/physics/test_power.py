@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from yehu_server.physics.power import INTERVALS, TABLES, power, prepare_power
+from yehu_server.core.physics.power import INTERVALS, TABLES, power, prepare_power
 
 # The sum of at most seven roundings of 2^-53: four in the powers of two, one each in the power of a
 # middle, in the product of these and in the sum. How many have the same sign depends on the

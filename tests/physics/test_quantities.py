@@ -7,13 +7,13 @@ from importlib.resources import files
 
 import pytest
 
+from yehu_server.core.physics.grid import check_rate, intervals
+from yehu_server.core.physics.layout import MAX_INTERVALS
+from yehu_server.core.physics.quantities import Quantities, override, read_body
 from yehu_server.errors import ParameterError
-from yehu_server.physics.grid import check_rate, intervals
-from yehu_server.physics.layout import MAX_INTERVALS
-from yehu_server.physics.quantities import Quantities, override, read_body
 
 YEHU = Quantities()
-BODY = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())
+BODY = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())
 
 # [Yehu] table 1 and the published numbers, typed independently.
 MEASURED = {

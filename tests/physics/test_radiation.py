@@ -6,12 +6,14 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.quantities import Body, Quantities
+from yehu_server.core.physics.radiation import prepare_radiation, radiate
 from yehu_server.errors import ParameterError
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.quantities import Body, Quantities
-from yehu_server.physics.radiation import prepare_radiation, radiate
 
-RADIATION = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())["radiation"]
+RADIATION = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())[
+    "radiation"
+]
 MEASURED_RATE = 44100.0
 RATES = (
     22050.0,

@@ -14,10 +14,10 @@ import reference as ref
 from physics.adapter import kernel_state, reference_params, step_kernel, step_reference
 from physics.runs import play, rows
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.bow import friction_bound
-from yehu_server.physics.friction import solve_friction
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.bow import friction_bound
+from yehu_server.core.physics.friction import solve_friction
+from yehu_server.core.physics.quantities import Quantities
 
 YEHU = Quantities()
 RATES = (22050.0, 44100.0, 96000.0)

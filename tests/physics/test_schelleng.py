@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from yehu_server.physics import kernel
-from yehu_server.physics.layout import MAX_FINGERS
-from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.schelleng import bridge_resistance, lower_limit, upper_limit
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.layout import MAX_FINGERS
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
 
 
 @pytest.mark.parametrize("f", [349.2, 440.0, 850.0, 1396.9])

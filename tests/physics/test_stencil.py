@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from physics.runs import bump, frequency_near, play, shaped
 from pitch import cents
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.quantities import Quantities, override
-from yehu_server.physics.stencil import overlap, place_cubic, place_linear, read, spread
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.grid import overlap, place_cubic, place_linear, read, spread
+from yehu_server.core.physics.quantities import Quantities, override
 
 YEHU = Quantities()
 GRIDS = st.integers(min_value=12, max_value=layout.MAX_INTERVALS)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from pitch import cents
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics import string as string_module
-from yehu_server.physics.grid import intervals, least_spacing
-from yehu_server.physics.quantities import Quantities, StringQuantities
-from yehu_server.physics.string import advance_nodes, prepare_strings, support
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics import string as string_module
+from yehu_server.core.physics.grid import intervals, least_spacing
+from yehu_server.core.physics.quantities import Quantities, StringQuantities
+from yehu_server.core.physics.string import advance_nodes, prepare_strings, support
 
 PARTIALS = 10
 RATES = (44100.0, 48000.0, 96000.0)

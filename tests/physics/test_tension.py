@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from physics.runs import bump, play, shaped
 
-from yehu_server.physics import kernel, layout
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.quantities import Quantities
 
 YEHU = Quantities()
 RATE = 44100.0

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.controls.drift import CENTS, FORCE, PLACE, PRESS, SPEED
-from yehu_server.controls.slots import SLOT
-from yehu_server.player.drift import DRIFT, TOGETHER, TREMOR, TREMOR_HZ
+from yehu_server.core.controls.drift import CENTS, FORCE, PLACE, PRESS, SPEED
+from yehu_server.core.controls.slots import SLOT
+from yehu_server.core.player.drift import DRIFT, TOGETHER, TREMOR, TREMOR_HZ
 
 LONG_S = 60.0
 

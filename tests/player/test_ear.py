@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 from pitch import cents, hertz
 
-from yehu_server.player.ear import BEHIND, EAR, HEARD, SEARCHED, SURE, hear, prepare_ear, remember
+from yehu_server.core.player.ear import (
+    BEHIND,
+    EAR,
+    HEARD,
+    SEARCHED,
+    SURE,
+    hear,
+    prepare_ear,
+    remember,
+)
 
 RATES = (44100.0, 48000.0, 96000.0)
 NOTES = (65, 67, 69, 72, 76, 81, 85, 89)  # F4 to F6

@@ -9,15 +9,15 @@ import pytest
 from pitch import hertz
 from sound import rms, run_for
 
-from yehu_server.analysis.pitch import cents, pitch_hz
-from yehu_server.engine.instrument import Instrument
-from yehu_server.midi.record import let_go
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.midi.record import let_go
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.record import prepare_player
+from yehu_server.core.player.tuning_by_ear import LASTING, begin_tuning, jumps
+from yehu_server.core.player.wishes import STOP
 from yehu_server.params.table import FINGERS, TABLE
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.record import prepare_player
-from yehu_server.player.tuning_by_ear import LASTING, begin_tuning, jumps
-from yehu_server.player.wishes import STOP
 from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.pitch_and_level import cents, pitch_hz
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes
 

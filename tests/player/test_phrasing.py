@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from held_notes import Playing
 
-from yehu_server.controls.slots import DEPTH, FINGER_POSITION, ONSET
+from yehu_server.core.controls.slots import DEPTH, FINGER_POSITION, ONSET
 
 
 def vibrato(playing: Playing, seconds: float) -> tuple[np.ndarray, np.ndarray]:

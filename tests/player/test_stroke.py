@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.controls.slots import SPEED as SLOT_OF_SPEED
-from yehu_server.player.stroke import END, SLOWEST
+from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
+from yehu_server.core.player.stroke import END, SLOWEST
 
 LENGTH, SPEED = 0.7, 0.2
 

@@ -8,10 +8,10 @@ import mido
 import numpy as np
 import pytest
 
-from yehu_server.analysis.level import a_weighted_db
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.engine.instrument import Instrument
 from yehu_server.params.table import find
 from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.pitch_and_level import a_weighted_db
 from yehu_server.playing.style import Style
 
 RATE = 44100

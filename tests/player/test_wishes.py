@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.core.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, KINDS, SLIDE, WRITE
 from yehu_server.params.table import SLOT, TABLE, find
-from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
-from yehu_server.player.wishes import BEGIN, DRAW, EXPRESS, HOLD, KINDS, SLIDE, WRITE
 
 
 def after(*wishes: tuple[int, int, float, float]):

@@ -7,7 +7,7 @@ from curves import from_unit, input_to_unit, picks_up, receives, to_unit
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yehu_server.midi.curves import PICKUP_WINDOW
+from yehu_server.core.midi.curves import PICKUP_WINDOW
 from yehu_server.params.spec import Curve
 from yehu_server.playing.binds import Bind, Breakpoints
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hands import HIGH_DB, LOW_DB, Watched, ideal
 
-from yehu_server.player.bowing import (
+from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,

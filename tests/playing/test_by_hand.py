@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from hands import HIGH_DB, LOW_DB, Checked, Watched, ideal
 
-from yehu_server.analysis.level import a_weighted_db
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.fingering import OpenStrings
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.pitch_and_level import a_weighted_db
 from yehu_server.playing.wishes import Key, Wishes
 
 

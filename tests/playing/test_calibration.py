@@ -12,10 +12,10 @@ from hands import Watched
 from pitch import cents, hertz, pitch_of
 from sound import run, run_for
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
-from yehu_server.player.intonation import position_of
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
+from yehu_server.core.player.intonation import position_of
 from yehu_server.playing import calibrations
 from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.calibrations import SHIPPED, calibration_for

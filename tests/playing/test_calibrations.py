@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from yehu_server import sealed
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
-from yehu_server.physics.quantities import Quantities
 from yehu_server.playing import calibrations
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.playing.calibrations import as_data, calibration_for, read_calibration
-from yehu_server.sealed import write_sealed
+from yehu_server.util import sealed
+from yehu_server.util.sealed import write_sealed
 
 MEASURED = Calibration(
     441.0,

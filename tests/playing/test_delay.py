@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.playing.delay import HELD_WINDOWS, Delay
 
 RATE, BLOCK = 48000, 128

@@ -12,8 +12,7 @@ from curves import from_unit
 
 from yehu_server.errors import MappingError, OutputError, ParameterError
 from yehu_server.params.table import TABLE
-from yehu_server.playing.learned import learn, unlearn
-from yehu_server.playing.learner import Found
+from yehu_server.playing.learn import Found, learn, unlearn
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 
 KNOB = Found("cc 20")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import mido
 import pytest
 
-from yehu_server.playing.learner import Found, Learner
+from yehu_server.playing.learn import Found, Learner
 
 
 def cc(control: int, *values: int, channel: int = 0) -> list[mido.Message]:

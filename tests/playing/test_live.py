@@ -12,12 +12,12 @@ import pytest
 from midi_input import receive
 from sound import run
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import WRITE
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import WRITE
 from yehu_server.playing.live import Arrivals, LivePlayer
 from yehu_server.playing.style import Style
 

@@ -7,7 +7,7 @@ import pytest
 from hands import Checked
 
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 
 

@@ -7,10 +7,10 @@ import math
 import pytest
 from hands import Checked, Move, Watched, ideal
 
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import FIRST, TOP_SPEED, ordinary_table
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.bowing import FIRST, TOP_SPEED, ordinary_table
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 
 YEHU = Quantities()

@@ -9,7 +9,7 @@ import pytest
 from pitch import cents, frame_pitch, hertz, pitch_of
 from sound import run_for
 
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes

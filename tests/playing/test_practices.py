@@ -9,10 +9,8 @@ import pytest
 import soundfile
 from scores import midi_file, notes
 
-from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.params.table import find
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import (
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
@@ -23,6 +21,8 @@ from yehu_server.player.bowing import (
     TOP_SPEED,
     ordinary_table,
 )
+from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.params.table import find
 from yehu_server.playing import practice as practising
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.practice import Passage, Practice, Search

@@ -14,8 +14,8 @@ from midi_input import receive
 from pitch import cents, hertz, pitch_of
 from sound import run
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.errors import OutputError, PresetError
 from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED
 from yehu_server.params.table import TABLE

@@ -12,22 +12,22 @@ import pytest
 from hands import RATE, ideal
 from together import Together
 
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.rig import RIG_BYTES
-from yehu_server.midi.interpret import interpret
-from yehu_server.midi.record import IN_PORT, MIDI, let_go, prepare_midi
-from yehu_server.midi.tables import SLOTS, TABLES
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.rig import RIG_BYTES
+from yehu_server.core.midi.interpret import interpret
+from yehu_server.core.midi.record import IN_PORT, MIDI, let_go, prepare_midi
+from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.player import wishes as kinds
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.stage.geometry import EARS
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
-from yehu_server.player import wishes as kinds
-from yehu_server.player.rows import ROW
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.section_people import section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes
-from yehu_server.rendering.cores import Cores
-from yehu_server.stage.geometry import EARS
+from yehu_server.render.cores import Cores
 
 LATEST = round(0.040 * RATE)
 BEAT = 24000  # frames

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from hands import ideal
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.midi.seats import DISTANCE, GAIN, PAN, SEED, own_value
-from yehu_server.physics.quantities import Quantities
-from yehu_server.physics.radiation import response
-from yehu_server.player.calibration import wave_speed
-from yehu_server.player.rows import ROW
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN, own_value
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.radiation import response
+from yehu_server.core.player.calibration import wave_speed
+from yehu_server.core.player.rows import ROW
 from yehu_server.playing.section_people import (
     MODE,
     SIZE,
@@ -68,11 +68,11 @@ def test_one_player_sits_and_plays_as_the_part():
 
 
 def test_players_have_seeds_of_their_own():
-    seeds = own(SEED, 65535.0, 16)
+    seeds = own(OWN_SEED, 65535.0, 16)
     assert seeds[0] == 65535.0
     assert len(set(seeds)) == 16
     assert all(0.0 <= seed < 65536.0 for seed in seeds)
-    assert not set(seeds) & {*own(SEED, 0.0, 16), *own(SEED, 1.0, 16)}
+    assert not set(seeds) & {*own(OWN_SEED, 0.0, 16), *own(OWN_SEED, 1.0, 16)}
 
 
 @pytest.mark.parametrize("seed", SEEDS)

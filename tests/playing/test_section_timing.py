@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from together import Together
 
-from yehu_server.midi.section_timing import ERROR_MS, GAIN_HI, GAIN_LO, SHARE
+from yehu_server.core.midi.section_players import ERROR_MS, GAIN_HI, GAIN_LO, SHARE
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
 RATE = 48000.0

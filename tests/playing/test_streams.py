@@ -11,11 +11,11 @@ from hands import Checked, Watched
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from yehu_server.physics.quantities import Quantities
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.range_policy import RangePolicy
+from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 
 CHANNELS = (0, 1, 9)

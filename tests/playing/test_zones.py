@@ -6,8 +6,8 @@ import mido
 import numpy as np
 import pytest
 
-from yehu_server.midi.channels import bend_range, configure_zone, master_of
-from yehu_server.midi.record import MIDI, NONE, prepare_midi
+from yehu_server.core.midi.channels import bend_range, configure_zone, master_of
+from yehu_server.core.midi.record import MIDI, NONE, prepare_midi
 from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
 from yehu_server.playing.messages import MidiPlayer

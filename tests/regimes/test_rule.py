@@ -9,8 +9,8 @@ import pytest
 from regimes.test_judge import LENGTH, NOTE, PERIOD, RATE, SPEED, WIDTH, every, found, slips
 
 from yehu_server.errors import ParameterError
-from yehu_server.regimes.judge import judge, name_regime
-from yehu_server.regimes.names import (
+from yehu_server.lab.regimes.judge import judge, name_regime
+from yehu_server.lab.regimes.names import (
     ANOMALOUS_LOW,
     APERIODIC,
     HELMHOLTZ,
@@ -19,8 +19,8 @@ from yehu_server.regimes.names import (
     RAUCOUS,
     SILENT,
 )
-from yehu_server.regimes.periods import NOWHERE, refined
-from yehu_server.regimes.slips import times_of_slips
+from yehu_server.lab.regimes.periods import NOWHERE, refined
+from yehu_server.lab.regimes.slips import times_of_slips
 
 COUNT = 430  # lags
 

@@ -10,11 +10,11 @@ import sys
 import numpy as np
 import pytest
 
-from yehu_server.regimes.judge import FINDING, judge
-from yehu_server.regimes.names import HELMHOLTZ, REGIMES, UNBOWED
-from yehu_server.regimes.strokes import find, value_at
-from yehu_server.simulation import simulate
-from yehu_server.sweeps.study import study_of
+from yehu_server.lab.regimes.judge import FINDING, judge
+from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES, UNBOWED
+from yehu_server.lab.regimes.strokes import find, value_at
+from yehu_server.lab.simulation import simulate
+from yehu_server.lab.sweeps.study import study_of
 
 DATA = {
     "duration": 0.15,
@@ -107,7 +107,7 @@ def test_a_lifted_bow_is_told():
 
 def test_schellengs_limits_bracket_helmholtz_motion():
     """Between them it holds; far beyond them it does not. On the F string, away from its modes."""
-    from yehu_server.sweeps.limits import limits_of
+    from yehu_server.lab.sweeps.limits import limits_of
 
     base = {"duration": 0.3, "stroke": {"string": 1, "note": 75, "acceleration": 10.0}}
     for beta in (0.13, 0.16, 0.2):
@@ -123,7 +123,7 @@ def test_schellengs_limits_bracket_helmholtz_motion():
 
 
 def test_schellengs_limits_are_his_formulas():
-    from yehu_server.sweeps.limits import limits_of
+    from yehu_server.lab.sweeps.limits import limits_of
 
     stroke = {"string": 2, "note": 79, "speed": 0.25, "position": 0.11}
     limits = limits_of(study_of({"stroke": stroke, "vary": {"seed": [0]}}), {})

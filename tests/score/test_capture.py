@@ -13,18 +13,16 @@ import numpy as np
 import pytest
 from sound import alone, bow, rms, run
 
-from yehu_server.controls.slots import SILENCE
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.errors import OutputError, ScoreError, YehuError
-from yehu_server.params.table import ENGINE, SLOT, TABLE, find
-from yehu_server.physics.quantities import Quantities, override
-from yehu_server.player.bowing import ordinary_table
-from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration
-from yehu_server.player.fingering import OpenStrings
-from yehu_server.player.rows import ROW
-from yehu_server.player.wishes import (
+from yehu_server.core.controls.slots import SILENCE
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.player.bowing import ordinary_table
+from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import (
     BEGIN,
     DRAW,
     END,
@@ -39,14 +37,15 @@ from yehu_server.player.wishes import (
     WISH,
     WRITE,
 )
+from yehu_server.errors import OutputError, ScoreError, YehuError
+from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
-from yehu_server.replay import blocks, replay
-from yehu_server.score.capture import read_capture
-from yehu_server.score.capture_beginning import Beginning, beginning_of
-from yehu_server.score.capture_format import build
-from yehu_server.score.capture_writer import CaptureWriter
-from yehu_server.score.live_capture import LiveCapture
+from yehu_server.render.replay import blocks, replay
+from yehu_server.scores.capture import read_capture
+from yehu_server.scores.capture_beginning import Beginning, beginning_of
+from yehu_server.scores.capture_format import build
+from yehu_server.scores.capture_writer import CaptureWriter, LiveCapture
 
 RATE = 48000.0
 TENSIONS = (49.5, 64.1)
@@ -711,10 +710,10 @@ def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
 
 
 def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
-    monkeypatch.setattr("yehu_server.score.capture.CHUNK", 3)
+    monkeypatch.setattr("yehu_server.scores.capture.CHUNK", 3)
     wishes = [(frame, RAMP, SPEED, 0.1, 0.0) for frame in range(10)]
     assert read_capture(write(tmp_path / "c", wishes)).wishes.tolist() == wishes
-    monkeypatch.setattr("yehu_server.score.capture.MOST_WISHES", 8)
+    monkeypatch.setattr("yehu_server.scores.capture.MOST_WISHES", 8)
     with pytest.raises(ScoreError, match="more than 8 events"):
         read_capture(tmp_path / "c")
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yehu_server.errors import EnsembleError
-from yehu_server.score.ensemble_file import read_ensemble
+from yehu_server.scores.ensemble_file import read_ensemble
 
 ROOT = Path(__file__).resolve().parents[2]
 PART = "[[part]]\nchannel = 1\n"

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.score.score import Score
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.score import Score
+from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parents[2]
 TUNE = ROOT / "examples" / "shi_bei_jiu.mid"

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from pitch import cents, pitch_of
 
-from yehu_server.rendering.options import Options
-from yehu_server.rendering.performance import Performance
-from yehu_server.score.written.mark_settings import HARMONICS
-from yehu_server.score.written.notated import Mark, Note, Part, Sign, Tempo, Written
-from yehu_server.score.written.performed import performed
+from yehu_server.render.options import Options
+from yehu_server.render.performance import Performance
+from yehu_server.scores.written.mark_settings import HARMONICS
+from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Tempo, Written
+from yehu_server.scores.written.performed import performed
 
 RATE = 44100
 NAMES = {77.0: "F5", 84.0: "C6", 91.0: "G6"}

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from yehu_server.errors import ScoreError
-from yehu_server.score.jianpu.reader import MOST_BYTES, parse_jianpu, read_jianpu
-from yehu_server.score.score_notes import notes_of
-from yehu_server.score.smf.reader import read_score
-from yehu_server.score.written.notated import Note, Written
-from yehu_server.score.written.performed import performed
+from yehu_server.scores.jianpu.reader import MOST_BYTES, parse_jianpu, read_jianpu
+from yehu_server.scores.score import notes_of
+from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.written.notated import Note, Written
+from yehu_server.scores.written.performed import performed
 
 ROOT = Path(__file__).resolve().parents[2]
 JUDGED = json.loads(Path(__file__).with_name("judged_jianpu.json").read_text(encoding="utf-8"))

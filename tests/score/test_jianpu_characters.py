@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 
 from yehu_server.errors import ScoreError
-from yehu_server.score.jianpu.characters import living
-from yehu_server.score.jianpu.ersipu import read_ersipu
-from yehu_server.score.jianpu.reader import parse_jianpu
-from yehu_server.score.written.notated import Note
+from yehu_server.scores.jianpu.characters import living
+from yehu_server.scores.jianpu.reader import parse_jianpu, read_ersipu
+from yehu_server.scores.written.notated import Note
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "huo_wu.jianpu"
 DO = 65.0  # F4

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from yehu_server.score.jianpu.marks import AHEAD, COMMANDS, FINGERING, TEXTS, Act
-from yehu_server.score.jianpu.reader import parse_jianpu
-from yehu_server.score.written.notated import MARKS, SIGNS, SPANS, Mark, Part, Sign, Span
+from yehu_server.scores.jianpu.marks import AHEAD, COMMANDS, FINGERING, TEXTS, Act
+from yehu_server.scores.jianpu.reader import parse_jianpu
+from yehu_server.scores.written.notated import MARKS, SIGNS, SPANS, Mark, Part, Sign, Span
 
 
 def part(text: str) -> Part:

@@ -8,12 +8,11 @@ from fractions import Fraction
 import mido
 import pytest
 
-from yehu_server.score.midi_export import BEND_RANGE, TICKS, midi_file
-from yehu_server.score.score import Metre
-from yehu_server.score.score_notes import notes_of
-from yehu_server.score.smf.reader import read_score
-from yehu_server.score.written.notated import Mark, Note, Part, Sign, Span, Tempo, Written
-from yehu_server.score.written.performed import performed
+from yehu_server.scores.midi_export import BEND_RANGE, TICKS, midi_file
+from yehu_server.scores.score import Metre, notes_of
+from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Span, Tempo, Written
+from yehu_server.scores.written.performed import performed
 
 
 def note(beat, length, pitch, *marks) -> Note:

@@ -14,11 +14,11 @@ from midi_faults import AGREES, CASES, DIFFERS, REFUSES, UNASKED, Case
 from pages import ROOT, page
 
 from yehu_server.errors import ScoreError
-from yehu_server.score import duration
-from yehu_server.score.score import Score
-from yehu_server.score.smf import chunks, faults, reader, wrapper
-from yehu_server.score.smf.faults import DamagedError
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores import score as duration
+from yehu_server.scores.score import Score
+from yehu_server.scores.smf import chunks, faults, reader, wrapper
+from yehu_server.scores.smf.faults import DamagedError
+from yehu_server.scores.smf.reader import read_score
 
 PAGE = "docs/midi_files.md"
 ROW = re.compile(r"^\| `([a-z0-9-]+)` \| (?:.+?) \| (.*?) \|$", re.MULTILINE)

@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.score.parts import channels_with_notes, part_of
-from yehu_server.score.score import Score
-from yehu_server.score.score_notes import ScoreNote, notes_of
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.reading import channels_with_notes, part_of
+from yehu_server.scores.score import Score, ScoreNote, notes_of
+from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parents[2]
 FILE = ROOT / "examples" / "mo_li_hua.mid"

@@ -12,8 +12,8 @@ from pathlib import Path
 import mido
 import pytest
 
-from yehu_server.score.score import Score, ScoreEvent
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.score import Score, ScoreEvent
+from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = ROOT / "examples"

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from score.musicxml_corpus import CORPUS
 
-from yehu_server.score.musicxml.reader import read_musicxml
+from yehu_server.scores.musicxml.reader import read_musicxml
 
 REFERENCES = json.loads((Path(__file__).parent / "music21.json").read_text(encoding="utf-8"))
 

@@ -26,10 +26,10 @@ from musicxml_text import (
 )
 
 from yehu_server.errors import ScoreError
-from yehu_server.score.musicxml.file import DEEPEST, MOST_ELEMENTS, MOST_XML_BYTES
-from yehu_server.score.musicxml.reader import read_musicxml
-from yehu_server.score.musicxml.words import meaning_of
-from yehu_server.score.written.notated import MARKS, SPANS, Mark
+from yehu_server.scores.musicxml.file import DEEPEST, MOST_ELEMENTS, MOST_XML_BYTES
+from yehu_server.scores.musicxml.reader import read_musicxml
+from yehu_server.scores.written.notated import MARKS, SPANS, Mark
+from yehu_server.scores.written.words import meaning_of
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "marks.musicxml"
 FOUR = "".join(note(name, 1) for name in ("G4", "A4", "B4", "C5"))

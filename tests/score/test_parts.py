@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import mido
 
-from yehu_server.score.parts import channels_with_notes, part_of, tracks_with_notes
-from yehu_server.score.score import Score, ScoreEvent, concatenate
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.reading import channels_with_notes, part_of, tracks_with_notes
+from yehu_server.scores.score import Score, ScoreEvent, concatenate
+from yehu_server.scores.smf.reader import read_score
 
 
 def on(channel: int, track: int, note: int = 70) -> ScoreEvent:

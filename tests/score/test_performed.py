@@ -9,11 +9,10 @@ import pytest
 
 from yehu_server.errors import ScoreError
 from yehu_server.params.table import find
-from yehu_server.score.phrasing import phrased
-from yehu_server.score.score_notes import notes_of
-from yehu_server.score.setting import Setting
-from yehu_server.score.written.mark_settings import PLACES, QUICK_TREMOLO
-from yehu_server.score.written.notated import (
+from yehu_server.scores.phrasing import phrased
+from yehu_server.scores.score import Setting, notes_of
+from yehu_server.scores.written.mark_settings import PLACES, QUICK_TREMOLO
+from yehu_server.scores.written.notated import (
     DYNAMICS,
     MARKS,
     Grace,
@@ -25,7 +24,7 @@ from yehu_server.score.written.notated import (
     Tempo,
     Written,
 )
-from yehu_server.score.written.performed import CHANNELS, performed
+from yehu_server.scores.written.performed import CHANNELS, performed
 
 QUARTER_S = 0.5
 STEADY = (Tempo(Fraction(0), 120.0),)

@@ -7,15 +7,8 @@ from itertools import pairwise
 import mido
 import pytest
 
-from yehu_server.score.phrasing import (
-    LEAST_FOR_BOWS,
-    accent,
-    is_fingered,
-    phrased,
-    phrases_of,
-)
-from yehu_server.score.score import COMMON_TIME, Metre, Score, ScoreEvent
-from yehu_server.score.score_notes import notes_of
+from yehu_server.scores.phrasing import LEAST_FOR_BOWS, accent, is_fingered, phrased, phrases_of
+from yehu_server.scores.score import COMMON_TIME, Metre, Score, ScoreEvent, notes_of
 
 BEAT_S = 0.5
 

@@ -9,10 +9,10 @@ import pytest
 from musicxml_text import note, score, words
 
 from yehu_server.errors import ScoreError
-from yehu_server.score.reading import is_written, read_any, read_written
-from yehu_server.score.score_notes import notes_of
-from yehu_server.score.smf.faults import DamagedError
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.reading import is_written, read_any, read_written
+from yehu_server.scores.score import notes_of
+from yehu_server.scores.smf.faults import DamagedError
+from yehu_server.scores.smf.reader import read_score
 
 TUNE = Path(__file__).resolve().parents[2] / "examples" / "shi_bei_jiu.mid"
 BAR = note("G4", 2) + note("A4", 2)

@@ -13,8 +13,8 @@ from midi_bytes import END, chunk, head, midi, off, on, riff, tempo
 from midi_reading import read_file, told
 
 from yehu_server.errors import ScoreError
-from yehu_server.score.score import Score
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.score import Score
+from yehu_server.scores.smf.reader import read_score
 
 
 @pytest.fixture

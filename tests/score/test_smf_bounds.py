@@ -13,9 +13,9 @@ from midi_bytes import END, chunk, midi, off, on, riff, tempo
 from midi_reading import read_file, told
 
 from yehu_server.errors import ScoreError
-from yehu_server.score.score import Score, ScoreEvent, concatenate
-from yehu_server.score.smf import chunks as smf_chunks
-from yehu_server.score.smf.reader import read_score
+from yehu_server.scores.score import Score, ScoreEvent, concatenate
+from yehu_server.scores.smf import chunks as smf_chunks
+from yehu_server.scores.smf.reader import read_score
 
 
 @pytest.fixture

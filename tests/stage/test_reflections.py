@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from yehu_server.jit import compiled_exactly
-from yehu_server.physics.layout import new_record
-from yehu_server.stage.seat import SEAT, fall_silent, prepare_seat, reflect, stand_in
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.layout import new_record
+from yehu_server.core.stage.seat import SEAT, fall_silent, prepare_seat, reflect, stand_in
 
 SOUND = 343.0
 PLACES = [

@@ -6,8 +6,8 @@ import sys
 import pytest
 
 from yehu_server.cli import main
-from yehu_server.files import shipped_folder
 from yehu_server.surfaces.catalogue import SURFACES, is_fresh
+from yehu_server.util.files import shipped_folder
 
 NAMES = [surface.name for surface in SURFACES]
 
@@ -92,7 +92,7 @@ def test_a_file_in_the_folders_place_is_refused(tmp_path, capsys):
 
 def test_the_libraries_load_only_for_this_command():
     code = (
-        "import sys; from yehu_server import cli; import yehu_server.server; cli._parser();"
+        "import sys; from yehu_server import cli; import yehu_server.live; cli._parser();"
         "sys.exit(bool({'py2tosc', 'py2max'} & set(sys.modules)))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from yehu_server.control.calls import CALLS
+from yehu_server.live.osc.calls import CALLS
 from yehu_server.params.table import TABLE
 from yehu_server.surfaces import page
 

@@ -6,12 +6,12 @@ import pytest
 
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import TABLE
-from yehu_server.surfaces import layout, stage
+from yehu_server.surfaces import layout, open_stage_control
 
 
 @pytest.fixture(scope="module")
 def session():
-    return json.loads(stage.make(("192.168.1.5", 9001)))
+    return json.loads(open_stage_control.make(("192.168.1.5", 9001)))
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from yehu_server.sweeps.running import sweep
-from yehu_server.sweeps.study import study_of
+from yehu_server.lab.sweeps.running import sweep
+from yehu_server.lab.sweeps.study import study_of
 
 
 def short(**more):

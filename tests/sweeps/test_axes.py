@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.sweeps.axes import axis_from, axis_of
+from yehu_server.lab.sweeps.axes import axis_from, axis_of
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.regimes.judge import judge
-from yehu_server.regimes.names import REGIMES
-from yehu_server.simulation import simulate
-from yehu_server.sweeps.running import sweep
-from yehu_server.sweeps.study import study_of
+from yehu_server.lab.regimes.judge import judge
+from yehu_server.lab.regimes.names import REGIMES
+from yehu_server.lab.simulation import simulate
+from yehu_server.lab.sweeps.running import sweep
+from yehu_server.lab.sweeps.study import study_of
 
 GESTURE = {
     "duration": 0.15,

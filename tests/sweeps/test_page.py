@@ -10,9 +10,9 @@ import zlib
 import numpy as np
 import pytest
 
-from yehu_server.plot.cells import edges, is_log
-from yehu_server.plot.study import plane_of
-from yehu_server.plot.study_page import facts_of, write_page
+from yehu_server.lab.plot.cells import edges, is_log
+from yehu_server.lab.plot.study import plane_of
+from yehu_server.lab.plot.study_page import facts_of, write_page
 
 CHROMIUM = shutil.which("chromium")
 

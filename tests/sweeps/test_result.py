@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.sweeps.result import COLUMNS, Result
+from yehu_server.lab.sweeps.result import COLUMNS, Result
 
 
 def same(one, other):

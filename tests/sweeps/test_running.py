@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.regimes.names import HELMHOLTZ
-from yehu_server.sweeps import running
-from yehu_server.sweeps.journal import journal_of
-from yehu_server.sweeps.running import findings_of, perform, sweep, sweep_to
-from yehu_server.sweeps.study import study_of
+from yehu_server.lab.regimes.names import HELMHOLTZ
+from yehu_server.lab.sweeps import running
+from yehu_server.lab.sweeps.journal import journal_of
+from yehu_server.lab.sweeps.running import findings_of, perform, sweep, sweep_to
+from yehu_server.lab.sweeps.study import study_of
 
 
 @pytest.fixture

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.files import shipped_folder
-from yehu_server.sweeps.journal import key_of_study
-from yehu_server.sweeps.study import read_study, study_from_text, study_of
+from yehu_server.lab.sweeps.journal import key_of_study
+from yehu_server.lab.sweeps.study import read_study, study_from_text, study_of
+from yehu_server.util.files import shipped_folder
 
 STUDIES = sorted((shipped_folder("examples") / "studies").glob("*.toml"))
 

@@ -6,7 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 
-BODY = json.loads(files("yehu_server.physics").joinpath("body.json").read_text())
+BODY = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())
 MODES = BODY["bridge_modes"]
 HZ = np.array([mode["frequency_hz"] for mode in MODES])
 MASS = np.array([mode["mass_kg"] for mode in MODES])

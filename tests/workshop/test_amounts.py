@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from workshop.bodies import DAMPING, HZ, MASS, admittance
 
-from yehu_server.workshop.normal import Problem, amounts_of, look
+from yehu_server.lab.body.modes import Problem, amounts_of, look
 
 GRID = np.linspace(300.0, 4000.0, 400)
 DAMPING_RATIO = DAMPING / (2.0 * MASS * 2.0 * np.pi * HZ)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from workshop.bodies import admittance
 
-from yehu_server.physics.quantities import read_quantities
-from yehu_server.plot.body import write_picture
+from yehu_server.core.physics.quantities import read_quantities
+from yehu_server.lab.plot.body import write_picture
 
 HZ = np.arange(300.0, 2500.0, 6.0)
 

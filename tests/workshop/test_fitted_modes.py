@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from physics.runs import play
 from workshop.bodies import DAMPING, HZ, MASS, admittance, off_db, rms
 
+from yehu_server.core.physics.layout import MAX_MODES
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import MeasurementError
-from yehu_server.physics.layout import MAX_MODES
-from yehu_server.physics.quantities import Quantities
-from yehu_server.workshop import Curve, Measurement, fit
+from yehu_server.lab.body import Curve, Measurement, fit
 
 GRID = np.geomspace(200.0, 5000.0, 20_000)
 

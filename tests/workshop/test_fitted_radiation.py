@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from workshop.bodies import off_db, radiation, rms
 
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.quantities import Quantities, measured_body
+from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError
-from yehu_server.physics import kernel
-from yehu_server.physics.quantities import Quantities, measured_body
-from yehu_server.physics.radiation import response
-from yehu_server.workshop import Curve
-from yehu_server.workshop.sections import fit_sections
+from yehu_server.lab.body import Curve
+from yehu_server.lab.body.sections import fit_sections
 
 GRID = np.geomspace(200.0, 5000.0, 4000)
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from workshop.bodies import off_db, rms
 
+from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import MeasurementError, OutputError, ParameterError
-from yehu_server.files import MAX_SETTINGS_BYTES
-from yehu_server.physics.quantities import read_body, read_quantities
-from yehu_server.workshop.kept import read_fit
+from yehu_server.lab.body.body_file import read_fit
+from yehu_server.util.files import MAX_SETTINGS_BYTES
 
 GRID = np.geomspace(150.0, 5000.0, 2000)
 
@@ -78,7 +78,7 @@ def test_other_names_are_refused(whole_fit, tmp_path, name):
 
 
 def test_the_shipped_body_can_be_looked_at():
-    from yehu_server.physics.quantities import BODY_FILE, measured_body
+    from yehu_server.core.physics.quantities import BODY_FILE, measured_body
 
     found = read_fit(BODY_FILE)
     assert found.body == measured_body()

@@ -6,9 +6,9 @@ from workshop.bodies import DAMPING, MASS, admittance, radiation
 from workshop.bodies import HZ as MODES_HZ
 
 from yehu_server.errors import MeasurementError
-from yehu_server.workshop import Curve
-from yehu_server.workshop.curve import to_mobility
-from yehu_server.workshop.plausible import check_admittance, check_radiation
+from yehu_server.lab.body import Curve
+from yehu_server.lab.body.curve import to_mobility
+from yehu_server.lab.body.plausible import check_admittance, check_radiation
 
 HZ = np.linspace(100.0, 6000.0, 3000)
 TURN = 2j * np.pi * HZ

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from workshop.bodies import admittance, off_db, radiation, rms
 
 from yehu_server.errors import MeasurementError
-from yehu_server.workshop import read
-from yehu_server.workshop.tap_files import write_taps
+from yehu_server.lab.body import read
+from yehu_server.lab.body.tap_files import write_taps
 
 HZ = np.arange(100.0, 5000.0, 5.0)
 Y = admittance(HZ)

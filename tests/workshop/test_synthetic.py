@@ -5,9 +5,9 @@ import pytest
 from scipy.linalg import expm
 from workshop.bodies import DAMPING, HZ, MASS, radiation, rms
 
-from yehu_server.physics.quantities import measured_body
-from yehu_server.workshop import made_taps
-from yehu_server.workshop.synthetic import velocity
+from yehu_server.core.physics.quantities import measured_body
+from yehu_server.lab.body import made_taps
+from yehu_server.lab.body.synthetic import velocity
 
 RATE = 352_800.0
 NEWTONS, CONTACT_S = 15.0, 106.0 / RATE

@@ -7,9 +7,9 @@ import pytest
 from workshop.bodies import admittance, clipped, hit_twice, off_db, rms, with_velocity_only
 
 from yehu_server.errors import MeasurementError
-from yehu_server.workshop import average, made_taps
-from yehu_server.workshop.average import hammer_reach
-from yehu_server.workshop.tap import cut
+from yehu_server.lab.body import average, made_taps
+from yehu_server.lab.body.average import hammer_reach
+from yehu_server.lab.body.tap import cut
 
 RATE = 44100.0
 

@@ -14,17 +14,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from yehu_server import __version__
 from yehu_server.ahead import interface, link
 from yehu_server.ahead.header import header
 from yehu_server.ahead.images import image
 from yehu_server.ahead.interpreter import INTERPRETER
-from yehu_server.ahead.module import joined
-from yehu_server.ahead.section import with_section
-from yehu_server.ahead.sources import sources_hash
-from yehu_server.ahead.targets import PAGE, Target, here
+from yehu_server.ahead.module import PAGE, Target, here, joined
+from yehu_server.ahead.source_hash import sources_hash, with_section
 from yehu_server.errors import OutputError, ParameterError, YehuError
-from yehu_server.files import replacing
+from yehu_server.util import __version__
+from yehu_server.util.files import replacing
 
 PAGE_FILE, HEADER_FILE = "yehu.wasm", "yehu.h"
 LIBRARY_FILE = "libyehu.dylib" if sys.platform == "darwin" else "libyehu.so"

@@ -9,12 +9,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
-from yehu_server.engine.look import LOOK
-from yehu_server.jit import Native
-from yehu_server.midi import events, packing, tables
-from yehu_server.midi.record import PORTS
+from yehu_server.compile.jit import Native
+from yehu_server.core.engine.look import LOOK
+from yehu_server.core.midi import events, packing, tables
+from yehu_server.core.midi.record import PORTS
+from yehu_server.core.player import wishes
 from yehu_server.params.table import TABLE
-from yehu_server.player import wishes
 
 WIDTH = 100
 READ_ONLY = ("data", "tables")  # arguments that point to what a function reads
@@ -155,7 +155,7 @@ def _table(module: ModuleType) -> str:
     """The table of a module's docstring, as lines of a comment."""
     lines = (module.__doc__ or "").splitlines()
     text = "\n".join(f" * {line}" for line in lines if line.startswith("| "))
-    return text.replace("``packing.packed``", "YEHU_PACKED")
+    return text.replace("``midi.packing.packed``", "YEHU_PACKED")
 
 
 def _members(record: Any, comments: Mapping[str, str] | None = None) -> Iterable[str]:

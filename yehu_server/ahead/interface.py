@@ -20,25 +20,25 @@ from yehu_server.ahead.right_tables import (
     check_fields,
     check_values,
 )
-from yehu_server.controls.record import CONTROLS
-from yehu_server.engine import native as engine
-from yehu_server.engine import rig as memory
-from yehu_server.engine.atomics import at, load_acquire
-from yehu_server.engine.look import look
-from yehu_server.engine.mailbox import SERVER
-from yehu_server.engine.native import post_to
-from yehu_server.engine.output import OUTPUT
-from yehu_server.jit import Native, native
-from yehu_server.memory import carray
-from yehu_server.midi.events import CONTROL, MESSAGE, TABLES_TO
-from yehu_server.midi.packing import BYTE, LENGTH_AT
-from yehu_server.midi.record import MIDI
-from yehu_server.midi.tables import SLOTS, TABLES
-from yehu_server.physics.layout import STATE
-from yehu_server.player.notes import told_pitch
-from yehu_server.player.record import PLAYER
-from yehu_server.player.rows import ROWS, SLOT_OF
-from yehu_server.stage.record import STAGE
+from yehu_server.compile.jit import Native, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.engine import native as engine
+from yehu_server.core.engine import rig as memory
+from yehu_server.core.engine.atomics import at, load_acquire
+from yehu_server.core.engine.look import look
+from yehu_server.core.engine.mailbox import SERVER
+from yehu_server.core.engine.native import post_to
+from yehu_server.core.engine.output import OUTPUT
+from yehu_server.core.midi.events import CONTROL, MESSAGE, TABLES_TO
+from yehu_server.core.midi.packing import BYTE, LENGTH_AT
+from yehu_server.core.midi.record import MIDI
+from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.physics.layout import STATE
+from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.rows import ROWS, SLOT_OF
+from yehu_server.core.stage.record import STAGE
 
 Array = Any
 

@@ -1,4 +1,4 @@
-"""An interpreter of events without an instrument, for who posts wishes to one elsewhere. Compiled.
+"""An interpreter of events without an instrument, for pages, and its layout. Compiled.
 
 A page gives its memory (`interpreter_size` bytes, aligned to 8), prepares it, writes tables into a
 slot, and has events interpreted; what each comes to is in the part's record (``midi.record``).
@@ -6,17 +6,20 @@ slot, and has events interpreted; what each comes to is in the part's record (``
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from yehu_server.ahead.images import runs
-from yehu_server.engine.atomics import at
-from yehu_server.jit import Native, native
-from yehu_server.memory import carray
-from yehu_server.midi.interpret import interpret as interpret_event
-from yehu_server.midi.record import MIDI, prepare_midi
-from yehu_server.midi.tables import SLOTS, TABLES
+from yehu_server.compile.jit import Native, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.engine.atomics import at
+from yehu_server.core.engine.look import LOOK
+from yehu_server.core.midi.interpret import interpret as interpret_event
+from yehu_server.core.midi.record import MIDI, prepare_midi
+from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.params.table import TABLE
 
 Array = Any
@@ -72,3 +75,37 @@ def interpreter_take(
 
 
 INTERPRETER: tuple[Native, ...] = (interpreter_size, interpreter_prepare, interpreter_take)
+
+
+# What a page reads and writes of the record of a part.
+OF_RECORD = (
+    "tables", "value", "found_value", "out_kind", "out_index", "out_value", "out_other",
+)  # fmt: skip
+
+
+def look_layout() -> dict[str, list[int]]:
+    """Tell where each field of a look begins and how long it is, in float64 numbers."""
+    return _layout(LOOK, LOOK.names or ())
+
+
+def look_length() -> int:
+    """Length of a look, in float64 numbers."""
+    return LOOK.itemsize // WORD
+
+
+def interpreter_layout() -> dict[str, Any]:
+    """Tell the same of an interpreter's record, and of its tables.
+
+    There are `slots` of them, one after another from `tablesAt`, each of `length` words.
+    """
+    return {
+        "record": _layout(MIDI, OF_RECORD),
+        "tables": _layout(TABLES, TABLES.names or ()),
+        "tablesAt": TABLES_AT // WORD,
+        "length": TABLES.itemsize // WORD,
+        "slots": SLOTS,
+    }
+
+
+def _layout(dtype: Any, names: Iterable[str]) -> dict[str, list[int]]:
+    return {name: [dtype.fields[name][1] // WORD, math.prod(dtype[name].shape)] for name in names}

@@ -1,4 +1,4 @@
-"""Join compiled functions into one LLVM module that holds no Python, for any machine.
+"""Join compiled functions into one LLVM module that holds no Python, for one of several machines.
 
 numba's functions call Python only to tell of an exception. These raise none, so what would call it
 stops the program instead, and falls away where LLVM sees that it is never reached.
@@ -8,13 +8,49 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from llvmlite import binding
 
-from yehu_server.ahead.targets import Target
+from yehu_server.compile.jit import Native
 from yehu_server.errors import YehuError
-from yehu_server.jit import Native
+
+PAGE_FEATURES = "+simd128,+bulk-memory,+nontrapping-fptoint,+sign-ext,+mutable-globals"
+
+
+@dataclass(frozen=True)
+class Target:
+    """A machine, by LLVM's names.
+
+    Attributes
+    ----------
+    sets_mode : bool
+        Whether it has the mode of this machine's processor that flushes denormal numbers.
+    """
+
+    triple: str
+    cpu: str = ""
+    features: str = ""
+    sets_mode: bool = True
+    reloc: str = "pic"
+
+    def machine(self) -> Any:
+        """LLVM's code generator for it."""
+        binding.initialize_all_targets()
+        binding.initialize_all_asmprinters()
+        return binding.Target.from_triple(self.triple).create_target_machine(
+            cpu=self.cpu, features=self.features, opt=3, reloc=self.reloc, codemodel="default"
+        )
+
+
+PAGE = Target("wasm32-unknown-unknown", "", PAGE_FEATURES, sets_mode=False, reloc="static")
+
+
+def here(cpu: str = "generic") -> Target:
+    """Tell this machine, with the instructions of a processor (LLVM's name) or any."""
+    return Target(binding.get_process_triple(), cpu)
+
 
 # What the machine's C library gives, or the page.
 MATHEMATICS = "asin cos exp exp2 log log10 log2 pow sin sqrt tan tanh"

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.jit import native
-from yehu_server.memory import carray
-from yehu_server.midi.record import IN_PORT
-from yehu_server.midi.tables import (
+from yehu_server.compile.jit import native
+from yehu_server.compile.memory import carray
+from yehu_server.core.midi.record import IN_PORT
+from yehu_server.core.midi.tables import (
     BEND,
     CONTROL,
     EXPONENTIAL,
@@ -28,7 +28,7 @@ from yehu_server.midi.tables import (
     SKIP,
     TABLES,
 )
-from yehu_server.player.rows import HIGHEST, LOWEST, ROWS
+from yehu_server.core.player.rows import HIGHEST, LOWEST, ROWS
 
 WORD = 8  # bytes
 PAIRS, NRPNS = 32, 1 << 14

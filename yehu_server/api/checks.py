@@ -1,7 +1,8 @@
-"""Arguments as users give them, checked: numbers, paths, parameters."""
+"""Arguments as users give them, checked; and what playing needs, compiled."""
 
 from __future__ import annotations
 
+import logging
 import math
 import os
 from collections.abc import Mapping
@@ -9,9 +10,29 @@ from numbers import Real
 from pathlib import Path
 from typing import Any
 
+from yehu_server.compile.jit import IS_PLAIN, cache_folder
+from yehu_server.core.physics.quantities import Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
-from yehu_server.physics.quantities import Quantities, override, read_quantities
+
+log = logging.getLogger("yehu_server")
+
+
+def get_ready(*, plays: bool) -> None:
+    """Warn, by `logging`, where the model will be compiled; compile what playing needs.
+
+    Parameters
+    ----------
+    plays : bool
+        Whether the instrument is played; the model alone is compiled at its first use.
+    """
+    if not IS_PLAIN and not any(cache_folder().glob("*.code")):
+        log.warning("compiling the model for this machine, once; it takes up to a minute")
+    if plays:
+        from yehu_server.core.engine.warming import warm_up
+
+        warm_up()
+
 
 PathLike = str | os.PathLike[str]
 

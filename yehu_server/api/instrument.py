@@ -5,20 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from yehu_server.api.checks import PathLike, number, setting, whole
-from yehu_server.api.compiling import get_ready
+from yehu_server.api.checks import PathLike, get_ready, number, setting, whole
 from yehu_server.api.observing import Run, curves_of
 from yehu_server.api.pitches import pitch_of, playable
 from yehu_server.api.styles import make_of
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument as Engine
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument as Engine
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError, YehuError
+from yehu_server.lab.simulation import Simulation
 from yehu_server.params.spec import Place
 from yehu_server.params.table import find
-from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.wishes import Key
-from yehu_server.simulation import Simulation
 
 Array = Any
 

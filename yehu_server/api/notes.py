@@ -11,9 +11,7 @@ import numpy as np
 from yehu_server.api.checks import number
 from yehu_server.api.pitches import pitch_of
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.score.duration import MAX_DURATION_H
-from yehu_server.score.score import Score, ScoreEvent
-from yehu_server.score.setting import Setting
+from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, Setting
 
 BEND = "/playing/bend"
 LONGEST_S = 3600.0 * MAX_DURATION_H

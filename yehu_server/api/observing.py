@@ -10,15 +10,15 @@ import numpy as np
 
 from yehu_server import __version__
 from yehu_server.api.checks import setting
-from yehu_server.controls.record import CHUNK
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.rig import RIG
+from yehu_server.core.controls.record import CHUNK
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import RIG
+from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS, control_columns, probe_columns
 from yehu_server.errors import ParameterError
+from yehu_server.lab.simulation import MAX_BYTES, Simulation, about, shape_of, signals
 from yehu_server.params.table import SLOT
-from yehu_server.physics.layout import MAX_FINGERS, STRINGS, control_columns, probe_columns
 from yehu_server.playing.wishes import Wishes
-from yehu_server.simulation import MAX_BYTES, Simulation, about, shape_of, signals
 
 Array = Any
 

@@ -6,9 +6,9 @@ import math
 import re
 from numbers import Real
 
-from yehu_server.analysis.pitch import note_name
+from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
 from yehu_server.errors import ParameterError
-from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
+from yehu_server.playing.pitch_and_level import note_name
 
 SEMITONES = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
 ACCIDENTALS = {"#": 1, "♯": 1, "b": -1, "♭": -1}

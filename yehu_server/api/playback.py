@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.audio.devices import load_portaudio
-from yehu_server.audio.file import check_format, format_of, sound_file
 from yehu_server.errors import DeviceError, OutputError, ParameterError
-from yehu_server.plot.sounds import is_pressure, sound_of
+from yehu_server.lab.plot.sounds import is_pressure, sound_of
+from yehu_server.live.audio.devices import load_portaudio
+from yehu_server.util.sound_file import check_format, format_of, sound_file
 
 Array = Any
 

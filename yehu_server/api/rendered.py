@@ -9,23 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.api.checks import PathLike, number, path_of, whole
-from yehu_server.api.compiling import get_ready
+from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
 from yehu_server.api.notes import Note, score_of
 from yehu_server.api.playback import Player, write_sound
 from yehu_server.api.styles import make_of
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
-from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import DEFAULT
-from yehu_server.rendering.asked import asked_pitch
-from yehu_server.rendering.levelled import NORMALIZED_PEAK
-from yehu_server.rendering.options import Options
-from yehu_server.rendering.performance import Performance
-from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
-from yehu_server.score.phrasing import is_fingered, phrased
-from yehu_server.score.reading import read_any
-from yehu_server.score.score import Score
+from yehu_server.render.options import Options, asked_pitch
+from yehu_server.render.performance import Performance
+from yehu_server.render.summary import FATE, Summary, counted, summary_of
+from yehu_server.render.to_files import NORMALIZED_PEAK
+from yehu_server.scores.phrasing import is_fingered, phrased
+from yehu_server.scores.reading import read_any
+from yehu_server.scores.score import Score
 
 Array = Any
 

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.api.checks import PathLike, path_of, whole
-from yehu_server.api.compiling import get_ready
+from yehu_server.api.checks import PathLike, get_ready, path_of, whole
 from yehu_server.errors import ParameterError
-from yehu_server.score.gesture import Gesture, gesture_from, read_gesture
-from yehu_server.simulation import Simulation
-from yehu_server.simulation import simulate as run
+from yehu_server.lab.simulation import Simulation
+from yehu_server.lab.simulation import simulate as run
+from yehu_server.scores.gesture import Gesture, gesture_from, read_gesture
 
 __all__ = ["Simulation", "gesture_of", "plain_gesture", "simulate"]
 

@@ -15,16 +15,15 @@ from yehu_server.api.checks import (
     settings_of,
     whole,
 )
+from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
+from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
-from yehu_server.physics.grid import HIGHEST_RATE, LOWEST_RATE
-from yehu_server.physics.quantities import Quantities
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.practices import read_practice
 from yehu_server.playing.presets import Presets
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.style import Style
-from yehu_server.playing.tuning import EQUAL, read_tuning
+from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
 LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz; as of --a4
 

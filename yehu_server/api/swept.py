@@ -6,14 +6,13 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from yehu_server.api.checks import PathLike, number, whole
-from yehu_server.api.compiling import get_ready
+from yehu_server.api.checks import PathLike, get_ready, number, whole
 from yehu_server.api.simulated import gesture_of, plain_gesture
 from yehu_server.errors import ParameterError
-from yehu_server.score.gesture import Gesture
-from yehu_server.sweeps.result import Result as Sweep
-from yehu_server.sweeps.running import sweep as run
-from yehu_server.sweeps.study import study_of
+from yehu_server.lab.sweeps.result import Result as Sweep
+from yehu_server.lab.sweeps.running import sweep as run
+from yehu_server.lab.sweeps.study import study_of
+from yehu_server.scores.gesture import Gesture
 
 __all__ = ["Sweep", "sweep"]
 

@@ -11,7 +11,6 @@ from typing import NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
-from yehu_server import __version__
 from yehu_server.cli import (
     body,
     build,
@@ -34,7 +33,8 @@ from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import parse
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import YehuError
-from yehu_server.files import why
+from yehu_server.util import __version__
+from yehu_server.util.files import why
 
 
 def main(argv: Sequence[str] | None = None) -> int:

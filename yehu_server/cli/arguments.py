@@ -13,9 +13,19 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import warn
-from yehu_server.control.addresses import OSC_ADDRESS, parse_address, shown
-from yehu_server.files import shipped_folder
-from yehu_server.lines import one_line
+from yehu_server.errors import one_line
+from yehu_server.live.addresses import OSC_ADDRESS, parse_address, shown
+from yehu_server.util.files import shipped_folder
+
+
+def add_cluster(group: Any) -> None:
+    """Add --dask, the address of a cluster's scheduler, to a parser or a group of its options."""
+    group.add_argument(
+        "--dask",
+        metavar="ADDRESS",
+        help="do the jobs on a cluster: the address of its Dask scheduler, such as "
+        "tcp://10.0.0.1:8786, or the file it wrote (needs yehu-server[cluster])",
+    )
 
 
 class Parser(argparse.ArgumentParser):
@@ -151,8 +161,8 @@ def check_output(
     OutputError
         Where it may not be written.
     """
-    from yehu_server.audio.file import is_rendered
-    from yehu_server.files import anything, check_free, check_target
+    from yehu_server.util.files import anything, check_free, check_target
+    from yehu_server.util.sound_file import is_rendered
 
     may_replace = anything if arguments.overwrite else is_rendered
     check_target(output or arguments.output)
@@ -207,8 +217,8 @@ def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> N
     plays : bool
         Whether the command plays the instrument, which is what code is made of in advance.
     """
-    from yehu_server.bitcode.start import why_not
-    from yehu_server.jit import WHY_NOT_CACHED, cache_folder, source_hash
+    from yehu_server.compile.bitcode.start import why_not
+    from yehu_server.compile.jit import WHY_NOT_CACHED, cache_folder, source_hash
 
     if arguments.quiet:
         return

@@ -14,7 +14,7 @@ from yehu_server.cli.converters import positive, target, whole
 from yehu_server.cli.terminal import tell, warn
 
 if TYPE_CHECKING:
-    from yehu_server.workshop import Fit, Measurement
+    from yehu_server.lab.body import Fit, Measurement
 
 EXAMPLES = """\
 examples:
@@ -108,11 +108,11 @@ def _add_picture(parser: Any) -> None:
 def _fit(arguments: argparse.Namespace) -> int:
     # Before NumPy is loaded: threads would only wait for each other, since matrices are small.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    from yehu_server.files import check_apart
-    from yehu_server.plot.body import write_picture
-    from yehu_server.plot.png import check_picture
-    from yehu_server.workshop import fit
-    from yehu_server.workshop.kept import body_file_of, check_ending, check_targets
+    from yehu_server.lab.body import fit
+    from yehu_server.lab.body.body_file import body_file_of, check_ending, check_targets
+    from yehu_server.lab.plot.body import write_picture
+    from yehu_server.lab.plot.png import check_picture
+    from yehu_server.util.files import check_apart
 
     measurements = [*arguments.measurements, *arguments.radiation]
     outputs = {"-o": arguments.output}
@@ -135,7 +135,7 @@ def _fit(arguments: argparse.Namespace) -> int:
 
 
 def _read(arguments: argparse.Namespace) -> Measurement:
-    from yehu_server.workshop import read
+    from yehu_server.lab.body import read
 
     return read(
         arguments.measurements,
@@ -147,11 +147,11 @@ def _read(arguments: argparse.Namespace) -> Measurement:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    from yehu_server.files import check_apart
-    from yehu_server.physics.quantities import BODY_FILE
-    from yehu_server.plot.body import write_picture
-    from yehu_server.plot.png import check_picture
-    from yehu_server.workshop.kept import read_fit
+    from yehu_server.core.physics.quantities import BODY_FILE
+    from yehu_server.lab.body.body_file import read_fit
+    from yehu_server.lab.plot.body import write_picture
+    from yehu_server.lab.plot.png import check_picture
+    from yehu_server.util.files import check_apart
 
     path = arguments.body or BODY_FILE
     if arguments.output is not None:
@@ -165,7 +165,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _tell(found: Fit, *, as_json: bool) -> None:
-    from yehu_server.workshop.told import fields_of, lines_of
+    from yehu_server.lab.body.report import fields_of, lines_of
 
     if as_json:
         print(json.dumps(fields_of(found)))
@@ -177,8 +177,8 @@ def _tell(found: Fit, *, as_json: bool) -> None:
 
 
 def _taps(arguments: argparse.Namespace) -> int:
-    from yehu_server.workshop import made_taps
-    from yehu_server.workshop.tap_files import write_taps
+    from yehu_server.lab.body import made_taps
+    from yehu_server.lab.body.tap_files import write_taps
 
     taps = made_taps(count=arguments.count, noise_db=arguments.noise_db)
     files, channels = write_taps(taps, arguments.output, overwrite=arguments.overwrite)

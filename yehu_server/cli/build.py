@@ -76,8 +76,8 @@ def write_tables(arguments: argparse.Namespace) -> int:
     YehuError
         Where a file or value is wrong, or the file cannot be written.
     """
-    from yehu_server.files import anything, nothing, replacing
     from yehu_server.playing.tables import Controls
+    from yehu_server.util.files import anything, nothing, replacing
 
     style, controls = interpreted_style_of(arguments), Controls()
     tables = style.tables(controls)

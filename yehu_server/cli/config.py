@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import Parser
-from yehu_server.documents import parse_toml
 from yehu_server.errors import ParameterError
-from yehu_server.files import MAX_SETTINGS_BYTES, read_text
 from yehu_server.playing.toml_lines import lines_of
+from yehu_server.util.documents import parse_toml
+from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text
 
 NOT_IN_FILES = {"--config": "cannot name another", "--help": "cannot ask for help"}
 MOST_VALUES = 1000  # of one option

@@ -14,21 +14,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import (
+    add_cluster,
     add_command,
     add_folder,
     add_reporting,
     progress_bar,
     warn_of_compiling,
 )
-from yehu_server.cli.cluster_options import add_cluster
 from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import OutputError, ParameterError
 
 if TYPE_CHECKING:
-    from yehu_server.dataset.making import Part
+    from yehu_server.lab.dataset.making import Part
 
-SOUNDING = ("playing", "dataset")  # folders of code, beside what is compiled
+SOUNDING = ("playing", "lab/dataset")  # folders of code, beside what is compiled
 
 EXAMPLES = """\
 examples:
@@ -64,10 +64,10 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return the exit code: 1 where some sounds failed."""
-    from yehu_server.batch import kept
-    from yehu_server.batch.manifest import check_manifest
-    from yehu_server.dataset import making
-    from yehu_server.dataset.description import read_description
+    from yehu_server.lab.dataset import making
+    from yehu_server.lab.dataset.description import read_description
+    from yehu_server.render import build_records
+    from yehu_server.render.build_records import check_manifest
 
     if arguments.dask is not None and arguments.jobs is not None:
         raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
@@ -75,9 +75,9 @@ def run(arguments: argparse.Namespace) -> int:
     description = replace(description, count=arguments.count or description.count)
     folder: Path = arguments.output.absolute()
     _check_folder(folder)
-    with _performing(arguments, description.rate) as performing, kept.alone_in(folder):
+    with _performing(arguments, description.rate) as performing, build_records.alone_in(folder):
         check_manifest(folder)
-        kept.clear_work([folder])
+        build_records.clear_work([folder])
         parts = making.parts_of(description, folder, _key(description.key))
         left, lines = making.sorted_out(parts)
         current = len(lines)
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
                 "the same command goes on"
             ) from None
         finally:
-            kept.clear_work([folder])
+            build_records.clear_work([folder])
             making.write_lines(folder, lines)
     return _report(arguments, lines, current)
 
@@ -108,7 +108,7 @@ def _check_folder(folder: Path) -> None:
     OutputError
         Where there are some.
     """
-    from yehu_server.batch.kept import HIDDEN
+    from yehu_server.render.build_records import HIDDEN
 
     try:
         is_other = any(folder.iterdir()) and not (folder / HIDDEN).is_dir()
@@ -126,43 +126,40 @@ def _check_folder(folder: Path) -> None:
 
 def _key(description: str) -> str:
     """Key of description and code."""
-    import yehu_server
-    from yehu_server.code_key import key_of
-    from yehu_server.jit import source_hash
+    from yehu_server.compile.jit import source_hash
+    from yehu_server.util import PACKAGE
+    from yehu_server.util.source_key import key_of
 
-    package = Path(yehu_server.__file__).parent
-    code = [
-        path for name in ("playing", "dataset") for path in sorted((package / name).glob("*.py"))
-    ]
-    return key_of([*code, package / "simulation.py"], source_hash(), description)
+    code = [path for name in SOUNDING for path in sorted((PACKAGE / name).glob("*.py"))]
+    return key_of([*code, PACKAGE / "lab" / "simulation.py"], source_hash(), description)
 
 
 @contextlib.contextmanager
 def _performing(arguments: argparse.Namespace, rate: float) -> Iterator[Any]:
     """Yield a function of the folder that yields what does all parts: here, or on a cluster."""
-    from yehu_server.dataset.making import set_up
+    from yehu_server.lab.dataset.making import set_up
 
     if arguments.dask is None:
         warn_of_compiling(arguments)
         set_up(rate)
         yield lambda _folder: partial(_on_cores, arguments.jobs)
         return
-    from yehu_server.jobs.cluster import Cluster
+    from yehu_server.render.cluster import Cluster
 
     with Cluster(arguments.dask, partial(set_up, rate), warn) as cluster:
         yield lambda folder: partial(_on_cluster, cluster, folder)
 
 
 def _on_cores(jobs: int | None, parts: Sequence[Part]) -> Any:
-    from yehu_server.dataset.making import perform
-    from yehu_server.jobs.workers import perform_all
+    from yehu_server.lab.dataset.making import perform
+    from yehu_server.render.workers import perform_all
 
     return perform_all(perform, parts, min(jobs or os.cpu_count() or 1, len(parts)))
 
 
 def _on_cluster(cluster: Any, folder: Path, parts: Sequence[Part]) -> Iterator[Any]:
-    from yehu_server.batch.kept import HIDDEN
-    from yehu_server.dataset.making import perform
+    from yehu_server.lab.dataset.making import perform
+    from yehu_server.render.build_records import HIDDEN
 
     mark = folder / HIDDEN / f"seen-{secrets.token_hex(8)}"
     mark.touch()

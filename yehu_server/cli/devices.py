@@ -32,9 +32,9 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.audio.devices import load_portaudio, outputs, quiet
-    from yehu_server.control.midi_process import list_inputs
     from yehu_server.errors import DeviceError
+    from yehu_server.live.audio.devices import load_portaudio, outputs, quiet
+    from yehu_server.live.midi.process import list_inputs
 
     audio, audio_problem = [], ""
     with quiet():
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         found = {"audio": rows, "audio_problem": audio_problem}
         print(json.dumps({**found, "midi": midi, "midi_api": api, "midi_problem": midi_problem}))
     else:
-        from yehu_server.report import devices_report
+        from yehu_server.cli.report import devices_report
 
         devices_report(audio, audio_problem, api, midi, midi_problem)
     return 0

@@ -14,11 +14,11 @@ from yehu_server.cli.terminal import warn
 from yehu_server.errors import EnsembleError, ParameterError, YehuError
 
 if TYPE_CHECKING:
-    from yehu_server.physics.quantities import Quantities
+    from yehu_server.core.physics.quantities import Quantities
     from yehu_server.playing.style import Style
-    from yehu_server.rendering.options import Part
-    from yehu_server.score.ensemble_file import EnsembleFile, PartEntry
-    from yehu_server.score.score import Score
+    from yehu_server.render.options import Part
+    from yehu_server.scores.ensemble_file import EnsembleFile, PartEntry
+    from yehu_server.scores.score import Score
 
 SECTION = "/playing/section"
 
@@ -69,7 +69,7 @@ def players_of(
     if arguments.ensemble == BY_MIDI:
         entries, spare = _entries(arguments, scores), _percussion(arguments, scores)
     else:
-        from yehu_server.score.ensemble_file import read_ensemble
+        from yehu_server.scores.ensemble_file import read_ensemble
 
         ensemble = read_ensemble(arguments.ensemble)
         _check_played(ensemble, scores)
@@ -93,10 +93,10 @@ def players_of(
 
 def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[PartEntry]:
     """Name a part for each channel or track with notes."""
-    from yehu_server.engine.rig import MOST_PARTS
-    from yehu_server.midi.channels import PERCUSSION
-    from yehu_server.score.ensemble_file import PartEntry
-    from yehu_server.score.parts import channels_with_notes, tracks_with_notes
+    from yehu_server.core.engine.rig import MOST_PARTS
+    from yehu_server.core.midi.channels import PERCUSSION
+    from yehu_server.scores.ensemble_file import PartEntry
+    from yehu_server.scores.reading import channels_with_notes, tracks_with_notes
 
     if arguments.by == "track":
         found = [
@@ -118,7 +118,7 @@ def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[Par
 
 
 def _percussion(arguments: argparse.Namespace, scores: Sequence[Score]) -> int:
-    from yehu_server.score.parts import percussion_notes
+    from yehu_server.scores.reading import percussion_notes
 
     has_own_count = arguments.channel is not None or arguments.by == "track"
     return 0 if has_own_count else percussion_notes(scores)
@@ -126,7 +126,7 @@ def _percussion(arguments: argparse.Namespace, scores: Sequence[Score]) -> int:
 
 def _check_played(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
     """Refuse parts that have nothing to play."""
-    from yehu_server.score.parts import has_notes, part_of
+    from yehu_server.scores.reading import has_notes, part_of
 
     for entry in ensemble.parts:
         if not has_notes([part_of(score, entry.channel, entry.track) for score in scores]):
@@ -138,8 +138,8 @@ def _check_played(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
 
 def _warn_of_unplayed(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
     """Tell which channels no part plays, where all parts are channels."""
-    from yehu_server.midi.channels import PERCUSSION
-    from yehu_server.score.parts import channels_with_notes
+    from yehu_server.core.midi.channels import PERCUSSION
+    from yehu_server.scores.reading import channels_with_notes
 
     if any(entry.track is not None for entry in ensemble.parts):
         return
@@ -179,7 +179,7 @@ def _style(entry: PartEntry, style: Style, room: Values) -> Style:
 
 
 def _instrument(entry: PartEntry) -> Quantities:
-    from yehu_server.physics.quantities import read_quantities
+    from yehu_server.core.physics.quantities import read_quantities
 
     try:
         return read_quantities(entry.instrument or Path())
@@ -195,10 +195,10 @@ def _part(
     arguments: argparse.Namespace,
 ) -> Part:
     """The part of an entry, before its player has a seat."""
-    from yehu_server.rendering.options import Part
-    from yehu_server.score.parts import part_of
-    from yehu_server.score.phrasing import is_fingered, phrased
-    from yehu_server.score.score import concatenate
+    from yehu_server.render.options import Part
+    from yehu_server.scores.phrasing import is_fingered, phrased
+    from yehu_server.scores.reading import part_of
+    from yehu_server.scores.score import concatenate
 
     own = [part_of(score, entry.channel, entry.track) for score in scores]
     score = concatenate([phrased(each, phrasing) for each in own])

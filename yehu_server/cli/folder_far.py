@@ -19,8 +19,8 @@ from yehu_server.cli.folder_tasks import Done, Task, perform, replaceable
 from yehu_server.errors import OutputError, ParameterError
 
 if TYPE_CHECKING:
-    from yehu_server.jobs.cluster import Cluster
-    from yehu_server.jobs.event import Tell
+    from yehu_server.render.cluster import Cluster
+    from yehu_server.render.workers import Tell
 
 MARK = "seen-{}"  # in the hidden folder: who finds it sees the output
 
@@ -120,7 +120,7 @@ class Far:
     @contextlib.contextmanager
     def marked(self) -> Iterator[None]:
         """Mark the output, so that workers know whether they see it, for the time of a block."""
-        from yehu_server.batch.kept import HIDDEN
+        from yehu_server.render.build_records import HIDDEN
 
         mark = self._arguments.output / HIDDEN / MARK.format(secrets.token_hex(8))
         mark.touch()
@@ -136,7 +136,7 @@ class Far:
 
     def _check_settings(self) -> None:
         """Refuse files of settings that the workers do not have: only scores travel."""
-        from yehu_server.batch.kept import hash_of
+        from yehu_server.render.build_records import hash_of
 
         files = {path: hash_of(path) for path in _settings(self._arguments)}
         for worker, found in sorted(self._cluster.ask(hashes_of, tuple(files)).items()):
@@ -175,23 +175,23 @@ class Far:
         return done
 
     def _put(self, task: Task, done: Done, made: Sequence[bytes]) -> None:
-        from yehu_server.batch import kept
-        from yehu_server.files import anything, make_folder, replacing
+        from yehu_server.render import build_records
+        from yehu_server.util.files import anything, make_folder, replacing
 
-        kept.make_folder_for(task.entry.target)
+        build_records.make_folder_for(task.entry.target)
         may_replace = replaceable(task.arguments)
         for path, data in zip(task.results, made, strict=True):
             make_folder(path.parent)
             is_sound = path == task.entry.target
             with replacing(path, may_replace if is_sound else anything) as partial:
                 partial.write_bytes(data)
-        kept.keep(task.entry.target, task.key, done.read, task.results, done.line)
+        build_records.keep(task.entry.target, task.key, done.read, task.results, done.line)
 
 
 def _settings(arguments: argparse.Namespace) -> list[Path]:
     """Files of settings that options name, beside those that are shipped."""
     from yehu_server.cli.style_options import style_of
-    from yehu_server.files import shipped_folder
+    from yehu_server.util.files import shipped_folder
 
     named = [arguments.instrument, arguments.ensemble, *style_of(arguments).files]
     files = [path.absolute() for path in named if isinstance(path, Path)]
@@ -209,6 +209,6 @@ def are_there(paths: Sequence[Path]) -> bool:
 
 def hashes_of(paths: Sequence[Path]) -> dict[Path, str]:
     """The hashes of files."""
-    from yehu_server.batch.kept import hash_of
+    from yehu_server.render.build_records import hash_of
 
     return {path: hash_of(path) for path in paths}

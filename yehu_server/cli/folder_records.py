@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.folder_tasks import Line, Task
 
 if TYPE_CHECKING:
-    from yehu_server.batch.tree import Tree
+    from yehu_server.render.folder_tree import Tree
 
 # What does not change the sound of a file. All other options do, also ones yet to be invented.
 NEUTRAL = (
@@ -26,7 +26,7 @@ NEUTRAL = (
     "plot",
     "quiet",
 )
-SOUNDING = ("playing", "score", "rendering", "audio")  # folders of code, beside what is compiled
+SOUNDING = ("playing", "scores", "render", "util")  # folders of code, beside what is compiled
 
 
 def sorted_out(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Task], list[Line]]:
@@ -35,7 +35,7 @@ def sorted_out(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Task], l
     A score that failed is up to date too, as long as nothing has changed; ``--overwrite`` tries
     it again.
     """
-    from yehu_server.batch.kept import hash_of, told_before, up_to_date
+    from yehu_server.render.build_records import hash_of, told_before, up_to_date
 
     base = base_key(arguments)
     hashing = cache(hash_of)
@@ -63,15 +63,14 @@ def _seconds(line: Line) -> float:
 
 def base_key(arguments: argparse.Namespace) -> str:
     """Key of version and options."""
-    import yehu_server
-    from yehu_server.code_key import key_of
-    from yehu_server.jit import source_hash
+    from yehu_server.compile.jit import source_hash
+    from yehu_server.util import PACKAGE, __version__
+    from yehu_server.util.source_key import key_of
 
-    package = Path(yehu_server.__file__).parent
-    code = [path for name in SOUNDING for path in sorted((package / name).rglob("*.py"))]
+    code = [path for name in SOUNDING for path in sorted((PACKAGE / name).rglob("*.py"))]
     options = sorted(
         (name, str(value.absolute()) if isinstance(value, Path) else value)
         for name, value in vars(arguments).items()
         if name not in NEUTRAL and not callable(value)
     )
-    return key_of(code, yehu_server.__version__, source_hash(), repr(options))
+    return key_of(code, __version__, source_hash(), repr(options))

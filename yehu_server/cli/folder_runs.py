@@ -1,4 +1,4 @@
-"""Render the scores of a folder: on the cores of this machine, or on a cluster."""
+"""Render the scores of a folder, on the cores of this machine or on a cluster."""
 
 from __future__ import annotations
 
@@ -14,14 +14,66 @@ from typing import TYPE_CHECKING
 
 from yehu_server.cli.arguments import progress_bar, warn_of_compiling
 from yehu_server.cli.folder_far import Far, absolute, perform_far
-from yehu_server.cli.folder_progress import Seconds
 from yehu_server.cli.folder_tasks import Done, Line, Task, perform
 from yehu_server.cli.terminal import tell, warn
-from yehu_server.lines import one_line
+from yehu_server.errors import one_line
 
 if TYPE_CHECKING:
-    from yehu_server.jobs.cluster import Cluster
-    from yehu_server.jobs.event import Event
+    from yehu_server.render.cluster import Cluster
+    from yehu_server.render.workers import Event
+
+
+class Seconds:
+    """Counts the seconds of jobs: those that are done, and all.
+
+    A job whose length nobody knows yet counts as the mean of the others; so files of one length
+    count as files do.
+
+    Parameters
+    ----------
+    known : sequence of float
+        Of each job; 0 where it is not known.
+    """
+
+    def __init__(self, known: Sequence[float]) -> None:
+        self._known = list(known)
+        self._shares = [0.0] * len(self._known)
+        self._number = sum(seconds > 0.0 for seconds in self._known)
+        self._sum = sum(self._known)
+        self._done = 0.0  # of those that are known,
+        self._unknown_shares = 0.0  # and of the others
+
+    def hear(self, job: int, share: float, seconds: float = 0.0) -> None:
+        """Take a job's share that is done, and its length where that is told (else 0)."""
+        self._count(job, -1.0)
+        if seconds > 0.0:
+            self._number += self._known[job] == 0.0
+            self._sum += seconds - self._known[job]
+            self._known[job] = seconds
+        self._shares[job] = share
+        self._count(job, 1.0)
+
+    def _count(self, job: int, sign: float) -> None:
+        share = sign * self._shares[job]
+        if self._known[job] > 0.0:
+            self._done += share * self._known[job]
+        else:
+            self._unknown_shares += share
+
+    @property
+    def mean(self) -> float:
+        """Of the jobs whose length is known; 1 where none is."""
+        return self._sum / self._number if self._number else 1.0
+
+    @property
+    def done(self) -> float:
+        """Seconds that are done, in all jobs."""
+        return self._done + self._unknown_shares * self.mean
+
+    @property
+    def total(self) -> float:
+        """Seconds of all jobs."""
+        return self._sum + (len(self._known) - self._number) * self.mean
 
 
 @contextlib.contextmanager
@@ -36,7 +88,7 @@ def cluster_of(arguments: argparse.Namespace) -> Iterator[Cluster | None]:
     if arguments.dask is None:
         yield None
         return
-    from yehu_server.jobs.cluster import Cluster
+    from yehu_server.render.cluster import Cluster
 
     files = absolute(arguments)
     setup = partial(prepare, files.rate, files.instrument, files.a4)
@@ -46,8 +98,8 @@ def cluster_of(arguments: argparse.Namespace) -> Iterator[Cluster | None]:
 
 def prepare(rate: int, instrument: Path | None, a4: float) -> None:
     """Compile, and measure the instrument, on a machine of a cluster."""
-    from yehu_server.engine.warming import warm_up
-    from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.core.engine.warming import warm_up
+    from yehu_server.core.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibrations import calibration_for
 
     warm_up()
@@ -57,8 +109,8 @@ def prepare(rate: int, instrument: Path | None, a4: float) -> None:
 
 def _prepare_here(arguments: argparse.Namespace) -> None:
     """Compile, and measure the instrument, once before all processes need it."""
-    from yehu_server.engine.warming import warm_up
-    from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.core.engine.warming import warm_up
+    from yehu_server.core.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibrations import calibration_for
 
     warn_of_compiling(arguments)
@@ -109,7 +161,7 @@ def render_all(
 
 def _on_cores(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator[Event]:
     """Yield what becomes of tasks on processes of this machine; at the end of each, its `Done`."""
-    from yehu_server.jobs.workers import perform_all
+    from yehu_server.render.workers import perform_all
 
     workers = min(arguments.jobs or os.cpu_count() or 1, len(tasks))
     with contextlib.closing(perform_all(perform, tasks, workers)) as events:
@@ -145,7 +197,7 @@ def _ended(event: Event, job: int, tasks: Sequence[Task]) -> Event:
 
 def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int) -> None:
     """Tell of a file: as JSON, or as a line where there is no progress bar."""
-    from yehu_server.batch.manifest import line_of
+    from yehu_server.render.build_records import line_of
 
     if arguments.json:
         print(line_of(line), flush=True)

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.errors import OutputError, ScoreError, YehuError
 
 if TYPE_CHECKING:
-    from yehu_server.batch.tree import Entry
-    from yehu_server.jobs.event import Tell
+    from yehu_server.render.folder_tree import Entry
+    from yehu_server.render.workers import Tell
 
 log = logging.getLogger(__name__)
 
@@ -92,7 +92,7 @@ def perform(task: Task, tell: Tell) -> Done:
 
 def _keep_failure(task: Task, line: Line) -> None:
     """Keep that a score cannot be played: another try would end alike, unless it is another."""
-    from yehu_server.batch.kept import hash_of, keep_failure, make_folder_for
+    from yehu_server.render.build_records import hash_of, keep_failure, make_folder_for
 
     found = hash_of(task.entry.source)
     if not found or not task.key.endswith(found):
@@ -103,18 +103,18 @@ def _keep_failure(task: Task, line: Line) -> None:
 
 
 def _made(task: Task, tell: Tell) -> Done:
-    from yehu_server.batch import kept
     from yehu_server.cli.render_one import rendered
     from yehu_server.cli.render_plot import check_plot
-    from yehu_server.files import check_apart, check_free, check_target, make_folder, why
+    from yehu_server.render import build_records
+    from yehu_server.util.files import check_apart, check_free, check_target, make_folder, why
 
     entry, asked = task.entry, task.arguments
     may_replace = replaceable(asked)
-    kept.make_folder_for(entry.target)
+    build_records.make_folder_for(entry.target)
     check_target(entry.target)
     check_free(entry.target, may_replace)
     check_apart({"-o": entry.target}, [entry.source])
-    work = kept.work_of(entry.target)
+    work = build_records.work_of(entry.target)
     if task.picture is not None:
         make_folder(task.picture.parent)
         check_plot(task.picture, overwrite=asked.overwrite)
@@ -131,7 +131,7 @@ def _made(task: Task, tell: Tell) -> Done:
         line = {
             "file": entry.name,
             "output": os.path.relpath(entry.target, asked.output),
-            "hash": kept.hash_of(work),
+            "hash": build_records.hash_of(work),
             "duration_s": summary.duration_s,
             "notes": summary.notes_played,
             "out_of_range": summary.notes_out_of_range,
@@ -145,7 +145,7 @@ def _made(task: Task, tell: Tell) -> Done:
         work.replace(entry.target)
         read = [path for path in done.read if path != entry.source]
         read += _programs(asked)
-        kept.keep(entry.target, task.key, read, task.results, line)
+        build_records.keep(entry.target, task.key, read, task.results, line)
     except YehuError as error:
         for shown in (str(work), ascii(str(work))):
             if str(error).startswith(shown):
@@ -161,15 +161,15 @@ def _made(task: Task, tell: Tell) -> Done:
 
 def replaceable(arguments: argparse.Namespace) -> Any:
     """Which older files a result may replace, as of ``files.replacing``."""
-    from yehu_server.audio.file import is_rendered
-    from yehu_server.files import anything
+    from yehu_server.util.files import anything
+    from yehu_server.util.sound_file import is_rendered
 
     return anything if arguments.overwrite else is_rendered
 
 
 def _programs(arguments: argparse.Namespace) -> list[Path]:
     """The presets that programs may select."""
-    from yehu_server.files import shipped_folder
+    from yehu_server.util.files import shipped_folder
 
     if not arguments.programs:
         return []
@@ -180,7 +180,7 @@ def _programs(arguments: argparse.Namespace) -> list[Path]:
 def _loudness(path: Path) -> float:
     import soundfile
 
-    from yehu_server.analysis.loudness import loudness_lufs
+    from yehu_server.render.loudness import loudness_lufs
 
     try:
         with path.open("rb") as data, soundfile.SoundFile(data) as file:  # of any name

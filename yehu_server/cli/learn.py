@@ -12,7 +12,7 @@ from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import ParameterError, YehuError
 
 if TYPE_CHECKING:
-    from yehu_server.control.client import OscClient
+    from yehu_server.live.osc.client import OscClient
 
 EXAMPLES = """\
 examples:
@@ -62,7 +62,7 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.control.client import OscClient
+    from yehu_server.live.osc.client import OscClient
 
     with OscClient(server_of(arguments)) as client:
         if arguments.parameters:
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None:
-    from yehu_server.control.parts import group
+    from yehu_server.live.part_addresses import group
 
     own = "" if arguments.part is None else group(arguments.part - 1)
     if arguments.forget:

@@ -16,7 +16,7 @@ from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import MappingError, ParameterError
 
 if TYPE_CHECKING:
-    from yehu_server.control.client import OscClient
+    from yehu_server.live.osc.client import OscClient
     from yehu_server.playing.binds import Bind
     from yehu_server.playing.mapping import Mapping
 
@@ -109,7 +109,7 @@ def _show(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(_fields(mapping)))
     else:
-        from yehu_server.report import mapping_report
+        from yehu_server.cli.report import mapping_report
 
         mapping_report(mapping)
     return 0
@@ -120,8 +120,8 @@ def _show_live(arguments: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.live import Live
 
-    from yehu_server.control.client import OscClient
-    from yehu_server.report import bindings_table
+    from yehu_server.cli.report import bindings_table
+    from yehu_server.live.osc.client import OscClient
 
     if arguments.mapping is not None:
         raise ParameterError("--live shows the mapping of the server; name none")
@@ -170,10 +170,10 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _convert(arguments: argparse.Namespace) -> int:
-    from yehu_server.files import anything, nothing, replacing
     from yehu_server.playing.mapping import find_file, with_bases
     from yehu_server.playing.mapping_file import json_of, mapping_file_from, text_of, toml_of
     from yehu_server.playing.mapping_writer import as_toml, canonical
+    from yehu_server.util.files import anything, nothing, replacing
 
     path = find_file(arguments.mapping, own_first=True)
     text = text_of(path)

@@ -1,16 +1,48 @@
-"""``yehu-server page``."""
+"""``yehu-server page``, and its address as a QR code.
+
+Half a character is one module of the code, black on white whatever the terminal's colours: most
+cameras do not read the inverse.
+"""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import tempfile
 import webbrowser
+from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
+
+import segno
 
 from yehu_server.cli.arguments import add_command, add_folder
 from yehu_server.cli.converters import port
 from yehu_server.cli.terminal import tell
+
+QUIET = 4  # modules of white around it (ISO/IEC 18004)
+# Black and white of the 256 colours, which themes leave alone; and back.
+BLACK_ON_WHITE, PLAIN = "\x1b[38;5;16;48;5;231m", "\x1b[0m"
+HALVES = {(0, 0): " ", (1, 0): "▀", (0, 1): "▄", (1, 1): "█"}  # by the upper and the lower module
+
+
+def show(text: str, stream: TextIO) -> None:
+    """Draw a text as a QR code, where a terminal shows it."""
+    encoding = stream.encoding or ""
+    if stream.isatty() and encoding.lower().startswith("utf"):
+        with contextlib.suppress(OSError):  # the terminal was closed
+            stream.write("".join(f"{line}\n" for line in drawn(text)))
+            stream.flush()
+
+
+def drawn(text: str) -> list[str]:
+    """The lines of a QR code of a text, with their colours."""
+    rows = [bytes(row) for row in segno.make_qr(text).matrix_iter(border=QUIET)]
+    white = bytes(len(rows[0]))
+    pairs = zip_longest(rows[::2], rows[1::2], fillvalue=white)
+    halves = ("".join(map(HALVES.__getitem__, zip(*pair, strict=True))) for pair in pairs)
+    return [f"{BLACK_ON_WHITE}{line}{PLAIN}" for line in halves]
+
 
 EXAMPLES = """\
 examples:
@@ -47,7 +79,7 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.panel.files import write_page
+    from yehu_server.live.page.site import write_page
 
     if arguments.output is not None:
         written = write_page(arguments.output)
@@ -60,7 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _show(folder: Path, port: int, opens: bool) -> None:
-    from yehu_server.panel.web_server import server_of, url_of
+    from yehu_server.live.page.site import server_of, url_of
 
     with server_of(folder, port) as server:
         tell(f"{url_of(server)}  (Ctrl-C ends it)")

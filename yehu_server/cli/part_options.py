@@ -15,9 +15,9 @@ from yehu_server.errors import ParameterError, YehuError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from yehu_server.control.midi_routes import Route
+    from yehu_server.live.midi.routes import Route
+    from yehu_server.live.options import PartOptions
     from yehu_server.playing.style import Style
-    from yehu_server.server.options import PartOptions
 
 MOST = 16  # engine.rig.MOST_PARTS, which takes a second to import
 
@@ -77,9 +77,9 @@ def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
     YehuError
         Where a value or file is wrong, or a part is not there.
     """
-    from yehu_server.control.parts import no_part
+    from yehu_server.live.options import PartOptions
+    from yehu_server.live.part_addresses import no_part
     from yehu_server.playing.parts import number_of_instruments
-    from yehu_server.server.options import PartOptions
 
     for option in ("part_mapping", "part_preset", "part_set"):
         for number, text in getattr(arguments, option):
@@ -105,7 +105,7 @@ def routes_of(arguments: argparse.Namespace, parts: Sequence[PartOptions]) -> li
     ParameterError
         Where one is wrong.
     """
-    from yehu_server.control.midi_routes import check_routes, route_of
+    from yehu_server.live.midi.routes import check_routes, route_of
 
     routes = []
     for number, text in arguments.part:
@@ -141,7 +141,7 @@ def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | Non
 
 def _style(own: argparse.Namespace, number: int) -> Style:
     """The style of a part with arguments of its own."""
-    from yehu_server.control.parts import check_own, group
+    from yehu_server.live.part_addresses import check_own, group
     from yehu_server.params.table import assignment, find
 
     try:

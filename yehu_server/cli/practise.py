@@ -61,14 +61,14 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     import time
 
-    from yehu_server.engine.warming import warm_up
-    from yehu_server.files import check_apart, check_target
-    from yehu_server.physics.grid import check_rate
-    from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.core.engine.warming import warm_up
+    from yehu_server.core.physics.grid import check_rate
+    from yehu_server.core.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibrations import calibration_for
     from yehu_server.playing.practice import Practice
     from yehu_server.playing.practices import shipped_practice, write_practice
     from yehu_server.playing.presets import Presets
+    from yehu_server.util.files import check_apart, check_target
 
     check_rate(arguments.rate)
     tuning = tuning_of(arguments)

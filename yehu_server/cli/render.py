@@ -8,8 +8,13 @@ import sys
 from typing import Any
 
 from yehu_server.cli import render_folder
-from yehu_server.cli.arguments import add_command, add_instrument, add_output, add_reporting
-from yehu_server.cli.cluster_options import add_cluster
+from yehu_server.cli.arguments import (
+    add_cluster,
+    add_command,
+    add_instrument,
+    add_output,
+    add_reporting,
+)
 from yehu_server.cli.converters import (
     channel,
     decibels,
@@ -33,7 +38,7 @@ from yehu_server.cli.render_pipe import (
 from yehu_server.cli.stage_options import add_stage
 from yehu_server.cli.style_options import add_playing
 from yehu_server.cli.terminal import tell, warn
-from yehu_server.score.duration import MAX_DURATION_H
+from yehu_server.scores.score import MAX_DURATION_H
 
 EXAMPLES = """\
 examples:
@@ -155,7 +160,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     if render_folder.is_for_folder(arguments):
         return render_folder.run(arguments)
-    from yehu_server.score.smf.faults import DamagedError
+    from yehu_server.scores.smf.faults import DamagedError
 
     try:
         with piped_in(arguments), quiet_pipe(arguments.output):
@@ -168,7 +173,7 @@ def run(arguments: argparse.Namespace) -> int:
         file = sys.stderr if is_piped(arguments.output) else sys.stdout
         print(json.dumps(done.fields), file=file)
     elif not arguments.quiet:
-        from yehu_server.report import render_report
+        from yehu_server.cli.report import render_report
 
         say(render_report(shown_target(arguments.output), done.summary))
     return 0

@@ -32,10 +32,10 @@ def is_for_folder(arguments: argparse.Namespace) -> bool:
 
 def run(arguments: argparse.Namespace) -> int:
     """Render a folder; return the exit code: 1 where some of its scores failed."""
-    from yehu_server.batch import kept, manifest
-    from yehu_server.batch.tree import tree_of
     from yehu_server.cli.folder_records import sorted_out
     from yehu_server.cli.folder_runs import cluster_of, render_all
+    from yehu_server.render import build_records
+    from yehu_server.render.folder_tree import tree_of
 
     [folder] = arguments.midi
     form = _check(arguments)
@@ -45,14 +45,14 @@ def run(arguments: argparse.Namespace) -> int:
     for name, why in tree.skipped:
         warn(f"{name}: {why}")
     places = {entry.target.parent for entry in tree.entries}
-    with cluster_of(arguments) as cluster, kept.alone_in(arguments.output):
-        manifest.check_manifest(arguments.output)
-        kept.clear_work(places)
+    with cluster_of(arguments) as cluster, build_records.alone_in(arguments.output):
+        build_records.check_manifest(arguments.output)
+        build_records.clear_work(places)
         lines: list[Line] = [{"file": name, "error": why} for name, why in tree.problems]
         tasks, current = sorted_out(arguments, tree)
         lines += current
         for line in lines * arguments.json:
-            print(manifest.line_of(line))
+            print(build_records.line_of(line))
         try:
             if tasks:
                 render_all(arguments, tasks, len(tree.entries), lines, cluster)
@@ -63,18 +63,18 @@ def run(arguments: argparse.Namespace) -> int:
                 "the same command goes on"
             ) from None
         finally:
-            kept.clear_work(places)
-            manifest.write_manifest(arguments.output, lines)
+            build_records.clear_work(places)
+            build_records.write_manifest(arguments.output, lines)
     return _report(arguments, lines, current)
 
 
 def _check(arguments: argparse.Namespace) -> str:
     """Check the options before any file is looked at; return the format to write."""
-    from yehu_server.audio.file import check_format
     from yehu_server.cli.stage_options import check_stage
     from yehu_server.cli.style_options import style_of
-    from yehu_server.physics.grid import check_rate
-    from yehu_server.physics.quantities import read_quantities
+    from yehu_server.core.physics.grid import check_rate
+    from yehu_server.core.physics.quantities import read_quantities
+    from yehu_server.util.sound_file import check_format
 
     form = arguments.format or "wav"
     if is_piped(arguments.output):
@@ -103,7 +103,7 @@ def _check(arguments: argparse.Namespace) -> str:
         read_quantities(arguments.instrument)
     style_of(arguments)
     if arguments.plot is not None:
-        from yehu_server.plot.axes import check_matplotlib
+        from yehu_server.lab.plot.axes import check_matplotlib
 
         check_matplotlib("--plot")
     return str(form)

@@ -8,33 +8,23 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import (
-    check_output,
-    progress_bar,
-    warn_of_compiling,
-)
+from yehu_server.cli.arguments import check_output, progress_bar, warn_of_compiling
 from yehu_server.cli.ensemble_parts import Players, players_of
-from yehu_server.cli.render_pipe import (
-    is_piped,
-)
+from yehu_server.cli.render_pipe import is_piped
 from yehu_server.cli.render_plot import PLOTTED_BLOCK, check_plot, watch_of, write_plot
-from yehu_server.cli.stage_options import (
-    check_stage,
-    room_of,
-    stem_files,
-)
+from yehu_server.cli.stage_options import check_stage, room_of, stem_files
 from yehu_server.cli.style_options import style_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import OutputError
-from yehu_server.files import anything, make_folder
+from yehu_server.util.files import anything, make_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from yehu_server.playing.style import Style
-    from yehu_server.rendering.options import Options, Part
-    from yehu_server.rendering.summary import PartSummary, Summary
-    from yehu_server.score.score import Score
+    from yehu_server.render.options import Options, Part
+    from yehu_server.render.summary import PartSummary, Summary
+    from yehu_server.scores.score import Score
 
 PHRASING = 0.5  # of files, where nothing else is asked for
 
@@ -63,13 +53,13 @@ def rendered(
     YehuError
         Where it fails; no partial file is left.
     """
-    from yehu_server.engine.warming import warm_up
-    from yehu_server.files import check_apart
-    from yehu_server.physics.grid import check_rate
-    from yehu_server.physics.quantities import Quantities, read_quantities
+    from yehu_server.core.engine.warming import warm_up
+    from yehu_server.core.physics.grid import check_rate
+    from yehu_server.core.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibration import calibration_key
-    from yehu_server.rendering.options import Options
-    from yehu_server.rendering.to_files import render
+    from yehu_server.render.options import Options
+    from yehu_server.render.to_files import render
+    from yehu_server.util.files import check_apart
 
     check_rate(arguments.rate)
     check_stage(arguments)
@@ -142,8 +132,8 @@ def _format(arguments: argparse.Namespace) -> str:
     OutputError
         Where the output cannot have it.
     """
-    from yehu_server.audio.file import format_of
-    from yehu_server.audio.pipe import check_pipe
+    from yehu_server.render.pipe import check_pipe
+    from yehu_server.util.sound_file import format_of
 
     form = str(arguments.format or "")
     if is_piped(arguments.output):
@@ -158,8 +148,8 @@ def _players(
     arguments: argparse.Namespace, scores: Sequence[Score], options: Options, phrasing: float
 ) -> Players:
     """Who plays: one instrument the whole score, or an ensemble."""
-    from yehu_server.score.phrasing import is_fingered, phrased
-    from yehu_server.score.score import concatenate
+    from yehu_server.scores.phrasing import is_fingered, phrased
+    from yehu_server.scores.score import concatenate
 
     if arguments.ensemble is not None:
         return players_of(arguments, scores, options.style, options.quantities, phrasing)
@@ -172,7 +162,7 @@ def _stems(
     arguments: argparse.Namespace, options: Options, players: Players, read: Sequence[Path]
 ) -> list[Path]:
     """The files of the stems that are asked for; checks that all outputs may be written."""
-    from yehu_server.files import check_apart
+    from yehu_server.util.files import check_apart
 
     stems = []
     if arguments.stems is not None:
@@ -237,8 +227,8 @@ def _scores(arguments: argparse.Namespace) -> list[Score]:
     ScoreError
         Where one cannot be read, or they last too long together.
     """
-    from yehu_server.score.duration import check_duration
-    from yehu_server.score.reading import read_any
+    from yehu_server.scores.reading import read_any
+    from yehu_server.scores.score import check_duration
 
     longest = arguments.max_duration
     scores = []

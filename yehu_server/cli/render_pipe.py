@@ -20,7 +20,7 @@ CHUNK = 1 << 20
 
 def sound_target(text: str) -> Path:
     """Convert the argument of -o, which may be ``-``."""
-    from yehu_server.audio.pipe import PIPE
+    from yehu_server.render.pipe import PIPE
 
     return PIPE if text == "-" else Path(text)
 
@@ -32,7 +32,7 @@ def score_source(text: str) -> Path | str:
 
 def is_piped(target: Path) -> bool:
     """Whether sound goes to standard output."""
-    from yehu_server.audio.pipe import PIPE
+    from yehu_server.render.pipe import PIPE
 
     return target is PIPE
 
@@ -51,7 +51,7 @@ def piped_in(arguments: argparse.Namespace) -> Iterator[None]:
     YehuError
         Where it is too large, or asked for twice; errors in the block name it as it is.
     """
-    from yehu_server.score.smf.reader import MAX_BYTES
+    from yehu_server.scores.smf.reader import MAX_BYTES
 
     asked = [path for path in arguments.midi if path == "-"]
     if not asked:

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from yehu_server.rendering.options import Options, Part
-    from yehu_server.rendering.watch import Watch
+    from yehu_server.render.options import Options, Part
+    from yehu_server.render.watch import Watch
 
 PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for
 
@@ -21,14 +21,14 @@ def check_plot(target: Path, *, overwrite: bool) -> None:
     YehuError
         Where it cannot.
     """
-    from yehu_server.plot.png import check_picture
+    from yehu_server.lab.plot.png import check_picture
 
     check_picture(target, "--plot", overwrite=overwrite)
 
 
 def watch_of(parts: Sequence[Part], options: Options) -> Watch:
     """What gathers the picture of a rendering."""
-    from yehu_server.rendering.watch import Watch
+    from yehu_server.render.watch import Watch
 
     duration_s = max(part.score.duration_s for part in parts)
     return Watch(float(options.rate), duration_s, len(parts), options.style.a4)
@@ -44,7 +44,7 @@ def write_plot(
     OutputError
         Where it cannot be written.
     """
-    from yehu_server.plot.rendering import write_picture
+    from yehu_server.lab.plot.panels import write_picture
 
     watch.finish()
     voices = "" if len(parts) == 1 else f"{len(parts)} parts, "

@@ -60,12 +60,12 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.audio.file import format_of
-    from yehu_server.audio.recorder import SUBTYPES
-    from yehu_server.engine.warming import warm_up
-    from yehu_server.files import check_apart
-    from yehu_server.replay import replay
-    from yehu_server.score.capture import read_capture
+    from yehu_server.core.engine.warming import warm_up
+    from yehu_server.live.audio.recorder import SUBTYPES
+    from yehu_server.render.replay import replay
+    from yehu_server.scores.capture import read_capture
+    from yehu_server.util.files import check_apart
+    from yehu_server.util.sound_file import format_of
 
     check_apart({"-o": arguments.output}, [arguments.capture])
     may_replace = check_output(arguments)
@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(vars(result)))
     elif not arguments.quiet:
-        from yehu_server.report import replay_report
+        from yehu_server.cli.report import replay_report
 
         tell(replay_report(arguments.output, result))
     return 0

@@ -12,7 +12,7 @@ from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import tell, warn
 
 if TYPE_CHECKING:
-    from yehu_server.score.written.notated import Written
+    from yehu_server.scores.written.notated import Written
 
 EXAMPLES = """\
 examples:
@@ -49,8 +49,8 @@ def add_to(commands: Any) -> None:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    from yehu_server.score.reading import read_written
-    from yehu_server.score.written.text import fields_of, lines_of
+    from yehu_server.scores.reading import read_written
+    from yehu_server.scores.written.text import fields_of, lines_of
 
     written = read_written(arguments.score)
     if arguments.export_midi is not None:
@@ -64,10 +64,10 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _export(arguments: argparse.Namespace, written: Written) -> None:
-    from yehu_server.files import anything, check_apart, nothing, replacing
-    from yehu_server.score.midi_export import midi_file
-    from yehu_server.score.reading import naming
-    from yehu_server.score.written.performed import performed
+    from yehu_server.scores.midi_export import midi_file
+    from yehu_server.scores.reading import naming
+    from yehu_server.scores.written.performed import performed
+    from yehu_server.util.files import anything, check_apart, nothing, replacing
 
     output = arguments.export_midi
     check_apart({"--export-midi": output}, [arguments.score])

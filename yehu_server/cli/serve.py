@@ -14,9 +14,40 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from yehu_server.cli.arguments import add_command, progress_bar, warn_of_compiling
-from yehu_server.cli.log import set_up_log
 from yehu_server.cli.serve_options import add_arguments, options_of
-from yehu_server.limits import allow_files
+from yehu_server.cli.terminal import set_up_log
+from yehu_server.errors import YehuError
+
+try:
+    import resource
+except ImportError:  # not on Windows, where there is no such limit
+    resource = None  # type: ignore[assignment]
+
+MOST_FILES = 4096  # more than all clients together need
+
+
+def allow_files(needed: int) -> None:
+    """Raise the limit of open files as far as allowed; the default of macOS is 256.
+
+    Raises
+    ------
+    YehuError
+        Where it is below `needed`.
+    """
+    if resource is None:
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    unlimited = resource.RLIM_INFINITY
+    most = MOST_FILES if hard == unlimited else min(hard, MOST_FILES)
+    if soft != unlimited and soft < most:
+        with contextlib.suppress(OSError, ValueError):
+            resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+            soft = most
+    if soft != unlimited and soft < needed:
+        raise YehuError(
+            f"{soft} open files are too few: {needed} are needed (raise the limit: ulimit -n)"
+        )
+
 
 EXAMPLES = """\
 examples:
@@ -88,10 +119,10 @@ class _Ending:
 
 def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     """Serve until a signal or the end of --duration; return the exit code."""
-    from yehu_server.control.addresses import lan_interface
+    from yehu_server.cli.report import connect_lines, query_line
+    from yehu_server.live.addresses import lan_interface
+    from yehu_server.live.server import Server
     from yehu_server.playing.mapping import is_own
-    from yehu_server.report import connect_lines, query_line
-    from yehu_server.server.server import Server
 
     log = logging.getLogger("yehu_server")
     say = log.info
@@ -131,9 +162,9 @@ def _tell_of_page(
     say: Callable[[str], None],
     arguments: argparse.Namespace,
 ) -> None:
-    from yehu_server.cli.qr_code import show
-    from yehu_server.control.addresses import lan_address
-    from yehu_server.report import page_for_phones, page_lines
+    from yehu_server.cli.page import show
+    from yehu_server.cli.report import page_for_phones, page_lines
+    from yehu_server.live.addresses import lan_address
 
     where = (pages.host, pages.port, lan_address())
     lines = page_lines(*where, networks=networks)
@@ -164,7 +195,7 @@ def _status_line(server: Any) -> Iterator[None]:
     from rich.live import Live
     from rich.text import Text
 
-    from yehu_server.report import status_line
+    from yehu_server.cli.report import status_line
 
     with Live(
         get_renderable=lambda: Text(

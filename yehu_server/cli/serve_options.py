@@ -9,10 +9,10 @@ from typing import Any
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.config import add_config
 from yehu_server.cli.converters import port, positive, target, whole, within
-from yehu_server.cli.log import LEVELS
 from yehu_server.cli.part_options import add_parts, part_options, routes_of
 from yehu_server.cli.style_options import add_playing
-from yehu_server.control.addresses import (
+from yehu_server.cli.terminal import LEVELS
+from yehu_server.live.addresses import (
     ANYWHERE,
     HTTP_ADDRESS,
     OSC_ADDRESS,
@@ -213,13 +213,13 @@ def options_of(arguments: argparse.Namespace) -> Any:
     YehuError
         Where a value or file is wrong.
     """
-    from yehu_server.audio.output import OutputOptions
-    from yehu_server.control.addresses import Allowed
-    from yehu_server.control.midi_process import check_api
-    from yehu_server.control.ports import MidiOptions
-    from yehu_server.control.web import WebOptions
-    from yehu_server.files import check_apart
-    from yehu_server.server.options import ServeOptions
+    from yehu_server.live.addresses import Allowed
+    from yehu_server.live.audio.output import OutputOptions
+    from yehu_server.live.midi.ports import MidiOptions
+    from yehu_server.live.midi.process import check_api
+    from yehu_server.live.options import ServeOptions
+    from yehu_server.live.web.server import WebOptions
+    from yehu_server.util.files import check_apart
 
     parts = part_options(arguments)
     outputs = {"--record": arguments.record, "--capture": arguments.capture}
@@ -264,7 +264,7 @@ def options_of(arguments: argparse.Namespace) -> Any:
 def _page_of(arguments: argparse.Namespace) -> Any:
     """Where the page is served; None where it is not."""
     from yehu_server.errors import ParameterError
-    from yehu_server.panel.pages import PageOptions
+    from yehu_server.live.page.pages import PageOptions
 
     wished = arguments.panel_port
     has_page = arguments.lan or arguments.open or wished is not None or arguments.http != "none"
@@ -287,7 +287,7 @@ def _page_of(arguments: argparse.Namespace) -> Any:
 
 
 def _rate(text: str) -> float:
-    from yehu_server.physics.grid import HIGHEST_RATE, LOWEST_RATE
+    from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
 
     return within(text, LOWEST_RATE, HIGHEST_RATE, "Hz")
 

@@ -47,9 +47,9 @@ def run(arguments: argparse.Namespace) -> int:
     import time
 
     from yehu_server.errors import OutputError
-    from yehu_server.files import check_apart, check_target
-    from yehu_server.score.gesture import read_gesture
-    from yehu_server.simulation import simulate
+    from yehu_server.lab.simulation import simulate
+    from yehu_server.scores.gesture import read_gesture
+    from yehu_server.util.files import check_apart, check_target
 
     gesture = read_gesture(arguments.gesture)
     check_target(arguments.output)
@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({**result.meta, "elapsed_s": elapsed}))
     elif not arguments.quiet:
-        from yehu_server.report import simulate_report
+        from yehu_server.cli.report import simulate_report
 
         tell(simulate_report(arguments.output, result))
     return 0

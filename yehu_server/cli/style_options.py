@@ -154,8 +154,8 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
     YehuError
         Where a file or value is wrong.
     """
+    from yehu_server.core.player.fingering import OpenStrings
     from yehu_server.params.table import assignment
-    from yehu_server.player.fingering import OpenStrings
     from yehu_server.playing.practices import read_practice
 
     return replace(
@@ -181,8 +181,8 @@ def interpreted_style_of(arguments: argparse.Namespace, *, is_live: bool = False
         Where a file or value is wrong.
     """
     from yehu_server.playing.presets import Presets
-    from yehu_server.playing.range_policy import RangePolicy
     from yehu_server.playing.style import Style
+    from yehu_server.playing.tuning import RangePolicy
 
     own_first = is_live or arguments.presets is not None
     presets = Presets(arguments.presets, own_first=own_first)

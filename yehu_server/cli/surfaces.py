@@ -8,7 +8,7 @@ from typing import Any
 
 from yehu_server.cli.arguments import add_command, add_folder
 from yehu_server.cli.terminal import tell
-from yehu_server.control.addresses import OSC_ADDRESS, parse_address, shown
+from yehu_server.live.addresses import OSC_ADDRESS, parse_address, shown
 
 EXAMPLES = """\
 examples:
@@ -62,11 +62,11 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.engine.rig import MOST_PARTS
+    from yehu_server.core.engine.rig import MOST_PARTS
     from yehu_server.errors import ParameterError
-    from yehu_server.files import make_folder
     from yehu_server.surfaces.catalogue import chosen, file_of, is_fresh, write
     from yehu_server.surfaces.layout import ALL
+    from yehu_server.util.files import make_folder
 
     folder: Path = arguments.output
     server = parse_address(arguments.server, *OSC_ADDRESS)

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import (
+    add_cluster,
     add_command,
     add_reporting,
     progress_bar,
     warn_of_compiling,
 )
-from yehu_server.cli.cluster_options import add_cluster
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.sweep_show import add_show
 from yehu_server.cli.terminal import tell, warn
@@ -98,10 +98,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     import time
 
-    from yehu_server.sweeps.axes import axis_of
-    from yehu_server.sweeps.running import check_free_result, sweep_to
-    from yehu_server.sweeps.signals import keep_signals, prepare_folder
-    from yehu_server.sweeps.study import read_study
+    from yehu_server.lab.sweeps.axes import axis_of
+    from yehu_server.lab.sweeps.running import check_free_result, sweep_to
+    from yehu_server.lab.sweeps.signals import keep_signals, prepare_folder
+    from yehu_server.lab.sweeps.study import read_study
 
     study = read_study(arguments.study, [axis_of(text) for text in arguments.vary])
     check_free_result(arguments.output, overwrite=arguments.overwrite)
@@ -153,7 +153,7 @@ def _cluster(arguments: argparse.Namespace) -> Any:
     """A connection to the cluster of --dask, or none."""
     if arguments.dask is None:
         return contextlib.nullcontext()
-    from yehu_server.jobs.cluster import Cluster
-    from yehu_server.sweeps.running import warm_up
+    from yehu_server.lab.sweeps.running import warm_up
+    from yehu_server.render.cluster import Cluster
 
     return Cluster(arguments.dask, warm_up, warn)

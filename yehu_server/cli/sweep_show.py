@@ -47,11 +47,11 @@ def show(arguments: argparse.Namespace) -> int:
         Where the call is wrong.
     """
     from yehu_server.errors import ParameterError
-    from yehu_server.files import anything, check_free, check_target, nothing
-    from yehu_server.plot.png import check_picture
-    from yehu_server.plot.study import write_picture
-    from yehu_server.plot.study_page import write_page
-    from yehu_server.sweeps.result import Result
+    from yehu_server.lab.plot.png import check_picture
+    from yehu_server.lab.plot.study import write_picture
+    from yehu_server.lab.plot.study_page import write_page
+    from yehu_server.lab.sweeps.result import Result
+    from yehu_server.util.files import anything, check_free, check_target, nothing
 
     output = arguments.output or arguments.result.with_suffix(".png")
     if output.suffix not in {".png", ".html"}:

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from yehu_server.documents import parse_toml
 from yehu_server.errors import ParameterError, PresetError
 from yehu_server.params.table import BY_ADDRESS, TABLE
+from yehu_server.util.documents import parse_toml
 
 VERSION = 1
 ENTRIES = ("version", "about", "program", "values")

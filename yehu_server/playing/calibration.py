@@ -17,14 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.analysis.level import SILENCE_DB, a_weighted_db
-from yehu_server.analysis.pitch import cents, pitch_hz
-from yehu_server.code_key import key_of
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.params.table import find
-from yehu_server.physics.quantities import Quantities, override
-from yehu_server.player.bowing import (
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
@@ -37,7 +33,7 @@ from yehu_server.player.bowing import (
     at_pitch,
     share,
 )
-from yehu_server.player.calibration import (
+from yehu_server.core.player.calibration import (
     OPEN_NOTES,
     PITCHES,
     SPEEDS,
@@ -45,7 +41,11 @@ from yehu_server.player.calibration import (
     frequency_hz,
     ideal_position,
 )
+from yehu_server.params.table import find
+from yehu_server.playing.pitch_and_level import SILENCE_DB, a_weighted_db, cents, pitch_hz
 from yehu_server.playing.practices import shipped_practice
+from yehu_server.util import PACKAGE
+from yehu_server.util.source_key import key_of
 
 Array = Any
 Progress = Callable[[float, float], None]
@@ -74,14 +74,14 @@ class _Setup:
 
 def calibration_key(rate: float, quantities: Quantities, a4: float) -> str:
     """Hash of everything that a calibration depends on (16 hex digits)."""
-    package = Path(__file__).parent.parent
+    core = PACKAGE / "core"
     sources = [
         source
         for folder in ("physics", "controls")
-        for source in sorted((package / folder).glob("*.py"))
+        for source in sorted((core / folder).glob("*.py"))
     ]
-    sources += [package / "player" / f"{name}.py" for name in ("bowing", "calibration")]
-    sources += [package / "engine" / f"{name}.py" for name in ("sounding", "output")]
+    sources += [core / "player" / f"{name}.py" for name in ("bowing", "calibration")]
+    sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output")]
     sources += [Path(__file__)]
     bowed = shipped_practice(rate)[:, PLACES.index(DEFAULT_PLACE)].tolist()
     return key_of(sources, repr((rate, a4, quantities, bowed)))

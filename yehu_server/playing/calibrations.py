@@ -15,12 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.analysis.pitch import cents
+from yehu_server.compile.jit import data_folder
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration, Tables
 from yehu_server.errors import ParameterError
-from yehu_server.files import read_text
-from yehu_server.jit import data_folder
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.calibration import PITCHES, SPEEDS, Calibration, Tables
 from yehu_server.playing.calibration import (
     PLAUSIBLE_CENTS,
     ROUNDS,
@@ -30,7 +28,9 @@ from yehu_server.playing.calibration import (
     calibration_key,
     starting_tension,
 )
-from yehu_server.sealed import SealError, read_sealed, write_sealed
+from yehu_server.playing.pitch_and_level import cents
+from yehu_server.util.files import read_text
+from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
 log = logging.getLogger(__name__)
 

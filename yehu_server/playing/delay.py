@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.engine.instrument import Instrument
 
 # Time in which Python acts on a message, beside the device's buffer. With half of it five times as
 # many events were late beside a busy thread (bench/lateness.py).

@@ -13,12 +13,12 @@ from collections.abc import Mapping as Values
 
 import mido
 
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.midi.events import LEAVE
 from yehu_server.errors import ParameterError
-from yehu_server.midi.events import LEAVE
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
-from yehu_server.playing.learner import Found, Learner
+from yehu_server.playing.learn import Found, Learner
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes

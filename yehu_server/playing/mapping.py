@@ -15,17 +15,12 @@ from pathlib import Path
 
 from platformdirs import user_config_path
 
+from yehu_server.core.midi.tables import MOST_BINDS, MOST_POINTS
 from yehu_server.errors import MappingError
-from yehu_server.files import shipped_folder
-from yehu_server.midi.tables import MOST_BINDS, MOST_POINTS
 from yehu_server.playing.binds import Bind, Breakpoints, override_key
-from yehu_server.playing.mapping_file import (
-    FileErrors,
-    MappingFile,
-    read_mapping_file,
-    text_of,
-)
+from yehu_server.playing.mapping_file import FileErrors, MappingFile, read_mapping_file, text_of
 from yehu_server.playing.sources import is_address
+from yehu_server.util.files import shipped_folder
 
 DEFAULT, MPE = "keyboard", "mpe"
 MINE = "mine/"  # prefix of the names of the user's own mappings

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from yehu_server.documents import parse_json, parse_toml
 from yehu_server.errors import MappingError, ParameterError, SettingsError
-from yehu_server.files import MAX_SETTINGS_BYTES, read_text
 from yehu_server.params.spec import Curve
 from yehu_server.playing import mapping_entries as entries
 from yehu_server.playing import sources
 from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.toml_lines import KeyPath, line_at, lines_of
+from yehu_server.util.documents import parse_json, parse_toml
+from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text
 
 ENTRIES = ("name", "about", "base", "mpe", "start", "bind")
 BIND_ENTRIES = (

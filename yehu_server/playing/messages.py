@@ -16,15 +16,15 @@ import mido
 import numpy as np
 from mido.messages import BaseMessage
 
+from yehu_server.core.midi import events
+from yehu_server.core.midi.channels import plays
+from yehu_server.core.midi.packing import packed
+from yehu_server.core.midi.record import CHANNELS, IN_PORT
+from yehu_server.core.midi.tables import SLOTS
+from yehu_server.core.player.rows import ROW
 from yehu_server.errors import YehuError
-from yehu_server.midi import events
-from yehu_server.midi.channels import plays
-from yehu_server.midi.packing import packed
-from yehu_server.midi.record import CHANNELS, IN_PORT
-from yehu_server.midi.tables import SLOTS
 from yehu_server.params.preset import Preset
 from yehu_server.params.table import TABLE, find
-from yehu_server.player.rows import ROW
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import NOTE, POLY_PRESSURE, STEPS, VELOCITY, is_address

@@ -1,4 +1,4 @@
-"""The players of all parts, each with the instruments it plays: one, or those of a section."""
+"""The players of all parts, each with its instruments and its places on the stage."""
 
 from __future__ import annotations
 
@@ -6,16 +6,29 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.rig import MOST_PARTS
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.player.calibration import Calibration
 from yehu_server.errors import ParameterError
-from yehu_server.player.calibration import Calibration
 from yehu_server.playing.live import LivePlayer
-from yehu_server.playing.places import places
 from yehu_server.playing.section_people import part_specs, section_size
 from yehu_server.playing.style import Style
+
+WIDEST = 0.7  # pan of the outermost players; by ear: the room stays around them
+
+
+def places(parts: int) -> list[tuple[tuple[str, float], ...]]:
+    """The start values of parameters, by address, that place each of some players.
+
+    They sit side by side from left to right, in the order of the parts; one alone in the middle.
+    """
+    if parts == 1:
+        return [()]
+    step = 2.0 * WIDEST / (parts - 1)
+    return [(("/room/pan", part * step - WIDEST),) for part in range(parts)]
+
 
 SEEDS = 1 << 16
 

@@ -18,11 +18,10 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.params.table import find
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.bowing import (
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
@@ -34,8 +33,9 @@ from yehu_server.player.bowing import (
     TOP_SPEED,
     ordinary_table,
 )
-from yehu_server.player.calibration import OPEN_NOTES, Calibration
-from yehu_server.player.fingering import HIGHEST_NOTE, HIGHEST_ON_F, LOWEST_NOTE
+from yehu_server.core.player.calibration import OPEN_NOTES, Calibration
+from yehu_server.core.player.fingering import HIGHEST_NOTE, HIGHEST_ON_F, LOWEST_NOTE
+from yehu_server.params.table import find
 from yehu_server.playing.wishes import Key, Wishes
 
 Array = Any

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.documents import parse_json
+from yehu_server.core.player.bowing import FIRST, LAST, MANNER, PLACES, ordinary_table
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.files import read_text, replacing
 from yehu_server.params.table import STRING_NAMES
-from yehu_server.player.bowing import FIRST, LAST, MANNER, PLACES, ordinary_table
+from yehu_server.util.documents import parse_json
+from yehu_server.util.files import read_text, replacing
 
 Array = Any
 

@@ -12,8 +12,8 @@ from platformdirs import user_config_path
 from tomlkit.exceptions import TOMLKitError
 
 from yehu_server.errors import OutputError, PresetError
-from yehu_server.files import PLAIN_NAME, inside, read_text, shipped_folder, write_text
 from yehu_server.params.preset import SAVED, VERSION, Preset, parse
+from yehu_server.util.files import PLAIN_NAME, inside, read_text, shipped_folder, write_text
 
 ENDING = ".toml"
 MINE = "mine/"  # prefix of the names of the user's own presets

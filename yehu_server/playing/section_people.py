@@ -12,12 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.midi.seats import DISTANCE, GAIN, PAN, SEED, own_value
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN, own_value
+from yehu_server.core.physics.quantities import Body, Quantities, StringQuantities
+from yehu_server.core.player.calibration import Calibration
+from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import find
-from yehu_server.physics.quantities import Body, Quantities, StringQuantities
-from yehu_server.player.calibration import Calibration
-from yehu_server.player.rows import ROW
 from yehu_server.playing.style import Style
 
 SECTION = "/playing/section"
@@ -80,7 +80,7 @@ def section_specs(
     base = quantities or Quantities()
 
     def spec(number: int) -> InstrumentSpec:
-        seed = round(own_value(ROW[SEED], float(style.seed), number, people))
+        seed = round(own_value(ROW[OWN_SEED], float(style.seed), number, people))
         tuned, own = (calibration, base) if number == 0 else vary(calibration, base, seed)
         values = {
             address: own_value(ROW[address], find(address).default, number, people)

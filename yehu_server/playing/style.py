@@ -8,18 +8,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.spec import InstrumentSpec
-from yehu_server.physics.quantities import Quantities
-from yehu_server.player.calibration import Calibration
-from yehu_server.player.fingering import OpenStrings
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import Calibration
+from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.practices import shipped_practice
 from yehu_server.playing.presets import Presets
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.tables import Controls, make_tables
-from yehu_server.playing.tuning import EQUAL, Tuning
+from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
 from yehu_server.playing.wishes import Wishes
 
 

@@ -9,16 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.midi import tables
+from yehu_server.core.midi import tables
+from yehu_server.core.player.rows import ROW
 from yehu_server.params.preset import Preset
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
-from yehu_server.player.rows import ROW
 from yehu_server.playing import sources
 from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping as Binds
-from yehu_server.playing.range_policy import RangePolicy
-from yehu_server.playing.tuning import KEYS, Tuning
+from yehu_server.playing.tuning import KEYS, RangePolicy, Tuning
 
 Array = Any
 

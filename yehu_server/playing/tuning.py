@@ -1,4 +1,4 @@
-"""Scala tunings: the pitch of each key.
+"""Scala tunings: the pitch of each key; what happens to notes outside the range.
 
 A scale (``.scl``) lists intervals above its first note, 1/1; a keyboard map (``.kbm``) assigns
 them to keys and gives the frequency of a reference key.
@@ -9,10 +9,36 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, field
+from enum import Enum
 from pathlib import Path
 
+from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
 from yehu_server.errors import ParameterError
-from yehu_server.files import MAX_SETTINGS_BYTES, read_text, shipped_folder
+from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, shipped_folder
+
+
+class RangePolicy(Enum):
+    """What happens to a note outside the range of the instrument."""
+
+    TRANSPOSE = "transpose"
+    CLAMP = "clamp"
+    SKIP = "skip"
+
+    def fit(self, note: float) -> float | None:
+        """Return the note to play for `note`, or None for none.
+
+        A note that a tuning puts less than a quarter tone out of range is moved to its end.
+        """
+        if LOWEST_NOTE - OPEN_WITHIN < note < HIGHEST_NOTE + OPEN_WITHIN:
+            return min(max(note, LOWEST_NOTE), HIGHEST_NOTE)
+        if self is RangePolicy.SKIP:
+            return None
+        if self is RangePolicy.CLAMP:
+            return min(max(note, LOWEST_NOTE), HIGHEST_NOTE)
+        if note < LOWEST_NOTE:
+            return note + 12 * -(-(LOWEST_NOTE - note) // 12)
+        return note - 12 * -(-(note - HIGHEST_NOTE) // 12)
+
 
 KEYS = range(128)
 MIDDLE_C, A4 = 60, 69

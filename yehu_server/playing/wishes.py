@@ -10,19 +10,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from yehu_server.engine.instrument import Instrument
-from yehu_server.engine.rig import RIG_BYTES
-from yehu_server.midi.events import NOTE_ON, RELEASE_ALL, SET
-from yehu_server.midi.record import NONE, SECTION
-from yehu_server.midi.tables import plain_tables
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import RIG_BYTES
+from yehu_server.core.midi.events import NOTE_ON, RELEASE_ALL, SET
+from yehu_server.core.midi.record import NONE, SECTION
+from yehu_server.core.midi.tables import plain_tables
+from yehu_server.core.player import wishes
+from yehu_server.core.player.rows import ROW
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, find
-from yehu_server.player import wishes
-from yehu_server.player.rows import ROW
 from yehu_server.playing.mapping import Mapping as Binds
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.tables import Controls, make_tables
-from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning
+from yehu_server.playing.tuning import EQUAL, STANDARD_A4, RangePolicy, Tuning
 
 UNMAPPED = Binds("", ())
 OWN_VALUES = -1.0  # in place of a velocity: the note has been given its values

@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from yehu_server.control.addresses import OSC_ADDRESS, Address
 from yehu_server.errors import OutputError
-from yehu_server.files import replacing
+from yehu_server.live.addresses import OSC_ADDRESS, Address
 from yehu_server.surfaces import max as max_patch
-from yehu_server.surfaces import page, puredata, stage, touchosc
+from yehu_server.surfaces import open_stage_control, page, puredata, touchosc
 from yehu_server.surfaces.layout import ALL, for_part
+from yehu_server.util.files import replacing
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ SURFACES = (
     Surface("yehu.tosc", "TouchOSC", touchosc.make, touchosc.content),
     Surface("yehu.maxpat", "Max", max_patch.make),
     Surface("yehu.pd", "Pure Data", puredata.make),
-    Surface("open-stage-control.json", "Open Stage Control", stage.make),
+    Surface("open-stage-control.json", "Open Stage Control", open_stage_control.make),
     Surface("parameters.html", "a browser", page.make),
 )
 

@@ -7,12 +7,12 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 
-from yehu_server.analysis.pitch import note_name
-from yehu_server.control.calls import CALLS
-from yehu_server.control.parts import group as group_of_part
+from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.live.osc.calls import CALLS
+from yehu_server.live.part_addresses import group as group_of_part
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE, UNIT, find
-from yehu_server.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.playing.pitch_and_level import note_name
 
 FIRST_GROUP = "playing"  # used most
 BLACK = (1, 3, 6, 8, 10)

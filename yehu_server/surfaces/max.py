@@ -13,7 +13,7 @@ from typing import Any
 from py2max import Box, Patcher
 from py2max.core.common import Rect
 
-from yehu_server.control.addresses import Address
+from yehu_server.live.addresses import Address
 from yehu_server.params.spec import Param
 from yehu_server.surfaces import layout
 from yehu_server.surfaces.layout import Axis, Group, full

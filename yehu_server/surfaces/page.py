@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-from yehu_server.control.addresses import Address
-from yehu_server.control.calls import CALLS, Argument
+from yehu_server.live.addresses import Address
+from yehu_server.live.osc.calls import CALLS, Argument
 from yehu_server.params.spec import Param
 from yehu_server.params.table import UNIT
 from yehu_server.surfaces import layout

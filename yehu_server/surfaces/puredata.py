@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
 
-from yehu_server.control.addresses import Address
+from yehu_server.live.addresses import Address
 from yehu_server.params.spec import Curve, Param
 from yehu_server.surfaces import layout
 from yehu_server.surfaces.layout import Group, full

@@ -25,7 +25,7 @@ from py2tosc import (
     ui,
 )
 
-from yehu_server.control.addresses import Address
+from yehu_server.live.addresses import Address
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import UNIT
 from yehu_server.surfaces import layout

@@ -11,7 +11,7 @@ from unittest.mock import patch
 from fuzz.instrument import CALIBRATION
 from fuzz.target import scratch, target
 
-from yehu_server.player.calibration import Calibration
+from yehu_server.core.player.calibration import Calibration
 from yehu_server.playing.calibrations import calibration_for
 
 RATE = 31_000.0  # no shipped calibration has it

@@ -6,16 +6,16 @@ import numpy as np
 from fuzz.instrument import Instrument
 from fuzz.target import scratch, target, written
 
-from yehu_server.controls.slots import HIGHEST, LOWEST, SILENCE
-from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.core.controls.slots import HIGHEST, LOWEST, SILENCE
+from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.physics.grid import check_rate
+from yehu_server.core.player.wishes import KINDS, RAMP
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
-from yehu_server.physics.grid import check_rate
-from yehu_server.player.wishes import KINDS, RAMP
-from yehu_server.score.capture import Capture, read_capture
-from yehu_server.score.capture_beginning import Beginning
-from yehu_server.score.capture_format import MOST_FRAMES
-from yehu_server.score.capture_writer import CaptureWriter
+from yehu_server.scores.capture import Capture, read_capture
+from yehu_server.scores.capture_beginning import Beginning
+from yehu_server.scores.capture_format import MOST_FRAMES
+from yehu_server.scores.capture_writer import CaptureWriter
 
 WORDS = (
     b'{"end": ',

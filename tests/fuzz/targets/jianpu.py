@@ -7,8 +7,8 @@ import math
 from fuzz.target import target
 
 from yehu_server.errors import ScoreError
-from yehu_server.score.jianpu.reader import MOST_UNKNOWN, parse_jianpu
-from yehu_server.score.written.notated import MARKS, SIGNS, SPANS
+from yehu_server.scores.jianpu.reader import MOST_UNKNOWN, parse_jianpu
+from yehu_server.scores.written.notated import MARKS, SIGNS, SPANS
 
 WORDS = """
 title= notation=工尺谱 mode=活五 1=F 6=D 4/4 3/4,4 4=96 4.=60 NextPart NextScore R{ R3{ R100{ A{ | }

@@ -8,10 +8,10 @@ from types import SimpleNamespace
 from fuzz.instrument import Instrument, check_silence, check_values
 from fuzz.target import Program, target
 
-from yehu_server.control.midi_feed import MidiFeed
-from yehu_server.control.midi_process import Input
-from yehu_server.control.midi_routes import Router
-from yehu_server.midi.events import DISCONNECT, MESSAGE
+from yehu_server.core.midi.events import DISCONNECT, MESSAGE
+from yehu_server.live.midi.feed import MidiFeed
+from yehu_server.live.midi.process import Input
+from yehu_server.live.midi.routes import Router
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.style import Style

@@ -15,10 +15,11 @@ from fuzz.instrument import Instrument, check_silence, check_values
 from fuzz.target import Program, scratch, target
 from wire import SINCE_1900_S, Ear, StillTime
 
-from yehu_server.control import clients, osc, schedule
-from yehu_server.control.calls import CALLS
-from yehu_server.control.osc import OscHandler
-from yehu_server.control.packets import pack, unpack
+from yehu_server.live.osc import clients, schedule
+from yehu_server.live.osc import handler as osc
+from yehu_server.live.osc.calls import CALLS
+from yehu_server.live.osc.handler import OscHandler
+from yehu_server.live.osc.packets import pack, unpack
 from yehu_server.params.table import PREFIX, TABLE, UNIT
 from yehu_server.playing import live
 from yehu_server.playing.live import LivePlayer

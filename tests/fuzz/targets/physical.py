@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from fuzz.target import target, written
 
+from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.physics.quantities import read_body, read_quantities
-from yehu_server.score.gesture import Gesture, gesture_from, read_gesture
+from yehu_server.scores.gesture import Gesture, gesture_from, read_gesture
 
 MOST_FRAMES = 50_000  # whose controls are worked out
 

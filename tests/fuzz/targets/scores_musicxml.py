@@ -10,12 +10,11 @@ from fuzz.target import Program, target, written
 
 from yehu_server.errors import ScoreError
 from yehu_server.params.table import find
-from yehu_server.score.duration import LONGEST_DURATION_H
-from yehu_server.score.musicxml.reader import read_musicxml
-from yehu_server.score.setting import Setting
-from yehu_server.score.written.notated import MARKS, SIGNS, SPANS, Written
-from yehu_server.score.written.performed import performed
-from yehu_server.score.written.text import lines_of
+from yehu_server.scores.musicxml.reader import read_musicxml
+from yehu_server.scores.score import LONGEST_DURATION_H, Setting
+from yehu_server.scores.written.notated import MARKS, SIGNS, SPANS, Written
+from yehu_server.scores.written.performed import performed
+from yehu_server.scores.written.text import lines_of
 
 # What is played of more would take longer than reading it, and is bounded elsewhere.
 FEW_NOTES, FEW_BEATS, FEW_TEXTS = 100, 200, 2000

@@ -14,10 +14,10 @@ from interpreted import Leader
 
 from yehu_server import cli
 from yehu_server.cli.config import parse
-from yehu_server.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.midi.events import CONTROL
+from yehu_server.core.midi.tables import MOST_BINDS
 from yehu_server.errors import EnsembleError, MappingError, ParameterError, PresetError
-from yehu_server.midi.events import CONTROL
-from yehu_server.midi.tables import MOST_BINDS
 from yehu_server.params.preset import SAVED
 from yehu_server.params.table import BY_ADDRESS, TABLE, find
 from yehu_server.playing.binds import Bind
@@ -32,11 +32,10 @@ from yehu_server.playing.mapping_file import (
 )
 from yehu_server.playing.mapping_writer import as_toml, canonical, edited
 from yehu_server.playing.presets import Presets, read_preset
-from yehu_server.playing.range_policy import RangePolicy
 from yehu_server.playing.sources import is_address
 from yehu_server.playing.tables import Controls, make_tables
-from yehu_server.playing.tuning import EQUAL, STANDARD_A4
-from yehu_server.score.ensemble_file import read_ensemble
+from yehu_server.playing.tuning import EQUAL, STANDARD_A4, RangePolicy
+from yehu_server.scores.ensemble_file import read_ensemble
 
 ADDRESSES = tuple(f'"{address}"'.encode() for address in list(BY_ADDRESS)[::4])
 TOML = (

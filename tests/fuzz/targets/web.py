@@ -13,13 +13,13 @@ from aiohttp import web as aiohttp_web
 from aiohttp.test_utils import make_mocked_request
 from fuzz.target import ROOT, target
 
-from yehu_server.control import web_sockets
-from yehu_server.control.clients import Clients
-from yehu_server.control.packets import PacketError, unpack
-from yehu_server.control.query import LISTENABLE, Told
-from yehu_server.control.status import STATUS, Kind
-from yehu_server.control.web import Sources, WebOptions, WebServer
-from yehu_server.control.web_sockets import CommandError
+from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.packets import PacketError, unpack
+from yehu_server.live.osc.status import STATUS, Kind
+from yehu_server.live.web import web_sockets
+from yehu_server.live.web.query import LISTENABLE, Told
+from yehu_server.live.web.server import Sources, WebOptions, WebServer
+from yehu_server.live.web.web_sockets import CommandError
 from yehu_server.params.table import PREFIX, TABLE
 
 HOST = "127.0.0.1"
@@ -108,7 +108,7 @@ class House:
     def __init__(self) -> None:
         self.loop = asyncio.new_event_loop()
         self.defects = Defects()
-        logger = logging.getLogger("yehu_server.control.web")
+        logger = logging.getLogger("yehu_server.live.web.server")
         logger.addHandler(self.defects)
         logger.propagate = False
         self.loop.set_exception_handler(lambda _loop, said: self._defect(said))
@@ -122,7 +122,7 @@ class House:
         self.defects.found.append(said.get("exception") or AssertionError(said["message"]))
 
     async def _set_up(self) -> aiohttp_web.Server:
-        app = aiohttp_web.Application(logger=logging.getLogger("yehu_server.control.web"))
+        app = aiohttp_web.Application(logger=logging.getLogger("yehu_server.live.web.server"))
         app.router.add_route("*", "/{path:.*}", self.web._answer)
         quiet = logging.getLogger("fuzz.quiet")
         quiet.disabled = True

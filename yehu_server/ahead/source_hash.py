@@ -1,0 +1,66 @@
+"""The hash of all that a build is made from, and the section of WebAssembly that has it."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from yehu_server.compile.jit import source_hash
+from yehu_server.util import PACKAGE
+from yehu_server.util.source_key import key_of
+
+
+@cache
+def sources_hash() -> str:
+    """Hash of the sources, calibrations and practice that builds are made from (16 hex digits)."""
+    learnt = [
+        (PACKAGE / "playing" / name).read_text(encoding="utf-8")
+        for name in ("calibrations.json", "practices.json")
+    ]
+    return key_of(sorted(Path(__file__).parent.glob("*.py")), source_hash(), *learnt)
+
+
+NAME = b"yehu"
+PREAMBLE = b"\0asm\1\0\0\0"
+CUSTOM = 0
+
+
+def with_section(module: bytes, text: str) -> bytes:
+    """A module with a custom section that holds a text."""
+    body = bytes((len(NAME),)) + NAME + text.encode()
+    return module + bytes((CUSTOM,)) + _leb128(len(body)) + body
+
+
+def section_of(module: bytes) -> str:
+    """The text of a module's custom section; empty where there is none, or no module."""
+    at = len(PREAMBLE)
+    if not module.startswith(PREAMBLE):
+        return ""
+    found = ""
+    while at < len(module):
+        kind = module[at]
+        size, at = _read_leb128(module, at + 1)
+        body = module[at : at + size]
+        if kind == CUSTOM and body[1 : 1 + len(NAME)] == NAME and body[:1] == bytes((len(NAME),)):
+            found = body[1 + len(NAME) :].decode("utf-8", "replace")
+        at += size
+    return found
+
+
+def _leb128(number: int) -> bytes:
+    digits = bytearray()
+    while number >= 0x80:
+        digits.append(number & 0x7F | 0x80)
+        number >>= 7
+    return bytes((*digits, number))
+
+
+def _read_leb128(data: bytes, at: int) -> tuple[int, int]:
+    number = shift = 0
+    while at < len(data):
+        number |= (data[at] & 0x7F) << shift
+        shift += 7
+        at += 1
+        if data[at - 1] < 0x80:
+            break
+    return number, at

@@ -1,1 +1,0 @@
-"""Measures pitch and level of sounds. Needs numpy only."""

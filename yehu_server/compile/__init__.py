@@ -1,0 +1,1 @@
+"""How hot code is compiled, and where compiled code is kept."""

@@ -1,0 +1,77 @@
+"""Records for code that runs as plain Python (``NUMBA_DISABLE_JIT=1``)."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba import carray as compiled_carray
+from numba import types
+
+from yehu_server.compile.jit import IS_PLAIN, intrinsic
+
+
+class Record(np.record):  # type: ignore[misc]  # NumPy's stubs call it final
+    """A record whose fields are attributes, as they are in compiled code.
+
+    numpy.record prefers its own attributes, such as the transpose ``T``, to fields.
+    """
+
+    def __getattribute__(self, name: str) -> Any:
+        if name in (np.record.__getattribute__(self, "dtype").names or ()):
+            return self[name]
+        return super().__getattribute__(name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self[name] = value
+
+
+def with_attributes(kind: np.dtype[Any]) -> np.dtype[Any]:
+    """Return a record type whose records, and those nested in them, are `Record`."""
+    fields = dict(kind.fields or {})
+    formats = [with_attributes(field) if field.names else field for field, *_ in fields.values()]
+    spec: Any = {
+        "names": list(fields),
+        "formats": formats,
+        "offsets": [offset for _, offset, *_ in fields.values()],
+        "itemsize": kind.itemsize,
+    }
+    return np.dtype((Record, np.dtype(spec)))
+
+
+if IS_PLAIN:
+    np.seterr(over="ignore")  # integers wrap around, as they do in compiled code
+
+
+@cache
+def _kind(kind: Any) -> Any:
+    kind = np.dtype(kind)
+    return with_attributes(kind) if kind.names else kind
+
+
+def _plain_carray(address: int, shape: tuple[int, ...], kind: Any) -> Any:
+    kind = _kind(kind)
+    room = (ctypes.c_char * (math.prod(shape) * kind.itemsize)).from_address(int(address))
+    return np.frombuffer(room, kind).reshape(shape)
+
+
+# The array of a shape and dtype at an address; nothing is copied.
+carray: Callable[..., Any] = _plain_carray if IS_PLAIN else compiled_carray
+
+
+def _plain_address_of(record: Any) -> int:
+    return int(record.__array_interface__["data"][0])
+
+
+@intrinsic(plain=_plain_address_of)
+def address_of(_context: Any, record: Any) -> Any:
+    """The address of a record, for what is compiled apart; nothing is copied."""
+
+    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return builder.bitcast(arguments[0], context.get_value_type(types.voidptr))
+
+    return types.voidptr(record), generate

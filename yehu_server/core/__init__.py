@@ -1,0 +1,1 @@
+"""All that is compiled: the model, bow and fingers, the player, MIDI, the stage, the callback."""

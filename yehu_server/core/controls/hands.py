@@ -1,0 +1,175 @@
+"""The kernel's controls of bow, fingers and pluck at each sample. Compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from yehu_server.compile.jit import compiled
+from yehu_server.core.controls import drift
+from yehu_server.core.controls.ramps import one_pole, take
+from yehu_server.core.controls.record import FORWARD
+from yehu_server.core.controls.slots import (
+    ASSIST,
+    DEPTH,
+    FINGER_POSITION,
+    FINGER_PRESS,
+    FORCE,
+    NOISE,
+    ONSET,
+    PLUCK,
+    PLUCK_POSITION,
+    POSITION,
+    RATE,
+    ROCK,
+    SHARE,
+    SIDE,
+    SPEED,
+    TREMOLO,
+)
+from yehu_server.core.physics.layout import (
+    CONTROLS_PER_FINGER,
+    F_HAMMER,
+    F_N,
+    F_PLUCK,
+    FINGER_CONTROLS,
+    MAX_FINGERS,
+    TEXTURE,
+    V_B,
+    X_B,
+    X_PLUCK,
+    Y_B,
+)
+
+Array = Any
+
+# A lifted finger waits near the loop, where the strings hardly move: over the middle of a string
+# that swings wide it would be hit. By ear.
+PARK_X = 0.012  # m
+# A fast bow needs a larger share of Schelleng's limit, or notes jump to the octave. Measured from
+# F4 to F6: the least share that holds is 0.35 at 0.12 m/s, 0.5 at 0.2 m/s, 0.75 at 0.3 m/s.
+FAST_SHARE, FAST = 0.6, 0.35  # m/s
+ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
+# In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed.
+TURN = 3.0
+LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
+
+
+@compiled
+def vibrato_at(c: Any, phase: float) -> float:
+    """The value of the vibrato at a phase (turns), -1 to 1, faded in by /vibrato/onset."""
+    come = max(0.0, (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM))
+    return float(come * come * (3.0 - 2.0 * come) * math.sin(2.0 * math.pi * phase))
+
+
+@compiled
+def vibrate(c: Any) -> float:
+    """Advance the vibrato by one sample; its value."""
+    if c.value[DEPTH] == 0.0 and c.value[ROCK] == 0.0:
+        c.vibrato = 0.0
+        return 0.0
+    c.vibrato += c.vibrato_pace * c.value[RATE] / c.second
+    c.vibrato -= math.floor(c.vibrato)
+    return float(c.vibrato_width * vibrato_at(c, c.vibrato))
+
+
+@compiled
+def turn_bow(c: Any) -> float:
+    """Advance the tremolo by one sample; factor of the bow's speed, -1 to 1."""
+    strokes = c.value[TREMOLO]
+    if strokes == 0.0:
+        if c.tremolo == FORWARD:
+            return 1.0
+        strokes = LAST_STROKES
+    before = c.tremolo
+    c.tremolo += 0.5 * strokes / c.second
+    if c.value[TREMOLO] == 0.0 and before < FORWARD <= c.tremolo:
+        c.tremolo = FORWARD
+    c.tremolo -= math.floor(c.tremolo)
+    return turned(c)
+
+
+@compiled
+def turned(c: Any) -> float:
+    """Factor of the bow's speed at this phase of the tremolo, -1 to 1."""
+    return float(max(-1.0, min(1.0, TURN * math.sin(2.0 * math.pi * c.tremolo))))
+
+
+@compiled
+def stop_strings(c: Any, control: Array) -> None:
+    """Write the fingers' controls, with vibrato; follow the sounding length they leave."""
+    rocking = vibrate(c)
+    stretch, harder = 1.0, 1.0
+    if rocking != 0.0:
+        stretch = 2.0 ** (-rocking * c.value[DEPTH] / 1200.0)
+        harder = 1.0 + rocking * c.value[ROCK]
+    stop = 0.0
+    for j in range(MAX_FINGERS):
+        column = FINGER_CONTROLS + CONTROLS_PER_FINGER * j
+        x_f, press = c.value[FINGER_POSITION[j]], c.value[FINGER_PRESS[j]]
+        if press > 0.0:
+            c.finger_up[j] = 0
+            stop = max(stop, x_f)
+            if rocking != 0.0:
+                x_f = c.bridge_x - (c.bridge_x - x_f) * stretch
+                press *= harder
+            if c.drifting != 0:
+                x_f = c.bridge_x - (c.bridge_x - x_f) * c.sounding_drift
+                press *= 1.0 + c.drift[drift.PRESS]
+        else:
+            c.finger_up[j] += 1
+            if c.finger_up[j] >= c.park_after:
+                x_f = PARK_X
+        control[column], control[column + 1] = x_f, press
+    c.sounding_from = one_pole(c.sounding_from, stop, c.follow)
+
+
+@compiled
+def pluck(c: Any) -> float:
+    """Force (N) of the pluck at this sample; it is released once its ramp has ended."""
+    force = c.value[PLUCK]
+    if force != 0.0 and c.remaining[PLUCK] == 0:
+        take(c, PLUCK, 0.0, c.let_go)
+    return float(force)
+
+
+@compiled
+def bow_force(c: Any, string: int, speed: float) -> float:
+    """Bow force (N) on a string at a speed (m/s): assist * share * F_max + (1 - assist) * force.
+
+    Here F_max = 2 Z v_b / (beta (mu_S - mu_C)) is Schelleng's upper limit [Schelleng], and the
+    share is /bow/pressure and a little more for a fast bow.
+    """
+    limit = c.schelleng[string] * abs(speed) / c.value[POSITION]
+    assist = c.value[ASSIST]
+    share = c.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
+    return float(assist * share * limit + (1.0 - assist) * c.value[FORCE])
+
+
+@compiled
+def write_controls(c: Any, control: Array) -> None:
+    """Write the kernel's controls for this sample. Real time: safe.
+
+    Parameters
+    ----------
+    control : ndarray [shape=(columns,)]
+        See ``physics.layout``.
+    """
+    drift.advance(c)
+    stop_strings(c, control)
+    speed, side = c.value[SPEED] * turn_bow(c), c.value[SIDE]
+    beta, firmness = c.value[POSITION], 1.0
+    if c.drifting != 0:
+        speed *= 1.0 + c.drift[drift.SPEED]
+        beta *= c.place_drift
+        firmness += c.drift[drift.FORCE]
+    string = 0 if side >= 0.0 else 1
+    sounding = c.bridge_x - c.sounding_from
+    control[F_N] = side * bow_force(c, string, speed) * firmness
+    c.place += speed / c.second
+    control[Y_B], control[TEXTURE] = c.place, c.value[NOISE]
+    control[V_B] = speed
+    control[X_B] = c.bridge_x - beta * sounding
+    control[F_HAMMER] = 0.0
+    control[F_PLUCK] = pluck(c)
+    control[X_PLUCK] = c.bridge_x - c.value[PLUCK_POSITION] * sounding

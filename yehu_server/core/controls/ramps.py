@@ -1,0 +1,122 @@
+"""Ramps of the engine's parameters, and the gains and tunings that follow them. Compiled.
+
+Its pole is at 1 - a.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from yehu_server.compile.jit import compiled
+from yehu_server.core.controls.slots import (
+    BALANCE,
+    GAIN,
+    HIGHEST,
+    LEVEL,
+    LOSS,
+    LOWEST,
+    SILENCE,
+    SLOTS,
+    TUNING,
+)
+from yehu_server.core.physics.layout import STRINGS
+
+
+def pole_of_time(seconds: float, rate: float) -> float:
+    """Pole of the filter with a time constant (s), at a sample rate (Hz)."""
+    return math.exp(-1.0 / (seconds * rate))
+
+
+def pole_of_cutoff(frequency: float, rate: float) -> float:
+    """Pole of the filter with a cutoff frequency (Hz) far below the sample rate (Hz)."""
+    return math.exp(-2.0 * math.pi * frequency / rate)
+
+
+@compiled
+def one_pole(y: float, x: float, a: float) -> float:
+    """Compute the next output. Real time: safe.
+
+    Parameters
+    ----------
+    y, x : float
+        The last output, and the input.
+    a : float
+        1 less the pole: from 0 (the output is held) to 1 (the output is the input).
+    """
+    return y + a * (x - y)
+
+
+@compiled
+def take(c: Any, index: int, target: float, ramp: int) -> None:
+    """Begin a parameter's ramp to a target, clamped to its range.
+
+    A target that is not a number is ignored. Real time: safe.
+
+    Parameters
+    ----------
+    index : int
+        Slot of the parameter, or SILENCE.
+    ramp : int
+        Length of the ramp (frames).
+    """
+    if index == SILENCE:
+        if c.silence_in == 0:
+            c.silence_in = c.fade
+        return
+    if index < 0 or index >= SLOTS or math.isnan(target):
+        return
+    target = min(max(target, LOWEST[index]), HIGHEST[index])
+    c.target[index] = target
+    c.moving -= 1 if c.remaining[index] > 0 else 0
+    if ramp <= 0:
+        c.value[index] = target
+        c.remaining[index] = 0
+    else:
+        c.slope[index] = (target - c.value[index]) / ramp
+        c.remaining[index] = ramp
+        c.moving += 1
+
+
+@compiled
+def move(c: Any) -> None:
+    """Advance all ramps by one sample; each ends exactly on its target. Real time: safe."""
+    if c.moving == 0:
+        return
+    for index in range(SLOTS):
+        if c.remaining[index] > 0:
+            c.remaining[index] -= 1
+            if c.remaining[index] == 0:
+                c.value[index] = c.target[index]
+                c.moving -= 1
+            else:
+                c.value[index] += c.slope[index]
+
+
+FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
+TO_OUTPUT, TO_BODY, TO_LIMITER = range(3)  # gains that are set in decibels
+DECIBELS = 3
+
+
+@compiled
+def amplitude(c: Any, of: int, decibels: float) -> float:
+    """Convert decibels to an amplitude factor, computed only when they change."""
+    if decibels != c.decibels[of]:
+        c.decibels[of], c.factor[of] = decibels, 10.0 ** (decibels / 20.0)
+    return float(c.factor[of])
+
+
+@compiled
+def level(c: Any) -> float:
+    """Gain from pascals to full scale at this sample."""
+    factor = amplitude(c, TO_OUTPUT, c.value[GAIN] + c.value[BALANCE])
+    return float(c.value[LEVEL] * factor / FULL_SCALE_PRESSURE)
+
+
+@compiled
+def has_new_strings(c: Any) -> bool:
+    """Whether the tuning or loss of a string differs from what the model has."""
+    for i in range(STRINGS):
+        if c.value[TUNING[i]] != c.tuning[i] or c.value[LOSS[i]] != c.loss[i]:
+            return True
+    return False

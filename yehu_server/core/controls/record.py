@@ -1,0 +1,130 @@
+"""The record of the controls: each parameter's value and ramp, and what moves with them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.controls.drift import DRIFTS
+from yehu_server.core.controls.ramps import DECIBELS, pole_of_time
+from yehu_server.core.controls.slots import (
+    FINGER_POSITION,
+    FINGER_PRESS,
+    LOSS,
+    PLUCK,
+    SLOTS,
+    TUNING,
+)
+from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.params.table import ENGINE
+
+PARK_AFTER_S = 0.04  # a finger waits so long where it was lifted
+LET_GO_S = 0.3e-3  # time in which a plucked string slips off the fingertip
+FOLLOW_S = 0.01  # time constant with which the bow follows the sounding length
+FADE_S = 0.005
+CHUNK = 64  # most frames whose controls are computed before the kernel computes them
+FORWARD = 0.25  # phase of the tremolo (turns) at which the bow has its own direction
+
+CONTROLS = np.dtype(
+    [
+        ("frame", np.int64),  # of the next sample
+        ("value", np.float64, SLOTS),
+        ("target", np.float64, SLOTS),
+        ("slope", np.float64, SLOTS),
+        ("remaining", np.int64, SLOTS),
+        ("moving", np.int64),  # number of parameters on a ramp
+        ("decibels", np.float64, DECIBELS),  # the gains, and their amplitude factors
+        ("factor", np.float64, DECIBELS),
+        # of each string as calibrated (N, 1/s, m^2/s); its tuning (cents) and loss now
+        ("tension", np.float64, STRINGS),
+        ("sigma_0", np.float64, STRINGS),
+        ("sigma_1", np.float64, STRINGS),
+        ("tuning", np.float64, STRINGS),
+        ("loss", np.float64, STRINGS),
+        ("place", np.float64),  # on the hair, of the string at rest (m)
+        # The hands' drift, its change in a sample, whether there is any, and what follows of it:
+        # factors on the sounding length and on the bow's distance from the bridge.
+        ("drift", np.float64, DRIFTS),
+        ("drift_slope", np.float64, DRIFTS),
+        ("drifting", np.int64),
+        ("sounding_drift", np.float64),
+        ("place_drift", np.float64),
+        ("sounding_from", np.float64),  # m; end of the sounding length, from the loop
+        ("finger_up", np.int64, MAX_FINGERS),  # frames since each finger was lifted
+        ("second", np.float64),  # in frames: the sample rate
+        ("fade", np.int64),  # length of a fade to silence (frames)
+        ("vibrato_pace", np.float64),  # of this turn of the vibrato: factors on rate and depth
+        ("vibrato_width", np.float64),
+        ("vibrato", np.float64),  # phases of vibrato and tremolo (turns)
+        ("tremolo", np.float64),
+        ("follow", np.float64),
+        ("park_after", np.int64),
+        ("bridge_x", np.float64),
+        # 2 Z / (mu_S - mu_C) of each string; times v_b / beta it is Schelleng's upper limit.
+        ("schelleng", np.float64, STRINGS),
+        ("let_go", np.int64),  # frames
+        ("silence_in", np.int64),  # frames until the model is put to rest; 0: not to be
+    ],
+    align=True,
+)
+
+
+def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, float]) -> Any:
+    """Prepare the record.
+
+    Parameters
+    ----------
+    rate : float, Hz
+    values : mapping
+        The value of every parameter, by address.
+
+    Returns
+    -------
+    ndarray [shape=(1,), dtype=CONTROLS]
+    """
+    controls = np.zeros(1, CONTROLS)
+    controls["value"][0] = controls["target"][0] = [values[param.address] for param in ENGINE]
+    controls["factor"] = 1.0  # of 0 dB
+    controls["follow"] = 1.0 - pole_of_time(FOLLOW_S, rate)
+    controls["park_after"] = round(PARK_AFTER_S * rate)
+    controls["finger_up"] = controls["park_after"]
+    controls["second"] = rate
+    controls["fade"] = max(1, round(FADE_S * rate))
+    controls["let_go"] = max(1, round(LET_GO_S * rate))
+    steady(controls)
+    controls["bridge_x"] = quantities.bridge_x
+    grip = quantities.bow.mu_S - quantities.bow.mu_C
+    for i, string in enumerate(quantities.strings):
+        impedance = math.sqrt(string.T * string.rho_A)
+        controls["schelleng"][0, i] = 2.0 * impedance / max(grip, 1e-3)
+        controls["tension"][0, i] = string.T
+        controls["sigma_0"][0, i], controls["sigma_1"][0, i] = string.sigma_0, string.sigma_1
+    controls["tuning"] = controls["value"][:, TUNING]
+    controls["loss"] = controls["value"][:, LOSS]
+    return controls
+
+
+def settle(controls: Any) -> None:
+    """Move all parameters of a record of dtype CONTROLS to their targets, in place."""
+    controls["target"][PLUCK] = 0.0
+    controls["value"] = controls["target"]
+    controls["remaining"] = 0
+    controls["moving"] = 0
+    controls["silence_in"] = 0
+    is_down = controls["value"][FINGER_PRESS] > 0.0
+    controls["finger_up"] = np.where(is_down, 0, controls["park_after"])
+    controls["sounding_from"] = controls["value"][FINGER_POSITION][is_down].max(initial=0.0)
+    steady(controls)
+
+
+def steady(controls: Any) -> None:
+    """Let nothing drift or swing any more in a record of dtype CONTROLS, in place."""
+    controls["tremolo"] = FORWARD
+    controls["vibrato"], controls["place"] = 0.0, 0.0
+    controls["vibrato_pace"] = controls["vibrato_width"] = 1.0
+    controls["drift"], controls["drift_slope"], controls["drifting"] = 0.0, 0.0, 0
+    controls["sounding_drift"] = controls["place_drift"] = 1.0

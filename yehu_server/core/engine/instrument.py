@@ -1,0 +1,371 @@
+"""The instrument for Python: post wishes, read meters; alone, compute samples without a room."""
+
+from __future__ import annotations
+
+from ctypes import addressof, c_float
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.controls.record import prepare_controls, settle
+from yehu_server.core.controls.slots import SILENCE
+from yehu_server.core.engine import native
+from yehu_server.core.engine.intake import take_in
+from yehu_server.core.engine.mailbox import LIVE_BUDGET, RING, SERVER, mend
+from yehu_server.core.engine.output import prepare_output, rest_output
+from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.engine.telemetry import METERS
+from yehu_server.core.midi.record import IN_PORT, let_go, prepare_midi
+from yehu_server.core.midi.tables import plain_tables
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.bow import friction_bound
+from yehu_server.core.physics.grid import check_rate
+from yehu_server.core.physics.layout import MAX_FINGERS, new_record
+from yehu_server.core.player.record import end_all, prepare_player
+from yehu_server.core.player.wishes import RAMP, WISH
+from yehu_server.core.stage.record import STAGE, prepare_stage, rest_stage
+from yehu_server.core.stage.seat import prepare_seat, rest_seat
+from yehu_server.errors import ParameterError
+from yehu_server.params.table import SLOT, TABLE, find
+
+Array = Any
+
+
+class Instrument:
+    """A yehu and its player.
+
+    One thread at a time may post wishes (`post`, `write`, `silence`), and another may compute
+    samples, also in another process that shares `memory`: `process` those of an instrument
+    alone, without a room; ``ensemble.Ensemble`` those of one or more on a stage.
+
+    Parameters
+    ----------
+    spec : InstrumentSpec
+        What it is, and starts from.
+    channels : int
+        Number of channels that `process` writes.
+    memory : buffer of RIG_BYTES, optional
+        Holds all state of an instrument of an ensemble.
+    is_live : bool
+        Whether the number of wishes that one block takes is limited.
+
+    Raises
+    ------
+    ParameterError
+        Where rate and quantities make no stable model.
+    """
+
+    def __init__(
+        self,
+        spec: InstrumentSpec,
+        *,
+        channels: int = 1,
+        memory: Any = None,
+        is_live: bool = False,
+    ) -> None:
+        check_rate(spec.rate)
+        self.spec, self.rate, self.seed = spec, spec.rate, spec.seed
+        self.is_live = is_live
+        self._stage = None
+        if memory is None:
+            memory = new_memory(1)
+            self._stage = np.frombuffer(memory, STAGE, offset=RIG_BYTES, count=1)
+        self._memory = memory
+        self._rig = np.frombuffer(memory, RIG, count=1)
+        self._address = self._rig.ctypes.data
+        self._clock = self._address
+        self._rig["model"] = kernel.prepare(spec.quantities, spec.rate, MAX_FINGERS)
+        self._rig["mail"]["budget"] = LIVE_BUDGET if is_live else RING
+        if self._stage is not None:
+            self._rig["parts"][0, 0] = 1
+            prepare_stage(self._stage[0], spec.rate, channels, has_room=False)
+        self.reset()
+
+    def reset(self) -> None:
+        """Put model and parameters back to their start; drop all wishes.
+
+        Nothing may post or compute meanwhile.
+        """
+        rig, spec, values = self._rig, self.spec, self.spec.values
+        rig["state"] = kernel.at_rest(rig["model"])
+        rig["controls"] = prepare_controls(spec.quantities, self.rate, values)
+        rig["player"] = prepare_player(
+            spec.quantities,
+            self.rate,
+            values,
+            calibration=spec.calibration,
+            open_strings=spec.open_strings,
+            bowing=spec.bowing,
+            seed=spec.seed,
+        )
+        rig["heard"] = 0.0
+        prepare_output(rig["output"], self.rate)
+        prepare_seat(rig["seat"][0], self.rate, spec.body)
+        if self._stage is not None:
+            rest_stage(self._stage[0])
+        mail = rig["mail"]
+        kept = mail["budget"].copy(), mail["reporting"].copy(), mail["delay"].copy()
+        mail[:] = np.zeros(1, mail.dtype)
+        mail["budget"], mail["reporting"], mail["delay"] = kept
+        self.play_alone()
+        rig["meters"] = np.zeros(1, METERS)
+        rig["meters"]["rate"], rig["meters"]["pitch"] = self.rate, np.nan
+        rig["meters"]["loop"]["ns_per_frame"] = 1e9 / self.rate
+        rig["published"] = rig["meters"]
+        self._meters = rig["meters"].copy()  # the last consistent copy
+        rig["taped"], rig["version"] = 0, 0
+        self.rests: list[tuple[int, int]] = []
+
+    def play_alone(self) -> None:
+        """Play a part alone, which no tables describe: all that is posted is for this instrument.
+
+        Nothing may post or compute meanwhile.
+        """
+        self.lead(plain_tables())
+
+    def lead(self, tables: Array, people: int = 1) -> None:
+        """Play a part as the first of some instruments, the next ones on the stage.
+
+        Nothing may post or compute meanwhile.
+
+        Parameters
+        ----------
+        tables : ndarray [shape=(1,), dtype=``midi.tables.TABLES``]
+        people : int
+            Number of instruments; 0 where another one is the first of this one's part.
+        """
+        defaults = {param.address: param.default for param in TABLE}
+        defaults["/engine/seed"] = find("/engine/seed").accept(self.seed)
+        is_mpe = bool(tables["mpe"][0])
+        prepare_midi(self._rig["midi"], self.rate, defaults, people=people, mpe=is_mpe)
+        self._rig["tables"][0, 0] = tables[0]
+
+    def furnish(self, tables: Array) -> None:
+        """Use other tables from the beginning on, in place of those of `lead`.
+
+        Nothing may compute meanwhile.
+        """
+        midi = self._rig["midi"][0]
+        self._rig["tables"][0, midi["tables"]] = tables[0]
+        midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
+
+    @property
+    def midi(self) -> Any:
+        """The record of its part, of dtype ``midi.record.MIDI``, if it leads one."""
+        return self._rig["midi"][0]
+
+    @property
+    def tables(self) -> Any:
+        """The tables of its part: ndarray [shape=(SLOTS,), dtype=``midi.tables.TABLES``]."""
+        return self._rig["tables"][0]
+
+    @property
+    def address(self) -> int:
+        """Address of the rig: the `userdata` of ``engine.native.callback``."""
+        return int(self._address)
+
+    @property
+    def memory(self) -> Any:
+        """The buffer that holds all its state."""
+        return self._memory
+
+    @property
+    def frame(self) -> int:
+        """Frame number of the next sample."""
+        return int(self._rig["controls"]["frame"][0])
+
+    @property
+    def friction_bound(self) -> float:
+        """See ``physics.bow.friction_bound``."""
+        return friction_bound(self._rig["model"][0])
+
+    @property
+    def unconverged_solves(self) -> int:
+        """Number of friction solves that did not converge, since the start."""
+        return int(self._rig["state"]["unconverged"][0])
+
+    @property
+    def lost_states(self) -> int:
+        """Number of times that the model's state was lost and put back to rest, since the start.
+
+        Samples of output that were not numbers are counted too.
+        """
+        return int(self._rig["state"]["lost"][0] + self._rig["output"]["unsound"][0])
+
+    @property
+    def dropped_events(self) -> int:
+        """Number of events dropped because a ring was full, since the start."""
+        return int(self._rig["mail"]["dropped"][0, :, 0].sum())
+
+    @property
+    def delay(self) -> int:
+        """Frames from the arrival of a MIDI message to its sound."""
+        return int(self._rig["mail"]["delay"][0, 0])
+
+    @delay.setter
+    def delay(self, frames: int) -> None:
+        self._rig["mail"]["delay"][0, 0] = frames
+
+    def frames(self, ms: float) -> int:
+        """Convert milliseconds to frames."""
+        return round(ms * 1e-3 * self.rate)
+
+    def write(
+        self, address: str, value: float, *, frame: int | None = None, ramp_ms: float | None = None
+    ) -> float:
+        """Move a parameter of the engine to a value, clamped to its range; return that value.
+
+        Parameters
+        ----------
+        frame : int
+            When to begin; by default now. Wishes of one frame are fulfilled in the order posted.
+        ramp_ms : float
+            Length of the ramp; by default the parameter's own smoothing.
+
+        Raises
+        ------
+        ParameterError
+            Where the address is none of the engine's, or the value is not finite.
+        """
+        param = find(address)
+        accepted = param.accept(value)
+        slot = SLOT.get(address)
+        if slot is None:
+            raise ParameterError(f"{address} is not held by the engine")
+        ramp = self.frames(param.smooth_ms if ramp_ms is None else ramp_ms)
+        self.post(RAMP, frame=frame, index=slot, value=accepted, other=ramp)
+        return accepted
+
+    def silence(self, *, frame: int | None = None) -> None:
+        """Fade the sound out within 5 ms, then put the model to rest."""
+        self.post(RAMP, frame=frame, index=SILENCE)
+
+    def post(
+        self,
+        kind: int,
+        *,
+        frame: int | None = None,
+        index: int = 0,
+        value: float = 0.0,
+        other: float = 0.0,
+    ) -> bool:
+        """Post an event (``midi.events``), by default for now; return whether there was room."""
+        frame = self.frame if frame is None else frame
+        return bool(native.post.call(self._address, frame, kind, index, value, other))
+
+    def take_in(self) -> None:
+        """Interpret what is posted for now, so that the record of the part has it.
+
+        Of live instruments the callback alone does.
+        """
+        if not self.is_live:
+            take_in.call(self._clock, self.frame + 1)
+
+    @property
+    def posted(self) -> int:
+        """Number of events posted since the start."""
+        return int(self._rig["mail"]["posted"][0, SERVER, 0])
+
+    def target(self, address: str) -> float:
+        """The value that a parameter of the engine has, or moves to."""
+        return float(self._rig["controls"]["target"][0, SLOT[address]])
+
+    def process(self, out: Array) -> None:
+        """Compute the next samples of an instrument alone, without a room (full scale is 1).
+
+        Parameters
+        ----------
+        out : ndarray [shape=(frames,) or (frames, channels), float32, contiguous]
+
+        Raises
+        ------
+        TypeError
+            Where `out` is not contiguous, or the instrument is one of an ensemble.
+        """
+        if self._stage is None:
+            raise TypeError("an instrument of an ensemble is played by the ensemble")
+        if len(out):
+            address = addressof(c_float.from_buffer(out))  # four times as fast as `out.ctypes`
+            native.callback.call(None, address, len(out), None, 0, self._address)
+
+    def come_to_rest(self) -> None:
+        """Put the model to rest at once, and move all parameters to their targets.
+
+        Nothing may compute meanwhile.
+        """
+        rig = self._rig
+        kernel.come_to_rest(rig["model"][0], rig["state"][0])
+        settle(rig["controls"][0])
+        rest_output(rig["output"])
+        rest_seat(rig["seat"][0])
+        if self._stage is not None:
+            rest_stage(self._stage[0])
+
+    def bow_by_tables(self) -> None:
+        """Let the player's right hand do nothing about what it hears, until a reset."""
+        self._rig["player"]["helps_bow"] = 0
+
+    def heard(self) -> tuple[float, float, float]:
+        """What the player last heard: certainty, slips in a period, error (cents)."""
+        ear = self._rig["player"]["ear"][0]
+        return float(ear["certainty"]), float(ear["slips"]), float(ear["error"])
+
+    def end_all(self) -> None:
+        """End all notes at once, then as `come_to_rest`."""
+        end_all(self._rig["player"][0], self._rig["controls"][0])
+        let_go(self._rig["midi"][0])
+        self.come_to_rest()
+
+    def is_broken(self) -> bool:
+        """Whether a process was killed while it computed a block with this instrument first."""
+        return bool(self._rig["meters"]["running"][0])
+
+    def mend(self) -> None:
+        """Put meters and waiting wishes in order again, after a process was killed."""
+        self._rig["version"][0, 0] += self._rig["version"][0, 0] % 2
+        self._rig["meters"]["running"] = 0
+        mend(self._rig["events"][0], self._rig["mail"][0], "coming")
+        mend(self._rig["heap"][0], self._rig["mail"][0], "waiting")
+
+    def skip_to(self, frame: int) -> None:
+        """Go on at a later frame. Nothing may compute meanwhile."""
+        self._rig["controls"]["frame"] = frame
+
+    def tape_up_to(self, frame: int) -> int:
+        """Tell that all is on the tape up to a frame; return up to which it was."""
+        was = int(self._rig["taped"][0, 0])
+        self._rig["taped"][0, 0] = frame
+        return was
+
+    def meters(self) -> Any:
+        """The last published meters: a record of dtype ``telemetry.METERS``."""
+        meters = np.zeros(1, METERS)
+        for _ in range(native.TRIES):
+            if native.read_meters.call(self._address, meters.ctypes.data):
+                self._meters = meters
+                break
+        return self._meters[0]
+
+    def frame_at(self, time_ns: int) -> float:
+        """The frame that is played at a time of ``time.monotonic_ns()``."""
+        return float(native.frame_at.call(self._clock, time_ns))
+
+    def follow_clock(self, address: int) -> None:
+        """Take the time of frames from the first instrument of an ensemble, at an address."""
+        self._clock = address
+
+    def report_wishes(self) -> None:
+        """Report fulfilled wishes from now on, for `applied_wishes`."""
+        self._rig["mail"]["reporting"] = 1
+
+    def applied_wishes(self) -> Array:
+        """The wishes fulfilled since the last call: ndarray [shape=(wishes,), dtype=WISH]."""
+        wishes = np.zeros(RING, WISH)
+        count = native.read_reports.call(self._address, wishes.ctypes.data, RING)
+        return wishes[:count].copy()
+
+
+def new_memory(parts: int) -> Any:
+    """Memory for some instruments and their stage, all zeros, at the beginning of a cache line."""
+    return new_record(np.dtype((np.void, memory_bytes(parts)))).view(np.uint8)

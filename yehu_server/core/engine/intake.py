@@ -1,0 +1,203 @@
+"""Takes in what parts are sent: from rings to a heap of events, and what they come to. Compiled.
+
+The events of a part lie with its first instrument. Each is interpreted once (``midi.interpret``),
+before the frames that it is for are computed; its wishes go to the heaps of those who play.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_to_share, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.engine.atomics import at, load_acquire, store_release
+from yehu_server.core.engine.mailbox import (
+    HEAP,
+    MAIL,
+    MIDI_INPUTS,
+    ROOM,
+    WAITING,
+    WRITERS,
+    pop,
+    push,
+)
+from yehu_server.core.engine.rig import (
+    CONTROLS_AT,
+    CURSOR_BYTES,
+    DRAINED_AT,
+    EVENTS_AT,
+    HEAP_AT,
+    MAIL_AT,
+    METERS_AT,
+    MIDI_AT,
+    PARTS_AT,
+    POSTED_AT,
+    RIG_BYTES,
+    RING_SIZES,
+    RINGS_AT,
+    TABLES_AT,
+)
+from yehu_server.core.engine.telemetry import METERS
+from yehu_server.core.midi.events import FINGER_ON, NOTE_OFF, NOTE_ON, RELEASE_ALL
+from yehu_server.core.midi.interpret import interpret
+from yehu_server.core.midi.keys import find_key
+from yehu_server.core.midi.record import MIDI, NONE
+from yehu_server.core.player.wishes import BEGIN, END, WISH
+
+NOTHING = -1  # the kind of an event that was cancelled
+
+interpret_event = interpret.symbol
+
+
+@native("int64(voidptr, int64)", calls=[interpret])
+def take_in(rigs: Any, end: int) -> int:
+    """Interpret what all parts were sent for frames before `end`.
+
+    Returns the frame before which that is done: sooner than `end`, where wishes find no room until
+    others are fulfilled.
+
+    Parameters
+    ----------
+    rigs : pointer to records of dtype RIG
+
+    Real time: safe.
+    """
+    now = carray(at(rigs, CONTROLS_AT), (1,), CONTROLS)[0].frame
+    done = end
+    for part in range(carray(at(rigs, PARTS_AT), (1,), np.int64)[0]):
+        if carray(at(rigs, part * RIG_BYTES + MIDI_AT), (1,), MIDI)[0].people > 0:
+            done = min(done, take_in_part(rigs, part, now, end))
+    return int(max(done, now + 1))
+
+
+@compiled_to_share
+def take_in_part(rigs: Any, part: int, now: int, end: int) -> int:
+    """Interpret what the part was sent whose first instrument has this number; see `take_in`."""
+    rig = at(rigs, part * RIG_BYTES)
+    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    m = carray(at(rig, MIDI_AT), (1,), MIDI)[0]
+    events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
+    drain(rigs, rig, mail, now)
+    while mail.coming > 0 and events[0].wish.frame < end:
+        if not have_room(rigs, part, m.people):
+            return int(max(events[0].wish.frame, now))
+        is_full = mail.coming == HEAP
+        event, order = events[0].wish, events[0].order
+        frame, kind, index = max(event.frame, now), event.kind, event.index
+        value, other = event.value, event.other
+        pop(events, mail.coming)
+        mail.coming -= 1
+        if kind in (NOTE_OFF, END, RELEASE_ALL):
+            cancel(events, mail.coming, m, order, kind, index, value)
+        interpret_event(at(rig, MIDI_AT), at(rig, TABLES_AT), frame, kind, index, value, other)
+        hand_over(rigs, part, m)
+        if is_full:
+            drain(rigs, rig, mail, now)
+    return end
+
+
+@compiled_to_share
+def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
+    """Move posted events to the heap of a part, up to the budget of a callback."""
+    events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
+    for writer in range(WRITERS):
+        size = RING_SIZES[writer]
+        ring = carray(at(rig, RINGS_AT[writer]), (size,), WISH)
+        posted = load_acquire(rig, POSTED_AT + writer * CURSOR_BYTES)
+        drained = mail.drained[writer, 0]
+        last = min(posted, drained + mail.budget)
+        while drained < last and mail.coming < HEAP:
+            event = ring[drained & (size - 1)]
+            frame = event.frame
+            if writer == MIDI_INPUTS:
+                frame = frame_of_arrival(rigs, mail, frame)
+            mail.late[writer] += 1 if frame < now else 0
+            mail.most_late[writer] = max(mail.most_late[writer], now - frame)
+            push(
+                events,
+                mail.coming,
+                frame,
+                event.kind,
+                event.index,
+                event.value,
+                event.other,
+                mail.ordered,
+            )
+            mail.coming += 1
+            mail.ordered += 1
+            drained += 1
+        store_release(rig, DRAINED_AT + writer * CURSOR_BYTES, drained)
+
+
+@compiled_to_share
+def frame_of_arrival(rigs: Any, mail: Any, time_ns: int) -> int:
+    """The frame at which a message sounds that arrived at a time of the monotonic clock.
+
+    Small corrections of the clock must not swap messages that arrive close together.
+    """
+    t = carray(at(rigs, METERS_AT), (1,), METERS)[0]
+    elapsed = (time_ns - t.loop.due_ns) / t.loop.ns_per_frame
+    frame = t.frame + math.floor(elapsed) + mail.delay[0]
+    if mail.arrived - frame > t.rate:  # no small correction
+        mail.arrived = frame
+    mail.arrived = max(mail.arrived, frame)
+    return int(mail.arrived)
+
+
+@compiled_to_share
+def have_room(rigs: Any, part: int, people: int) -> bool:
+    """Whether all who play a part have room for the wishes of another event."""
+    for who in range(people):
+        rig = at(rigs, (part + who) * RIG_BYTES)
+        if HEAP - carray(at(rig, MAIL_AT), (1,), MAIL)[0].waiting < ROOM:
+            return False
+    return True
+
+
+@compiled_to_share
+def hand_over(rigs: Any, part: int, m: Any) -> None:
+    """Give those who play a part the wishes that an event came to."""
+    for n in range(m.wishes):
+        rig = at(rigs, (part + m.out_person[n]) * RIG_BYTES)
+        mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+        if mail.waiting == HEAP:
+            mail.dropped[0, 0] += 1
+            continue
+        heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
+        push(
+            heap,
+            mail.waiting,
+            m.out_frame[n],
+            m.out_kind[n],
+            m.out_index[n],
+            m.out_value[n],
+            m.out_other[n],
+            mail.ordered,
+        )
+        mail.waiting += 1
+        mail.ordered += 1
+
+
+@compiled_to_share
+def cancel(
+    events: Any, coming: int, m: Any, order: int, kind: int, channel: int, key: float
+) -> None:
+    """Let a note not begin that was asked for ahead, where its end comes first.
+
+    Parameters
+    ----------
+    order : int
+        Of the event that ends it: what was posted later stays.
+    """
+    if kind != RELEASE_ALL and find_key(m, channel, key) != NONE:
+        return
+    for n in range(coming):
+        event = events[n].wish
+        if event.kind not in (NOTE_ON, FINGER_ON, BEGIN) or events[n].order > order:
+            continue
+        if kind == RELEASE_ALL or (event.index == channel and event.value == key):
+            event.kind = NOTHING

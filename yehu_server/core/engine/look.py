@@ -1,0 +1,131 @@
+"""A look at the instrument, for pictures: strings, bow, fingers, what the player hears. Compiled.
+
+It only reads. Beside a callback on another thread a look may be blurred: half of it a block older.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import native
+from yehu_server.compile.memory import carray
+from yehu_server.core.controls import drift
+from yehu_server.core.controls.hands import bow_force, turned
+from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.controls.slots import (
+    FINGER_POSITION,
+    FINGER_PRESS,
+    POSITION,
+    SIDE,
+    SLOTS,
+    SPEED,
+)
+from yehu_server.core.engine.atomics import at
+from yehu_server.core.engine.rig import (
+    CONTROLS_AT,
+    METERS_AT,
+    MODEL_AT,
+    PARTS_AT,
+    PLAYER_AT,
+    RIG_BYTES,
+    STATE_AT,
+)
+from yehu_server.core.engine.telemetry import METERS, SHAPE_POINTS, displacement
+from yehu_server.core.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
+from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
+from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.rows import BOW_LENGTH
+from yehu_server.core.stage.record import STAGE
+
+NO_STRING = -1
+LEAST_PRESS = 1e-6  # N; below, a finger is lifted
+
+LOOK = np.dtype(
+    [
+        ("frame", np.float64),  # of the next sample
+        ("rate", np.float64),  # Hz
+        ("pitch", np.float64),  # that is played (fractional MIDI note); NaN in silence
+        ("frequency", np.float64),  # of it (Hz); NaN in silence
+        # What the player hears: see ``player.ear`` and ``player.bowing_by_ear``.
+        ("certainty", np.float64),
+        ("error", np.float64),  # cents; positive where the string is sharp
+        ("slips", np.float64),  # in a period
+        # Of the mix, in the last sixtieth of a second; of this instrument's own sound, before the
+        # stage, where it is not the first of several.
+        ("peak", np.float64),
+        ("rms", np.float64),
+        ("length", np.float64),  # m; of the strings, from the loop to the bridge
+        ("string", np.float64),  # that is bowed, or NO_STRING
+        ("speed", np.float64),  # of the bow (m/s), with its direction
+        ("force", np.float64),  # of the bow (N)
+        ("beta", np.float64),  # of the bow
+        ("bow_x", np.float64),  # m from the loop
+        ("hair_place", np.float64),  # m from the frog: where the string is on the hair
+        ("hair_length", np.float64),  # m; 0: the hair has no ends
+        ("finger_x", np.float64, MAX_FINGERS),  # m from the loop
+        ("finger_press", np.float64, MAX_FINGERS),  # N; 0: lifted
+        # Schelleng's limits at a speed of 1 m/s and beta 1, for the string and pitch played: both
+        # grow with the speed; divide the upper one by beta, the lower by its square.
+        ("upper", np.float64),  # N
+        ("lower", np.float64),
+        ("targets", np.float64, SLOTS),  # values that the engine's parameters have or move to
+        ("shapes", np.float64, (STRINGS, SHAPE_POINTS)),  # m; displacement, from loop to bridge
+    ]
+)
+
+
+@native("void(voidptr, voidptr)")
+def look(rig: Any, into: Any) -> None:
+    """Look at an instrument.
+
+    Parameters
+    ----------
+    rig : pointer to a record of dtype ``native.RIG``
+    into : pointer to a record of dtype LOOK
+
+    Real time: safe.
+    """
+    m = carray(at(rig, MODEL_AT), (1,), MODEL)[0]
+    s = carray(at(rig, STATE_AT), (1,), STATE)[0].motion
+    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
+    p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
+    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    seen = carray(into, (1,), LOOK)[0]
+    seen.frame, seen.rate = c.frame, m.rate
+    seen.pitch = told_pitch(p)
+    seen.frequency = p.a4 * math.exp2((seen.pitch - 69.0) / 12.0)
+    seen.certainty, seen.error, seen.slips = p.ear.certainty, p.ear.error, p.ear.slips
+    parts = carray(at(rig, PARTS_AT), (1,), np.int64)[0]
+    if parts > 0:
+        mix = carray(at(rig, parts * RIG_BYTES), (1,), STAGE)[0]
+        seen.peak, seen.rms = mix.peak, mix.rms
+    else:
+        seen.peak, seen.rms = t.peak, t.rms
+    seen.length = m.bridge_x
+    side = c.value[SIDE]
+    string = 0 if side >= 0.0 else 1
+    seen.string = string if side != 0.0 else NO_STRING
+    seen.speed = c.value[SPEED] * turned(c) * (1.0 + c.drift[drift.SPEED])
+    seen.force = abs(side) * bow_force(c, string, seen.speed) * (1.0 + c.drift[drift.FORCE])
+    seen.beta = c.value[POSITION] * c.place_drift
+    seen.bow_x = c.bridge_x - seen.beta * (c.bridge_x - c.sounding_from)
+    seen.hair_place, seen.hair_length = c.place, p.value[BOW_LENGTH]
+    for j in range(MAX_FINGERS):
+        seen.finger_x[j] = c.value[FINGER_POSITION[j]]
+        press = c.value[FINGER_PRESS[j]]
+        seen.finger_press[j] = press if press > LEAST_PRESS else 0.0
+    seen.upper = seen.lower = 0.0
+    if seen.frequency > 0.0:  # not NaN
+        Z, grip = math.sqrt(m.T[string] * m.rho_A[string]), m.mu_S - m.mu_C
+        seen.upper = upper_limit(Z, grip, 1.0, 1.0)
+        seen.lower = lower_limit(Z, grip, bridge_resistance(m, seen.frequency), 1.0, 1.0)
+    for slot in range(SLOTS):
+        seen.targets[slot] = c.target[slot]
+    for i in range(STRINGS):
+        for point in range(SHAPE_POINTS):
+            place = point * m.bridge_x / m.h[i] / (SHAPE_POINTS - 1)
+            seen.shapes[i, point] = displacement(s, i, place)

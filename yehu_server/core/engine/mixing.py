@@ -1,0 +1,271 @@
+"""The mix: what all instruments sounded, on the stage, to left and right, limited. Compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled, compiled_to_share, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.controls.record import CHUNK
+from yehu_server.core.controls.slots import (
+    DAMPING_NOW,
+    DECAY_NOW,
+    DISTANCE_NOW,
+    LEVEL_NOW,
+    PAN_NOW,
+    PLACED,
+    SIZE_NOW,
+    WIDTH_NOW,
+)
+from yehu_server.core.engine.atomics import at
+from yehu_server.core.engine.output import OUTPUT, STILL
+from yehu_server.core.engine.processor import flush_denormals, restore_denormals
+from yehu_server.core.engine.rig import METERS_AT, OUTPUT_AT, PARTS_AT, RIG_BYTES, SEAT_AT
+from yehu_server.core.engine.sounding import TOLD
+from yehu_server.core.engine.telemetry import METERS, WINDOW_S
+from yehu_server.core.stage import room, seat
+from yehu_server.core.stage.directivity import aside
+from yehu_server.core.stage.geometry import EARS
+from yehu_server.core.stage.record import (
+    BUSES,
+    DIRECT,
+    EARLY,
+    EVERY,
+    FALLEN,
+    SEND,
+    STAGE,
+    TAPE,
+    TAPE_AT,
+)
+from yehu_server.core.stage.room import furnish, reverberate
+from yehu_server.core.stage.seat import LEFT, RIGHT, SEAT, fall_silent, reflect, sit, stand_in
+
+
+@compiled
+def limit(x: float, soft: float) -> float:
+    """Soft clipping: above `soft` (0 to 1) peaks are bent, so that none exceeds full scale.
+
+    Odd, memoryless, and smooth where `soft` is below 1. Real time: safe.
+    """
+    size = abs(x)
+    if size <= soft:
+        return x
+    room = 1.0 - soft
+    bent = 1.0 if room <= 0.0 else soft + room * math.tanh((size - soft) / room)
+    return bent if x > 0.0 else -bent
+
+
+Array = Any
+
+# A sample beyond these is an error: rounding takes the limiter's hardly beyond 1.
+LARGEST, LARGEST_LIMITED = 1e14, 2.0
+
+
+@native("void(voidptr, int64, int64, voidptr, voidptr, int64)")
+def mix(rigs: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int) -> None:
+    """Mix what all instruments sounded, at most CHUNK frames.
+
+    Parameters
+    ----------
+    rigs : pointer to records of dtype RIG, and one of dtype STAGE after them
+    first : int
+        Number of the first frame.
+    out : pointer to float32 [shape=(frames, channels)]
+        Written, in full scale: left and right in turn; a single channel has the mean of both.
+    stems : pointer to float64 [shape=(frames, parts + 1, EARS)]
+        Written if `has_stems`: what each instrument, and at last the room, gives to the mix.
+
+    Real time: safe; no allocation, no exception, every sample finite.
+    """
+    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
+    stage = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0]
+    for n in range(frames):
+        for bus in range(BUSES):
+            stage.bus[n, bus] = 0.0
+    for part in range(parts):
+        take_up(rigs, part, first, frames)
+        for n in range(frames):
+            left, right = stage.own[n, LEFT], stage.own[n, RIGHT]
+            stage.bus[n, DIRECT + LEFT] += left
+            stage.bus[n, DIRECT + RIGHT] += right
+            if has_stems != 0:
+                own = carray(stems, (frames, parts + 1, EARS), np.float64)
+                own[n, part, LEFT], own[n, part, RIGHT] = left, right
+    for n in range(frames):
+        add_room(rigs, stage, first + n, n)
+        left, right = finish(rigs, stage, first + n, n, out)
+        if has_stems != 0:
+            own = carray(stems, (frames, parts + 1, EARS), np.float64)
+            own[n, parts, LEFT] = stage.own[n, LEFT]
+            own[n, parts, RIGHT] = stage.own[n, RIGHT]
+            for part in range(parts + 1):
+                own[n, part, LEFT] *= left
+                own[n, part, RIGHT] *= right
+
+
+@compiled_to_share
+def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
+    """Place what one instrument sounded: its direct sound (``own``), and what goes to the room."""
+    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
+    stage = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0]
+    shared = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0]
+    rig = at(rigs, part * RIG_BYTES)
+    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    s = carray(at(rig, SEAT_AT), (1,), SEAT)[0]
+    for n in range(frames):
+        told, asked = o.placed[n], shared.placed[n]
+        is_time = (first + n) % EVERY == 0
+        if is_time or math.isnan(s.direct[LEFT]):  # or has begun anew, wherever the block begins
+            sit(s, told[DISTANCE_NOW], told[PAN_NOW], EVERY)
+        if is_time and stage.has_room != 0:
+            stand_in(
+                s,
+                asked[SIZE_NOW],
+                asked[DECAY_NOW],
+                asked[DAMPING_NOW],
+                told[DISTANCE_NOW],
+                told[PAN_NOW],
+            )
+        x = o.dry[n]
+        side = 0.0
+        if stage.has_room != 0:
+            side = told[WIDTH_NOW] * aside(s.sides, x)
+            reflect(s, first + n, x if asked[LEVEL_NOW] > 0.0 else 0.0)
+            stage.bus[n, EARLY + LEFT] += s.early[LEFT]
+            stage.bus[n, EARLY + RIGHT] += s.early[RIGHT]
+        stage.bus[n, SEND + LEFT] += s.send[LEFT] * x
+        stage.bus[n, SEND + RIGHT] += s.send[RIGHT] * x
+        stage.own[n, LEFT] = s.direct[LEFT] * (x + side)
+        stage.own[n, RIGHT] = s.direct[RIGHT] * (x - side)
+        s.direct[LEFT] += s.direct_step[LEFT]
+        s.direct[RIGHT] += s.direct_step[RIGHT]
+        if n == o.fallen:
+            fall_silent(s)
+            stage.bus[n, FALLEN] = 1.0
+
+
+@compiled_to_share
+def add_room(rigs: Any, stage: Any, frame: int, n: int) -> None:
+    """Compute what the room gives to row `n` of the mix (``own``)."""
+    shared = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0]
+    asked, bus = shared.placed[n], stage.bus[n]
+    r = stage.room
+    stage.own[n, LEFT], stage.own[n, RIGHT] = 0.0, 0.0
+    if stage.has_room == 0:
+        return
+    if frame % EVERY == 0:
+        furnish(r, asked[SIZE_NOW], asked[DECAY_NOW], asked[DAMPING_NOW])
+    level = asked[LEVEL_NOW]
+    reverberate(r, frame, level, bus[SEND + LEFT], bus[SEND + RIGHT])
+    early = level * r.open
+    stage.own[n, LEFT] = r.left + early * bus[EARLY + LEFT]
+    stage.own[n, RIGHT] = r.right + early * bus[EARLY + RIGHT]
+    if bus[FALLEN] > 0.0:
+        r.closing = 1
+
+
+@compiled_to_share
+def finish(rigs: Any, stage: Any, frame: int, n: int, out: Any) -> tuple[float, float]:
+    """Limit row `n` of the mix, and put it into the block and onto the tape.
+
+    Returns the factors by which the limiter made both sides smaller.
+    """
+    shared = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0]
+    left = stage.bus[n, DIRECT + LEFT] + stage.own[n, LEFT]
+    right = stage.bus[n, DIRECT + RIGHT] + stage.own[n, RIGHT]
+    limited_left, limited_right = limit(left, shared.soft[n]), limit(right, shared.soft[n])
+    if not (is_sound(left, limited_left) and is_sound(right, limited_right)):
+        limited_left, limited_right = 0.0, 0.0
+        stage.unsound += 1
+        begin_anew(rigs, stage)
+    mean: Any = np.float32(0.5 * (limited_left + limited_right))
+    both: Any = (np.float32(limited_left), np.float32(limited_right))
+    tape = carray(at_tape(rigs), (TAPE, EARS), np.float32)
+    tape[frame & (TAPE - 1), LEFT], tape[frame & (TAPE - 1), RIGHT] = both
+    channels = stage.channels
+    samples = carray(out, ((n + 1) * channels,), np.float32)
+    for channel in range(channels):
+        sample = mean if channels == 1 else both[channel % EARS]
+        samples[n * channels + channel] = sample
+    add_to_level(rigs, stage, both[LEFT], both[RIGHT])
+    return (
+        limited_left / left if left != 0.0 else 1.0,
+        limited_right / right if right != 0.0 else 1.0,
+    )
+
+
+@compiled
+def is_sound(sample: float, limited: float) -> bool:
+    """Whether a sample, and what the limiter made of it, are numbers of any use; NaN is not."""
+    return abs(sample) <= LARGEST and abs(limited) <= LARGEST_LIMITED
+
+
+@compiled_to_share
+def begin_anew(rigs: Any, stage: Any) -> None:
+    """Begin with an empty stage, after numbers were lost."""
+    room.begin_anew(stage.room)
+    for part in range(carray(at(rigs, PARTS_AT), (1,), np.int64)[0]):
+        seat.begin_anew(carray(at(rigs, part * RIG_BYTES + SEAT_AT), (1,), SEAT)[0])
+
+
+@compiled_to_share
+def add_to_level(rigs: Any, stage: Any, left: float, right: float) -> None:
+    """Add a frame to the level of the mix in this window."""
+    stage.window_peak = max(stage.window_peak, abs(left), abs(right))
+    stage.window_power += 0.5 * (left * left + right * right)
+    stage.window_frames += 1
+    if stage.window_frames >= WINDOW_S * carray(at(rigs, METERS_AT), (1,), METERS)[0].rate:
+        stage.peak = stage.window_peak
+        stage.rms = math.sqrt(stage.window_power / stage.window_frames)
+        stage.window_peak, stage.window_power, stage.window_frames = 0.0, 0.0, 0
+
+
+@compiled_to_share
+def at_tape(rigs: Any) -> Any:
+    """Address of the tape."""
+    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
+    return at(rigs, parts * RIG_BYTES + TAPE_AT)
+
+
+mix_chunk = mix.symbol
+
+
+@native("void(voidptr, int64, int64, voidptr, voidptr, voidptr, voidptr, int64)", calls=[mix])
+def mix_block(
+    rigs: Any, first: int, frames: int, dry: Any, told: Any, out: Any, stems: Any, has_stems: int
+) -> None:
+    """Mix what instruments sounded that were computed apart, by ``sounding.sound_block``.
+
+    Parameters
+    ----------
+    dry : pointer to float64 [shape=(parts, frames)]
+    told : pointer to float64 [shape=(parts, frames, TOLD)]
+    first, out, stems, has_stems
+        As of `mix`.
+    """
+    mode = flush_denormals()
+    parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
+    channels = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0].channels
+    samples = carray(dry, (parts, frames), np.float64)
+    all_told = carray(told, (parts, frames, TOLD), np.float64)
+    done = 0
+    while done < frames:
+        count = min(frames - done, CHUNK)
+        for part in range(parts):
+            o = carray(at(rigs, part * RIG_BYTES + OUTPUT_AT), (1,), OUTPUT)[0]
+            o.fallen = STILL
+            for n in range(count):
+                o.dry[n] = samples[part, done + n]
+                for k in range(len(PLACED)):
+                    o.placed[n, k] = all_told[part, done + n, k]
+                o.soft[n] = all_told[part, done + n, TOLD - 2]
+                if all_told[part, done + n, TOLD - 1] > 0.0:
+                    o.fallen = n
+        here = at(out, done * channels * 4)
+        stems_here = at(stems, done * (parts + 1) * EARS * 8)
+        mix_chunk(rigs, first + done, count, here, stems_here, has_stems)
+        done += count
+    restore_denormals(mode)

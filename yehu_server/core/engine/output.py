@@ -1,0 +1,95 @@
+"""The output of one instrument, from the model's probes to samples: DC blocker, gain, fades."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled
+from yehu_server.core.controls.ramps import pole_of_cutoff, pole_of_time
+from yehu_server.core.controls.record import CHUNK, FADE_S
+from yehu_server.core.controls.slots import PLACED
+from yehu_server.core.physics.layout import (
+    BRIDGE_FORCE,
+    ITERATIONS,
+    MAX_FINGERS,
+    PRESSURE,
+    control_columns,
+    probe_columns,
+)
+
+Array = Any
+
+BLOCKED_HZ = 10.0  # cutoff of the DC blocker
+# Pressure (Pa) for a newton at the bridge: a blend is about as loud at both of its ends.
+BRIDGE_PRESSURE = 0.1
+LARGEST = 1e12  # of full scale: a sample beyond this is an error
+STILL = -1
+
+OUTPUT = np.dtype(
+    [
+        ("last", np.float64),  # the last sample
+        ("unsound", np.int64),  # number of samples that were not numbers, replaced by silence
+        ("ghost", np.float64),  # decays from the last sample before a lost state
+        ("decay", np.float64),
+        ("pressure", np.float64),  # input and output of the DC blocker (Pa)
+        ("swing", np.float64),
+        ("blocker", np.float64),
+        ("controls", np.float64, (CHUNK, control_columns(MAX_FINGERS))),
+        ("probes", np.float64, (CHUNK, probe_columns(MAX_FINGERS))),
+        ("gain", np.float64, CHUNK),
+        ("body", np.float64, CHUNK),
+        ("blend", np.float64, CHUNK),
+        ("soft", np.float64, CHUNK),
+        ("placed", np.float64, (CHUNK, len(PLACED))),  # what the stage is told
+        ("dry", np.float64, CHUNK),  # the samples, for the stage
+        ("fallen", np.int64),  # row of `dry` at which the instrument came to rest, or STILL
+    ],
+    align=True,
+)
+
+
+def prepare_output(output: Any, rate: float) -> None:
+    """Set the coefficients of a record of dtype OUTPUT [shape=(1,)] for a rate (Hz), in place."""
+    output["unsound"], output["fallen"] = 0, STILL
+    output["decay"] = pole_of_time(FADE_S, rate)
+    output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
+    rest_output(output)
+
+
+def rest_output(output: Any) -> None:
+    """Clear the filters' states of a record of dtype OUTPUT, in place."""
+    for name in ("last", "ghost", "pressure", "swing"):
+        output[name] = 0.0
+
+
+@compiled
+def fall_silent(o: Any) -> None:
+    """Clear the filters' states, when the model is put to rest. Real time: safe."""
+    o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
+
+
+@compiled
+def play_out(o: Any, n: int) -> float:
+    """Compute a sample from row `n` of the probes; a lost state fades out. Real time: safe.
+
+    The sample is finite whatever the probes are; it is not limited.
+    """
+    probe = o.probes[n]
+    if probe[ITERATIONS] < 0:
+        o.ghost = o.last
+        o.pressure, o.swing = 0.0, 0.0
+    o.ghost *= o.decay
+    # The DC blocker also removes the static pull of a finger at the bridge.
+    radiated = o.body[n] * probe[PRESSURE]
+    source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
+    o.swing = source - o.pressure + o.blocker * o.swing
+    o.pressure = source
+    sample = o.swing * o.gain[n] + o.ghost
+    if not abs(sample) <= LARGEST:  # true for NaN too
+        sample = 0.0
+        o.unsound += 1
+        fall_silent(o)
+    o.last = sample
+    return float(sample)

@@ -1,0 +1,95 @@
+"""The rig: the record of one instrument and its player, in memory that processes may share.
+
+The rigs of all that play together lie one after another; the stage's record comes after the last.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.engine.mailbox import HEAP, LINE, MAIL, RING, SMALL_RING, WAITING
+from yehu_server.core.engine.output import OUTPUT
+from yehu_server.core.engine.telemetry import METERS
+from yehu_server.core.midi.record import MIDI
+from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.physics.layout import MODEL, STATE
+from yehu_server.core.player.ear import HEARD
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.wishes import WISH
+from yehu_server.core.stage.record import STAGE
+from yehu_server.core.stage.seat import SEAT
+
+MOST_PARTS = 16
+
+RIG = np.dtype(
+    [
+        ("parts", np.int64, LINE),  # number of rigs that play together, in the first of them
+        ("model", MODEL),
+        ("state", STATE),
+        ("controls", CONTROLS),
+        ("player", PLAYER),
+        ("heard", np.float64, 2 * HEARD),
+        ("output", OUTPUT),
+        ("mail", MAIL),
+        ("meters", METERS),
+        ("version", np.int64, LINE),
+        ("published", METERS),
+        ("taped", np.int64, LINE),
+        # Of the first instrument of a part: what the part is sent, by writer; what is to come;
+        # the record of the part, and its tables.
+        ("ring", WISH, RING),
+        ("midi_ring", WISH, SMALL_RING),
+        ("page_ring", WISH, SMALL_RING),
+        ("events", WAITING, HEAP),
+        ("midi", MIDI),
+        ("tables", TABLES, SLOTS),
+        ("heap", WAITING, HEAP),  # wishes to come
+        ("reports", WISH, RING),
+        ("seat", SEAT),
+    ],
+    align=True,
+)
+RIG_BYTES = RIG.itemsize
+STAGE_BYTES = STAGE.itemsize
+
+
+def _offset(field: str, inside: str = "") -> int:
+    fields: Any = RIG.fields
+    kind, start = fields[field][:2]
+    return int(start + (kind.fields[inside][1] if inside else 0))
+
+
+def memory_bytes(parts: int) -> int:
+    """Bytes that some instruments and their stage take."""
+    return parts * RIG_BYTES + STAGE_BYTES
+
+
+PARTS_AT = _offset("parts")
+MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
+PLAYER_AT, HEARD_AT = _offset("player"), _offset("heard")
+OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
+VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
+RINGS_AT = np.array([_offset("ring"), _offset("midi_ring"), _offset("page_ring")])  # by writer
+RING_SIZES = np.array([RING, SMALL_RING, SMALL_RING])
+EVENTS_AT, MIDI_AT, TABLES_AT = _offset("events"), _offset("midi"), _offset("tables")
+HEAP_AT, REPORTS_AT = _offset("heap"), _offset("reports")
+SEAT_AT = _offset("seat")
+POSTED_AT, DRAINED_AT = _offset("mail", "posted"), _offset("mail", "drained")
+CURSOR_BYTES = 8 * LINE  # from one writer's to the next
+REPORTED_AT, READ_AT = _offset("mail", "reported"), _offset("mail", "read")
+
+
+def ring_place(writer: int, rig: int) -> dict[str, int]:
+    """Where a writer's ring of an instrument lies in the memory of all: bytes, but for its size.
+
+    For writers that load no compiled code: entries of dtype WISH; cursors, each 8 bytes.
+    """
+    mail: Any = MAIL.fields
+    start = rig * RIG_BYTES
+    dropped = MAIL_AT + mail["dropped"][1]
+    cursors = {"posted": POSTED_AT, "drained": DRAINED_AT, "dropped": dropped}
+    places = {name: start + at + writer * CURSOR_BYTES for name, at in cursors.items()}
+    return places | {"entries": start + int(RINGS_AT[writer]), "size": int(RING_SIZES[writer])}

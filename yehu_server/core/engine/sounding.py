@@ -1,0 +1,205 @@
+"""The sound of one instrument, before the stage: its player acts, its model moves. Compiled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled, compiled_to_share, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.controls.hands import write_controls
+from yehu_server.core.controls.ramps import (
+    TO_BODY,
+    TO_LIMITER,
+    amplitude,
+    has_new_strings,
+    level,
+    move,
+)
+from yehu_server.core.controls.record import CHUNK, CONTROLS
+from yehu_server.core.controls.slots import BLEND, BODY, LIMITER, LOSS, PLACED, TUNING
+from yehu_server.core.engine.atomics import at, load_acquire, store_release
+from yehu_server.core.engine.mailbox import (
+    APPLIED_AT_ONCE,
+    HEAP,
+    MAIL,
+    RING,
+    WAITING,
+    copy_wish,
+    pop,
+)
+from yehu_server.core.engine.output import OUTPUT, STILL, fall_silent, play_out
+from yehu_server.core.engine.processor import flush_denormals, restore_denormals
+from yehu_server.core.engine.rig import (
+    CONTROLS_AT,
+    HEAP_AT,
+    HEARD_AT,
+    MAIL_AT,
+    METERS_AT,
+    MODEL_AT,
+    OUTPUT_AT,
+    PLAYER_AT,
+    READ_AT,
+    REPORTED_AT,
+    REPORTS_AT,
+    STATE_AT,
+)
+from yehu_server.core.engine.telemetry import METERS, close_window, hear
+from yehu_server.core.physics import kernel
+from yehu_server.core.physics.layout import MODEL, RELATIVE_VELOCITY, STATE, STRINGS
+from yehu_server.core.player.ear import HEARD, remember
+from yehu_server.core.player.listening import attend
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.wishes import WISH, fulfil
+
+Array = Any
+
+fulfil_wish, attend_string = fulfil.symbol, attend.symbol
+
+
+@compiled_to_share
+def apply(rig: Any, mail: Any, c: Any) -> None:
+    """Fulfil the wishes that are due at this frame, and report them."""
+    heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
+    for _ in range(APPLIED_AT_ONCE):
+        if mail.waiting == 0 or heap[0].wish.frame > c.frame:
+            return
+        wish = heap[0].wish
+        player, controls = at(rig, PLAYER_AT), at(rig, CONTROLS_AT)
+        fulfil_wish(player, controls, c.frame, wish.kind, wish.index, wish.value, wish.other)
+        if mail.reporting != 0:
+            report(rig, mail, c.frame, wish)
+        mail.applied += 1
+        pop(heap, mail.waiting)
+        mail.waiting -= 1
+
+
+@compiled_to_share
+def report(rig: Any, mail: Any, frame: int, wish: Any) -> None:
+    """Report a fulfilled wish for captures, with the frame that it was fulfilled at."""
+    reported = mail.reported[0]
+    if reported - load_acquire(rig, READ_AT) >= RING:
+        mail.unreported += 1
+        return
+    entry = carray(at(rig, REPORTS_AT), (RING,), WISH)[reported & (RING - 1)]
+    copy_wish(wish, entry)
+    entry.frame = frame
+    store_release(rig, REPORTED_AT, reported + 1)
+
+
+@compiled
+def retune(model: Array, state: Array, c: Any) -> None:
+    """Give the model's strings the tuning and loss of this frame."""
+    for i in range(STRINGS):
+        cents, loss = c.value[TUNING[i]], c.value[LOSS[i]]
+        if cents != c.tuning[i] or loss != c.loss[i]:
+            c.tuning[i], c.loss[i] = cents, loss
+            T = c.tension[i] * 2.0 ** (
+                cents / 600.0
+            )  # the frequency is proportional to its square root
+            kernel.retune(model, state, i, T, c.sigma_0[i] * loss, c.sigma_1[i] * loss)
+
+
+@native("void(voidptr, int64)", calls=[fulfil, attend])
+def sound(rig: Any, wanted: int) -> None:
+    """Compute the next frames of an instrument, at most CHUNK, into its record of dtype OUTPUT.
+
+    The samples do not depend on how many are computed at a time.
+
+    Real time: safe; no allocation, no exception, every sample finite.
+    """
+    model = carray(at(rig, MODEL_AT), (1,), MODEL)
+    state = carray(at(rig, STATE_AT), (1,), STATE)
+    c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
+    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
+    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
+    wanted = min(wanted, CHUNK)
+    o.fallen = STILL
+    done = 0
+    while done < wanted:
+        first, start = c.frame, done
+        silenced, retuned = False, False
+        while done < wanted and not silenced and not retuned:
+            apply(rig, mail, c)
+            if c.frame == p.ear.next:
+                attend_string(at(rig, PLAYER_AT), at(rig, CONTROLS_AT), at(rig, HEARD_AT))
+            move(c)
+            write_controls(c, o.controls[done])
+            gain = level(c)
+            if c.silence_in > 0:
+                c.silence_in -= 1
+                gain *= c.silence_in / c.fade
+                silenced = c.silence_in == 0
+            o.gain[done] = gain
+            o.body[done] = amplitude(c, TO_BODY, c.value[BODY])
+            o.blend[done] = c.value[BLEND]
+            o.soft[done] = amplitude(c, TO_LIMITER, c.value[LIMITER])
+            for k in range(len(PLACED)):
+                o.placed[done, k] = c.value[PLACED[k]]
+            retuned = has_new_strings(c)
+            c.frame += 1
+            done += 1
+        # Strings are retuned at the very sample. One call of the kernel, since it is inlined.
+        begin, end = start, done - 1 if retuned else done
+        while begin < done:
+            if begin == end:
+                retune(model, state, c)
+                end = done
+            kernel.advance(model, state, o.controls[begin:end], o.probes[begin:end], None)
+            begin = end
+        put_out(rig, first, start, done)
+        if silenced:
+            kernel.come_to_rest(model[0], state[0])
+            fall_silent(o)
+            o.fallen = done - 1
+        close_window(t, model[0], state[0].motion)
+
+
+@compiled_to_share
+def put_out(rig: Any, first: int, start: int, end: int) -> None:
+    """Make samples of some rows of the probes, which begin at frame `first`; tell the ear."""
+    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    t = carray(at(rig, METERS_AT), (1,), METERS)[0]
+    heard = carray(at(rig, HEARD_AT), (2 * HEARD,), np.float64)
+    for n in range(start, end):
+        remember(heard, first + n - start, o.probes[n, RELATIVE_VELOCITY])
+        o.dry[n] = play_out(o, n)
+        hear(t, o.dry[n])
+
+
+sound_chunk = sound.symbol
+
+
+@native("void(voidptr, int64, voidptr, voidptr)", calls=[sound])
+def sound_block(rig: Any, frames: int, dry: Any, told: Any) -> None:
+    """Compute the next frames of an instrument apart from the others, to be mixed later.
+
+    Parameters
+    ----------
+    dry : pointer to float64 [shape=(frames,)]
+        Written: the samples.
+    told : pointer to float64 [shape=(frames, TOLD)]
+        Written: what the stage is told with each of them.
+    """
+    mode = flush_denormals()
+    o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
+    samples = carray(dry, (frames,), np.float64)
+    all_told = carray(told, (frames, TOLD), np.float64)
+    done = 0
+    while done < frames:
+        count = min(frames - done, CHUNK)
+        sound_chunk(rig, count)
+        for n in range(count):
+            samples[done + n] = o.dry[n]
+            for k in range(len(PLACED)):
+                all_told[done + n, k] = o.placed[n, k]
+            all_told[done + n, TOLD - 2] = o.soft[n]
+            all_told[done + n, TOLD - 1] = 1.0 if n == o.fallen else 0.0
+        done += count
+    restore_denormals(mode)
+
+
+TOLD = len(PLACED) + 2  # of each sample: where it is placed, the limiter, whether it is the last

@@ -1,0 +1,75 @@
+"""Compile what playing needs, before the first sound; or load it from the cache.
+
+At the first start machine code is made of the bitcode that is shipped. Where none is for this
+machine and these sources, all is compiled, half of it in a process of its own, which leaves it
+in the cache: parts call each other by name, so they can be compiled at a time.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+
+from yehu_server.compile.bitcode.capture import capturing
+from yehu_server.compile.bitcode.shipped import Shipped
+from yehu_server.compile.jit import IS_CACHED, IS_PLAIN, make_of_shipped
+from yehu_server.core.engine.intake import take_in
+from yehu_server.core.engine.mixing import mix, mix_block
+from yehu_server.core.engine.native import (
+    callback,
+    frame_at,
+    post,
+    post_from,
+    publish,
+    read_meters,
+    read_reports,
+    taped,
+)
+from yehu_server.core.engine.sounding import sound, sound_block
+from yehu_server.core.midi.interpret import APART, interpret
+from yehu_server.core.player.listening import attend
+from yehu_server.core.player.wishes import fulfil
+
+# Compiled at a time: the model and the player in a process of their own, and what is sent to them.
+MODEL = (sound, fulfil, attend, mix)
+BESIDE = (*APART, interpret, publish, read_meters, frame_at, post, post_from, read_reports, taped)
+PLAYED_BY = (*MODEL, *BESIDE, take_in, sound_block, mix_block, callback)
+
+
+def warm_up() -> None:
+    """Compile all functions that playing needs, or load them from the cache."""
+    if IS_PLAIN:
+        return
+    make_of_shipped(PLAYED_BY)
+    with contextlib.ExitStack() as stack:
+        beside = None
+        if IS_CACHED and (os.cpu_count() or 1) > 1 and not sound.is_kept:
+            command = [sys.executable, "-m", __name__]
+            beside = subprocess.Popen(command, stderr=subprocess.DEVNULL)  # noqa: S603 - our own
+            stack.callback(beside.kill)  # where we are interrupted
+        for function in BESIDE:
+            _ = function.address
+        if beside is not None:
+            beside.wait()
+    for function in PLAYED_BY:
+        _ = function.address
+
+
+def capture() -> Shipped:
+    """What to ship, for a shorter first start; in a new process, with an empty cache."""
+    with capturing() as captured:
+        for function in PLAYED_BY:
+            function.capture(captured)
+    return captured.shipped()
+
+
+def is_warm() -> bool:
+    """Whether all functions that playing needs are in the cache."""
+    return all(function.is_kept for function in PLAYED_BY)
+
+
+if __name__ == "__main__":
+    for part in MODEL:
+        part.keep()

@@ -1,0 +1,518 @@
+"""Lets the sounding note follow the controllers of its channel, as tables say. Compiled.
+
+Moves on a channel affect its notes, or all notes (``channels.moves_all``): while one of them
+sounds, and after it until a note of another channel begins.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import address_of, carray
+from yehu_server.core.midi.channels import add_active, forget_moves, moves_all, moves_key, plays
+from yehu_server.core.midi.curves import from_unit, picks_up, to_unit
+from yehu_server.core.midi.record import CHANNELS, MIDI, NONE
+from yehu_server.core.midi.section import sounds
+from yehu_server.core.midi.tables import (
+    BEND,
+    KEYS,
+    MOST_BINDS,
+    NOTE,
+    POLY_PRESSURE,
+    PRESSURE,
+    TABLES,
+    VELOCITY,
+)
+from yehu_server.core.midi.values import (
+    NO_KEY,
+    STEPS,
+    find_values,
+    find_values_apart,
+    keep_target,
+    keep_targets_of,
+    receives,
+    set_target,
+)
+from yehu_server.core.midi.wishing import write, write_apart
+from yehu_server.core.player.rows import IS_OWNED, ROW, ROWS
+from yehu_server.params.table import TABLE
+
+# "Reset all controllers" leaves volume, as the recommended practice RP-015 asks.
+VOLUME, PAN = ROW["/playing/volume"], ROW["/room/pan"]
+FINE_BITS, FINEST = 7, 16383.0
+DEFAULTS = np.array([param.default for param in TABLE])
+
+
+# -- the sounding notes ---------------------------------------------------------------------------
+
+
+@native(
+    "void(voidptr, voidptr, int64, int64, int64, int64)", calls=[find_values_apart, write_apart]
+)
+def follow_apart(
+    midi_at: Any, tables_at: Any, frame: int, source: int, channel: int, gliding: int
+) -> None:
+    """See `follow`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    t = carray(tables_at, (1,), TABLES)[0]
+    glides = gliding != 0  # a bit is passed otherwise by WebAssembly than by numba
+    keep_targets_of(m, t, source)
+    if m.sounding == NONE:
+        if m.has_last != 0:
+            follow_key(m, t, frame, source, channel, glides, m.last_channel, m.last_key, NONE)
+        else:
+            find_values(m, t, channel, NO_KEY)
+            write_found(m, t, frame, source, channel, glides, False, 0, NONE)
+        return
+    sounding = count_sounding(m)
+    for n in range(m.held):
+        if sounds(m, n):
+            of_key = n if sounding > 1 else NONE
+            key_channel, key = m.held_channel[n], m.held_key[n]
+            follow_key(m, t, frame, source, channel, glides, key_channel, key, of_key)
+
+
+_follow = follow_apart.symbol
+
+
+@compiled_exactly
+def follow(m: Any, t: Any, frame: int, source: int, channel: int, glides: bool) -> None:
+    """Write the targets of a source that was moved on a channel.
+
+    Parameters
+    ----------
+    glides : bool
+        Whether the binds that receive it give their smoothing.
+    """
+    _follow(address_of(m), address_of(t), frame, source, channel, 1 if glides else 0)
+
+
+@compiled_exactly
+def follow_key(
+    m: Any,
+    t: Any,
+    frame: int,
+    source: int,
+    channel: int,
+    glides: bool,
+    key_channel: int,
+    key: float,
+    of_key: int,
+) -> None:
+    """Write the targets of a moved source as a key has them; to its players alone, if divided."""
+    find_values(m, t, key_channel, key)
+    write_found(m, t, frame, source, channel, glides, True, key_channel, of_key)
+
+
+@compiled_exactly
+def write_found(
+    m: Any,
+    t: Any,
+    frame: int,
+    source: int,
+    channel: int,
+    glides: bool,
+    has_key: bool,
+    key_channel: int,
+    of_key: int,
+) -> None:
+    """Write what `find_values` found for the targets of a source."""
+    for bind in range(int(t.binds)):
+        if int(t.source[bind]) != source:
+            continue
+        if has_key and not is_for(m, t, bind, channel, key_channel):
+            continue
+        row = int(t.target[bind])
+        glide_ms = glide_of(m, t, source, channel, row) if glides else 0.0
+        write(m, frame, row, m.found_value[row], False, glide_ms, of_key)
+
+
+@compiled_exactly
+def glide_of(m: Any, t: Any, source: int, channel: int, row: int) -> float:
+    """The smoothing of a target (ms): that of the last bind which moves it."""
+    glide_ms = 0.0
+    for bind in range(int(t.binds)):
+        is_moved = int(t.source[bind]) == source and int(t.target[bind]) == row
+        if is_moved and (source == POLY_PRESSURE or is_receiving(m, t, bind, channel)):
+            glide_ms = t.smoothing_ms[bind]
+    return glide_ms
+
+
+@compiled_exactly
+def is_for(m: Any, t: Any, bind: int, channel: int, of_key: int) -> bool:
+    """Whether a bind's moves on a channel affect the notes of another, or of the same."""
+    return bool(moves_key(m, t, channel, of_key, t.for_all[bind] != 0.0))
+
+
+@compiled_exactly
+def count_sounding(m: Any) -> int:
+    """The number of keys that sound: more than one where a section divides."""
+    count = 0
+    for n in range(m.held):
+        count += 1 if sounds(m, n) else 0
+    return count
+
+
+# -- moves ----------------------------------------------------------------------------------------
+
+
+@compiled_exactly
+def is_receiving(m: Any, t: Any, bind: int, channel: int) -> bool:
+    """Whether a bind receives moves on a channel: a global one, also where no notes are played."""
+    return receives(t, bind, channel) and (t.for_all[bind] != 0.0 or plays(m, t, channel))
+
+
+@compiled_exactly
+def first_receiving(m: Any, t: Any, source: int, channel: int) -> int:
+    """The first bind that receives a source on a channel, or NONE."""
+    for bind in range(int(t.binds)):
+        if int(t.source[bind]) == source and is_receiving(m, t, bind, channel):
+            return bind
+    return NONE
+
+
+@native(
+    "void(voidptr, voidptr, int64, int64, int64, float64)", calls=[find_values_apart, follow_apart]
+)
+def move_apart(
+    midi_at: Any, tables_at: Any, frame: int, source: int, channel: int, position: float
+) -> None:
+    """See `move`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    t = carray(tables_at, (1,), TABLES)[0]
+    if first_receiving(m, t, source, channel) == NONE:
+        return
+    keep_targets_of(m, t, source)
+    add_active(m, channel)
+    m.count += 1
+    number = m.count
+    for bind in range(int(t.binds)):
+        if int(t.source[bind]) != source or t.soft[bind] == 0.0:
+            continue
+        is_moved = is_receiving(m, t, bind, channel)
+        if is_moved and takes_over(m, t, bind, channel, position):
+            m.taken[channel, bind], m.taken_position[channel, bind] = number, position
+    for bind in range(int(t.binds)):
+        if int(t.source[bind]) == source:
+            first = int(t.first[bind])
+            m.moved[channel, first], m.position[channel, first] = number, position
+            break
+    follow(m, t, frame, source, channel, True)
+
+
+_move = move_apart.symbol
+
+
+@compiled_exactly
+def move(m: Any, t: Any, frame: int, source: int, channel: int, position: float) -> None:
+    """Move a source of a channel to a position, 0 to 1."""
+    _move(address_of(m), address_of(t), frame, source, channel, position)
+
+
+@compiled_exactly
+def takes_over(m: Any, t: Any, bind: int, channel: int, position: float) -> bool:
+    """Whether a soft bind moves its target: it set its present value, or reaches it now."""
+    of_channel, key = channel, NO_KEY
+    if m.sounding != NONE:
+        key_channel = m.held_channel[m.sounding]
+        if is_for(m, t, bind, channel, key_channel):
+            of_channel, key = key_channel, m.held_key[m.sounding]
+    elif m.has_last != 0 and is_for(m, t, bind, channel, m.last_channel):
+        of_channel, key = m.last_channel, m.last_key
+    find_values(m, t, of_channel, key)
+    present = m.found_value[int(t.target[bind])]
+    had = from_unit(t, bind, m.taken_position[channel, bind])
+    if m.taken[channel, bind] != 0 and had == present:
+        return True
+    first = int(t.first[bind])
+    before = m.position[channel, first] if m.moved[channel, first] != 0 else math.nan
+    return bool(picks_up(t, bind, position, before, present))
+
+
+@compiled_exactly
+def move_coarse(m: Any, t: Any, frame: int, source: int, channel: int, value: int) -> None:
+    """Move a 14-bit source by its coarse half, 0 to 127; the fine half is set to 0."""
+    move(m, t, frame, source, channel, (value << FINE_BITS) / FINEST)
+
+
+@compiled_exactly
+def position_on(m: Any, t: Any, source: int, channel: int) -> float:
+    """Where a source was last moved to on a channel; NaN: nowhere."""
+    for bind in range(int(t.binds)):
+        if int(t.source[bind]) == source:
+            is_moved = m.moved[channel, bind] != 0
+            return float(m.position[channel, bind] if is_moved else math.nan)
+    return math.nan
+
+
+@compiled_exactly
+def move_fine(m: Any, t: Any, frame: int, source: int, channel: int, value: int) -> None:
+    """Set the fine half, 0 to 127, of a source that `move_coarse` moved."""
+    before = position_on(m, t, source, channel)
+    if not math.isnan(before):
+        coarse = int(np.rint(before * FINEST)) >> FINE_BITS
+        move(m, t, frame, source, channel, (coarse << FINE_BITS | value) / FINEST)
+
+
+@compiled_exactly
+def step(m: Any, t: Any, frame: int, source: int, channel: int, steps: float) -> None:
+    """Move a source by 127ths of its range, from its position or that of its target."""
+    bind = first_receiving(m, t, source, channel)
+    if bind == NONE:
+        return
+    position = position_on(m, t, source, channel)
+    if math.isnan(position):
+        position = to_unit(t, bind, m.value[int(t.target[bind])])
+    moved = min(max(position + steps / STEPS, 0.0), 1.0)
+    move(m, t, frame, source, channel, moved)
+
+
+@compiled_exactly
+def press_key(m: Any, t: Any, frame: int, channel: int, key: int, position: float) -> None:
+    """Move the aftertouch of one key to a position, 0 to 1."""
+    is_bound = False
+    for bind in range(int(t.binds)):
+        is_bound = is_bound or int(t.source[bind]) == POLY_PRESSURE
+    if is_bound:
+        add_active(m, channel)
+        m.count += 1
+        m.pressed[channel, key], m.pressure[channel, key] = m.count, position
+        follow(m, t, frame, POLY_PRESSURE, channel, True)
+
+
+@compiled_exactly
+def move_control(m: Any, t: Any, frame: int, source: int, argument: float) -> None:
+    """Move the targets of a named control, for all channels."""
+    for bind in range(int(t.binds)):
+        if int(t.source[bind]) != source:
+            continue
+        lo, hi = t.input_lo[bind], t.input_hi[bind]
+        position = 0.0
+        if lo != hi:
+            position = (min(max(argument, min(lo, hi)), max(lo, hi)) - lo) / (hi - lo)
+        row = int(t.target[bind])
+        present, wrote = m.value[row], m.fader_wrote[bind]
+        is_waiting = t.soft[bind] != 0.0 and present != wrote
+        before = m.fader[bind] if m.has_fader[bind] != 0 else math.nan
+        m.has_fader[bind], m.fader[bind] = 1, position
+        if not is_waiting or picks_up(t, bind, position, before, present):
+            value = from_unit(t, bind, position)
+            m.fader_wrote[bind] = set_directly(m, frame, row, value, t.smoothing_ms[bind])
+
+
+@compiled_exactly
+def set_directly(m: Any, frame: int, row: int, value: float, glide_ms: float) -> float:
+    """Set a parameter for all channels, until a controller moves it; return the value it has."""
+    accepted = write(m, frame, row, value, False, glide_ms, NONE)
+    if not IS_OWNED[row]:
+        set_target(m, row, accepted)
+    return float(accepted)
+
+
+# -- forgetting -----------------------------------------------------------------------------------
+
+
+@native("void(voidptr, voidptr, int64, int64)", calls=[follow_apart])
+def reset_controllers_apart(midi_at: Any, tables_at: Any, frame: int, channel: int) -> None:
+    """See `reset_controllers`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    t = carray(tables_at, (1,), TABLES)[0]
+    for key in range(KEYS):
+        m.pressed[channel, key] = 0
+    for bind in range(int(t.binds)):
+        if int(t.target[bind]) not in (VOLUME, PAN):
+            m.moved[channel, int(t.first[bind])] = 0
+            m.taken[channel, bind] = 0
+    for bind in range(int(t.binds)):
+        source = int(t.source[bind])
+        if int(t.first[bind]) == bind and source not in (VELOCITY, NOTE):
+            follow(m, t, frame, source, channel, False)
+
+
+_reset_controllers = reset_controllers_apart.symbol
+
+
+@compiled_exactly
+def reset_controllers(m: Any, t: Any, frame: int, channel: int) -> None:
+    """Act on "reset all controllers"."""
+    _reset_controllers(address_of(m), address_of(t), frame, channel)
+
+
+@compiled_exactly
+def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
+    """Forget the moves on a channel whose port is gone, but keep those for all notes.
+
+    So a loose cable changes nothing, except that wheel and aftertouch spring back.
+    """
+    if m.is_active[channel] == 0:
+        forget_moves(m, channel)  # velocities
+        return
+    has_bend, has_pressure, is_kept = False, False, False
+    for bind in range(MOST_BINDS):
+        m.kept_moved[bind] = m.kept_taken[bind] = 0
+    for bind in range(int(t.binds)):
+        first, source = int(t.first[bind]), int(t.source[bind])
+        if m.moved[channel, first] == 0 or not moves_all(m, t, channel, t.for_all[bind] != 0.0):
+            continue
+        has_bend = has_bend or source == BEND
+        has_pressure = has_pressure or source == PRESSURE
+        if source not in (BEND, PRESSURE):  # faders and pedals stay where they are
+            is_kept = True
+            m.kept_moved[first], m.kept_position[first] = (
+                m.moved[channel, first],
+                m.position[channel, first],
+            )
+            m.kept_taken[bind] = m.taken[channel, bind]
+            m.kept_taken_position[bind] = m.taken_position[channel, bind]
+    forget_moves(m, channel)
+    if is_kept:
+        put_kept(m, channel)
+    if has_bend:
+        follow(m, t, frame, BEND, channel, False)
+    if has_pressure:
+        follow(m, t, frame, PRESSURE, channel, False)
+
+
+@compiled_exactly
+def put_kept(m: Any, channel: int) -> None:
+    """Give a channel the moves that were kept aside."""
+    add_active(m, channel)
+    for bind in range(MOST_BINDS):
+        m.moved[channel, bind], m.position[channel, bind] = (
+            m.kept_moved[bind],
+            m.kept_position[bind],
+        )
+        m.taken[channel, bind] = m.kept_taken[bind]
+        m.taken_position[channel, bind] = m.kept_taken_position[bind]
+
+
+@compiled_exactly
+def forget_all_moves(m: Any, frame: int) -> None:
+    """Forget the moves on all channels; targets go back to where they were before."""
+    while m.actives > 0:
+        forget_moves(m, m.active[0])
+    for n in range(m.held):
+        m.held_struck[n] = 0
+    m.last_struck = 0
+    m.struck[CHANNELS] = 0
+    for i in range(m.targets):
+        row = m.target[i]
+        write(m, frame, row, m.set_to[row], False, 0.0, NONE)
+
+
+# -- the tables -----------------------------------------------------------------------------------
+
+
+@compiled_exactly
+def start(m: Any, t: Any, frame: int) -> None:
+    """Set parameters to the start values of the tables."""
+    for i in range(int(t.starts)):
+        set_directly(m, frame, int(t.start_row[i]), t.start_value[i], 0.0)
+
+
+@compiled_exactly
+def start_value(t: Any, row: int) -> float:
+    """The value that a parameter starts with."""
+    for i in range(int(t.starts)):
+        if int(t.start_row[i]) == row:
+            return float(t.start_value[i])
+    return float(DEFAULTS[row])
+
+
+@native("void(voidptr, voidptr, voidptr, int64)", calls=[find_values_apart, write_apart])
+def change_binds_apart(midi_at: Any, before_at: Any, tables_at: Any, frame: int) -> None:
+    """See `change_binds`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    before = carray(before_at, (1,), TABLES)[0]
+    t = carray(tables_at, (1,), TABLES)[0]
+    for i in range(m.actives):
+        change_moves(m, before, t, m.active[i])
+    change_faders(m, before, t)
+    for bind in range(int(t.binds)):
+        keep_target(m, int(t.target[bind]))
+    for row in range(ROWS):
+        m.found[row] = 0
+    for i in range(int(before.starts)):
+        change_start(m, before, t, frame, int(before.start_row[i]))
+    for i in range(int(t.starts)):
+        change_start(m, before, t, frame, int(t.start_row[i]))
+    if m.has_last != 0:
+        find_values(m, t, m.last_channel, m.last_key)
+        for i in range(m.targets):
+            row = m.target[i]
+            write(m, frame, row, m.found_value[row], False, 0.0, NONE)
+
+
+_change_binds = change_binds_apart.symbol
+
+
+@compiled_exactly
+def change_binds(m: Any, before: Any, t: Any, frame: int) -> None:
+    """Take the binds of other tables; moves stay where their source is still bound.
+
+    A parameter whose start value differs takes the new one, unless it was moved since.
+    """
+    _change_binds(address_of(m), address_of(before), address_of(t), frame)
+
+
+@compiled_exactly
+def change_start(m: Any, before: Any, t: Any, frame: int, row: int) -> None:
+    """Give a parameter its new start value, once, if it still has the old one."""
+    if m.found[row] != 0:
+        return
+    m.found[row] = 1
+    old, new = start_value(before, row), start_value(t, row)
+    now = m.set_to[row] if m.is_target[row] != 0 else m.value[row]
+    if old != new and now == old:
+        keep_target(m, row)
+        m.set[row], m.set_to[row] = 0, new  # moves made before still count
+        if m.has_last == 0:
+            write(m, frame, row, new, False, 0.0, NONE)
+
+
+@compiled_exactly
+def change_moves(m: Any, before: Any, t: Any, channel: int) -> None:
+    """Give the moves of a channel the numbers of other binds."""
+    for bind in range(MOST_BINDS):
+        m.kept_moved[bind] = m.kept_taken[bind] = 0
+    is_pressed = False
+    for bind in range(int(t.binds)):
+        source = int(t.source[bind])
+        is_pressed = is_pressed or source == POLY_PRESSURE
+        for old in range(int(before.binds)):
+            if int(before.source[old]) != source:
+                continue
+            first = int(before.first[old])
+            if int(t.first[bind]) == bind:
+                m.kept_moved[bind] = m.moved[channel, first]
+                m.kept_position[bind] = m.position[channel, first]
+            if t.soft[bind] == 0.0 or int(before.target[old]) != int(t.target[bind]):
+                continue
+            if before.soft[old] != 0.0:
+                number, position = m.taken[channel, old], m.taken_position[channel, old]
+            else:
+                number, position = m.moved[channel, first], m.position[channel, first]
+            if number != 0:
+                m.kept_taken[bind], m.kept_taken_position[bind] = number, position
+    put_kept(m, channel)
+    if not is_pressed:
+        for key in range(KEYS):
+            m.pressed[channel, key] = 0
+
+
+@compiled_exactly
+def change_faders(m: Any, before: Any, t: Any) -> None:
+    """Let named controls stay where their bind is the same."""
+    for bind in range(MOST_BINDS):
+        m.kept_moved[bind], m.kept_position[bind] = m.has_fader[bind], m.fader[bind]
+        m.kept_taken_position[bind] = m.fader_wrote[bind]
+        m.has_fader[bind], m.fader_wrote[bind] = 0, math.nan
+    for bind in range(int(t.binds)):
+        for old in range(int(before.binds)):
+            if before.same[old] == t.same[bind] and m.kept_moved[old] != 0:
+                m.has_fader[bind], m.fader[bind] = 1, m.kept_position[old]
+                m.fader_wrote[bind] = m.kept_taken_position[old]

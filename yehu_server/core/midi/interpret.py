@@ -1,0 +1,236 @@
+"""Interprets events: what each comes to, for whoever plays the part. Compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.midi.controllers import (
+    change_binds,
+    change_binds_apart,
+    follow_apart,
+    move_apart,
+    move_control,
+    reset_controllers_apart,
+    set_directly,
+    start,
+)
+from yehu_server.core.midi.events import (
+    CONTROL,
+    DISCONNECT,
+    FINGER_ON,
+    LEAVE,
+    LOAD,
+    MESSAGE,
+    NOTE_OFF,
+    NOTE_ON,
+    RELEASE_ALL,
+    SET,
+    START,
+    TABLES_TO,
+)
+from yehu_server.core.midi.keys import list_key
+from yehu_server.core.midi.messages import (
+    SUSTAIN,
+    change_control_apart,
+    disconnect,
+    is_bound,
+    receive,
+    reset,
+    reset_apart,
+)
+from yehu_server.core.midi.notes import (
+    end_all,
+    end_notes,
+    end_notes_apart,
+    lift_pedal,
+    lift_pedal_apart,
+    note_off,
+    note_on,
+    note_on_apart,
+)
+from yehu_server.core.midi.record import CHANNELS, MIDI, NONE, emit
+from yehu_server.core.midi.section import slide_players
+from yehu_server.core.midi.tables import CONTROL as CONTROL_SOURCE
+from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.values import find_values_apart
+from yehu_server.core.midi.wishing import (
+    begin_key,
+    begin_key_apart,
+    end_key,
+    end_listed_apart,
+    express,
+    hold_nothing,
+    pass_on,
+    record_wish,
+    release_kept,
+    write,
+    write_apart,
+)
+from yehu_server.core.player.rows import ROW, ROWS
+from yehu_server.core.player.wishes import (
+    BEGIN,
+    END,
+    EXPRESS,
+    HOLD,
+    KINDS,
+    RELEASE,
+    SLIDE,
+    STOP,
+    WRITE,
+)
+from yehu_server.params.spec import Place
+from yehu_server.params.table import TABLE
+
+# Rows in the order in which all parameters are given their start values, and those.
+PLAYERS_FIRST = sorted(TABLE, key=lambda param: param.place is Place.ENGINE)
+START_ROWS = np.array([ROW[param.address] for param in PLAYERS_FIRST])
+START_VALUES = np.array([param.default for param in PLAYERS_FIRST])
+
+
+# What is compiled apart, so that it is compiled once.
+APART = (
+    write_apart,
+    begin_key_apart,
+    end_listed_apart,
+    find_values_apart,
+    follow_apart,
+    move_apart,
+    end_notes_apart,
+    note_on_apart,
+    change_binds_apart,
+    lift_pedal_apart,
+    reset_controllers_apart,
+    change_control_apart,
+    reset_apart,
+)
+
+
+@native("void(voidptr, voidptr, int64, int64, int64, float64, float64)", calls=APART)
+def interpret(
+    midi: Any, tables: Any, frame: int, kind: int, index: int, value: float, other: float
+) -> None:
+    """Interpret an event, given by its fields; the wishes that it comes to are in the record.
+
+    One of no kind, for no parameter, or with a number that is not finite changes nothing.
+
+    Parameters
+    ----------
+    midi : pointer to a record of dtype MIDI
+    tables : pointer to SLOTS records of dtype TABLES
+
+    Real time: safe; no allocation, no exception.
+    """
+    m = carray(midi, (1,), MIDI)[0]
+    all_tables = carray(tables, (SLOTS,), TABLES)
+    t = all_tables[m.tables]
+    m.wishes = 0
+    if kind < len(KINDS) or kind > TABLES_TO:
+        wish(m, frame, kind, index, value, other)
+    elif not (math.isfinite(value) and math.isfinite(other)):
+        return
+    elif kind == MESSAGE:
+        receive(m, t, frame, index)
+    elif kind == TABLES_TO and 0 <= index < SLOTS:
+        change_tables(m, t, all_tables[index], frame)
+        m.tables = index  # from now on the others may be written
+    elif kind in (NOTE_ON, FINGER_ON, NOTE_OFF):
+        act_on_key(m, t, frame, kind, index, value, min(other, 1.0))
+    elif kind in (SET, LOAD) and 0 <= index < ROWS:
+        if kind == SET or m.kept[index] == 0:
+            set_directly(m, frame, index, value, max(other, 0.0))
+    elif kind == CONTROL and index >= 0:
+        move_control(m, t, frame, CONTROL_SOURCE + index, value)
+    elif kind in (DISCONNECT, LEAVE, RELEASE_ALL):
+        act_on_end(m, t, frame, kind, index, value)
+    elif kind == START:
+        start_anew(m, t, frame, value != 0.0)
+
+
+@compiled_exactly
+def act_on_key(
+    m: Any, t: Any, frame: int, kind: int, channel: int, key: float, velocity: float
+) -> None:
+    """Begin or end the note of a key."""
+    if kind == NOTE_OFF:
+        note_off(m, t, frame, channel, key)
+    else:
+        note_on(m, t, frame, channel, key, velocity, key if kind == FINGER_ON else math.nan)
+
+
+@compiled_exactly
+def act_on_end(m: Any, t: Any, frame: int, kind: int, index: int, value: float) -> None:
+    """End the notes of a port, of somebody who left, or all."""
+    if kind == DISCONNECT:
+        disconnect(m, t, frame, index)
+    elif kind == LEAVE:
+        leave(m, t, frame, index, value)
+    elif value == 0.0:
+        end_all(m, t, frame)
+    else:
+        reset(m, t, frame)
+
+
+@compiled_exactly
+def start_anew(m: Any, t: Any, frame: int, with_all: bool) -> None:
+    """Set parameters to the start values of the tables; first `with_all` to those of their own."""
+    if with_all:
+        for i in range(len(START_ROWS)):
+            set_directly(m, frame, START_ROWS[i], START_VALUES[i], 0.0)
+    start(m, t, frame)
+
+
+@compiled_exactly
+def wish(m: Any, frame: int, kind: int, index: int, value: float, other: float) -> None:
+    """Pass on what somebody wishes who knows the player (``player.wishes``)."""
+    is_right = math.isfinite(value) and math.isfinite(other)
+    if kind in (WRITE, HOLD, EXPRESS):
+        is_right = is_right and 0 <= index < ROWS
+    if m.people == 1:  # as it is: it may be one of a replay
+        if is_right:
+            record_wish(m, kind, index, value, other)
+        emit(m, 0, frame, kind, index, value, other)
+    elif not is_right or not 0 <= kind < len(KINDS):
+        return
+    elif kind == EXPRESS:
+        express(m, frame, index, value)
+    elif kind in (WRITE, HOLD):
+        write(m, frame, index, value, kind == HOLD, max(other, 0.0), NONE)
+    elif kind == BEGIN:
+        begin_key(m, frame, index, value, other, 0.0, 0)
+    elif kind == END:
+        end_key(m, frame, index, value, other != 0.0)
+    elif kind == SLIDE:
+        slide_players(m, frame, value)
+    else:
+        if kind == RELEASE:
+            release_kept(m)
+        elif kind == STOP and value != 0.0:
+            hold_nothing(m)
+        pass_on(m, frame, kind, index, value, other)
+
+
+@compiled_exactly
+def leave(m: Any, t: Any, frame: int, first: int, channels: float) -> None:
+    """End what is held on the channels of somebody who left."""
+    for n in range(m.held):
+        if first <= m.held_channel[n] < first + channels:
+            list_key(m, n)
+    end_notes(m, t, frame)
+
+
+@compiled_exactly
+def change_tables(m: Any, before: Any, t: Any, frame: int) -> None:
+    """Use other tables from now on, while notes sound."""
+    change_binds(m, before, t, frame)
+    if t.mpe != before.mpe:
+        reset(m, t, frame)
+    if is_bound(t, SUSTAIN):  # the pedal no longer holds notes
+        for channel in range(CHANNELS):
+            m.sustain[channel] = 0
+        for channel in range(CHANNELS):
+            lift_pedal(m, t, frame, channel)

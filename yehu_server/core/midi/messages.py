@@ -1,0 +1,384 @@
+"""Acts on MIDI messages: notes at once, controllers through tables. Compiled.
+
+Notes of the percussion channel are played only if it is chosen, or a member of an MPE zone.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import address_of, carray
+from yehu_server.core.midi.channels import (
+    begin_port,
+    bend_range,
+    configure_zone,
+    forget_channel,
+    forget_moves,
+    is_in_zone,
+    master_of,
+    plays,
+)
+from yehu_server.core.midi.controllers import (
+    disconnect_channel,
+    follow,
+    follow_apart,
+    forget_all_moves,
+    move,
+    move_apart,
+    move_coarse,
+    move_fine,
+    press_key,
+    reset_controllers,
+    reset_controllers_apart,
+    set_directly,
+    step,
+)
+from yehu_server.core.midi.keys import list_key
+from yehu_server.core.midi.notes import (
+    end_all,
+    end_notes,
+    end_notes_apart,
+    hold_by_pedal,
+    lift_pedal,
+    lift_pedal_apart,
+    note_off,
+    note_on,
+)
+from yehu_server.core.midi.packing import BYTE, LENGTH_AT, PORT_AT
+from yehu_server.core.midi.record import CHANNELS, IN_PORT, MIDI, NONE, PORTS
+from yehu_server.core.midi.tables import BEND, NRPN, PAIR, PRESSURE, TABLES
+from yehu_server.core.midi.wishing import in_range, stop_sound, write_apart
+from yehu_server.core.player.rows import ROW, ROWS
+
+# High halves of status bytes.
+NOTE_OFF, NOTE_ON, POLY_PRESSURE, CONTROL_CHANGE = 0x80, 0x90, 0xA0, 0xB0
+PROGRAM_CHANGE, CHANNEL_PRESSURE, PITCH_BEND, SYSTEM = 0xC0, 0xD0, 0xE0, 0xF0
+SYSTEM_RESET = 0xFF
+# Control changes with a meaning of their own.
+BANK, BANK_FINE = 0, 32
+DATA_ENTRY, DATA_ENTRY_FINE = 6, 38
+SUSTAIN = 64
+INCREMENT, DECREMENT = 96, 97
+NRPN_FINE, NRPN_COARSE, RPN_FINE, RPN_COARSE = 98, 99, 100, 101
+ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
+BEND_RANGE, MPE_CONFIGURATION = 0, 6  # registered parameters
+PAIRS = 32  # controllers with a fine half, as many higher
+BEND_RANGE_ROW = ROW["/playing/bend_range"]
+
+
+@compiled_exactly
+def receive(m: Any, t: Any, frame: int, index: int) -> None:
+    """Act on a channel message or a system reset, as ``packing.packed``; ignore others.
+
+    Each port has 16 channels of its own.
+    """
+    length, port = index >> LENGTH_AT & 0xFF, index >> PORT_AT
+    status, one, two = index & 0xFF, index >> BYTE & 0xFF, index >> 2 * BYTE & 0xFF
+    m.messages += 1
+    if not 0 <= port < PORTS or length == 0 or status < NOTE_OFF:
+        m.malformed += 1
+        return
+    if status >= SYSTEM:
+        if status == SYSTEM_RESET and length == 1:
+            reset(m, t, frame)
+        return
+    kind, channel = status & 0xF0, IN_PORT * port + (status & 0x0F)
+    wanted = 2 if kind in (PROGRAM_CHANGE, CHANNEL_PRESSURE) else 3
+    if length != wanted or one >= NOTE_OFF or (wanted == 3 and two >= NOTE_OFF):
+        m.malformed += 1
+        return
+    is_strike = kind == NOTE_ON and two > 0
+    if not plays(m, t, channel) and not passes(t, kind):
+        m.percussion += 1 if is_strike and int(t.received) < 0 else 0
+    elif is_strike:
+        note_on(m, t, frame, channel, float(one), two / 127.0, math.nan)
+    elif kind in (NOTE_OFF, NOTE_ON):
+        note_off(m, t, frame, channel, float(one))
+    elif kind == PITCH_BEND:
+        bend = max(-1.0, ((two << 7 | one) - 8192) / 8191.0)
+        move(m, t, frame, BEND, channel, 0.5 * (bend + 1.0))
+    elif kind == CHANNEL_PRESSURE:
+        move(m, t, frame, PRESSURE, channel, one / 127.0)
+    elif kind == POLY_PRESSURE:
+        press_key(m, t, frame, channel, one, two / 127.0)
+    elif kind == CONTROL_CHANGE:
+        change_control(m, t, frame, channel, one, two)
+    else:
+        change_program(m, t, frame, channel, one)
+
+
+@compiled_exactly
+def passes(t: Any, kind: int) -> bool:
+    """Whether global binds receive a message on channels whose notes are not played."""
+    if int(t.received) >= 0 or kind not in (CONTROL_CHANGE, PITCH_BEND, CHANNEL_PRESSURE):
+        return False
+    for bind in range(int(t.binds)):
+        if t.for_all[bind] != 0.0:
+            return True
+    return False
+
+
+# -- control changes ------------------------------------------------------------------------------
+
+
+@native(
+    "void(voidptr, voidptr, int64, int64, int64, int64)",
+    calls=[
+        move_apart,
+        follow_apart,
+        lift_pedal_apart,
+        reset_controllers_apart,
+        end_notes_apart,
+    ],
+)
+def change_control_apart(
+    midi_at: Any, tables_at: Any, frame: int, channel: int, control: int, value: int
+) -> None:
+    """See `change_control`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    t = carray(tables_at, (1,), TABLES)[0]
+    if control >= ALL_SOUND_OFF and not plays(m, t, channel):
+        return
+    if control == BANK:
+        m.bank[channel] = value
+    elif control == BANK_FINE:
+        m.bank_fine[channel] = value
+    if control == SUSTAIN and not is_bound(t, SUSTAIN):
+        m.sustain[channel] = 1 if value >= 64 else 0
+        if value < 64:
+            lift_pedal(m, t, frame, channel)
+    elif control == ALL_SOUND_OFF:
+        all_sound_off(m, t, frame, channel)
+    elif control >= ALL_NOTES_OFF:  # the mode messages 124-127 include it
+        all_notes_off(m, t, frame, channel)
+    elif control == RESET_CONTROLLERS:
+        change_control_of_pedal(m, t, frame, channel)
+        m.is_registered[channel] = 1
+        m.coarse[channel] = m.fine[channel] = NONE
+        reset_controllers(m, t, frame, channel)
+    elif control in (RPN_COARSE, RPN_FINE, NRPN_COARSE, NRPN_FINE):
+        select(m, channel, control, value)
+    elif control in (DATA_ENTRY, DATA_ENTRY_FINE, INCREMENT, DECREMENT):
+        enter_data(m, t, frame, channel, control, value)
+    else:
+        move_both(m, t, frame, channel, control, value)
+
+
+_change_control = change_control_apart.symbol
+
+
+@compiled_exactly
+def change_control(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
+    """Act on a control change."""
+    _change_control(address_of(m), address_of(t), frame, channel, control, value)
+
+
+@compiled_exactly
+def change_control_of_pedal(m: Any, t: Any, frame: int, channel: int) -> None:
+    """Lift the sustain pedal, or what is bound to it."""
+    if is_bound(t, SUSTAIN):
+        move_both(m, t, frame, channel, SUSTAIN, 0)
+    else:
+        lift_pedal(m, t, frame, channel)
+
+
+@compiled_exactly
+def move_both(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
+    """Move the sources of a control change: the 7-bit one, then the 14-bit pair."""
+    move(m, t, frame, control, channel, value / 127.0)
+    if control < PAIRS:
+        move_coarse(m, t, frame, PAIR + control, channel, value)
+    elif control < 2 * PAIRS:
+        move_fine(m, t, frame, PAIR + control - PAIRS, channel, value)
+
+
+@compiled_exactly
+def is_bound(t: Any, source: int) -> bool:
+    """Whether a source moves anything."""
+    for bind in range(int(t.binds)):
+        if int(t.source[bind]) == source:
+            return True
+    return False
+
+
+@compiled_exactly
+def all_sound_off(m: Any, t: Any, frame: int, channel: int) -> None:
+    """End the notes of a channel, of its zone, and of its pedal, and the sound."""
+    for n in range(m.held):
+        if m.held_by[n] == channel and not is_in_zone(m, m.held_channel[n], channel):
+            list_key(m, n)
+    list_zone(m, channel)
+    end_notes(m, t, frame)
+    stop_sound(m, frame, False)
+
+
+@compiled_exactly
+def list_zone(m: Any, channel: int) -> None:
+    """List the keys of a channel and, where it is a master, of its members."""
+    first = IN_PORT * (channel // IN_PORT)
+    list_channel(m, channel)
+    for member in range(first, first + IN_PORT):
+        if member != channel and is_in_zone(m, member, channel):
+            list_channel(m, member)
+
+
+@compiled_exactly
+def list_channel(m: Any, channel: int) -> None:
+    """List the keys of a channel."""
+    for n in range(m.held):
+        if m.held_channel[n] == channel:
+            list_key(m, n)
+
+
+@compiled_exactly
+def all_notes_off(m: Any, t: Any, frame: int, channel: int) -> None:
+    """End the notes of a channel and of its zone, as if their keys were released."""
+    list_zone(m, channel)
+    if m.sustain[channel] == 0:
+        end_notes(m, t, frame)
+        return
+    for i in range(m.listed):
+        hold_by_pedal(m, m.list[i], channel)
+        m.is_listed[m.list[i]] = 0
+    m.listed = 0
+
+
+@compiled_exactly
+def change_program(m: Any, t: Any, frame: int, channel: int, program: int) -> None:
+    """Set the parameters of the preset of a program, from 0, except held ones."""
+    if t.has_programs == 0.0 or m.bank[channel] != 0 or m.bank_fine[channel] != 0:
+        return
+    if t.has_program[program] == 0.0:
+        m.unknown_program[program] += 1
+        return
+    for i in range(ROWS):
+        if math.isnan(t.program_row[program, i]):
+            return
+        row = int(t.program_row[program, i])
+        if m.kept[row] == 0:
+            set_directly(m, frame, row, t.program_value[program, i], 0.0)
+
+
+# -- registered and other parameters --------------------------------------------------------------
+
+
+@compiled_exactly
+def select(m: Any, channel: int, control: int, value: int) -> None:
+    """Select a parameter by one half of its number; RPN and NRPN do not mix."""
+    is_registered = 1 if control in (RPN_COARSE, RPN_FINE) else 0
+    if m.is_registered[channel] != is_registered:
+        m.is_registered[channel] = is_registered
+        m.coarse[channel] = m.fine[channel] = NONE
+    if control in (RPN_COARSE, NRPN_COARSE):
+        m.coarse[channel] = value
+    else:
+        m.fine[channel] = value
+
+
+@compiled_exactly
+def enter_data(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
+    """Set the parameter that is selected."""
+    coarse, fine = m.coarse[channel], m.fine[channel]
+    if min(coarse, fine) == NONE:
+        return
+    number = coarse << 7 | fine
+    if m.is_registered[channel] == 0:
+        source = NRPN + number
+        if control == DATA_ENTRY:
+            move_coarse(m, t, frame, source, channel, value)
+        elif control == DATA_ENTRY_FINE:
+            move_fine(m, t, frame, source, channel, value)
+        else:
+            step(m, t, frame, source, channel, 1.0 if control == INCREMENT else -1.0)
+    elif number == MPE_CONFIGURATION and control == DATA_ENTRY:
+        set_zone(m, t, frame, channel, value)
+    elif number == BEND_RANGE:
+        set_bend_range(m, t, frame, channel, control, value)
+
+
+@compiled_exactly
+def set_bend_range(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
+    """Set a channel's bend range; that of a member of an MPE zone is that of all members."""
+    whole = int(np.rint(bend_range(m, channel) * 100.0))
+    semitones, cents = whole // 100, whole % 100
+    if control == DATA_ENTRY:
+        semitones = value
+    elif control == DATA_ENTRY_FINE:
+        cents = min(value, 99)
+    else:
+        semitones += 1 if control == INCREMENT else -1
+    found = in_range(BEND_RANGE_ROW, semitones + cents / 100.0)
+    m.bend_range[channel] = found
+    master = master_of(m, channel)
+    if master != NONE:
+        for member in range(IN_PORT * (channel // IN_PORT), IN_PORT * (channel // IN_PORT + 1)):
+            if master_of(m, member) == master:
+                m.bend_range[member] = found
+    follow(m, t, frame, BEND, channel, False)
+
+
+@compiled_exactly
+def set_zone(m: Any, t: Any, frame: int, channel: int, members: int) -> None:
+    """Create or end an MPE zone; the notes of its channels end and their state is forgotten."""
+    port = channel // IN_PORT
+    first = IN_PORT * port
+    was_member = 0
+    for own in range(IN_PORT):
+        was_member |= (1 << own) if is_in_zone(m, first + own, channel) else 0
+    if not configure_zone(m, channel, members):
+        return
+    for own in range(IN_PORT):
+        if was_member >> own & 1 != 0 or is_in_zone(m, first + own, channel):
+            end_channel(m, t, frame, first + own)
+            forget_moves(m, first + own)
+    m.is_registered[channel] = 1
+    m.coarse[channel], m.fine[channel] = MPE_CONFIGURATION >> 7, MPE_CONFIGURATION & 0x7F
+
+
+# -- ends -----------------------------------------------------------------------------------------
+
+
+@compiled_exactly
+def end_channel(m: Any, t: Any, frame: int, channel: int) -> None:
+    """End the notes of a channel and those its pedal holds, and forget its state."""
+    list_channel(m, channel)
+    end_notes(m, t, frame)
+    lift_pedal(m, t, frame, channel)
+    forget_channel(m, channel)
+
+
+@compiled_exactly
+def disconnect(m: Any, t: Any, frame: int, port: int) -> None:
+    """End the notes of a port that is gone; see `disconnect_channel`."""
+    if not 0 <= port < PORTS:
+        return
+    for channel in range(IN_PORT * port, IN_PORT * (port + 1)):
+        end_channel(m, t, frame, channel)
+        disconnect_channel(m, t, frame, channel)
+    begin_port(m, t, port)
+
+
+@native("void(voidptr, voidptr, int64)", calls=[end_notes_apart, write_apart])
+def reset_apart(midi_at: Any, tables_at: Any, frame: int) -> None:
+    """See `reset`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    t = carray(tables_at, (1,), TABLES)[0]
+    end_all(m, t, frame)
+    for channel in range(CHANNELS):
+        forget_channel(m, channel)
+    for port in range(PORTS):
+        begin_port(m, t, port)
+    forget_all_moves(m, frame)
+
+
+_reset = reset_apart.symbol
+
+
+@compiled_exactly
+def reset(m: Any, t: Any, frame: int) -> None:
+    """End all notes, and forget pedals, zones and moves."""
+    _reset(address_of(m), address_of(t), frame)

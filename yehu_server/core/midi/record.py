@@ -1,0 +1,212 @@
+"""The record of a part: what it was sent, what of it still holds, and the wishes it comes to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.midi.tables import KEYS, MOST_BINDS
+from yehu_server.core.player.record import MOST_HELD
+from yehu_server.core.player.rows import ROW, ROWS
+from yehu_server.params.table import TABLE
+
+PORTS, IN_PORT = 16, 16
+CHANNELS = PORTS * IN_PORT
+PEOPLE = 16  # players of a section, at most
+MOST_CHORD = 32  # notes that a section divides
+ONSETS = 64  # that a section remembers
+MOST_WISHES = 8192  # that one event comes to
+NONE = -1
+SECTION = ROW["/playing/section"]
+
+MIDI = np.dtype(
+    [
+        ("tables", np.int64),  # number of those in use
+        # What was wished of parameters, by row; and which are held.
+        ("value", np.float64, ROWS),
+        ("kept", np.int64, ROWS),
+        # Held keys, in the order pressed, and the one that sounds: its number, or NONE.
+        ("held", np.int64),
+        ("held_channel", np.int64, MOST_HELD),
+        ("held_key", np.float64, MOST_HELD),
+        ("held_velocity", np.float64, MOST_HELD),
+        ("held_struck", np.int64, MOST_HELD),  # number of the move that its velocity is; 0: none
+        ("held_again", np.int64, MOST_HELD),  # frame at which it was struck while held, or NONE
+        ("held_by", np.int64, MOST_HELD),  # channel of the pedal that holds it, or NONE
+        ("held_since", np.int64, MOST_HELD),  # order in which pedals took keys
+        ("sounding", np.int64),
+        ("pedalled", np.int64),  # number of keys that pedals took
+        # The key that sounds or sounded last.
+        ("has_last", np.int64),
+        ("last_channel", np.int64),
+        ("last_key", np.float64),
+        ("last_velocity", np.float64),
+        ("last_struck", np.int64),
+        # Keys that end together: their numbers among those held.
+        ("listed", np.int64),
+        ("list", np.int64, MOST_HELD),
+        ("is_listed", np.int64, MOST_HELD),
+        # Moves: numbers, by which the later of two counts, and positions, 0 to 1; by channel and
+        # first bind of the source. 0: none. `taken` are those that soft binds acted on.
+        ("count", np.int64),
+        ("moved", np.int64, (CHANNELS, MOST_BINDS)),
+        ("position", np.float64, (CHANNELS, MOST_BINDS)),
+        ("taken", np.int64, (CHANNELS, MOST_BINDS)),
+        ("taken_position", np.float64, (CHANNELS, MOST_BINDS)),
+        ("pressed", np.int64, (CHANNELS, KEYS)),  # aftertouch of each key
+        ("pressure", np.float64, (CHANNELS, KEYS)),
+        ("struck", np.int64, CHANNELS + 1),  # last note of a channel; at last, of all others
+        ("struck_velocity", np.float64, CHANNELS + 1),
+        ("struck_key", np.float64, CHANNELS + 1),
+        ("actives", np.int64),  # channels with moves
+        ("active", np.int64, CHANNELS),
+        ("is_active", np.int64, CHANNELS),
+        # Named controls, by bind.
+        ("has_fader", np.int64, MOST_BINDS),
+        ("fader", np.float64, MOST_BINDS),
+        ("fader_wrote", np.float64, MOST_BINDS),  # value it last gave its target; NaN: none
+        # Targets as set last, or as before their first move: rows in that order; the number of
+        # that write, 0 for none.
+        ("targets", np.int64),
+        ("target", np.int64, ROWS),
+        ("is_target", np.int64, ROWS),
+        ("set", np.int64, ROWS),
+        ("set_to", np.float64, ROWS),
+        ("found", np.int64, ROWS),  # of `values.find_values`: numbers and values
+        ("found_value", np.float64, ROWS),
+        # Channels.
+        ("bend_range", np.float64, CHANNELS),  # semitones; NaN: RPN 0 has not set it
+        ("sustain", np.int64, CHANNELS),
+        ("is_registered", np.int64, CHANNELS),  # whether a registered parameter is selected
+        ("coarse", np.int64, CHANNELS),  # halves of its number, or NONE
+        ("fine", np.int64, CHANNELS),
+        ("bank", np.int64, CHANNELS),
+        ("bank_fine", np.int64, CHANNELS),
+        # Ports: sizes of MPE zones, and whether a note was played.
+        ("lower", np.int64, PORTS),
+        ("upper", np.int64, PORTS),
+        ("is_keyboard", np.int64, PORTS),
+        # Counts.
+        ("messages", np.int64),
+        ("malformed", np.int64),
+        ("notes", np.int64),
+        ("out_of_range", np.int64),
+        ("percussion", np.int64),
+        ("notes_of", np.int64, CHANNELS + 1),
+        ("unknown_program", np.int64, KEYS),
+        # Who plays: instruments of the part, and how many of them play.
+        ("rate", np.float64),
+        ("people", np.int64),
+        ("playing", np.int64),
+        # Each player of a section: its held keys, its note of the last chord, its clock.
+        ("holds", np.int64, PEOPLE),
+        ("holds_channel", np.int64, (PEOPLE, MOST_HELD)),
+        ("holds_key", np.float64, (PEOPLE, MOST_HELD)),
+        ("holds_from", np.int64, (PEOPLE, MOST_HELD)),
+        ("has_note", np.int64, PEOPLE),
+        ("note_channel", np.int64, PEOPLE),
+        ("note_key", np.float64, PEOPLE),
+        ("wished", np.int64, PEOPLE),
+        ("waits", np.int64, PEOPLE),
+        # The last chord: its keys, their pitches, and the values of each.
+        ("chord", np.int64),
+        ("chord_at", np.int64),
+        ("chord_channel", np.int64, MOST_CHORD),
+        ("chord_key", np.float64, MOST_CHORD),
+        ("chord_pitch", np.float64, MOST_CHORD),
+        ("chord_values", np.int64, MOST_CHORD),
+        ("chord_row", np.int64, (MOST_CHORD, ROWS)),
+        ("chord_value", np.float64, (MOST_CHORD, ROWS)),
+        ("is_divided", np.int64),
+        ("dealt", np.int64),
+        ("dealt_person", np.int64, PEOPLE),
+        ("order", np.int64, MOST_CHORD),
+        # Values for the note that begins next, or sounds again.
+        ("values", np.int64),
+        ("values_row", np.int64, ROWS),
+        ("values_value", np.float64, ROWS),
+        # Onsets: see ``section_timing``.
+        ("stream", np.int64),  # of random numbers; 0: not begun
+        ("drawn", np.int64),
+        ("share", np.float64, PEOPLE),
+        ("error", np.float64, PEOPLE),
+        ("onsets", np.int64),
+        ("onset_at", np.int64, ONSETS),
+        ("onset_late", np.int64, (ONSETS, PEOPLE)),
+        ("late", np.int64, PEOPLE),
+        ("before", np.float64, PEOPLE),
+        # Wishes that the event comes to.
+        ("wishes", np.int64),
+        ("lost", np.int64),  # of those that there was no room for
+        ("out_frame", np.int64, MOST_WISHES),
+        ("out_kind", np.int64, MOST_WISHES),
+        ("out_index", np.int64, MOST_WISHES),
+        ("out_value", np.float64, MOST_WISHES),
+        ("out_other", np.float64, MOST_WISHES),
+        ("out_person", np.int64, MOST_WISHES),
+        # Where moves go while tables change.
+        ("kept_moved", np.int64, MOST_BINDS),
+        ("kept_position", np.float64, MOST_BINDS),
+        ("kept_taken", np.int64, MOST_BINDS),
+        ("kept_taken_position", np.float64, MOST_BINDS),
+    ],
+    align=True,
+)
+
+
+def prepare_midi(
+    midi: Any,
+    rate: float,
+    values: Mapping[str, float],
+    *,
+    people: int = 1,
+    mpe: bool = False,
+) -> None:
+    """Prepare a record of dtype MIDI [shape=(1,)], in place, for a part that was sent nothing.
+
+    Parameters
+    ----------
+    rate : float, Hz
+    values : mapping
+        The value of every parameter, by address.
+    people : int
+        Number of instruments that play the part.
+    mpe : bool
+        Whether ports start as MPE zones of all channels.
+    """
+    midi[:] = np.zeros(1, MIDI)
+    m = midi[0]
+    m["rate"] = rate
+    m["value"] = [values[param.address] for param in TABLE]
+    m["people"] = m["playing"] = people
+    m["value"][SECTION] = people
+    m["bend_range"] = np.nan
+    m["lower"] = IN_PORT - 1 if mpe else 0
+    m["is_registered"] = 1
+    m["coarse"] = m["fine"] = NONE
+    m["fader_wrote"] = np.nan
+    let_go(m)
+
+
+def let_go(m: Any) -> None:
+    """Forget what is held, in place, where a part's sound was lost."""
+    m["held"], m["sounding"], m["listed"], m["values"] = 0, NONE, 0, 0
+    m["is_listed"] = 0
+    m["holds"], m["has_note"], m["chord"], m["is_divided"] = 0, 0, 0, 0
+
+
+@compiled_exactly
+def emit(
+    m: Any, person: int, frame: int, kind: int, index: int, value: float, other: float
+) -> None:
+    """Wish something of one player at a frame (``player.wishes``)."""
+    if m.wishes >= MOST_WISHES:
+        m.lost += 1
+        return
+    n = m.wishes
+    m.out_person[n], m.out_frame[n], m.out_kind[n] = person, frame, kind
+    m.out_index[n], m.out_value[n], m.out_other[n] = index, value, other
+    m.wishes += 1

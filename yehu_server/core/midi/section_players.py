@@ -1,0 +1,157 @@
+"""How the players of a section differ: in seed, gain and seat, and in when they begin.
+
+Each player corrects a share, the gain, of how far it was from each of the others at the note
+before [Wing]: A'_i = A_i - gain_i sum_j (A_i - A_j) + an error by chance. Their asynchronies are
+counted from the earliest, which is on time: nobody is early, and nobody later than `LATEST_MS`.
+Compiled.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.midi.record import ONSETS
+from yehu_server.core.physics.elementary import chance
+from yehu_server.core.player.rows import HIGHEST, LOWEST, ROW, SEED, VARIATION
+
+OWN_SEED, GAIN, PAN, DISTANCE = "/engine/seed", "/output/gain", "/room/pan", "/room/distance"
+OWN = (OWN_SEED, GAIN, PAN, DISTANCE)
+SEED_ROW, GAIN_ROW, PAN_ROW, DISTANCE_ROW = (ROW[address] for address in OWN)
+SEEDS = 1 << 16
+APART = 7919  # seeds of two players; a prime, so that they meet no other section's soon
+
+# Seats: in two rows, so far before and behind the part's own distance, alike on both sides; from
+# left to right, neighbours so far apart, all of them no more than to either side of the part's
+# own place.
+FRONT, BACK = 0.87, 1.15
+NEIGHBOUR, TO_EITHER_SIDE = 0.12, 0.35
+
+
+@compiled_exactly
+def own_value(row: int, value: float, number: int, people: int) -> float:
+    """The value that a player has of a parameter, of what their part has.
+
+    All of them together are as loud as one alone.
+
+    Parameters
+    ----------
+    row : int
+        Of the parameter; -1 for none.
+    number : int
+        The player, counted from 0.
+    people : int
+        How many of them play.
+    """
+    if row == SEED_ROW:
+        return float((int(np.rint(value)) + APART * number) % SEEDS)
+    if people == 1:
+        return value
+    if row == GAIN_ROW:
+        own = value - 10.0 * math.log10(people)
+        return float(min(max(own, LOWEST[GAIN_ROW]), HIGHEST[GAIN_ROW]))
+    if row == DISTANCE_ROW:
+        from_outside = min(number, people - 1 - number)
+        factor = BACK if from_outside % 2 != 0 else FRONT
+        own = value * (factor if people > 2 else 1.0)
+        return float(min(max(own, LOWEST[DISTANCE_ROW]), HIGHEST[DISTANCE_ROW]))
+    if row == PAN_ROW:
+        side = min(0.5 * NEIGHBOUR * (people - 1), TO_EITHER_SIDE)
+        middle = min(max(value, side - 1.0), 1.0 - side)
+        return float(middle + side * (2.0 * min(number, people - 1) / (people - 1) - 1.0))
+    return value
+
+
+LATEST_MS = 40.0
+# Standard deviation of the error in each onset, at full variation and at most. At the usual
+# variation it is 9 ms, which leaves onsets of two players 13 ms apart [Wing]. Trios that play
+# different notes have 30 to 50 ms [Rasch].
+ERROR_MS, MOST_ERROR_MS = 36.0, 14.0
+# The gain that keeps players of a number closest is 1 over it: 0.25 for four [Wing]. Each has one
+# of its own, within these factors. By ear.
+GAIN_LO, GAIN_HI = 0.6, 1.4
+SHARE = 0.5  # of the time since the last onset that nobody is late for more, so that notes last
+ADDED = 12  # a sum of so many uniform numbers is all but normal
+FIRST_STREAM = 1 << 20  # of random numbers; those of the players' variation come before
+
+
+@compiled_exactly
+def begin_sequence(m: Any, seed: int) -> None:
+    """Begin the sequence of a seed; all are together."""
+    m.stream, m.drawn = FIRST_STREAM + seed, 0
+    for i in range(m.people):
+        m.share[i] = uniform(m, GAIN_LO, GAIN_HI)
+    m.onsets = 0
+    draw_errors(m)
+
+
+@compiled_exactly
+def plan_onset(m: Any, frame: int) -> None:
+    """Find how many frames each is late for an onset planned at a frame (``late``); note it."""
+    if m.stream == 0:
+        begin_sequence(m, int(m.value[SEED]))
+    find_lateness(m, frame)
+    n = m.onsets % ONSETS
+    m.onset_at[n] = frame
+    for i in range(m.people):
+        m.onset_late[n, i] = m.late[i]
+    m.onsets += 1
+    draw_errors(m)
+
+
+@compiled_exactly
+def plan_release(m: Any, frame: int) -> None:
+    """Find how many frames each is late for the end of a note: as for the onset that follows."""
+    if m.stream == 0:
+        begin_sequence(m, int(m.value[SEED]))
+    for onset in range(max(0, m.onsets - ONSETS), m.onsets):
+        n = onset % ONSETS
+        if m.onset_at[n] >= frame:
+            for i in range(m.people):
+                m.late[i] = m.onset_late[n, i]
+            return
+    find_lateness(m, frame)
+
+
+@compiled_exactly
+def find_lateness(m: Any, frame: int) -> None:
+    """Find how late each is for the next onset, if that is planned at a frame."""
+    most, total = LATEST_MS, 0.0
+    n = (m.onsets - 1) % ONSETS
+    if m.onsets > 0:
+        most = min(most, max(0.0, SHARE * 1e3 * (frame - m.onset_at[n]) / m.rate))
+    for i in range(m.playing):
+        m.before[i] = 1e3 * m.onset_late[n, i] / m.rate if m.onsets > 0 else 0.0
+        total += m.before[i]
+    error = min(ERROR_MS * m.value[VARIATION], MOST_ERROR_MS)
+    first = math.inf
+    for i in range(m.playing):
+        own = m.before[i]
+        gain = m.share[i] / m.playing
+        m.before[i] = own - gain * (m.playing * own - total) + error * m.error[i]
+        first = min(first, m.before[i])
+    for i in range(m.people):
+        m.late[i] = 0
+        if i < m.playing:
+            m.late[i] = int(1e-3 * min(m.before[i] - first, most) * m.rate)
+
+
+@compiled_exactly
+def draw_errors(m: Any) -> None:
+    """Draw the errors of the next onset."""
+    for i in range(m.people):
+        # A number of mean 0 and variance 1; each of the uniform ones has a variance of 1/3.
+        total = 0.0
+        for _ in range(ADDED):
+            total += uniform(m, -1.0, 1.0)
+        m.error[i] = total / math.sqrt(ADDED / 3.0)
+
+
+@compiled_exactly
+def uniform(m: Any, lo: float, hi: float) -> float:
+    """The next random number of the sequence, within bounds."""
+    m.drawn += 1
+    return float(lo + 0.5 * (hi - lo) * (1.0 + chance((m.stream << 32) + m.drawn)))

@@ -1,0 +1,79 @@
+"""Tables: what files say of playing, as numbers: a mapping, a tuning, a range, presets.
+
+All are float64, so that any program can write them; ``playing.tables`` does for files. Code of
+sources and curves are below.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.player.rows import ROWS
+from yehu_server.params.table import TABLE
+
+MOST_BINDS, MOST_POINTS = 256, 2048
+KEYS = 128
+PROGRAMS = 128
+SLOTS = 3  # tables of a part: those in use, those that are next, those that are written
+
+# Sources: a control change is its number, a pair of 14 bits PAIR + its coarse half, a
+# non-registered parameter NRPN + its number, a named control CONTROL + its number.
+PAIR, BEND, PRESSURE, POLY_PRESSURE, VELOCITY, NOTE, NRPN, CONTROL = (
+    128, 200, 201, 202, 203, 204, 1000, 100_000,
+)  # fmt: skip
+LINEAR, EXPONENTIAL, S, POINTS = range(4)  # curves
+TRANSPOSE, CLAMP, SKIP = range(3)  # what happens to notes out of range
+
+TABLES = np.dtype(
+    [
+        # Binds, in order.
+        ("binds", np.float64),
+        ("source", np.float64, MOST_BINDS),
+        ("first", np.float64, MOST_BINDS),  # number of the first bind of the same source
+        ("target", np.float64, MOST_BINDS),  # row of a parameter
+        ("lo", np.float64, MOST_BINDS),  # the target's values at the ends of the span
+        ("hi", np.float64, MOST_BINDS),
+        ("curve", np.float64, MOST_BINDS),
+        ("first_point", np.float64, MOST_BINDS),
+        ("points", np.float64, MOST_BINDS),
+        ("invert", np.float64, MOST_BINDS),
+        ("smoothing_ms", np.float64, MOST_BINDS),
+        ("channels", np.float64, MOST_BINDS),  # a bit for each that it receives; 0: all
+        ("soft", np.float64, MOST_BINDS),
+        ("by_range", np.float64, MOST_BINDS),  # 1: the bend range sets its span
+        ("for_all", np.float64, MOST_BINDS),  # 1: it is global
+        ("input_lo", np.float64, MOST_BINDS),
+        ("input_hi", np.float64, MOST_BINDS),
+        ("same", np.float64, MOST_BINDS),  # equal for equal binds, of other tables too
+        ("x", np.float64, MOST_POINTS),  # of curves by points
+        ("y", np.float64, MOST_POINTS),
+        ("mpe", np.float64),  # 1: every port starts as an MPE zone
+        # Start values, in order; and by row what the mapping starts with, or the default.
+        ("starts", np.float64),
+        ("start_row", np.float64, ROWS),
+        ("start_value", np.float64, ROWS),
+        ("usual", np.float64, ROWS),
+        # The tuning: pitches of keys, NaN for none; 1: each sounds its own number.
+        ("is_equal", np.float64),
+        ("pitch", np.float64, KEYS),
+        ("policy", np.float64),
+        # A bit for each channel that is received; -1: all, but for percussion.
+        ("received", np.float64),
+        # Values of presets by program, in order: rows, and NaN for the end.
+        ("has_programs", np.float64),
+        ("has_program", np.float64, PROGRAMS),
+        ("program_row", np.float64, (PROGRAMS, ROWS)),
+        ("program_value", np.float64, (PROGRAMS, ROWS)),
+    ]
+)
+
+
+def plain_tables() -> Any:
+    """Tables without binds, tuning or presets: ndarray [shape=(1,), dtype=TABLES]."""
+    made = np.zeros(1, TABLES)
+    made["usual"] = [param.default for param in TABLE]
+    made["is_equal"], made["received"] = 1.0, -1.0
+    made["program_row"] = np.nan
+    return made

@@ -1,0 +1,229 @@
+"""What a part wishes: parameters, notes, a bow drawn by hand. Compiled.
+
+It knows what is held and kept, and passes each wish on to the one player of the part, or to those
+of a section.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import address_of, carray
+from yehu_server.core.midi.keys import find_key, forget_listed, hold_key, list_key
+from yehu_server.core.midi.record import MIDI, NONE, SECTION, emit
+from yehu_server.core.midi.section import (
+    add_value,
+    begin_together,
+    end_together,
+    let_play,
+    tell_all,
+)
+from yehu_server.core.midi.section_players import DISTANCE_ROW, GAIN_ROW, PAN_ROW, begin_sequence
+from yehu_server.core.player.rows import HIGHEST, IS_OWNED, LOWEST, SEED
+from yehu_server.core.player.wishes import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
+
+# -- parameters -----------------------------------------------------------------------------------
+
+
+@compiled_exactly
+def in_range(row: int, value: float) -> float:
+    """The value nearest to one that a parameter can have."""
+    return float(min(max(value, LOWEST[row]), HIGHEST[row]))
+
+
+@compiled_exactly
+def pass_on(m: Any, frame: int, kind: int, index: int, value: float, other: float) -> None:
+    """Wish something of all who play the part."""
+    if m.people == 1:
+        emit(m, 0, frame, kind, index, value, other)
+    else:
+        tell_all(m, frame, kind, index, value, other, False, 0, 0.0)
+
+
+@native("float64(voidptr, int64, int64, float64, int64, float64, int64)")
+def write_apart(
+    midi_at: Any, frame: int, row: int, value: float, holding: int, glide_ms: float, of_key: int
+) -> float:
+    """See `write`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    hold = holding != 0  # a bit is passed otherwise by WebAssembly than by numba
+    value = in_range(row, value)
+    if row == SECTION:
+        value = min(np.rint(value), float(m.people))
+    if not IS_OWNED[row]:
+        if m.kept[row] != 0 and not hold:
+            value = m.value[row]
+            if row == SEED and m.people > 1:
+                begin_sequence(m, int(np.rint(value)))
+            return value
+        m.value[row] = value
+    if hold:
+        m.kept[row] = 1
+    kind = HOLD if hold else WRITE
+    if m.people == 1:
+        emit(m, 0, frame, kind, row, value, glide_ms)
+        return value
+    if of_key == NONE:
+        tell_all(m, frame, kind, row, value, glide_ms, False, 0, 0.0)
+    else:
+        channel, key = m.held_channel[of_key], m.held_key[of_key]
+        tell_all(m, frame, kind, row, value, glide_ms, True, channel, key)
+    if row == SECTION and int(value) != m.playing:
+        let_play(m, int(value), frame)
+        for own in (GAIN_ROW, PAN_ROW, DISTANCE_ROW):
+            own_kind = HOLD if m.kept[own] != 0 else WRITE
+            tell_all(m, frame, own_kind, own, m.value[own], 0.0, False, 0, 0.0)
+    elif row == SEED:
+        begin_sequence(m, int(np.rint(value)))
+    return value
+
+
+_write = write_apart.symbol
+
+
+@compiled_exactly
+def write(
+    m: Any, frame: int, row: int, value: float, hold: bool, glide_ms: float, of_key: int
+) -> float:
+    """Set a parameter; return the value it then has.
+
+    Parameters
+    ----------
+    glide_ms : float
+        Least time of the moves of bow and fingers that follow.
+    of_key : int
+        Where a section divides: the number of the held key that it is for, or NONE for all.
+    """
+    return float(_write(address_of(m), frame, row, value, 1 if hold else 0, glide_ms, of_key))
+
+
+@compiled_exactly
+def express(m: Any, frame: int, row: int, value: float) -> None:
+    """Set a parameter for the note that begins next, or sounds again."""
+    if m.kept[row] != 0:
+        return
+    m.value[row] = in_range(row, value)
+    if m.people == 1:
+        emit(m, 0, frame, EXPRESS, row, m.value[row], 0.0)
+    else:
+        add_value(m, row, m.value[row])
+
+
+@compiled_exactly
+def release_kept(m: Any) -> None:
+    """Hold no parameter any more."""
+    for row in range(len(LOWEST)):
+        m.kept[row] = 0
+
+
+# -- notes ----------------------------------------------------------------------------------------
+
+
+@native("void(voidptr, int64, int64, float64, float64, float64, int64)")
+def begin_key_apart(
+    midi_at: Any, frame: int, channel: int, key: float, pitch: float, velocity: float, struck: int
+) -> None:
+    """See `begin_key`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    again = NONE
+    before = find_key(m, channel, key)
+    if before != NONE:
+        again = m.held_again[before]
+    hold_key(m, channel, key, velocity, struck, again)
+    m.notes += 1
+    if m.people == 1:
+        emit(m, 0, frame, BEGIN, channel, key, pitch)
+    else:
+        begin_together(m, frame, channel, key, pitch)
+
+
+_begin_key = begin_key_apart.symbol
+
+
+@compiled_exactly
+def begin_key(
+    m: Any, frame: int, channel: int, key: float, pitch: float, velocity: float, struck: int
+) -> None:
+    """Begin a note at a pitch within range; what `express` was told before is for it."""
+    _begin_key(address_of(m), frame, channel, key, pitch, velocity, struck)
+
+
+@native("void(voidptr, int64)")
+def end_listed_apart(midi_at: Any, frame: int) -> None:
+    """See `end_listed`."""
+    m = carray(midi_at, (1,), MIDI)[0]
+    if m.listed == 0:
+        return
+    if m.people == 1:
+        for i in range(m.listed):
+            n = m.list[i]
+            more = 1.0 if i < m.listed - 1 else 0.0
+            emit(m, 0, frame, END, m.held_channel[n], m.held_key[n], more)
+    else:
+        end_together(m, frame)
+    forget_listed(m)
+
+
+_end_listed = end_listed_apart.symbol
+
+
+@compiled_exactly
+def end_listed(m: Any, frame: int) -> None:
+    """End the keys that are listed, all at once; of those still held the last sounds again.
+
+    What `express` was told before is for that one.
+    """
+    _end_listed(address_of(m), frame)
+
+
+@compiled_exactly
+def end_key(m: Any, frame: int, channel: int, key: float, more: bool) -> None:
+    """End a note of a section that somebody wished for directly; `more` end at the same time."""
+    n = find_key(m, channel, key)
+    if n != NONE:
+        list_key(m, n)
+    if not more:
+        end_listed(m, frame)
+        m.values = 0
+
+
+@compiled_exactly
+def record_wish(m: Any, kind: int, index: int, value: float, other: float) -> None:
+    """Record what a wish does that the only player of the part is told directly."""
+    if kind in (WRITE, HOLD, EXPRESS):
+        if kind == HOLD:
+            m.kept[index] = 1
+        if not IS_OWNED[index] and (kind == HOLD or m.kept[index] == 0):
+            m.value[index] = in_range(index, value)
+    elif kind == BEGIN:
+        hold_key(m, index, value, 0.0, 0, NONE)
+        m.notes += 1
+    elif kind == END:
+        n = find_key(m, index, value)
+        if n != NONE:
+            list_key(m, n)
+        if other == 0.0:
+            forget_listed(m)
+    elif kind == RELEASE:
+        release_kept(m)
+    elif kind == STOP and value != 0.0:
+        hold_nothing(m)
+
+
+@compiled_exactly
+def stop_sound(m: Any, frame: int, is_panic: bool) -> None:
+    """Lift bow and fingers and stop the sound at once, unless a note sounds; in a panic, all."""
+    if is_panic or m.sounding == NONE:
+        pass_on(m, frame, STOP, 0, 1.0 if is_panic else 0.0, 0.0)
+
+
+@compiled_exactly
+def hold_nothing(m: Any) -> None:
+    """Forget all held keys, whose sound ends."""
+    m.held, m.sounding, m.listed, m.values = 0, NONE, 0, 0
+    m.chord, m.is_divided = 0, 0
+    for who in range(m.people):
+        m.holds[who] = m.has_note[who] = 0

@@ -1,0 +1,65 @@
+"""One power of many numbers: the exponent is fixed, so tables made once do most of it.
+
+A number is 2^e part, with part within 1 to 2. Intervals divide that range; about the midpoint
+of one, part = midpoint (1 + t) with a t so small that a few terms of the binomial series do:
+
+    factor x^p = factor 2^(p e) midpoint^p (1 + p t + p (p - 1)/2 t^2 + ...).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.elementary import EXPONENT_OF_1, MANTISSA_BITS
+from yehu_server.core.physics.records import Tables
+
+EXPONENTS = 2048  # of all floats
+INTERVAL_BITS = 7
+INTERVALS = 1 << INTERVAL_BITS
+TERMS = 5
+INTERVAL_SHIFT = MANTISSA_BITS - INTERVAL_BITS
+MANTISSA_MASK = (1 << MANTISSA_BITS) - 1
+BITS_OF_1 = EXPONENT_OF_1 << MANTISSA_BITS
+EXTREME = 400  # a power of two that no number of the model comes near
+
+TABLES = np.dtype(
+    [
+        ("series", np.float64, TERMS),
+        ("of_twos", np.float64, EXPONENTS),
+        ("per_midpoint", np.float64, INTERVALS),
+        ("of_midpoint", np.float64, INTERVALS),
+    ],
+    align=True,
+)
+
+
+def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
+    """Write the tables by which `power` finds `factor` x^`exponent` (0 to 2)."""
+    twos = np.clip(np.arange(EXPONENTS) - EXPONENT_OF_1, -EXTREME, EXTREME)
+    coarse = float(np.float32(exponent))  # a product with this is not rounded
+    tables["of_twos"] = factor * 2.0 ** (coarse * twos) * 2.0 ** ((exponent - coarse) * twos)
+    per_midpoint = 1.0 / (1.0 + (np.arange(INTERVALS) + 0.5) / INTERVALS)
+    tables["per_midpoint"] = per_midpoint
+    tables["of_midpoint"] = per_midpoint**-exponent
+    term = 1.0
+    for n in range(TERMS):
+        term *= (exponent - n) / (n + 1.0)
+        tables["series"][n] = term
+
+
+@compiled
+def power(tables: Tables, x: float) -> float:
+    """Return the power that `prepare_power` made tables for, of a positive number, to 7e-16.
+
+    Below 1e-120 and above 1e120 it is about what it is there. Real time: safe.
+    """
+    bits = np.float64(x).view(np.uint64)
+    exponent = (bits >> np.uint64(MANTISSA_BITS)) & np.uint64(EXPONENTS - 1)
+    interval = (bits >> np.uint64(INTERVAL_SHIFT)) & np.uint64(INTERVALS - 1)
+    part_bits = np.uint64((bits & np.uint64(MANTISSA_MASK)) | np.uint64(BITS_OF_1))
+    t = part_bits.view(np.float64) * tables.per_midpoint[interval] - 1.0
+    c = tables.series
+    series = (c[0] + c[1] * t) + (t * t) * ((c[2] + c[3] * t) + (t * t) * c[4])
+    nearby = tables.of_twos[exponent] * tables.of_midpoint[interval]
+    return float(nearby + (nearby * t) * series)

@@ -1,0 +1,319 @@
+"""The physical quantities of one yehu, each with its unit, bounds and source.
+
+Nothing here is computed: derived coefficients live where they are used
+(`grid`, `string`, `bridge`, `bow`, `finger`, `radiation`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import MISSING, dataclass, field, fields, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, cast
+
+from yehu_server.errors import ParameterError
+from yehu_server.util.documents import parse_json, parse_toml
+from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text
+
+BODY_FILE = Path(__file__).with_name("body.json")
+
+
+def quantity(
+    default: float | tuple[float, float], unit: str, lo: float, hi: float, source: str
+) -> Any:
+    """A dataclass field for one physical quantity."""
+    return field(default=default, metadata={"unit": unit, "lo": lo, "hi": hi, "source": source})
+
+
+def choice(default: str, *others: str, source: str) -> Any:
+    """A dataclass field for a choice between words; the first is the default."""
+    return field(default=default, metadata={"choices": (default, *others), "source": source})
+
+
+TABLE_1 = "[Yehu] table 1"
+DATA_SET = "[YehuData]"
+SMITH = "chosen: see heat.py; [Smith]"
+
+
+@dataclass(frozen=True)
+class StringQuantities:
+    """One silk string, from the restraining loop to the stub ([Yehu] eqs. (1)-(3))."""
+
+    L: float = quantity(0.38, "m", 0.1, 1.0, TABLE_1)
+    rho: float = quantity(1250.0, "kg/m^3", 100.0, 20e3, TABLE_1)
+    r: float = quantity(0.55e-3, "m", 1e-5, 5e-3, TABLE_1)
+    T: float = quantity(50.61, "N", 1.0, 500.0, TABLE_1)
+    E: float = quantity(1e10, "Pa", 0.0, 1e12, TABLE_1)
+    sigma_0: float = quantity(0.9754, "1/s", 0.0, 100.0, TABLE_1)
+    sigma_1: float = quantity(0.0026, "m^2/s", 0.0, 1.0, TABLE_1)
+
+    @property
+    def rho_A(self) -> float:
+        """Mass per length (kg/m)."""
+        return self.rho * math.pi * self.r**2
+
+    @property
+    def EA(self) -> float:
+        """Stiffness against stretching (N)."""
+        return self.E * math.pi * self.r**2
+
+    @property
+    def EI(self) -> float:
+        """Bending stiffness of a round string (N m^2)."""
+        return self.E * math.pi * self.r**4 / 4.0
+
+
+@dataclass(frozen=True)
+class BowQuantities:
+    """Hair and rosin ([Yehu] section 2.4); `xi` has one value a string."""
+
+    epsilon_0: float = quantity(3.186e4, "N/m", 1.0, 1e8, DATA_SET)
+    epsilon_1: float = quantity(0.0027, "kg/s", 1e-9, 10.0, DATA_SET)
+    v_s: float = quantity(0.228, "m/s", 1e-3, 10.0, DATA_SET)
+    mu_C: float = quantity(0.5071, "1", 1e-3, 10.0, DATA_SET)
+    mu_S: float = quantity(1.0207, "1", 1e-3, 10.0, DATA_SET)
+    # Strictly below 1: at xi = 1 and high speed eq. (20) is 0/0.
+    xi: tuple[float, float] = quantity((0.7, 0.4), "1", 1e-3, 0.999, DATA_SET)
+    M_h: float = quantity(4.5e-3, "kg", 1e-6, 1.0, DATA_SET)
+    K_h: float = quantity(4.8297e4, "N/m", 0.0, 1e8, DATA_SET)
+    R_h: float = quantity(5.7674, "kg/s", 0.0, 1e4, DATA_SET)
+    lift_force: float = quantity(
+        1e-3, "N", 1e-6, 1.0, "chosen: a bow force below this is a lifted bow"
+    )
+    grain: float = quantity(3e-4, "m", 1e-6, 0.1, "by ear: see docs/physics.md")
+    hair: float = quantity(0.0, "1", 0.0, 65535.0, "chosen: which of many alike")
+    friction: str = choice("elasto-plastic", "thermal", source=SMITH)
+    cooling_time: float = quantity(1e-4, "s", 1e-6, 1.0, SMITH)
+
+
+@dataclass(frozen=True)
+class FingerQuantities:
+    """The stopping finger ([Yehu] sections 2.2 and 5.2) and how it is lifted."""
+
+    M_f: float = quantity(0.02, "kg", 1e-4, 1.0, DATA_SET)
+    K_f: float = quantity(5e5, "N/m^alpha", 0.0, 1e9, "[Yehu] section 5.2")
+    alpha: float = quantity(2.3, "1", 1.001, 5.0, "[Yehu] section 5.2")
+    beta: float = quantity(20.0, "s/m", 0.0, 1e3, "[Yehu] section 5.2")
+    rest_height: float = quantity(0.5e-3, "m", 1e-6, 0.05, DATA_SET)
+    # Critically damped: from a 1 N press back within 2 % of the way in 24 ms.
+    omega_lift: float = quantity(300.0, "rad/s", 1.0, 5e3, "chosen: see decisions/0004")
+
+
+@dataclass(frozen=True)
+class Body:
+    """Measured bridge modes and radiation filter; the arrays of a body file."""
+
+    frequency_hz: tuple[float, ...]
+    mass: tuple[float, ...]
+    damping: tuple[float, ...]
+    radiation_rate: float
+    sections: tuple[tuple[float, float, float, float], ...]
+    direct_gain: float
+
+    @property
+    def omega(self) -> tuple[float, ...]:
+        """Resonant frequencies (rad/s)."""
+        return tuple(2.0 * math.pi * f for f in self.frequency_hz)
+
+
+def read_body(path: Path = BODY_FILE) -> Body:
+    """Read a body file.
+
+    Source: the format is described in docs/physics.md; figures [YehuData].
+
+    Raises
+    ------
+    ParameterError
+        When it is missing, malformed, or not passive or stable.
+    """
+    try:
+        data = parse_json(read_text(path, MAX_SETTINGS_BYTES))
+        modes = data["bridge_modes"]
+        radiation = data["radiation"]
+        body = Body(
+            frequency_hz=tuple(float(mode["frequency_hz"]) for mode in modes),
+            mass=tuple(float(mode["mass_kg"]) for mode in modes),
+            damping=tuple(float(mode["damping_kg_per_s"]) for mode in modes),
+            radiation_rate=float(radiation["sample_rate_hz"]),
+            sections=tuple(
+                (float(b0), float(b1), float(a1), float(a2))
+                for b0, b1, a1, a2 in radiation["sections"]
+            ),
+            direct_gain=float(radiation["direct_gain"]),
+        )
+    except OSError as error:
+        raise ParameterError(f"body file {path}: {error.strerror}") from error
+    except (ValueError, KeyError, TypeError, OverflowError) as error:
+        raise ParameterError(f"body file {path}: not a body file ({error!r})") from error
+    try:
+        check_body(body)
+    except ParameterError as error:
+        raise ParameterError(f"body file {path}: {error}") from error
+    return body
+
+
+def check_body(body: Body) -> None:
+    """Refuse a body that is not passive or not stable.
+
+    Raises
+    ------
+    ParameterError
+        Where it is not.
+    """
+    figures = (
+        *body.omega,
+        *body.mass,
+        *body.damping,
+        body.radiation_rate,
+        body.direct_gain,
+        *(figure for section in body.sections for figure in section),
+    )
+    if not all(math.isfinite(figure) for figure in figures):
+        raise ParameterError("holds a number that is not finite")
+    if not body.mass or min(*body.mass, *body.frequency_hz, body.radiation_rate) <= 0.0:
+        raise ParameterError("masses, frequencies and rate must be positive")
+    if min(body.damping) < 0.0:
+        raise ParameterError("a mode with negative damping is not passive")
+    for _, _, a1, a2 in body.sections:
+        if not (abs(a2) < 1.0 and abs(a1) < 1.0 + a2):
+            raise ParameterError("a radiation section is unstable")
+        if a1 * a1 >= 4.0 * a2:
+            raise ParameterError("a radiation section has real poles")
+
+
+@lru_cache(maxsize=1)
+def measured_body() -> Body:
+    """The body that ships with the package."""
+    return read_body()
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """All quantities of one instrument.
+
+    String 1 (F4) is ``string_1``; bow force above zero bows it. ``tension_headroom``
+    is the highest factor that tuning or tension modulation may put on a tension:
+    the grids are chosen for it ([Yehu] eq. (57)), so they stay stable up to there.
+    """
+
+    string_1: StringQuantities = StringQuantities()
+    string_2: StringQuantities = StringQuantities(
+        rho=1350.0, r=0.40e-3, T=64.29, E=9.5e9, sigma_0=1.5844, sigma_1=0.0032
+    )
+    bow: BowQuantities = BowQuantities()
+    finger: FingerQuantities = FingerQuantities()
+    bridge_x: float = quantity(0.30, "m", 0.05, 1.0, DATA_SET)
+    tension_headroom: float = quantity(
+        1.06, "1", 1.0, 2.0, "chosen: 50 cents of tuning, or the 46 cents of a 3 N press"
+    )
+    tension_modulation: float = quantity(
+        1.0, "1", 0.0, 1.0, "chosen: share of EA that tightens a stretched string; [Yehu]: 0"
+    )
+    body: Body = field(default_factory=measured_body)
+
+    def __post_init__(self) -> None:
+        for string in self.strings:
+            if not 0.0 < self.bridge_x < string.L:
+                raise ParameterError(f"bridge_x {self.bridge_x} m lies off the string")
+        if self.bow.mu_S < self.bow.mu_C:
+            raise ParameterError("bow mu_S must not be below mu_C")
+
+    @property
+    def strings(self) -> tuple[StringQuantities, StringQuantities]:
+        """Both strings, F4 first."""
+        return (self.string_1, self.string_2)
+
+
+def override(base: Quantities, changes: Mapping[str, Any], folder: Path = Path()) -> Quantities:
+    """Return `base` with some quantities replaced.
+
+    Parameters
+    ----------
+    changes : mapping
+        Nested by section, as in a gesture or instrument file:
+        ``{"bow": {"epsilon_0": 3e4}, "string_1": {"T": 51.0}, "bridge_x": 0.3}``;
+        ``body`` names a body file.
+    folder : Path
+        Where a relative body file is looked for.
+
+    Raises
+    ------
+    ParameterError
+        For an unknown name, a wrong type, a value out of bounds.
+    """
+    return cast("Quantities", _override_section(base, changes, "instrument", folder))
+
+
+def _override_section(base: Any, changes: Mapping[str, Any], section: str, folder: Path) -> Any:
+    if not isinstance(changes, Mapping):
+        raise ParameterError(f"{section}: expected names and values, got {changes!r}")
+    known = {item.name: item for item in fields(base)}
+    values: dict[str, Any] = {}
+    for name, value in changes.items():
+        item = known.get(name)
+        if item is None:
+            raise ParameterError(
+                f"{section}: unknown quantity {name!r} (known: {', '.join(known)})"
+            )
+        if name == "body":
+            values[name] = read_body(folder / str(value))
+        elif "choices" in item.metadata:
+            values[name] = _chosen(f"{section}.{name}", item, value)
+        elif "unit" in item.metadata:
+            values[name] = _checked(f"{section}.{name}", item, value)
+        else:
+            values[name] = _override_section(getattr(base, name), value, name, folder)
+    return replace(base, **values)
+
+
+def _checked(name: str, item: Any, value: Any) -> Any:
+    default = item.default if item.default is not MISSING else 0.0
+    if isinstance(default, tuple):
+        if not isinstance(value, list | tuple) or len(value) != len(default):
+            raise ParameterError(f"{name}: expected {len(default)} numbers, got {value!r}")
+        return tuple(_number(name, item, entry) for entry in value)
+    return _number(name, item, value)
+
+
+def _chosen(name: str, item: Any, value: Any) -> str:
+    choices = item.metadata["choices"]
+    if value not in choices:
+        raise ParameterError(f"{name}: {value!r} is not one of {', '.join(choices)}")
+    return str(value)
+
+
+def _number(name: str, item: Any, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ParameterError(f"{name}: expected a number, got {value!r}")
+    lo, hi, unit = item.metadata["lo"], item.metadata["hi"], item.metadata["unit"]
+    unit = "" if unit == "1" else f" {unit}"
+    if not lo <= value <= hi:  # also refuses NaN
+        raise ParameterError(f"{name}: {_short(value)} is not within {lo:g} to {hi:g}{unit}")
+    return float(value)
+
+
+def _short(value: float) -> str:
+    text = str(value)
+    return text if len(text) < 30 else f"{text[:12]}..."
+
+
+def read_quantities(path: Path) -> Quantities:
+    """Read an instrument file (TOML, or JSON by its ending) of quantities to change.
+
+    Raises
+    ------
+    ParameterError
+        Naming the file.
+    """
+    try:
+        text = read_text(path, MAX_SETTINGS_BYTES)
+        data = parse_json(text) if path.suffix == ".json" else parse_toml(text)
+        return override(Quantities(), data, path.parent)
+    except OSError as error:
+        raise ParameterError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise ParameterError(f"{path}: not an instrument file ({error})") from error
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error

@@ -1,0 +1,98 @@
+"""Bow speed, force and position for each note, so that it speaks in its own register. Compiled.
+
+Notes near the body's modes (A4 at 439 Hz above all) and the open F string jump to other
+registers under a fast or a heavy bow. How each note is bowed on each string is found by practising
+(`yehu_server.playing.practice`); `ordinary_table` is what practising starts from.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.layout import STRINGS
+
+Array = Any
+
+# Values of /playing/pressure: those for which a manner has a share of Schelleng's limit, and where
+# notes begin to scratch.
+FLAUTANDO, LIGHT, FIRM, SCRATCHY = 0.2, 0.3, 0.55, 1.0
+# Fractions of Schelleng's limit at which notes begin to scratch, on each string;
+# measured at 0.12 and 0.2 m/s on eight notes: 1 to 2, and 3 to 6.
+EDGES = np.array((1.3, 4.0))
+
+# A manner is how a note is bowed: the highest bow speed (m/s) at which it speaks; the values of
+# /bow/pressure for FLAUTANDO, LIGHT and FIRM; a factor on the distance of the bow from the bridge;
+# the least finger force (N).
+TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, FARTHER, LEAST_PRESS = range(6)
+MANNER = 6
+ORDINARY = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
+FIRST, LAST = 64, 91  # the notes of the table; beyond them all are bowed as these
+# The bow positions of the table; beyond them all notes are bowed as at these.
+PLACES = (0.06, 0.08, 0.1, 0.13, 0.165, 0.2, 0.25)
+LOG_PLACES = np.array([math.log(place) for place in PLACES])
+NOTES = LAST - FIRST + 1
+# On the F string the bow is no nearer to the bridge than here: nearer, the body disturbs it more,
+# and Schelleng's wedge is narrower.
+NEAREST_ON_F = 0.17
+
+
+def ordinary_table() -> Array:
+    """All notes bowed alike: ndarray [shape=(STRINGS, len(PLACES), NOTES, MANNER)]."""
+    table = np.tile(np.array(ORDINARY), (STRINGS, len(PLACES), NOTES, 1))
+    table[0, :, :, FARTHER] = np.maximum(NEAREST_ON_F / np.array(PLACES), 1.0)[:, None]
+    return table
+
+
+@compiled_exactly
+def manner(table: Array, string: int, place: float, pitch: float, column: int) -> float:
+    """One value of how a pitch (fractional MIDI note) is bowed on a string; interpolated.
+
+    Parameters
+    ----------
+    table : ndarray [shape=(STRINGS, len(PLACES), NOTES, MANNER)]
+    string : int
+        0 or 1.
+    place : float
+        The bow position wished for.
+    column : int
+        TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, FARTHER or LEAST_PRESS.
+    """
+    at = math.log(place)
+    row = 0
+    while row < len(LOG_PLACES) - 2 and at >= LOG_PLACES[row + 1]:
+        row += 1
+    part = (at - LOG_PLACES[row]) / (LOG_PLACES[row + 1] - LOG_PLACES[row])
+    near = at_pitch(table[string, row], pitch, column)
+    far = at_pitch(table[string, row + 1], pitch, column)
+    return float(near + min(max(part, 0.0), 1.0) * (far - near))
+
+
+@compiled_exactly
+def at_pitch(manners: Array, pitch: float, column: int) -> float:
+    """The same at one of PLACES; `manners` has shape (NOTES, MANNER)."""
+    pitch = min(max(pitch, FIRST), LAST)
+    row = min(math.floor(pitch), LAST - 1)
+    low, high = manners[row - FIRST, column], manners[row + 1 - FIRST, column]
+    return float(low + (pitch - row) * (high - low))
+
+
+@compiled_exactly
+def share(flautando: float, light: float, firm: float, wish: float, string: int) -> float:
+    """The value of ``/bow/pressure`` for one of ``/playing/pressure``, on a string.
+
+    Parameters
+    ----------
+    flautando, light, firm : float
+        The values for FLAUTANDO, LIGHT and FIRM.
+    """
+    if wish <= FLAUTANDO:
+        return flautando * wish / FLAUTANDO
+    if wish <= LIGHT:
+        return flautando + (light - flautando) * (wish - FLAUTANDO) / (LIGHT - FLAUTANDO)
+    if wish <= FIRM:
+        return light + (firm - light) * (wish - LIGHT) / (FIRM - LIGHT)
+    return float(firm + (EDGES[string] - firm) * (wish - FIRM) / (SCRATCHY - FIRM))

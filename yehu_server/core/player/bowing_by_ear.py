@@ -1,0 +1,110 @@
+"""The right hand keeps the string speaking by what it hears, and remembers it. Compiled.
+
+A string that slips more than once in a period has too light a bow, one without a period too heavy
+a one. The hand leans more or less, in steps, until the string speaks: never where the player
+scratches or plays tremolo, and only a little where the bow is to be light.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player.bowing import FIRM, FLAUTANDO, SCRATCHY
+from yehu_server.core.player.ear import SURE, shelf
+from yehu_server.core.player.right_hand import lean
+from yehu_server.core.player.rows import LISTENING, PRESSURE, TREMOLO
+
+FEW, MANY = 0.6, 1.5  # slips in a period: between them the string speaks
+ROUGH = 0.8  # certainty below which it has no period
+PATIENCE = 12  # hearings of the same fault before the hand acts
+GRACE = 8  # hearings until it judges what it did
+EASY = 16  # hearings of a string that speaks, before the hand takes half of its help back
+HEAVIER, LIGHTER = 1.25, 0.8  # steps of the factor on the bow's pressure
+LIGHTEST, HEAVIEST, HEAVIEST_FLAUTANDO = 0.5, 1.8, 1.3
+EVEN = 0.05  # nearer to 1 than this the factor is 1
+SPEAKS, TOO_LIGHT, TOO_HEAVY = 0, 1, 2
+
+
+@compiled_exactly
+def begin_leaning(p: Any, pitch: float) -> None:
+    """Begin a note with the pressure that it was learnt to need."""
+    p.leaning, p.fault, p.faults = 1.0, SPEAKS, 0
+    p.spoken, p.eased_from = 0, 0.0
+    if may_lean(p):
+        row, place, pace = shelf(p, pitch)
+        known = p.learnt_leaning[p.string, row, place, pace]
+        p.leaning = min(known, heaviest(p)) if known > 0.0 else 1.0
+        p.eased_from = p.leaning if known > 0.0 else 0.0
+
+
+@compiled_exactly
+def may_lean(p: Any) -> bool:
+    """Whether the hand may help: not where it is to scratch or to tremble."""
+    listens = p.value[LISTENING] > 0.0 and p.helps_bow != 0
+    return bool(listens and p.value[PRESSURE] < SCRATCHY and p.value[TREMOLO] == 0.0)
+
+
+@compiled_exactly
+def heaviest(p: Any) -> float:
+    """The largest factor on the bow's pressure."""
+    return HEAVIEST_FLAUTANDO if p.value[PRESSURE] <= FLAUTANDO else HEAVIEST
+
+
+@compiled_exactly
+def fault_of(p: Any) -> int:
+    """What is wrong with what is heard.
+
+    Without a period and with many slips the bow may be either; then the wish decides.
+    """
+    if p.ear.certainty < ROUGH and (p.ear.slips < MANY or p.value[PRESSURE] > FIRM):
+        return TOO_HEAVY
+    return TOO_LIGHT if p.ear.slips >= MANY else SPEAKS
+
+
+@compiled_exactly
+def help_bow(p: Any, c: Any, pitch: float) -> None:
+    """Lean more or less on the bow where the string has not spoken for a while."""
+    if not may_lean(p):
+        return
+    fault = fault_of(p)
+    if fault == SPEAKS:
+        p.faults = min(p.faults, 0)
+        if p.leaning != 1.0 and p.ear.certainty > SURE and p.ear.slips > FEW:
+            p.spoken += 1
+            if p.spoken == EASY:
+                ease_or_learn(p, c, pitch)
+        return
+    p.spoken = 0
+    p.faults = p.faults + 1 if fault == p.fault or p.faults < 0 else 1
+    p.fault = fault
+    if p.faults < PATIENCE:
+        return
+    p.faults = PATIENCE - GRACE
+    was_eased = p.eased_from > 0.0
+    if was_eased and p.leaning != p.eased_from:
+        p.leaning = p.eased_from  # it needs all of the help
+    elif fault == TOO_LIGHT:
+        p.leaning = min(p.leaning * HEAVIER, heaviest(p))
+    else:
+        p.leaning = max(p.leaning * LIGHTER, LIGHTEST)
+    p.eased_from = p.leaning if was_eased else 0.0
+    lean(p, c, pitch, True)
+
+
+@compiled_exactly
+def ease_or_learn(p: Any, c: Any, pitch: float) -> None:
+    """Take half of the help back, once: it may have been needed at the beginning only.
+
+    What the string still speaks with, or could not do without, is remembered.
+    """
+    if p.eased_from == 0.0:
+        p.eased_from = p.leaning
+        p.leaning = math.sqrt(p.leaning)
+        p.leaning = 1.0 if abs(p.leaning - 1.0) < EVEN else p.leaning
+        p.spoken = 0
+        lean(p, c, pitch, True)
+        return
+    row, place, pace = shelf(p, pitch)
+    p.learnt_leaning[p.string, row, place, pace] = p.leaning

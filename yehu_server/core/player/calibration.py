@@ -1,0 +1,65 @@
+"""The measurements that tune an instrument, as the player reads them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from yehu_server.core.physics.quantities import Quantities
+
+Tables = tuple[tuple[tuple[float, ...], ...], ...]  # of strings, notes, speeds
+
+OPEN_NOTES = (65, 72)  # F4 and C5
+SPEEDS = (0.12, 0.16, 0.2, 0.26)  # m/s
+# The stopped pitches measured on each string: semitones, and quarter tones where the body's mode
+# at 439 Hz bends pitches most, and at 850 Hz, where the body radiates 9 dB more than beside it.
+PITCHES = (
+    (*(66.0 + 0.5 * step for step in range(13)), *(float(note) for note in range(73, 78))),
+    (*(float(note) for note in range(73, 81)), 80.5, *(float(note) for note in range(81, 90))),
+)
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The measurements that tune an instrument.
+
+    Attributes
+    ----------
+    tensions : tuple of float
+        Tensions of the strings (N).
+    sharpening : tuple
+        How much sharper (cents) a stopped note sounds than c/2f of its length: for each string
+        a row for each of PITCHES, with a value for each of SPEEDS.
+    levels : tuple
+        Level of each note (dB, A-weighted), in the same form, the open string first.
+    """
+
+    a4: float
+    tensions: tuple[float, float]
+    sharpening: Tables
+    levels: Tables = ()
+
+    def tuned(self, quantities: Quantities) -> Quantities:
+        """The quantities with the tensions of this calibration."""
+        first, second = self.tensions
+        return replace(
+            quantities,
+            string_1=replace(quantities.string_1, T=first),
+            string_2=replace(quantities.string_2, T=second),
+        )
+
+
+def frequency_hz(pitch: float, a4: float) -> float:
+    """Frequency of a fractional MIDI note in equal temperament."""
+    return a4 * math.exp2((pitch - 69.0) / 12.0)
+
+
+def wave_speed(quantities: Quantities, string: int) -> float:
+    """Speed (m/s) of waves on an ideal string."""
+    silk = quantities.strings[string]
+    return math.sqrt(silk.T / silk.rho_A)
+
+
+def ideal_position(quantities: Quantities, string: int, frequency: float) -> float:
+    """Finger position (m) at which an ideal string has a frequency (Hz): c/2f from the bridge."""
+    return quantities.bridge_x - wave_speed(quantities, string) / (2.0 * frequency)

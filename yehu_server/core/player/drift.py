@@ -1,0 +1,151 @@
+"""The hands are not quite steady: slow drift and tremor of bow and finger. Compiled.
+
+The drift of a hand has a spectrum of about 1/f ([Gilden]), from four random sequences whose times
+are two octaves apart; tremor is a resonance about 10 Hz, where that of hands is ([Elble]). What one
+hand does goes together: a bow that is drawn faster is pressed harder. `/playing/variation` says how
+much, and `/engine/seed` which; a parameter that somebody else moves is steady.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.controls.drift import CENTS, DRIFTS, FORCE, PLACE, PRESS, SPEED
+from yehu_server.core.physics.elementary import chance
+from yehu_server.core.player.ear import HOP_S
+from yehu_server.core.player.rows import (
+    BOW_FORCE,
+    BOW_POSITION,
+    BOW_PRESSURE,
+    BOW_SPEED,
+    FINGER_POSITION,
+    FINGER_PRESS,
+    VARIATION,
+)
+
+# Standard deviations at full variation, of SPEED, FORCE, PLACE, CENTS, PRESS. By ear.
+DRIFT = np.array((0.06, 0.06, 0.04, 4.8, 0.06))
+TREMOR = np.array((0.04, 0.05, 0.02, 2.5, 0.04))
+RIGHT, LEFT = 0, 1
+HAND = np.array((RIGHT, RIGHT, RIGHT, LEFT, LEFT))
+LEADER = np.array((SPEED, SPEED, SPEED, CENTS, CENTS))  # what the rest of each hand goes with
+TOGETHER = 0.6  # correlation with it
+
+# A vibrato's turns differ: standard deviations of rate and width at full variation. By ear.
+UNEVEN_PACE, UNEVEN_WIDTH = 0.12, 0.3
+FOLLOW = 0.15  # of the way to those of the next turn, in a hop
+
+TIMES_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
+TIMES = 4
+# Here and below rounded, as the last bits of exp and cos differ from processor to processor, and
+# what is compiled ahead, on another one, is to play the same samples.
+KEPT = np.round(np.exp(-HOP_S / TIMES_S), 12)
+# Uniform numbers in -1..1 have a variance of 1/3; the sums have one of 1.
+ADDED = np.sqrt(3.0 * (1.0 - KEPT**2) / TIMES)
+TREMOR_HZ, WIDTH_HZ = 10.0, 3.0
+RADIUS = round(math.exp(-math.pi * WIDTH_HZ * HOP_S), 12)
+TURN = round(2.0 * RADIUS * math.cos(2.0 * math.pi * TREMOR_HZ * HOP_S), 12)
+KICK = math.sqrt(3.0 * (1.0 - RADIUS**2) * ((1.0 + RADIUS**2) ** 2 - TURN**2) / (1.0 + RADIUS**2))
+HANDS = 2
+CALMING, STEADY = 0.8, 1e-6  # a hand that does not play comes to rest, by so much in a hop
+LATE = 2  # hops after which what a finger did is heard
+DRAWN_FROM = 1 << 31  # of the seed's numbers; those before are the notes' (``variation``)
+
+UNSTEADY = np.dtype(
+    [
+        ("slow", np.float64, (DRIFTS, TIMES)),  # the sequences of each drift
+        ("tremor", np.float64, (HANDS, 2)),  # of each hand, now and one hop ago
+        ("cents", np.float64, LATE + 1),  # of the finger, now and at the last hops
+        ("phase", np.float64),  # of the vibrato, one hop ago (turns)
+        ("pace", np.float64),  # deviates of this turn of the vibrato
+        ("width", np.float64),
+        ("drawn", np.int64),  # random numbers so far
+    ],
+    align=True,
+)
+
+
+@compiled_exactly
+def draw(p: Any) -> float:
+    """The next random number, -1 to 1."""
+    p.unsteady.drawn += 1
+    return chance((p.seed << 32) + DRAWN_FROM + p.unsteady.drawn)
+
+
+@compiled_exactly
+def sway(p: Any, c: Any) -> None:
+    """Let the hands drift and tremble on to where they are one hop later."""
+    u, amount = p.unsteady, p.value[VARIATION]
+    for hand in range(HANDS):
+        now, before = u.tremor[hand, 0], u.tremor[hand, 1]
+        u.tremor[hand, 0] = TURN * now - RADIUS**2 * before + KICK * draw(p)
+        u.tremor[hand, 1] = now
+    for i in range(DRIFTS):
+        for k in range(TIMES):
+            u.slow[i, k] = KEPT[k] * u.slow[i, k] + ADDED[k] * draw(p)
+    c.drifting = 0
+    for i in range(DRIFTS):
+        drift = total(u.slow[i])
+        if i != LEADER[i]:
+            drift = TOGETHER * total(u.slow[LEADER[i]]) + math.sqrt(1.0 - TOGETHER**2) * drift
+        wanted = amount * (DRIFT[i] * drift + TREMOR[i] * u.tremor[HAND[i], 0])
+        if amount == 0.0 or not is_playing(p, i):
+            wanted = CALMING * c.drift[i] if abs(c.drift[i]) > STEADY else 0.0
+        c.drift_slope[i] = (wanted - c.drift[i]) / p.ear.hop
+        if wanted == 0.0 and abs(c.drift[i]) <= STEADY:
+            c.drift[i] = c.drift_slope[i] = 0.0
+        c.drifting |= 1 if c.drift[i] != 0.0 or c.drift_slope[i] != 0.0 else 0
+    if c.drifting == 0:
+        c.sounding_drift = c.place_drift = 1.0
+    for k in range(LATE, 0, -1):
+        u.cents[k] = u.cents[k - 1]
+    u.cents[0] = c.drift[CENTS]
+
+
+@compiled_exactly
+def sway_vibrato(p: Any, c: Any) -> None:
+    """Let the vibrato's rate and width follow the deviates of its turn."""
+    u, amount = p.unsteady, p.value[VARIATION] if p.sounding >= 0 else 0.0
+    if c.vibrato < u.phase:
+        u.pace, u.width = math.sqrt(3.0) * draw(p), math.sqrt(3.0) * draw(p)
+    u.phase = c.vibrato
+    c.vibrato_pace += FOLLOW * (1.0 + amount * UNEVEN_PACE * u.pace - c.vibrato_pace)
+    c.vibrato_width += FOLLOW * (1.0 + amount * UNEVEN_WIDTH * u.width - c.vibrato_width)
+    if amount == 0.0 and max(abs(c.vibrato_pace - 1.0), abs(c.vibrato_width - 1.0)) < STEADY:
+        c.vibrato_pace = c.vibrato_width = 1.0
+
+
+@compiled_exactly
+def total(numbers: Any) -> float:
+    """Their sum."""
+    found = 0.0
+    for number in numbers:
+        found += number
+    return found
+
+
+@compiled_exactly
+def is_playing(p: Any, drift: int) -> bool:
+    """Whether the player moves what drifts, and nobody else."""
+    if p.sounding < 0:
+        return False
+    row = BOW_SPEED
+    if drift == FORCE:
+        row = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.kept[BOW_FORCE] == 0 else BOW_FORCE
+    elif drift == PLACE:
+        row = BOW_POSITION
+    elif drift == CENTS:
+        row = FINGER_POSITION[p.finger]
+    elif drift == PRESS:
+        row = FINGER_PRESS[p.finger]
+    return bool(p.taken[row] == 0 and p.kept[row] == 0)
+
+
+@compiled_exactly
+def heard_semitones(p: Any) -> float:
+    """The finger's drift in what is heard now."""
+    return float(p.unsteady.cents[LATE] / 100.0)

@@ -1,0 +1,159 @@
+"""The ear: hears pitch and regime of the bowed string, and remembers corrections. Compiled.
+
+It hears the string's velocity under the bow, relative to the hair: in Helmholtz motion it is 0
+while the string sticks, and a pulse at each slip. Neither the body nor the other string blurs
+it. The signal is correlated with itself some periods ago, at the few lags about the expected one;
+a parabola through the best three gives the period. Measured on 12 notes bowed in four ways each,
+against the spectrum of the sound: median error 0.03 cents, 90 % within 0.1.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled, compiled_exactly
+from yehu_server.core.controls.record import CHUNK
+from yehu_server.core.player.calibration import OPEN_NOTES
+from yehu_server.core.player.rows import LISTENING, POSITION, SPEED
+
+
+@compiled_exactly
+def shelf(p: Any, pitch: float) -> tuple[int, int, int]:
+    """Where what is learnt of a pitch is kept: numbers of pitch, bow position and bow speed."""
+    row = int(np.rint(2.0 * (pitch - OPEN_NOTES[0])))
+    place = int(np.rint(4.0 * math.log2(p.value[POSITION] / 0.05)))
+    pace = int(np.rint(2.0 * math.log2(p.value[SPEED] / 0.03)))
+    return (
+        min(max(row, 0), p.learnt.shape[1] - 1),
+        min(max(place, 0), p.learnt.shape[2] - 1),
+        min(max(pace, 0), p.learnt.shape[3] - 1),
+    )
+
+
+@compiled_exactly
+def learnt_cents(p: Any, string: int, pitch: float) -> float:
+    """What was learnt of a pitch on a string (cents of sharpening)."""
+    row, place, pace = shelf(p, pitch)
+    return float(p.learnt[string, row, place, pace]) if p.value[LISTENING] > 0.0 else 0.0
+
+
+Array = Any
+
+HEARD = 1 << 12  # samples that the ear remembers; a power of two
+SPAN_S = 300 / 44100  # of the sound that is compared, and about its distance in time
+HOP_S = 0.005  # from one hearing to the next
+BEHIND = CHUNK  # frames that a hearing lags behind: by then they are computed
+SEARCHED = 0.06  # a period is searched so far from the expected one, as a part of it
+SURE = 0.9  # certainty from which the pitch is known
+NEAR = 3  # samples about the last lag
+SLIPPING, STICKING = 0.4, 0.2  # parts of the largest velocity: a slip begins, and ends
+
+EAR = np.dtype(
+    [
+        ("hop", np.int64),  # frames
+        ("span", np.int64),
+        ("next", np.int64),  # the frame of the next hearing
+        ("error", np.float64),  # cents; positive where the string is sharp
+        ("certainty", np.float64),  # correlation at the period, up to 1
+        ("slips", np.float64),  # number in a period
+    ],
+    align=True,
+)
+
+
+def prepare_ear(ear: Any, rate: float) -> None:
+    """Set up a record of dtype EAR for a rate (Hz), in place."""
+    ear["hop"] = round(HOP_S * rate)
+    ear["span"] = round(SPAN_S * rate)
+    begin_hearing(ear, 0)
+
+
+def begin_hearing(ear: Any, frame: int) -> None:
+    """Let the next hearing be the first due from a frame on; nothing is certain yet."""
+    hop = int(ear["hop"])
+    ear["next"] = BEHIND + hop * max(1, -((BEHIND - frame) // hop))
+    ear["certainty"] = 0.0
+
+
+@compiled
+def remember(heard: Array, frame: int, slip: float) -> None:
+    """Keep a sample, at both halves, so that the last HEARD lie in a row. Real time: safe."""
+    at = frame & (HEARD - 1)
+    heard[at] = slip
+    heard[at + HEARD] = slip
+
+
+@compiled
+def product(heard: Array, end: int, span: int, one: int, other: int) -> float:
+    """Sum of products of the `span` samples before `end`, each `one` and `other` ago."""
+    total = 0.0
+    for i in range(end - span, end):
+        total += heard[i - one] * heard[i - other]
+    return total
+
+
+@compiled_exactly
+def correlation(heard: Array, end: int, span: int, lag: int) -> float:
+    """Correlation of the last `span` samples before `end` with those `lag` before."""
+    power = product(heard, end, span, 0, 0) * product(heard, end, span, lag, lag)
+    return product(heard, end, span, 0, lag) / math.sqrt(power + 1e-30)
+
+
+@compiled_exactly
+def count_slips(heard: Array, end: int, span: int) -> int:
+    """Number of slips that begin in the last `span` samples before `end`."""
+    largest = 0.0
+    for i in range(end - span, end):
+        largest = max(largest, abs(heard[i]))
+    slips, is_slipping = 0, abs(heard[end - span]) > STICKING * largest
+    for i in range(end - span, end):
+        size = abs(heard[i])
+        if is_slipping:
+            is_slipping = size > STICKING * largest
+        elif size > SLIPPING * largest:
+            is_slipping = True
+            slips += 1
+    return slips
+
+
+@compiled_exactly
+def best_lag(heard: Array, end: int, span: int, lowest: int, highest: int) -> int:
+    """The lag at which the last `span` samples before `end` are most like those before."""
+    lag, most = lowest, -math.inf
+    for i in range(lowest, highest + 1):
+        found = product(heard, end, span, 0, i)
+        if found > most:
+            lag, most = i, found
+    return lag
+
+
+@compiled_exactly
+def hear(ear: Any, heard: Array, frame: int, period: float) -> None:
+    """Hear a string whose period is expected (samples), at the `frame` of a hearing.
+
+    What was certain is looked for where it was; what was not, everywhere about the expected.
+    """
+    end = HEARD + ((frame - BEHIND) & (HEARD - 1))
+    span = ear.span
+    # An odd number, so that a string whose periods differ in turn is heard to have no such period.
+    periods = 2.0 * max(0.0, np.rint(0.5 * (span / period - 1.0))) + 1.0
+    expected = periods * period
+    lowest, highest = int(expected * (1.0 - SEARCHED)), int(expected * (1.0 + SEARCHED)) + 1
+    first, last = lowest, highest
+    if ear.certainty > SURE:
+        near = int(np.rint(expected * 2.0 ** (-ear.error / 1200.0)))
+        first, last = max(lowest, near - NEAR), min(highest, near + NEAR)
+    lag = best_lag(heard, end, span, first, last)
+    ear.certainty = 0.0
+    if first < lag < last:
+        below = correlation(heard, end, span, lag - 1)
+        best = correlation(heard, end, span, lag)
+        above = correlation(heard, end, span, lag + 1)
+        bend = below - 2.0 * best + above
+        if bend < 0.0:
+            ear.error = 1200.0 * math.log2(expected / (lag + 0.5 * (below - above) / bend))
+            ear.certainty = best
+    ear.slips = count_slips(heard, end, int(np.rint(expected))) / periods

@@ -1,0 +1,68 @@
+"""Finger positions for pitches, and gains for even loudness, from a calibration. Compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.physics.layout import STRINGS
+from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS
+from yehu_server.core.player.rows import TRUST
+
+Array = Any
+
+STOPPED = np.array(PITCHES)
+ALL = np.array([(float(note), *row) for note, row in zip(OPEN_NOTES, PITCHES, strict=True)])
+LOG_SPEEDS = np.array([math.log(speed) for speed in SPEEDS])
+
+
+@compiled_exactly
+def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float) -> float:
+    """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1.
+
+    A faster bow changes the pitch: `speed` (m/s) is the one the player wishes for. Notes
+    that are bowed more slowly were measured so. `sharper` (cents) is what the ear adds to the
+    measured sharpening.
+    """
+    sharp = sharper + p.value[TRUST] * read(p.sharpening[string], STOPPED[string], pitch, speed)
+    frequency = p.a4 * math.exp2((pitch - sharp / 100.0 - 69.0) / 12.0)
+    return float(p.bridge_x - p.wave_speed[string] / (2.0 * frequency))
+
+
+@compiled_exactly
+def balance_db(p: Any, string: int, pitch: float, speed: float) -> float:
+    """Gain (dB) that makes a note as loud as the average note, at a wished `speed` (m/s).
+
+    The pitch of an open string is that of its note.
+    """
+    total = 0.0
+    for on in range(STRINGS):
+        for row in range(len(p.levels[on])):
+            total += at_speed(p.levels[on, row], speed)
+    own = read(p.levels[string], ALL[string], pitch, speed)
+    return float(total / (STRINGS * len(p.levels[0])) - own)
+
+
+@compiled_exactly
+def read(table: Array, pitches: Array, pitch: float, speed: float) -> float:
+    """Interpolate a table of pitches and SPEEDS; beyond its ends, the end values apply."""
+    row = 0
+    while row < len(pitches) - 2 and pitches[row + 1] <= pitch:
+        row += 1
+    part = (pitch - pitches[row]) / (pitches[row + 1] - pitches[row])
+    low, high = at_speed(table[row], speed), at_speed(table[row + 1], speed)
+    return float(low + min(max(part, 0.0), 1.0) * (high - low))
+
+
+@compiled_exactly
+def at_speed(row: Array, speed: float) -> float:
+    """Interpolate a value for each of SPEEDS, over the logarithm of the speed (m/s)."""
+    logarithm = math.log(max(speed, 1e-3))
+    column = 0
+    while column < len(LOG_SPEEDS) - 2 and logarithm >= LOG_SPEEDS[column + 1]:
+        column += 1
+    part = (logarithm - LOG_SPEEDS[column]) / (LOG_SPEEDS[column + 1] - LOG_SPEEDS[column])
+    return float(row[column] + min(max(part, 0.0), 1.0) * (row[column + 1] - row[column]))

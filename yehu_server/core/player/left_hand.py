@@ -1,0 +1,122 @@
+"""The left hand: four fingers that stop the strings, step, slide, press and play vibrato. Compiled.
+
+A step puts the next finger down while the one before still holds, and then lifts that, so that
+the string is never open in between. A slide moves the finger that is down.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player.fingering import OPEN
+from yehu_server.core.player.ownership import USUAL_MS, move, take_back
+from yehu_server.core.player.phrasing import varied_landing, vibrato_cents, vibrato_delay_ms
+from yehu_server.core.player.rows import (
+    FINGER_COUNT,
+    FINGER_POSITION,
+    FINGER_PRESS,
+    PRESS,
+    ROCKING,
+    ROCKING_RATE,
+    VIBRATO_DEPTH,
+    VIBRATO_ONSET,
+    VIBRATO_PRESS,
+    VIBRATO_RATE,
+)
+
+# Ramps of finger force. Chosen by trying landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps
+# up and down both strings; half of these are within 10 cents of their pitch after 21 ms
+# (scripts/playability.py legato tries more).
+LANDING_MS, LIFTING_MS = 3.0, 5.0
+# A position nearer than this is reached by a slide, as no second finger fits beside the first.
+NEAREST_STEP = 2e-3  # m
+SETTLING_MS = 8.0
+
+
+@compiled_exactly
+def side_of(p: Any) -> float:
+    """The value of ``/bow/side`` that bows the string of the fingering; 0 without one."""
+    if p.string < 0:
+        return 0.0
+    return 1.0 if p.string == 0 else -1.0
+
+
+@compiled_exactly
+def stop(
+    p: Any, c: Any, string: int, position: float, manner_press: float, slide_ms: float
+) -> None:
+    """Stop a string, or leave it open.
+
+    Parameters
+    ----------
+    position : float
+        Of the finger (m), or OPEN.
+    manner_press : float
+        Least finger force (N) that the sounding pitch needs.
+    slide_ms : float
+        Time in which the finger that is down slides there; `phrasing.STEP_MS` for a step.
+    """
+    before = OPEN if p.string < 0 else p.position
+    p.string, p.position = string, position
+    if OPEN in (position, before):
+        if position != OPEN:
+            land(p, c, position)
+        press(p, c, manner_press)
+        return
+    if slide_ms < 0.0 and abs(position - before) < NEAREST_STEP:
+        slide_ms = SETTLING_MS
+    if slide_ms >= 0.0:
+        move(p, c, FINGER_POSITION[p.finger], position, slide_ms)
+        press(p, c, manner_press)
+        return
+    lifted = FINGER_PRESS[p.finger]
+    land(p, c, position)
+    press(p, c, manner_press)
+    move(p, c, lifted, 0.0, LIFTING_MS)
+
+
+@compiled_exactly
+def press(p: Any, c: Any, manner_press: float) -> None:
+    """Set the wished finger force, or lift the finger where the string is open."""
+    force = 0.0
+    if p.string >= 0 and p.position != OPEN:
+        force = max(p.value[PRESS], manner_press)
+    if force != p.pressing or force > 0.0:
+        landing_ms = varied_landing(p, LANDING_MS) if p.pressing == 0.0 else LANDING_MS
+        move(p, c, FINGER_PRESS[p.finger], force, landing_ms if force > 0.0 else LIFTING_MS)
+    p.pressing = force
+
+
+@compiled_exactly
+def leave(p: Any, c: Any) -> None:
+    """Lift all fingers, also those that a direct write put down."""
+    p.string, p.position, p.pressing = -1, OPEN, 0.0
+    for finger in range(FINGER_COUNT):
+        take_back(p, FINGER_PRESS[finger])
+        move(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
+
+
+@compiled_exactly
+def rock(p: Any, c: Any) -> None:
+    """Set depth and rate of the vibrato as wished."""
+    move(p, c, VIBRATO_DEPTH, vibrato_cents(p), USUAL_MS)
+    move(p, c, VIBRATO_PRESS, p.value[ROCKING], USUAL_MS)
+    move(p, c, VIBRATO_RATE, p.value[ROCKING_RATE], USUAL_MS)
+
+
+@compiled_exactly
+def begin_rocking(p: Any, c: Any) -> None:
+    """Fade in the vibrato of a new note."""
+    delay_ms = vibrato_delay_ms(p)
+    move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
+    if delay_ms > 0.0:
+        move(p, c, VIBRATO_ONSET, 1.0, delay_ms)
+
+
+@compiled_exactly
+def land(p: Any, c: Any, position: float) -> None:
+    """Put the next finger over a position (m)."""
+    p.finger = (p.finger + 1) % FINGER_COUNT
+    p.pressing = 0.0
+    move(p, c, FINGER_POSITION[p.finger], position, 0.0)

@@ -1,0 +1,75 @@
+"""What the player does every 5 ms: holds its hands, minds the bow, listens, corrects. Compiled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.controls.hands import vibrato_at
+from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
+from yehu_server.core.player.bowing_by_ear import help_bow
+from yehu_server.core.player.drift import heard_semitones, sway, sway_vibrato
+from yehu_server.core.player.ear import BEHIND, HEARD, hear
+from yehu_server.core.player.notes import mind_the_bow, told_pitch
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.rows import LISTENING
+from yehu_server.core.player.tuning_by_ear import tune
+
+
+@compiled_exactly
+def listen(p: Any, c: Any, heard: Any) -> None:
+    """Listen to the bowed string, and act on what is heard.
+
+    Of a bow that is drawn by hand the player only hears.
+
+    Parameters
+    ----------
+    heard : ndarray
+        What `ear.remember` keeps.
+    """
+    by_hand = p.by_hand != 0
+    is_bowed = c.value[SIDE] != 0.0 if by_hand else p.sounding >= 0 and p.side != 0.0
+    if p.value[LISTENING] == 0.0 or not is_bowed or c.frame < p.settled_at:
+        p.ear.certainty = 0.0
+        return
+    pitch = told_pitch(p)
+    aim = pitch + vibrato_semitones(p, c) + heard_semitones(p)
+    hear(p.ear, heard, c.frame, p.rate / (p.a4 * 2.0 ** ((aim - 69.0) / 12.0)))
+    if not by_hand:  # who draws the bow corrects it
+        tune(p, c, pitch)
+        help_bow(p, c, pitch)
+
+
+@compiled_exactly
+def vibrato_semitones(p: Any, c: Any) -> float:
+    """The vibrato in the middle of what is heard now."""
+    if c.value[DEPTH] == 0.0:
+        return 0.0
+    ago = (BEHIND + p.ear.span) / p.rate
+    phase = c.vibrato - c.vibrato_pace * c.value[RATE] * ago
+    return float(vibrato_at(c, phase) * c.vibrato_width * c.value[DEPTH] / 100.0)
+
+
+@native("void(voidptr, voidptr, voidptr)")
+def attend(player: Any, controls: Any, sound: Any) -> None:
+    """Do what is to be done at the frames of ``ear.next``.
+
+    Parameters
+    ----------
+    player : pointer to a record of dtype PLAYER
+    controls : pointer to a record of dtype CONTROLS
+    sound : pointer to what `ear.remember` keeps
+
+    Real time: safe.
+    """
+    p = carray(player, (1,), PLAYER)[0]
+    c = carray(controls, (1,), CONTROLS)[0]
+    p.ear.next += p.ear.hop
+    sway(p, c)
+    sway_vibrato(p, c)
+    mind_the_bow(p, c)
+    listen(p, c, carray(sound, (2 * HEARD,), np.float64))

@@ -1,0 +1,318 @@
+"""Notes: how they begin, follow the parameters, and end. Compiled.
+
+One note sounds at a time, the one pressed last.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.controls.ramps import take
+from yehu_server.core.controls.slots import SILENCE, SPEED
+from yehu_server.core.player import left_hand, right_hand, velocity
+from yehu_server.core.player.bowing import LEAST_PRESS, manner
+from yehu_server.core.player.bowing_by_ear import begin_leaning
+from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay
+from yehu_server.core.player.held import NOT_HELD, add_key, find_key, remove_key
+from yehu_server.core.player.left_hand import LIFTING_MS, side_of
+from yehu_server.core.player.ownership import (
+    USUAL_MS,
+    move,
+    ramp_to,
+    take_all_back,
+    take_back,
+    write_directly,
+)
+from yehu_server.core.player.phrasing import slide_of_leap_ms, varied_semitones, vary_next_note
+from yehu_server.core.player.record import SILENT
+from yehu_server.core.player.right_hand import SLURRED_MS, wished_speed
+from yehu_server.core.player.rows import (
+    ASSIST,
+    ATTACK,
+    BEND,
+    BOW_ASSIST,
+    BOW_FORCE,
+    BOW_SIDE,
+    BOW_SPEED,
+    DYNAMICS,
+    EXPRESSION,
+    OUTPUT_LEVEL,
+    PIZZICATO,
+    PORTAMENTO,
+    PORTAMENTO_TIME,
+    POSITION,
+    RELEASE,
+    TREMOLO,
+    VOLUME,
+)
+from yehu_server.core.player.stroke import CHANGE_MS, is_at_its_end, plan_stroke
+from yehu_server.core.player.tuning_by_ear import begin_tuning
+from yehu_server.core.player.velocity import struck_attack
+from yehu_server.params.spec import TURNED_ON
+from yehu_server.params.table import find
+
+BEND_RAMP_MS = find("/playing/bend").smooth_ms
+# The level is this power of dynamics: together with the slower bow, dynamics 0.5 is some 12 dB
+# below 1, and 0.1 some 35 dB. By ear.
+DYNAMICS_EXPONENT = 1.5
+SETTLING_MS = 35.0  # in which a string comes to its pitch, and what is heard is all of it
+
+
+# -- notes --------------------------------------------------------------------------------------
+
+
+@compiled_exactly
+def begin(p: Any, c: Any, frame: int, channel: int, key: float, pitch: float) -> None:
+    """Begin a note, legato where another sounds, else with a new stroke of the bow.
+
+    Keys struck at one frame make one stroke.
+    """
+    take_all_back(p)
+    p.by_hand = 0
+    before = find_key(p, channel, key)
+    is_legato = p.sounding != SILENT and (before == NOT_HELD or p.sounding != before)
+    at_once = is_legato and frame == p.began
+    if before != NOT_HELD:
+        remove_key(p, before)
+    add_key(p, channel, key, pitch)
+    sound_last(p, c, is_legato, at_once)
+    if not is_legato:
+        p.began = frame
+
+
+@compiled_exactly
+def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
+    """End a note; of those still held the last one sounds again, legato.
+
+    Where `more_end` at the same time, the last of them to end decides.
+    """
+    held = find_key(p, channel, key)
+    if held != NOT_HELD:
+        remove_key(p, held)
+    if more_end or p.sounding >= 0 or p.sounding == SILENT:
+        return
+    if p.held > 0:
+        sound_last(p, c, True, False)
+    else:
+        p.sounding = SILENT
+        right_hand.lift(p, c, p.value[RELEASE])
+
+
+@compiled_exactly
+def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
+    """Lift bow and fingers, and fade the sound out at once.
+
+    Unless a note sounds; but in a panic all notes end.
+    """
+    if is_panic:
+        p.held, p.sounding = 0, SILENT
+    if p.sounding != SILENT:
+        return
+    p.by_hand = 0
+    take_back(p, BOW_SPEED)
+    take_back(p, BOW_SIDE)
+    right_hand.lift(p, c, LIFTING_MS)
+    left_hand.leave(p, c)
+    p.finger_pitch = FIRST_OPEN
+    take(c, SILENCE, 0.0, 0)
+
+
+@compiled_exactly
+def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
+    """Let the key sound that was pressed last."""
+    p.sounding = p.held - 1
+    vary_next_note(p)
+    is_slur = is_legato and not at_once
+    p.pace = 1.0
+    turns = plan_stroke(p, c, wished_speed(p), is_legato)
+    if at_once:
+        slide_ms = 0.0
+    elif is_on(p, PORTAMENTO):
+        slide_ms = p.value[PORTAMENTO_TIME]
+    else:
+        slide_ms = slide_of_leap_ms(p, c, sounding_pitch(p) - p.finger_pitch)
+    p.note_began = c.frame
+    pitch = p.finger_pitch = sounding_pitch(p)
+    string, position = choose(p, pitch, wished_speed(p))
+    left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
+    begin_tuning(p, pitch)
+    begin_leaning(p, pitch)
+    unsettle(p, c, max(slide_ms, SLURRED_MS if is_slur else p.value[ATTACK] * struck_attack(p)))
+    left_hand.rock(p, c)
+    left_hand.begin_rocking(p, c)
+    set_assist(p, c)
+    set_level(p, c)
+    even_out(p, c)
+    lean(p, c)
+    if not is_legato:
+        right_hand.bite(p, c)
+    if is_on(p, PIZZICATO):
+        right_hand.pluck(p, c, side_of(p))
+    else:
+        ramp_ms = CHANGE_MS if turns else SLURRED_MS
+        draw(p, c, ramp_ms if is_slur else p.value[ATTACK])
+
+
+@compiled_exactly
+def mind_the_bow(p: Any, c: Any) -> None:
+    """Turn a bow that comes to its end."""
+    if p.sounding < 0 or p.value[TREMOLO] != 0.0:
+        return
+    if is_at_its_end(p, c, abs(c.value[SPEED])):
+        p.direction = -p.direction
+        draw(p, c, CHANGE_MS)
+
+
+@compiled_exactly
+def unsettle(p: Any, c: Any, moving_ms: float) -> None:
+    """Hear the string again once what moves for a time has settled."""
+    frames = int(1e-3 * (moving_ms + SETTLING_MS) * p.rate)
+    p.settled_at = max(p.settled_at, c.frame + frames)
+
+
+@compiled_exactly
+def sounding_pitch(p: Any) -> float:
+    """Pitch (fractional MIDI note) of the sounding key, with its bend; 0 in silence."""
+    if p.sounding < 0:
+        return 0.0
+    return float(p.held_pitch[p.sounding] + p.value[BEND] + varied_semitones(p))
+
+
+@compiled_exactly
+def told_pitch(p: Any) -> float:
+    """The pitch while a note sounds or the bow is drawn by hand, else NaN."""
+    if p.sounding >= 0:
+        return sounding_pitch(p)
+    return float(p.finger_pitch if p.by_hand != 0 else math.nan)
+
+
+@compiled_exactly
+def is_on(p: Any, row: int) -> bool:
+    """Whether a switch is on."""
+    return bool(p.value[row] >= TURNED_ON)
+
+
+# -- by hand ------------------------------------------------------------------------------------
+
+
+@compiled_exactly
+def slide(p: Any, c: Any, pitch: float) -> None:
+    """Slide the finger to a pitch (fractional MIDI note) within range.
+
+    The sounding note slides; in silence, the finger waits there for the bow.
+    """
+    if p.sounding >= 0:
+        p.held_pitch[p.sounding] = pitch
+        follow_bend(p, c)
+        return
+    p.finger_pitch = pitch
+    string, position = choose(p, pitch, wished_speed(p))
+    left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
+    if p.by_hand != 0:
+        ramp_to(p, c, BOW_SIDE, side_of(p), USUAL_MS)
+        even_out(p, c)
+
+
+@compiled_exactly
+def draw_by_hand(p: Any, c: Any, speed: float, force: float) -> None:
+    """Draw the bow at a speed (m/s) and force (N), on the string of the fingering.
+
+    Takes the bow over as direct writes do; 0 and 0 lift it.
+    """
+    write_directly(p, c, BOW_SPEED, speed, False)
+    write_directly(p, c, BOW_FORCE, force, False)
+    p.by_hand = 1 if speed != 0.0 or force != 0.0 else 0
+    side = 0.0
+    if p.by_hand != 0:
+        side = 1.0 if p.string < 0 else side_of(p)
+    write_directly(p, c, BOW_SIDE, side, False)
+    p.speed = abs(speed)
+    even_out(p, c)
+
+
+@compiled_exactly
+def lift_by_hand(p: Any, c: Any) -> None:
+    """Lift a bow drawn by hand, and return it to the player."""
+    if p.by_hand != 0:
+        ramp_to(p, c, BOW_SPEED, 0.0, USUAL_MS)
+        ramp_to(p, c, BOW_SIDE, 0.0, USUAL_MS)
+    take_all_back(p)
+    p.by_hand = 0
+
+
+# -- what follows a parameter while a note sounds ---------------------------------------------
+
+
+@compiled_exactly
+def set_assist(p: Any, c: Any) -> None:
+    """Let the bow's force follow its speed as far as wished."""
+    move(p, c, BOW_ASSIST, p.value[ASSIST], USUAL_MS)
+
+
+@compiled_exactly
+def set_level(p: Any, c: Any) -> None:
+    """Set the output's level."""
+    level = (p.value[VOLUME] * p.value[EXPRESSION]) ** 2
+    level *= p.value[DYNAMICS] ** DYNAMICS_EXPONENT
+    move(p, c, OUTPUT_LEVEL, level, USUAL_MS)
+
+
+@compiled_exactly
+def draw(p: Any, c: Any, ramp_ms: float) -> None:
+    """Draw the bow at the speed of the sounding note."""
+    if p.sounding >= 0 and not is_on(p, PIZZICATO):
+        right_hand.draw(p, c, sounding_pitch(p), side_of(p), ramp_ms)
+
+
+@compiled_exactly
+def lean(p: Any, c: Any) -> None:
+    """Set the bow's pressure and position."""
+    right_hand.lean(p, c, sounding_pitch(p), p.sounding >= 0)
+
+
+@compiled_exactly
+def least_press(p: Any, string: int) -> float:
+    """The finger force (N) that the sounding note needs on a string."""
+    if p.sounding < 0:
+        return 0.0
+    return manner(p.bowing, string, p.value[POSITION], sounding_pitch(p), LEAST_PRESS)
+
+
+@compiled_exactly
+def even_out(p: Any, c: Any) -> None:
+    """Set the gain that evens out the loudness of notes."""
+    if p.sounding >= 0 or p.by_hand != 0:
+        pitch = sounding_pitch(p) if p.sounding >= 0 else p.finger_pitch
+        speed = p.speed if p.by_hand != 0 else wished_speed(p)
+        velocity.even_out(p, c, pitch, speed)
+
+
+@compiled_exactly
+def stop_helping(p: Any, c: Any) -> None:
+    """Take back what the ear has corrected of the sounding note."""
+    p.sharper, p.leaning = 0.0, 1.0
+    if p.sounding >= 0:
+        follow_bend(p, c)
+        lean(p, c)
+
+
+@compiled_exactly
+def follow_bend(p: Any, c: Any) -> None:
+    """Move the finger to the pitch of the sounding note, and bow it as that pitch wants."""
+    if p.sounding < 0 or p.string < 0:
+        return
+    pitch, before, was = sounding_pitch(p), p.string, p.finger_pitch
+    p.finger_pitch = pitch
+    string, position = stay(p, pitch, wished_speed(p))
+    left_hand.stop(p, c, string, position, least_press(p, string), BEND_RAMP_MS)
+    if string != before:
+        begin_tuning(p, pitch)
+    if string != before or not right_hand.bows_alike(p, pitch):
+        lean(p, c)
+        draw(p, c, USUAL_MS)
+    if pitch != was:
+        p.first_error, p.jumps = math.nan, 0
+        unsettle(p, c, BEND_RAMP_MS)
+    even_out(p, c)

@@ -1,0 +1,87 @@
+"""Which parameters of bow and fingers the player may move. Compiled.
+
+A direct write to a parameter marked ``owned`` takes it over until the next note begins. A
+parameter written with ``hold`` keeps its value, whatever notes and controllers do
+(decisions/0006).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.controls.ramps import take
+from yehu_server.core.player.rows import BOW_ASSIST, BOW_FORCE, ROWS, SLOT_OF, SMOOTH_MS
+
+USUAL_MS = -1.0  # the ramp of a parameter's own
+
+
+@compiled_exactly
+def ramp_to(p: Any, c: Any, row: int, value: float, ramp_ms: float) -> None:
+    """Move a parameter of the engine, whoever owns it; in `ramp_ms`, or USUAL_MS."""
+    ramp_ms = SMOOTH_MS[row] if ramp_ms < 0.0 else ramp_ms
+    take(c, SLOT_OF[row], value, int(np.rint(ramp_ms * 1e-3 * p.rate)))
+
+
+@compiled_exactly
+def move(p: Any, c: Any, row: int, value: float, ramp_ms: float) -> None:
+    """Move a parameter, unless it is taken over or already moving to this value."""
+    if p.taken[row] != 0 or p.kept[row] != 0 or p.sent[row] == value:
+        return
+    p.sent[row] = value
+    ramp_ms = SMOOTH_MS[row] if ramp_ms < 0.0 else ramp_ms
+    ramp_to(p, c, row, value, max(ramp_ms, p.glide_ms))
+
+
+@compiled_exactly
+def forget(p: Any, row: int) -> None:
+    """Forget the value last sent, so that the next move is sent in any case."""
+    p.sent[row] = math.nan
+
+
+@compiled_exactly
+def write_directly(p: Any, c: Any, row: int, value: float, hold: bool) -> None:
+    """Take a parameter over and move it; `hold` keeps it through notes.
+
+    Newtons are heard only without assist.
+    """
+    give_up(p, row, hold)
+    if row == BOW_FORCE:
+        give_up(p, BOW_ASSIST, hold)
+        ramp_to(p, c, BOW_ASSIST, 0.0, USUAL_MS)
+    ramp_to(p, c, row, value, USUAL_MS)
+
+
+@compiled_exactly
+def give_up(p: Any, row: int, hold: bool) -> None:
+    """Record that a direct write took a parameter over, until the next note or as held."""
+    if hold:
+        p.kept[row] = 1
+    else:
+        p.taken[row] = 1
+    forget(p, row)
+
+
+@compiled_exactly
+def take_back(p: Any, row: int) -> None:
+    """Own a parameter again, unless it is held."""
+    p.taken[row] = 0
+    forget(p, row)
+
+
+@compiled_exactly
+def take_all_back(p: Any) -> None:
+    """Own all parameters again that are not held."""
+    for row in range(ROWS):
+        p.taken[row] = 0
+
+
+@compiled_exactly
+def release(p: Any) -> None:
+    """Own all parameters again, held ones too."""
+    take_all_back(p)
+    for row in range(ROWS):
+        p.kept[row] = 0

@@ -1,0 +1,100 @@
+"""What the player adds to plain notes: vibrato, slides, and small differences by chance. Compiled.
+
+Both only as far as `/playing/phrasing` says, and where nothing else is wished. docs/playing.md
+tells the rules.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.controls.slots import SIDE
+from yehu_server.core.physics.elementary import chance
+from yehu_server.core.player.rows import NOTE_LENGTH, PHRASING, ROCKING_DELAY, VARIATION, VIBRATO
+
+# A sum of so many uniform numbers is all but normal.
+ADDED = 12
+# Standard deviations at full variation. By ear.
+VARIED_FRACTION = 0.1  # of bow speed and pressure
+VARIED_CENTS = 6.0
+VARIED_LANDING, MOST_LANDING = 0.8, 2.0  # of the time of a landing; and its largest factor
+
+
+@compiled_exactly
+def begin_sequence(p: Any, seed: int) -> None:
+    """Begin the sequence of a seed."""
+    p.seed, p.drawn = seed, 0
+    p.unsteady.slow[:], p.unsteady.tremor[:], p.unsteady.drawn = 0.0, 0.0, 0
+
+
+@compiled_exactly
+def vary_next_note(p: Any) -> None:
+    """Draw the deviates of a new note."""
+    varied = p.value[VARIATION] * VARIED_FRACTION
+    p.hurry = 1.0 + varied * deviate(p)
+    p.weight = 1.0 + varied * deviate(p)
+    p.detuned = deviate(p)
+
+
+@compiled_exactly
+def deviate(p: Any) -> float:
+    """A number of mean 0 and variance 1; each of the uniform ones has a variance of 1/3."""
+    total = 0.0
+    for _ in range(ADDED):
+        total += chance((p.seed << 32) + p.drawn)
+        p.drawn += 1
+    return total / math.sqrt(ADDED / 3.0)
+
+
+@compiled_exactly
+def varied_semitones(p: Any) -> float:
+    """Deviation of the sounding note from its pitch."""
+    return float(p.value[VARIATION] * p.detuned * VARIED_CENTS / 100.0)
+
+
+@compiled_exactly
+def varied_landing(p: Any, landing_ms: float) -> float:
+    """The time (ms) in which a finger lands, from the usual one."""
+    if p.value[VARIATION] == 0.0:
+        return landing_ms
+    factor = 1.0 + p.value[VARIATION] * VARIED_LANDING * deviate(p)
+    return float(landing_ms * min(max(factor, 1.0 / MOST_LANDING), MOST_LANDING))
+
+
+# At full phrasing; by ear.
+VIBRATO_CENTS, LATE_MS = 36.0, 1100.0
+SLIDE_MS, SHORTEST_SLIDE_MS = 130.0, 45.0
+STEP_MS = -1.0  # in place of the time of a slide
+# A leap asks for a slide where it is so wide (semitones), from a note and to a note so long.
+LEAST_LEAP, WIDEST_LEAP, LONG_S = 4.5, 9.5, 0.3
+
+
+@compiled_exactly
+def vibrato_cents(p: Any) -> float:
+    """Depth of the vibrato: as wished, else the player's own."""
+    if p.value[VIBRATO] > 0.0:
+        return float(p.value[VIBRATO])
+    return float(p.value[PHRASING] * VIBRATO_CENTS)
+
+
+@compiled_exactly
+def vibrato_delay_ms(p: Any) -> float:
+    """Time in which the vibrato of a new note comes: as wished; the player's own comes late."""
+    if p.value[VIBRATO] > 0.0 or p.value[PHRASING] == 0.0:
+        return float(p.value[ROCKING_DELAY])
+    return float(max(p.value[ROCKING_DELAY], LATE_MS))
+
+
+@compiled_exactly
+def slide_of_leap_ms(p: Any, c: Any, leap: float) -> float:
+    """Time of a slide over a leap (semitones); STEP_MS where the finger steps."""
+    if p.value[PHRASING] == 0.0 or c.value[SIDE] == 0.0:
+        return STEP_MS
+    is_wide = LEAST_LEAP < abs(leap) < WIDEST_LEAP
+    is_long = c.frame - p.note_began > LONG_S * p.rate
+    length = p.value[NOTE_LENGTH]
+    if not is_wide or not is_long or 0.0 < length < LONG_S:
+        return STEP_MS
+    return float(SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * p.value[PHRASING])

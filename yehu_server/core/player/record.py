@@ -1,0 +1,180 @@
+"""The player's record: what it was wished, what it does, and what it knows of its instrument."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.physics.layout import STRINGS
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.bowing import MANNER, ORDINARY, PLACES, ordinary_table
+from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
+from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, wave_speed
+from yehu_server.core.player.drift import UNSTEADY
+from yehu_server.core.player.ear import EAR, begin_hearing, prepare_ear
+from yehu_server.core.player.fingering import OPEN, OpenStrings
+from yehu_server.core.player.rows import (
+    BOW_SIDE,
+    BOW_SPEED,
+    FINGER_COUNT,
+    FINGER_PRESS,
+    PLUCK_FORCE,
+    ROWS,
+    SLOT_OF,
+)
+from yehu_server.params.table import TABLE
+
+# Of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
+LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES = 52, 11, 11
+MOST_HELD = 256  # notes; beyond, the one held longest is let go
+NOTES = len(PITCHES[0])  # measured on each string
+
+PLAYER = np.dtype(
+    [
+        ("rate", np.float64),  # Hz
+        ("value", np.float64, ROWS),  # of each parameter, as wished
+        # Ownership, by parameter: see ``ownership``.
+        ("taken", np.int64, ROWS),
+        ("kept", np.int64, ROWS),
+        ("sent", np.float64, ROWS),  # where the player last sent it; NaN: nowhere
+        ("glide_ms", np.float64),  # the least time of each move
+        # The held keys, in the order pressed.
+        ("held", np.int64),  # their number
+        ("held_channel", np.int64, MOST_HELD),
+        ("held_key", np.float64, MOST_HELD),
+        ("held_pitch", np.float64, MOST_HELD),  # fractional MIDI notes within range
+        ("sounding", np.int64),  # number of the held key that sounds, SILENT or ENDING
+        ("began", np.int64),  # the frame at which the stroke of the bow began
+        ("note_began", np.int64),  # the frame at which the note did
+        ("by_hand", np.int64),  # whether the bow is drawn by hand
+        ("speed", np.float64),  # of a bow drawn by hand (m/s)
+        # The left hand.
+        ("finger_pitch", np.float64),  # the pitch that a finger last stopped
+        ("finger", np.int64),  # which was put down last
+        ("pressing", np.float64),  # N
+        ("string", np.int64),  # of the fingering; -1: none yet
+        ("position", np.float64),  # of the fingering (m), or OPEN
+        # What it hears and corrects.
+        ("ear", EAR),
+        ("settled_at", np.int64),  # frame from which the string is heard
+        ("jumps", np.int64),  # of the pitch over its place, in this note
+        ("side_heard", np.int64),  # of its place: 1 where the finger was too low
+        ("times_heard", np.int64),  # there
+        ("sharper", np.float64),  # cents: correction of the sharpening of this note
+        ("first_press", np.float64),  # N: wished as the note began
+        ("first_error", np.float64),  # cents: heard first; NaN: nothing yet
+        ("first_sharper", np.float64),  # the correction then
+        ("learnt", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),  # cents
+        ("helps_bow", np.int64),  # 0 while it practises: only the left hand acts on what is heard
+        ("leaning", np.float64),  # factor on the bow's pressure
+        ("fault", np.int64),  # heard last, and how often in a row; below 0: what was done is new
+        ("faults", np.int64),
+        ("spoken", np.int64),  # hearings in which the string spoke, with its help
+        ("eased_from", np.float64),  # the help before the hand took some back; 0: it did not yet
+        ("learnt_leaning", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),
+        # The right hand.
+        ("direction", np.float64),  # of the stroke
+        ("pace", np.float64),  # factor on the bow's speed, so that its hair lasts
+        ("side", np.float64),  # /bow/side; 0 where the bow is lifted
+        ("manner", np.float64, MANNER),  # how the sounding pitch is bowed
+        ("balance", np.float64),  # dB
+        # The variation: deviates of this note, and the random numbers drawn so far.
+        ("hurry", np.float64),  # factor on the bow's speed
+        ("weight", np.float64),  # factor on the bow's pressure
+        ("detuned", np.float64),  # semitones, at full variation
+        ("seed", np.int64),
+        ("drawn", np.int64),
+        ("unsteady", UNSTEADY),  # drift and tremor
+        # The instrument.
+        ("bridge_x", np.float64),  # m
+        ("a4", np.float64),  # Hz
+        ("wave_speed", np.float64, STRINGS),  # m/s
+        ("sharpening", np.float64, (STRINGS, NOTES, len(SPEEDS))),  # cents
+        ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
+        ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, MANNER)),
+        ("open_strings", np.int64),  # number of the OpenStrings
+    ],
+    align=True,
+)
+
+UP = -1.0  # the direction before the first stroke, which is a down-bow, v_b > 0
+SILENT, ENDING = -1, -2  # ENDING: the key is released, and more of them follow
+
+
+def prepare_player(
+    quantities: Quantities,
+    rate: float,
+    values: Mapping[str, float],
+    *,
+    calibration: Calibration | None = None,
+    open_strings: OpenStrings = OpenStrings.ALWAYS,
+    bowing: Any = None,
+    seed: int = 0,
+) -> Any:
+    """Prepare the record of a player who holds nothing.
+
+    Parameters
+    ----------
+    quantities : Quantities
+        The instrument as tuned.
+    rate : float, Hz
+    values : mapping
+        The value of every parameter, by address.
+    calibration : Calibration, optional
+        By default fingers stop where an ideal string is in tune, and no note is evened out.
+    bowing : ndarray
+        By default `ordinary_table`.
+    seed : int
+        Of the variation between notes.
+
+    Returns
+    -------
+    ndarray [shape=(1,), dtype=PLAYER]
+    """
+    player = np.zeros(1, PLAYER)
+    p = player[0]
+    p["rate"] = rate
+    p["value"] = [values[param.address] for param in TABLE]
+    p["sent"] = np.nan
+    p["sounding"], p["began"] = SILENT, -1
+    p["finger_pitch"] = OPEN_NOTES[0]
+    p["finger"] = FINGER_COUNT - 1  # so that the first finger comes first
+    p["string"], p["position"] = -1, OPEN
+    p["direction"] = UP
+    p["manner"] = ORDINARY
+    p["first_error"], p["leaning"], p["helps_bow"] = np.nan, 1.0, 1
+    prepare_ear(p["ear"], rate)
+    p["hurry"] = p["weight"] = p["pace"] = 1.0
+    p["seed"] = seed
+    p["bridge_x"] = quantities.bridge_x
+    p["wave_speed"] = [wave_speed(quantities, string) for string in range(STRINGS)]
+    p["a4"] = 440.0
+    if calibration is not None:
+        p["a4"] = calibration.a4
+        p["sharpening"] = calibration.sharpening
+        if calibration.levels:
+            p["levels"] = calibration.levels
+    p["bowing"] = ordinary_table() if bowing is None else bowing
+    p["open_strings"] = list(OpenStrings).index(open_strings)
+    return player
+
+
+def end_all(player: Any, controls: Any) -> None:
+    """End all notes without a release: bow and fingers leave the strings, in place.
+
+    Parameters
+    ----------
+    player, controls : records of dtype PLAYER and CONTROLS
+    """
+    player["held"], player["sounding"], player["by_hand"] = 0, SILENT, 0
+    player["side"], player["pressing"] = 0.0, 0.0
+    player["string"], player["position"] = -1, OPEN
+    player["taken"], player["sent"] = 0, np.nan
+    begin_hearing(player["ear"], int(controls["frame"]))  # a hop may be half done
+    player["direction"], player["pace"] = UP, 1.0
+    for name in UNSTEADY.names or ():
+        player["unsteady"][name] = 0
+    for row in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):
+        controls["target"][SLOT_OF[row]] = 0.0

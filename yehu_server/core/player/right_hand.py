@@ -1,0 +1,137 @@
+"""The right hand: draws the bow, or plucks. Compiled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player.bowing import (
+    AT_FIRM,
+    AT_FLAUTANDO,
+    AT_LIGHT,
+    FARTHER,
+    MANNER,
+    TOP_SPEED,
+    manner,
+    share,
+)
+from yehu_server.core.player.ownership import USUAL_MS, forget, move
+from yehu_server.core.player.rows import (
+    ATTACK,
+    BOW_POSITION,
+    BOW_PRESSURE,
+    BOW_SIDE,
+    BOW_SPEED,
+    BOW_TREMOLO,
+    DYNAMICS,
+    PLUCK_FORCE,
+    POSITION,
+    PRESSURE,
+    RELEASE,
+    SPEED,
+    TREMOLO,
+)
+from yehu_server.core.player.velocity import BITE_MS, struck_attack, struck_bite, struck_speed
+from yehu_server.params.table import find
+
+Array = Any
+
+CROSSING_MS = 20.0  # time to change from one string to the other
+SLURRED_MS = 25.0  # ramp of bow speed from one slurred note to the next
+# Bow speed at dynamics 0, as a fraction of that at full dynamics. By ear.
+SOFTEST = 0.45
+LEAST_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow is lifted
+# Force of a pluck at medium pressure. By ear.
+PULL_N, MEDIUM = 1.2, 0.4
+HARDEST_PULL_N = find("/pluck/force").hi
+
+
+@compiled_exactly
+def wished_speed(p: Any) -> float:
+    """Bow speed (m/s) that the player wishes for."""
+    share = SOFTEST + (1.0 - SOFTEST) * p.value[DYNAMICS]
+    return float(p.value[SPEED] * share * struck_speed(p) * p.hurry * p.pace)
+
+
+@compiled_exactly
+def manner_of(p: Any, pitch: float, column: int) -> float:
+    """One value of how a pitch is bowed on the string of the fingering; see `manner`."""
+    return manner(p.bowing, max(p.string, 0), p.value[POSITION], pitch, column)
+
+
+@compiled_exactly
+def speed_at(p: Any, pitch: float) -> float:
+    """Bow speed (m/s) for a pitch: as wished, up to the highest at which it speaks."""
+    return min(wished_speed(p), manner_of(p, pitch, TOP_SPEED))
+
+
+@compiled_exactly
+def bows_alike(p: Any, pitch: float) -> bool:
+    """Whether a pitch is bowed as the present one is."""
+    for column in range(MANNER):
+        if manner_of(p, pitch, column) != p.manner[column]:
+            return False
+    return True
+
+
+@compiled_exactly
+def lean(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
+    """Set bow pressure and position, as wished and adapted to the sounding pitch, if any."""
+    pressure = p.value[PRESSURE] * p.weight
+    if is_sounding:
+        for column in range(MANNER):
+            p.manner[column] = manner_of(p, pitch, column)
+        m = p.manner
+        pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0))
+        pressure *= p.leaning
+    move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
+    move(p, c, BOW_POSITION, p.value[POSITION] * p.manner[FARTHER], USUAL_MS)
+
+
+@compiled_exactly
+def bite(p: Any, c: Any) -> None:
+    """Begin a hard stroke with more pressure."""
+    factor = struck_bite(p)
+    if factor > 1.0:
+        usual = p.sent[BOW_PRESSURE]
+        move(p, c, BOW_PRESSURE, factor * usual, 0.0)
+        move(p, c, BOW_PRESSURE, usual, BITE_MS)
+
+
+@compiled_exactly
+def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
+    """Draw the bow on the string of a side; its speed changes in `ramp_ms`.
+
+    A lifted bow attacks in ``/playing/attack`` instead. Below LEAST_DYNAMICS the bow is
+    lifted.
+    """
+    if p.value[DYNAMICS] < LEAST_DYNAMICS:
+        if p.side != 0.0:
+            lift(p, c, p.value[RELEASE])
+        return
+    attack_ms = p.value[ATTACK] * struck_attack(p)
+    crossing_ms = CROSSING_MS
+    if p.side == 0.0:
+        ramp_ms, crossing_ms = attack_ms, attack_ms / 4.0
+    p.side = side
+    move(p, c, BOW_SIDE, side, crossing_ms)
+    move(p, c, BOW_TREMOLO, p.value[TREMOLO], USUAL_MS)
+    move(p, c, BOW_SPEED, p.direction * speed_at(p, pitch), ramp_ms)
+
+
+@compiled_exactly
+def lift(p: Any, c: Any, release_ms: float) -> None:
+    """End the stroke in a time (ms)."""
+    p.side = 0.0
+    move(p, c, BOW_SPEED, 0.0, release_ms)
+    move(p, c, BOW_SIDE, 0.0, release_ms)
+
+
+@compiled_exactly
+def pluck(p: Any, c: Any, side: float) -> None:
+    """Pluck the string of a side; lift the bow before."""
+    if p.side != 0.0:
+        lift(p, c, CROSSING_MS)
+    force = PULL_N * p.value[PRESSURE] * p.weight / MEDIUM
+    move(p, c, PLUCK_FORCE, side * min(force, HARDEST_PULL_N), USUAL_MS)
+    forget(p, PLUCK_FORCE)  # the next one may be as hard

@@ -1,0 +1,72 @@
+"""Strokes of a bow that has a length: planned, and turned before its ends. Compiled.
+
+A stroke whose note needs more hair than is left is drawn more slowly; where that is not enough, it
+goes the other way. In a rest the bow is lifted, and set down where the next stroke wants it. A bow
+that still comes to its end turns there.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player.rows import BOW_LENGTH, BOW_SPEED, DIRECTION, NOTE_LENGTH
+
+USUAL_S = 0.4  # a note lasts, where nobody has told
+SLOWEST = 0.6  # factor on the speed of a bow that has to last
+END = 0.04  # part of the bow at either end that strokes don't begin or end on
+START = 0.15  # part of the bow behind a stroke that begins after a rest: hair to go back on
+CHANGE_MS = 28.0  # time in which a bow changes its direction within a note
+
+
+@compiled_exactly
+def hair_left(p: Any, c: Any, direction: float) -> float:
+    """Hair (m) that is left for a stroke in a direction."""
+    length = p.value[BOW_LENGTH]
+    left = length - c.place if direction > 0.0 else c.place
+    return float(left - END * length)
+
+
+@compiled_exactly
+def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
+    """Choose direction and pace of the bow for a note at a speed (m/s).
+
+    Returns
+    -------
+    bool
+        Whether the bow changes its direction.
+    """
+    before = p.direction
+    wish = np.rint(p.value[DIRECTION])
+    if not is_slur:
+        p.direction = wish if wish != 0.0 else -p.direction
+    length = p.value[BOW_LENGTH]
+    p.pace = 1.0
+    if length == 0.0:
+        return bool(p.direction != before)
+    c.place = min(max(c.place, 0.0), length)
+    is_known = p.value[NOTE_LENGTH] > 0.0
+    needed = speed * (p.value[NOTE_LENGTH] if is_known else USUAL_S)
+    if not is_slur and (p.side == 0.0 or wish != 0.0):
+        begin = START if needed < (1.0 - START - END) * length else END
+        behind = length - hair_left(p, c, p.direction) - END * length
+        if wish != 0.0 or hair_left(p, c, p.direction) < needed or behind < begin * length:
+            c.place = length * (begin if p.direction > 0.0 else 1.0 - begin)
+    left, other = hair_left(p, c, p.direction), hair_left(p, c, -p.direction)
+    if left < SLOWEST * needed and left < other and wish == 0.0:
+        p.direction, left = -p.direction, other
+    if is_known and left < needed:
+        p.pace = max(SLOWEST, left / needed)
+    return bool(p.direction != before)
+
+
+@compiled_exactly
+def is_at_its_end(p: Any, c: Any, speed: float) -> bool:
+    """Whether the bow has to turn now, at a speed (m/s), to turn before its end."""
+    if p.side == 0.0 or p.value[BOW_LENGTH] == 0.0:
+        return False
+    if p.taken[BOW_SPEED] != 0 or p.kept[BOW_SPEED] != 0:
+        return False
+    return hair_left(p, c, p.direction) < 0.5e-3 * CHANGE_MS * speed

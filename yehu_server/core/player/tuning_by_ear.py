@@ -1,0 +1,97 @@
+"""The left hand corrects the finger by what it hears, and remembers it. Compiled.
+
+What is corrected is the sharpening: how much sharper the string sounds than the tables say. It is
+learnt for each string, pitch, place and speed of the bow, as long as the program runs.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.player.ear import SURE, learnt_cents, shelf
+from yehu_server.core.player.intonation import position_of
+from yehu_server.core.player.ownership import move
+from yehu_server.core.player.right_hand import wished_speed
+from yehu_server.core.player.rows import FINGER_POSITION, LISTENING, PRESS
+
+# Of an error, so much is corrected in a second: of a small one (cents), and of a large one. Some
+# pitches swing about their place some eleven times a second, E5 above all: a quick hand would make
+# that last.
+SLOWLY, QUICKLY, SMALL_CENTS, LARGE_CENTS = 2.5, 12.0, 4.0, 10.0
+# A pitch that is so far off for so many hearings, and then on the other side, has jumped; as often
+# as this, and the finger rests.
+FAR_CENTS, LASTING, MOST_JUMPS = 2.5, 16, 2
+MOST_CENTS = 100.0  # of all corrections
+ENOUGH_CENTS = 0.3  # nearer than this the finger rests
+# A pitch that follows the finger needs a correction as large as its first error. Beyond this part
+# of it, and so many cents, it doesn't follow: it is locked to the body or to the other string.
+ASTRAY, ASTRAY_CENTS = 1.5, 15.0
+FEWEST_SLIPS, MOST_SLIPS = 0.5, 1.6  # in a period, of a string that sounds its note
+
+
+@compiled_exactly
+def begin_tuning(p: Any, pitch: float) -> None:
+    """Begin a note with what was learnt of it."""
+    p.sharper = learnt_cents(p, p.string, pitch)
+    p.first_error, p.first_press = math.nan, p.value[PRESS]
+    p.jumps, p.side_heard, p.times_heard = 0, 0, 0
+
+
+@compiled_exactly
+def tune(p: Any, c: Any, pitch: float) -> None:
+    """Correct the finger by what is heard of the sounding pitch, where that is sure."""
+    ear = p.ear
+    if ear.certainty < SURE or not FEWEST_SLIPS < ear.slips < MOST_SLIPS or p.position < 0.0:
+        return
+    finger = FINGER_POSITION[p.finger]
+    if p.taken[finger] != 0 or p.kept[finger] != 0:
+        return
+    if p.value[PRESS] != p.first_press:  # a finger that presses harder is to be heard
+        return
+    row, place, pace = shelf(p, pitch)
+    if math.isnan(p.first_error):
+        p.first_error, p.first_sharper = ear.error, p.sharper
+    if abs(p.sharper - p.first_sharper) > ASTRAY * abs(p.first_error) + ASTRAY_CENTS:
+        p.sharper = p.learnt[p.string, row, place, pace] = p.first_sharper
+        p.first_error = math.inf  # nothing goes astray any more: it stays where it was
+        place_finger(p, c, pitch)
+        return
+    if math.isinf(p.first_error):
+        return
+    uncorrected = ear.error + p.sharper
+    wanted = p.value[LISTENING] * uncorrected - p.sharper
+    if jumps(p, wanted) >= MOST_JUMPS:
+        p.first_error = math.inf
+        return
+    if abs(wanted) > ENOUGH_CENTS:
+        large = (abs(wanted) - SMALL_CENTS) / (LARGE_CENTS - SMALL_CENTS)
+        rate = SLOWLY + (QUICKLY - SLOWLY) * min(max(large, 0.0), 1.0)
+        p.sharper += rate * wanted * ear.hop / p.rate
+        p.sharper = min(max(p.sharper, -MOST_CENTS), MOST_CENTS)
+        place_finger(p, c, pitch)
+    p.learnt[p.string, row, place, pace] = p.sharper
+
+
+@compiled_exactly
+def jumps(p: Any, wanted: float) -> int:
+    """How often the pitch has jumped over its place in this note, from far on one side.
+
+    Between two such places the finger would go to and fro for ever.
+    """
+    if abs(wanted) > FAR_CENTS:
+        side = 1 if wanted > 0.0 else -1
+        if side == p.side_heard:
+            p.times_heard += 1
+        else:
+            p.jumps += 1 if p.times_heard >= LASTING else 0
+            p.side_heard, p.times_heard = side, 1
+    return int(p.jumps)
+
+
+@compiled_exactly
+def place_finger(p: Any, c: Any, pitch: float) -> None:
+    """Move the finger that is down to where the corrected pitch is."""
+    p.position = position_of(p, p.string, pitch, wished_speed(p), p.sharper)
+    move(p, c, FINGER_POSITION[p.finger], p.position, 1e3 * p.ear.hop / p.rate)

@@ -1,0 +1,79 @@
+"""What velocity does to a note: its loudness, evened out, by bow and by gain; its attack. Compiled.
+
+At NEUTRAL all is as the other parameters say. A harder note is bowed faster and gets its force
+sooner than its speed; a softer one begins gently. With the force that mappings let velocity set,
+the level rises by some 18 dB from 1 to 127 (scripts/playability.py velocity).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.controls.slots import SIDE
+from yehu_server.core.player.fingering import FIRST_OPEN, OPEN, SECOND_OPEN
+from yehu_server.core.player.intonation import balance_db
+from yehu_server.core.player.ownership import move
+from yehu_server.core.player.rows import EVENNESS, OUTPUT_BALANCE, VELOCITY
+from yehu_server.params.table import find
+
+# A gain that rises slowly does not amplify the end of a loud note before; with the bow off the
+# string there is none.
+RISING_MS, FALLING_MS = 90.0, 15.0
+
+
+@compiled_exactly
+def even_out(p: Any, c: Any, pitch: float, speed: float) -> None:
+    """Set ``/output/balance`` for a pitch (fractional MIDI note) and bow speed (m/s)."""
+    string = max(p.string, 0)  # before the first note the inner string is open
+    heard = pitch
+    if p.position == OPEN:
+        heard = SECOND_OPEN if string == 1 else FIRST_OPEN
+    balance = balance_db(p, string, heard, speed) * p.value[EVENNESS]
+    balance += 0.0 if p.by_hand != 0 else struck_db(p)
+    is_off = c.value[SIDE] == 0.0 and p.by_hand == 0
+    ramp_ms = RISING_MS if balance > p.balance and not is_off else FALLING_MS
+    p.balance = balance
+    move(p, c, OUTPUT_BALANCE, balance, ramp_ms)
+
+
+NEUTRAL = find("/playing/velocity").default
+# At velocities of 0 and 1, by ear: gain (dB); factors on bow speed, time of attack and, above
+# NEUTRAL, pressure during the attack.
+SOFTER_DB, LOUDER_DB = -10.5, 3.7
+SLOWER, FASTER = 0.6, 1.2
+GENTLE, BITING = 1.75, 0.6
+BITE, BITE_MS = 1.3, 60.0
+
+
+@compiled_exactly
+def between(p: Any, softest: float, neutral: float, hardest: float) -> float:
+    """A value at the velocity of the note, from those at 0, NEUTRAL and 1."""
+    velocity = p.value[VELOCITY]
+    if velocity < NEUTRAL:
+        return float(neutral + (softest - neutral) * (NEUTRAL - velocity) / NEUTRAL)
+    return float(neutral + (hardest - neutral) * (velocity - NEUTRAL) / (1.0 - NEUTRAL))
+
+
+@compiled_exactly
+def struck_db(p: Any) -> float:
+    """Gain (dB) of the note."""
+    return between(p, SOFTER_DB, 0.0, LOUDER_DB)
+
+
+@compiled_exactly
+def struck_speed(p: Any) -> float:
+    """Factor on the bow's speed."""
+    return between(p, SLOWER, 1.0, FASTER)
+
+
+@compiled_exactly
+def struck_attack(p: Any) -> float:
+    """Factor on the time of the attack."""
+    return between(p, GENTLE, 1.0, BITING)
+
+
+@compiled_exactly
+def struck_bite(p: Any) -> float:
+    """Factor on the bow's pressure as a stroke begins."""
+    return between(p, 1.0, 1.0, BITE)

@@ -1,0 +1,200 @@
+"""Wishes: all that a player can be asked for, each at a frame. Compiled.
+
+| kind | index | value | other |
+|---|---|---|---|
+| RAMP | slot of the engine, or SILENCE | target | length of the ramp (frames) |
+| WRITE | row of a parameter | value | least time of the moves that follow (ms) |
+| HOLD | the same, kept through notes | value | the same |
+| EXPRESS | row of a parameter | value for the note that begins next | |
+| BEGIN | channel | key | pitch (fractional MIDI note within range) |
+| END | channel | key | 1 where more keys end at the same time |
+| SLIDE | | pitch within range | |
+| DRAW | | bow speed (m/s) | bow force (N) |
+| LIFT | | | |
+| STOP | | 1: even where a note sounds | |
+| RELEASE | | | |
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.compile.memory import carray
+from yehu_server.core.controls.ramps import take
+from yehu_server.core.controls.record import CONTROLS
+from yehu_server.core.player import left_hand, notes
+from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
+from yehu_server.core.player.ownership import USUAL_MS, forget, ramp_to, release, write_directly
+from yehu_server.core.player.phrasing import begin_sequence
+from yehu_server.core.player.record import PLAYER
+from yehu_server.core.player.rows import (
+    ASSIST,
+    BEND,
+    BOW_FORCE,
+    BOW_SPEED,
+    DYNAMICS,
+    EVENNESS,
+    EXPRESSION,
+    HIGHEST,
+    IS_ENGINES,
+    IS_OWNED,
+    LISTENING,
+    LOWEST,
+    PHRASING,
+    POSITION,
+    PRESS,
+    PRESSURE,
+    ROCKING,
+    ROCKING_RATE,
+    ROWS,
+    SEED,
+    SMOOTH_MS,
+    SPEED,
+    TREMOLO,
+    TRUST,
+    VELOCITY,
+    VIBRATO,
+    VOLUME,
+)
+
+KINDS = (
+    "ramp", "write", "hold", "express", "begin", "end", "slide", "draw", "lift", "stop", "release",
+)  # fmt: skip
+RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, DRAW, LIFT, STOP, RELEASE = range(len(KINDS))
+LONGEST = 1e9  # frames of a ramp, ms of a glide
+
+WISH = np.dtype(
+    [
+        ("frame", np.int64),
+        ("kind", np.int64),
+        ("index", np.int64),
+        ("value", np.float64),
+        ("other", np.float64),
+    ]
+)
+
+
+@native("void(voidptr, voidptr, int64, int64, int64, float64, float64)")
+def fulfil(
+    player: Any, controls: Any, frame: int, kind: int, index: int, value: float, other: float
+) -> None:
+    """Fulfil a wish, given by its fields, within the ranges of what it moves.
+
+    One of no kind, for no parameter, or with a number that is not finite changes nothing.
+
+    Parameters
+    ----------
+    player : pointer to a record of dtype PLAYER
+    controls : pointer to a record of dtype CONTROLS
+
+    Real time: safe.
+    """
+    p = carray(player, (1,), PLAYER)[0]
+    c = carray(controls, (1,), CONTROLS)[0]
+    if not (math.isfinite(value) and math.isfinite(other)):
+        return
+    if kind == RAMP:
+        take(c, index, value, int(bounded(other, 0.0, LONGEST)))
+    elif kind == BEGIN:
+        notes.begin(p, c, frame, index, value, bounded(other, LOWEST_NOTE, HIGHEST_NOTE))
+    elif kind == END:
+        notes.end(p, c, index, value, other != 0.0)
+    elif kind == SLIDE:
+        notes.slide(p, c, bounded(value, LOWEST_NOTE, HIGHEST_NOTE))
+    elif kind == DRAW:
+        notes.draw_by_hand(p, c, in_range(BOW_SPEED, value), in_range(BOW_FORCE, other))
+    elif kind == LIFT:
+        notes.lift_by_hand(p, c)
+    elif kind == STOP:
+        notes.stop_sound(p, c, value != 0.0)
+    elif kind == RELEASE:
+        release(p)
+        p.by_hand = 0
+    elif 0 <= index < ROWS:
+        if kind in (WRITE, HOLD):
+            glide_ms = bounded(other, 0.0, LONGEST)
+            write(p, c, index, in_range(index, value), kind == HOLD, glide_ms)
+        elif kind == EXPRESS:
+            express(p, c, index, in_range(index, value))
+
+
+@compiled_exactly
+def bounded(value: float, lo: float, hi: float) -> float:
+    """The value nearest to one that lies within bounds."""
+    return float(min(max(value, lo), hi))
+
+
+@compiled_exactly
+def in_range(row: int, value: float) -> float:
+    """The value nearest to one that a parameter can have."""
+    return bounded(value, LOWEST[row], HIGHEST[row])
+
+
+@compiled_exactly
+def write(p: Any, c: Any, row: int, value: float, hold: bool, glide_ms: float) -> None:
+    """Set a parameter; the moves of bow and fingers that follow take at least `glide_ms`."""
+    if IS_OWNED[row]:
+        write_directly(p, c, row, value, hold)
+        return
+    if hold:
+        p.kept[row] = 1
+        forget(p, row)
+    elif p.kept[row] != 0:
+        return
+    if p.value[row] == value:
+        return
+    p.value[row] = value
+    if IS_ENGINES[row]:
+        ramp_to(p, c, row, value, max(SMOOTH_MS[row], glide_ms))
+    p.glide_ms = glide_ms
+    follow(p, c, row)
+    p.glide_ms = 0.0
+
+
+@compiled_exactly
+def express(p: Any, c: Any, row: int, value: float) -> None:
+    """Set a parameter for the note that begins next; what it moves, the note will."""
+    if IS_ENGINES[row]:
+        write(p, c, row, value, False, 0.0)
+    elif p.kept[row] == 0:
+        p.value[row] = value
+
+
+@compiled_exactly
+def follow(p: Any, c: Any, row: int) -> None:
+    """Move what follows a parameter of the player while a note sounds."""
+    if row in (BEND, TRUST):
+        notes.follow_bend(p, c)
+    elif row == PRESS:
+        left_hand.press(p, c, notes.least_press(p, max(p.string, 0)))
+    elif row == DYNAMICS:
+        notes.draw(p, c, USUAL_MS)
+        notes.follow_bend(p, c)
+        notes.set_level(p, c)
+    elif row == SPEED:  # a faster bow changes the pitch
+        notes.draw(p, c, USUAL_MS)
+        notes.follow_bend(p, c)
+    elif row in (PRESSURE, POSITION):
+        notes.lean(p, c)
+    elif row == TREMOLO:
+        notes.draw(p, c, USUAL_MS)
+    elif row in (VIBRATO, ROCKING, ROCKING_RATE, PHRASING):
+        left_hand.rock(p, c)
+    elif row == ASSIST:
+        notes.set_assist(p, c)
+    elif row in (VOLUME, EXPRESSION):
+        notes.set_level(p, c)
+    elif row == EVENNESS:
+        notes.even_out(p, c)
+    elif row == VELOCITY:
+        notes.draw(p, c, USUAL_MS)
+        notes.follow_bend(p, c)
+        notes.even_out(p, c)
+    elif row == LISTENING and p.value[LISTENING] == 0.0:
+        notes.stop_helping(p, c)
+    elif row == SEED:
+        begin_sequence(p, int(p.value[SEED]))

@@ -1,0 +1,126 @@
+"""A shoebox room: its walls, the listener, a player and the player's images in them. Compiled.
+
+Coordinates are in metres: x from the left wall to the right one, y from the wall behind the
+listener to the one behind the players, z from the floor up. Sound of an image is what a wall
+reflects once: it comes from where a mirror would show the player ([Allen]).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from yehu_server.compile.jit import compiled_exactly
+
+Array = Any
+
+SOUND = 343.0  # m/s
+WALLS = 6
+EARS = 2
+WIDTH, HEIGHT = 0.83, 0.62  # of a room, over its length
+LISTENER_X, LISTENER_Y = 0.46, 0.31  # over width and length of the room
+# Both sit, and in a room that is lower than this, lower: m, and over its height.
+LISTENER_Z, PLAYER_Z = 1.2, 0.8
+LISTENER_HIGHEST, PLAYER_HIGHEST = 0.45, 0.3
+WALL_GAP = 0.3  # m; the least from a player to a wall
+EAR_X = 0.085  # m from the middle of the head
+FAR_SIDE = math.pi / 4.0  # direction of a player at pan 1, to the right of straight ahead
+REFERENCE = 2.0  # m; a player at this distance is as loud as without a room
+SIDED = 0.7  # how much more an ear takes in from its own side
+SABINE = 0.161  # s/m
+
+
+@compiled_exactly
+def volume(size: float) -> float:
+    """Volume (m^3) of a room, by its length (m)."""
+    return size * size * size * WIDTH * HEIGHT
+
+
+@compiled_exactly
+def surface(size: float) -> float:
+    """Area (m^2) of all walls of a room, by its length (m)."""
+    return 2.0 * size * size * (WIDTH + HEIGHT + WIDTH * HEIGHT)
+
+
+@compiled_exactly
+def mean_free_path(size: float) -> float:
+    """Mean way (m) of sound between two walls [Kuttruff]."""
+    return 4.0 * volume(size) / surface(size)
+
+
+@compiled_exactly
+def reflection(size: float, decay: float) -> float:
+    """Share of the pressure that a wall reflects, for a decay of 60 dB in a time (s) [Eyring]."""
+    return math.exp(-0.5 * SABINE * volume(size) / (surface(size) * decay))
+
+
+@compiled_exactly
+def diffuse_level(size: float, decay: float) -> float:
+    """Amplitude of the reverberant field over that of the direct sound at REFERENCE [Kuttruff]."""
+    absorbing = SABINE * volume(size) / decay
+    return math.sqrt(16.0 * math.pi * REFERENCE * REFERENCE / absorbing)
+
+
+@compiled_exactly
+def within(value: float, lo: float, hi: float) -> float:
+    """The value nearest to one that lies within bounds."""
+    return min(max(value, lo), hi)
+
+
+@compiled_exactly
+def see_images(
+    size: float, distance: float, pan: float, decay: float, delays: Array, gains: Array
+) -> None:
+    """Find when and how loud each ear hears the images of a player, beside the direct sound.
+
+    Parameters
+    ----------
+    size : float, m
+        Length of the room.
+    distance : float, m
+        From listener to player; a player stays within the room.
+    pan : float
+        -1 left to 1 right.
+    decay : float, s
+    delays : ndarray [shape=(EARS, WALLS), s]
+        Written: how much later than the direct sound each image is heard.
+    gains : ndarray [shape=(EARS, WALLS)]
+        Written: amplitudes; the direct sound at REFERENCE has 1.
+    """
+    width, height = WIDTH * size, HEIGHT * size
+    at_x, at_y = LISTENER_X * width, LISTENER_Y * size
+    at_z = min(LISTENER_Z, LISTENER_HIGHEST * height)
+    direction = FAR_SIDE * pan
+    x = within(at_x + distance * math.sin(direction), WALL_GAP, width - WALL_GAP)
+    y = within(at_y + distance * math.cos(direction), WALL_GAP, size - WALL_GAP)
+    z = min(PLAYER_Z, PLAYER_HIGHEST * height)
+    direct = length(x - at_x, y - at_y, z - at_z)
+    reflected = reflection(size, decay)
+    for wall in range(WALLS):
+        image_x, image_y, image_z = x, y, z
+        if wall == 0:
+            image_x = -x
+        elif wall == 1:
+            image_x = 2.0 * width - x
+        elif wall == 2:
+            image_y = -y
+        elif wall == 3:
+            image_y = 2.0 * size - y
+        elif wall == 4:
+            image_z = -z
+        else:
+            image_z = 2.0 * height - z
+        aside = (image_x - at_x) / length(image_x - at_x, image_y - at_y, image_z - at_z)
+        for ear in range(EARS):
+            side = 2.0 * ear - 1.0
+            way = length(image_x - at_x - side * EAR_X, image_y - at_y, image_z - at_z)
+            delays[ear, wall] = max(0.0, way - direct) / SOUND
+            gains[ear, wall] = (
+                reflected * REFERENCE / max(way, REFERENCE) * math.sqrt(1.0 + side * SIDED * aside)
+            )
+
+
+@compiled_exactly
+def length(x: float, y: float, z: float) -> float:
+    """Length of a vector."""
+    return math.sqrt(x * x + y * y + z * z)

@@ -1,0 +1,50 @@
+"""The record of the stage: the room, the buses of the mix, its level, and the tape."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.controls.record import CHUNK
+from yehu_server.core.stage.geometry import EARS
+from yehu_server.core.stage.room import ROOM, empty_room, prepare_room
+
+TAPE = 1 << 19  # the last frames, for recorders: 10 s at 48 kHz
+EVERY = 32  # frames between two looks at what is asked of the room and the seats
+BUSES = 7
+# Of both ears: the direct sound, what enters the room, what is reflected at once; and whether an
+# instrument was put to rest at this frame.
+DIRECT, SEND, EARLY, FALLEN = 0, 2, 4, 6
+
+STAGE = np.dtype(
+    [
+        ("has_room", np.int64),  # 0: dry
+        ("channels", np.int64),  # of the device: left and right in turn, or one with both
+        ("unsound", np.int64),  # number of frames that were not numbers, replaced by silence
+        ("bus", np.float64, (CHUNK, BUSES)),
+        ("own", np.float64, (CHUNK, EARS)),  # what one of the sources gives
+        # Level of the mix, over windows of a sixtieth of a second, as in the meters.
+        ("window_frames", np.int64),
+        ("window_peak", np.float64),
+        ("window_power", np.float64),
+        ("peak", np.float64),
+        ("rms", np.float64),
+        ("room", ROOM),
+        ("tape", np.float32, (TAPE, EARS)),
+    ],
+    align=True,
+)
+_fields: Any = STAGE.fields
+TAPE_AT = int(_fields["tape"][1])
+
+
+def prepare_stage(stage: Any, rate: float, channels: int, *, has_room: bool) -> None:
+    """Prepare a record of dtype STAGE [shape=()] for a rate (Hz), in place; it is zeroed before."""
+    stage["channels"], stage["has_room"] = channels, has_room
+    prepare_room(stage["room"], rate)
+
+
+def rest_stage(stage: Any) -> None:
+    """Take all sound out of a record of dtype STAGE, in place."""
+    empty_room(stage["room"])

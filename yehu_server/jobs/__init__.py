@@ -1,1 +1,0 @@
-"""Many tasks at a time: on processes of this machine, or on a cluster."""

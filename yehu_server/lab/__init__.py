@@ -1,0 +1,1 @@
+"""The model studied: simulation, regimes, sweeps, data sets, bodies, pictures."""

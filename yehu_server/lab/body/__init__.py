@@ -1,0 +1,13 @@
+"""The body workshop: from a force hammer's taps on a fiddle to a body that the model plays.
+
+`read` takes measurements from files and `fit` makes a body of them. The libraries that this needs
+come with the extra ``yehu-server[body]``, and are loaded when they are used.
+"""
+
+from yehu_server.lab.body.curve import Curve
+from yehu_server.lab.body.fitting import Fit, fit
+from yehu_server.lab.body.measurement import Measurement, average, read
+from yehu_server.lab.body.synthetic import made_taps
+from yehu_server.lab.body.tap import Tap
+
+__all__ = ["Curve", "Fit", "Measurement", "Tap", "average", "fit", "made_taps", "read"]

@@ -1,0 +1,260 @@
+"""Body files: write a fitted body with its measurement, and read one again.
+
+A body file is JSON: what `physics.quantities.read_body` reads, and beside it what was measured
+and how the fit went, which `yehu-server body show` draws.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.physics.quantities import Body, measured_body, read_body
+from yehu_server.errors import MeasurementError, OutputError
+from yehu_server.lab.body.curve import Curve
+from yehu_server.lab.body.fitting import Differences, Fit
+from yehu_server.lab.body.measurement import Measurement
+from yehu_server.util import __version__
+from yehu_server.util.documents import parse_json, parse_toml
+from yehu_server.util.files import MAX_SETTINGS_BYTES, check_target, read_text, replacing, why
+
+FORMAT = "yehu-server body"  # in the files that `save` writes, which it may replace
+GROUP = 1.0 / 250.0  # of the frequency: lines that are kept as one
+DIGITS = 7
+
+
+def save(fit: Fit, target: Path, *, overwrite: bool = False) -> tuple[Path, ...]:
+    """Write a body file (.json), or an instrument file (.toml) and its body file beside it.
+
+    An instrument file that names the body already is left as it is.
+
+    Returns
+    -------
+    written : tuple of Path
+
+    Raises
+    ------
+    OutputError
+        Where they cannot be written, or other files are in their place.
+    """
+    check_ending(target)
+    body_file = body_file_of(target)
+    check_targets(target, overwrite=overwrite)
+    _write(body_file, as_text(fit), overwrite=overwrite)
+    if target == body_file or names_body(target, body_file):
+        return (body_file,)
+    _write(target, _instrument(fit, body_file), overwrite=overwrite)
+    return (target, body_file)
+
+
+def check_ending(target: Path) -> None:
+    """Check that a name ends as an instrument file's or a body file's.
+
+    Raises
+    ------
+    OutputError
+        Where it does not.
+    """
+    if target.suffix.lower() not in (".toml", ".json"):
+        raise OutputError(f"{target}: name an instrument file, .toml, or a body file, .json")
+
+
+def body_file_of(target: Path) -> Path:
+    """The body file of an instrument file, or itself."""
+    is_body = target.suffix.lower() == ".json"
+    return target if is_body else target.with_name(f"{target.stem}.body.json")
+
+
+def check_targets(target: Path, *, overwrite: bool = False) -> None:
+    """Check that `save` may write.
+
+    Raises
+    ------
+    OutputError
+        Where it may not.
+    """
+    body_file = body_file_of(target)
+    for path in {target, body_file}:
+        check_target(path)
+    if overwrite:
+        return
+    if body_file.exists() and not is_ours(body_file):
+        raise OutputError(f"{body_file}: exists, and is not a fitted body; --overwrite replaces it")
+    if target != body_file and target.exists() and not names_body(target, body_file):
+        raise OutputError(
+            f"{target}: exists; write body = {json.dumps(body_file.name)} in it, or --overwrite it"
+        )
+
+
+def is_ours(path: Path) -> bool:
+    """Whether a file is one that `save` wrote."""
+    try:
+        data = parse_json(read_text(path, MAX_SETTINGS_BYTES))
+    except (OSError, ValueError):
+        return False
+    return isinstance(data, dict) and data.get("format") == FORMAT
+
+
+def names_body(target: Path, body_file: Path) -> bool:
+    """Whether an instrument file names a body file."""
+    try:
+        named = parse_toml(read_text(target, MAX_SETTINGS_BYTES)).get("body")
+    except (OSError, ValueError):
+        return False
+    return isinstance(named, str) and (target.parent / named).resolve() == body_file.resolve()
+
+
+def as_text(fit: Fit) -> str:
+    """A fit as the text of its body file."""
+    body, measured = fit.body, fit.measurement
+    data: dict[str, Any] = {
+        "format": FORMAT,
+        "about": f"A body fitted by yehu-server {__version__} to {_sources(measured)}.",
+        "bridge_modes": [
+            {"frequency_hz": hz, "mass_kg": mass, "damping_kg_per_s": damping}
+            for hz, mass, damping in zip(body.frequency_hz, body.mass, body.damping, strict=True)
+        ],
+        "radiation": {
+            "sample_rate_hz": body.radiation_rate,
+            "sections": [list(section) for section in body.sections],
+            "direct_gain": body.direct_gain,
+        },
+        "fit": {
+            "band_hz": list(fit.band_hz),
+            "admittance_db": None if fit.admittance_db is None else asdict(fit.admittance_db),
+            "radiation_db": None if fit.radiation_db is None else asdict(fit.radiation_db),
+            "warnings": list(fit.warnings),
+            "sources": list(measured.sources),
+        },
+        "measured": {
+            "admittance": _columns(measured.admittance),
+            "radiation": _columns(measured.radiation),
+        },
+    }
+    text = json.dumps(data, indent=1, allow_nan=False)
+    return re.sub(r"\[\s+([-+\d.eE,\s]+?)\s+\]", _in_a_line, text) + "\n"
+
+
+def read_fit(path: Path) -> Fit:
+    """Read a body file, or the body that an instrument file names, with what was measured of it.
+
+    Raises
+    ------
+    ParameterError
+        Where the body cannot be read.
+    MeasurementError
+        Where the file cannot, or what was measured.
+    """
+    data: Any = {}
+    try:
+        if path.suffix.lower() == ".toml":
+            named = parse_toml(read_text(path, MAX_SETTINGS_BYTES)).get("body")
+            if named is None:
+                return _bare(measured_body())
+            path = path.parent / str(named)
+        data = parse_json(read_text(path, MAX_SETTINGS_BYTES))
+    except OSError as error:
+        raise MeasurementError(f"{path}: {why(error)}") from error
+    except ValueError as error:
+        raise MeasurementError(f"{path}: not an instrument or body file ({error})") from error
+    fitted = _bare(read_body(path))
+    if "measured" not in data or "fit" not in data:
+        return fitted
+    try:
+        told, measured = data["fit"], data["measured"]
+        warnings = tuple(str(line) for line in told["warnings"])
+        sources = tuple(str(name) for name in told["sources"])
+        lo, hi = (float(hz) for hz in told["band_hz"])
+        measurement = Measurement(
+            _curve(measured["admittance"]), _curve(measured["radiation"]), hi, (), sources
+        )
+        return replace(
+            fitted,
+            measurement=measurement,
+            band_hz=(lo, hi),
+            admittance_db=_differences(told["admittance_db"]),
+            radiation_db=_differences(told["radiation_db"]),
+            warnings=warnings,
+        )
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
+        raise MeasurementError(f"{path}: what was measured cannot be read ({error!r})") from error
+
+
+def _bare(body: Body) -> Fit:
+    band = (100.0, min(8000.0, body.radiation_rate / 2.0))
+    return Fit(body, Measurement(None, None), band, None, None, ())
+
+
+def _instrument(fit: Fit, body_file: Path) -> str:
+    sources = _sources(fit.measurement).replace("\n", " ")
+    return (
+        f"# A yehu with the body of {sources}.\n"
+        "# Other quantities of the instrument, such as its strings, may be added here.\n"
+        f"body = {json.dumps(body_file.name, ensure_ascii=False)}\n"
+    )
+
+
+def _sources(measured: Measurement) -> str:
+    names = [re.sub(r"[^ -~]", "?", name) for name in measured.sources]
+    return ", ".join(names[:5]) + (" and others" if names[5:] else "") or "a measurement"
+
+
+def _write(path: Path, text: str, *, overwrite: bool) -> None:
+    def may_replace(target: Path) -> bool:
+        return overwrite or is_ours(target)
+
+    with replacing(path, may_replace) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+def _columns(curve: Curve | None) -> dict[str, Any] | None:
+    """A curve as lists of numbers, lines averaged that lie closer than can be drawn."""
+    if curve is None:
+        return None
+    number = np.floor(np.log(curve.frequency_hz) / GROUP).astype(int)
+    _, first = np.unique(number, return_index=True)
+    counts = np.diff(np.append(first, len(number)))
+
+    def grouped(values: Any) -> list[float]:
+        means = np.add.reduceat(values, first) / counts
+        return [float(f"{value:.{DIGITS}g}") for value in means]
+
+    return {
+        "taps": curve.taps,
+        "frequency_hz": grouped(curve.frequency_hz),
+        "real": grouped(curve.values.real),
+        "imag": grouped(curve.values.imag),
+        "coherence": None if curve.coherence is None else grouped(curve.coherence),
+    }
+
+
+def _curve(data: Any) -> Curve | None:
+    if data is None:
+        return None
+    names = ["frequency_hz", "real", "imag"] + ["coherence"] * (data["coherence"] is not None)
+    columns = [np.array(data[name], np.float64) for name in names]
+    frequency_hz, real, imag, *coherence = columns
+    is_whole = frequency_hz.ndim == 1 and len(frequency_hz) > 5
+    if not is_whole or any(column.shape != frequency_hz.shape for column in columns):
+        raise ValueError("its curves are damaged")
+    if not np.isfinite(columns).all():
+        raise ValueError("a number is not finite")
+    if np.diff(frequency_hz).min() <= 0.0 or not frequency_hz[0] > 0.0:
+        raise ValueError("its frequencies do not rise")
+    of_taps = coherence[0] if coherence else None
+    return Curve(frequency_hz, real + 1j * imag, of_taps, int(data["taps"]))
+
+
+def _differences(data: Any) -> Differences | None:
+    if data is None:
+        return None
+    return Differences(float(data["rms"]), float(data["most"]), float(data["scatter"]))
+
+
+def _in_a_line(values: re.Match[str]) -> str:
+    return f"[{' '.join(values[1].split())}]"

@@ -1,0 +1,248 @@
+"""From a measurement to a body that the model plays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS
+from yehu_server.core.physics.quantities import Body, check_body, measured_body
+from yehu_server.core.physics.radiation import response
+from yehu_server.errors import MeasurementError
+from yehu_server.lab.body.curve import Curve, as_db
+from yehu_server.lab.body.measurement import HIGHEST_HZ, LOWEST_HZ, Measurement
+from yehu_server.lab.body.modes import Modes, Problem
+from yehu_server.lab.body.search import Search
+from yehu_server.lab.body.sections import Sections, fit_sections
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Complexes = np.ndarray[Any, np.dtype[np.complex128]]
+
+RATE = 44100.0  # of the radiation's sections; at others the model moves them
+FLOOR = 0.005  # relative error of an admittance that does not matter: 0.04 dB
+LONGEST_S = 0.8  # for 60 dB: what rings longer is a string
+POOR_DB = 1.0
+
+
+@dataclass(frozen=True)
+class Differences:
+    """How far a fit is from its measurement (dB), over the band by octaves."""
+
+    rms: float
+    most: float
+    scatter: float  # rms of what the measurement itself is uncertain by
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A body that was fitted to a measurement, and how well.
+
+    Parameters
+    ----------
+    body : Body
+        What the model plays: ``Quantities(body=fit.body)``.
+    measurement : Measurement
+        Over the band of the fit.
+    band_hz : tuple of float
+        The band of the fit.
+    admittance_db, radiation_db : Differences, optional
+        Where that was measured.
+    warnings : tuple of str
+        Of the measurement and of the fit.
+    """
+
+    body: Body
+    measurement: Measurement
+    band_hz: tuple[float, float]
+    admittance_db: Differences | None
+    radiation_db: Differences | None
+    warnings: tuple[str, ...]
+
+    @property
+    def modes(self) -> Modes:
+        """The bridge modes, as arrays."""
+        return modes_of(self.body)
+
+    def admittance(self, frequency_hz: Floats) -> Complexes:
+        """Velocity per force (s/kg) of the fitted modes at frequencies [shape=(lines,)]."""
+        return self.modes.admittance(np.asarray(frequency_hz, np.float64))
+
+    def radiation(self, frequency_hz: Floats) -> Complexes:
+        """Pressure per force (Pa/N) of the fitted sections at frequencies [shape=(lines,)]."""
+        return radiation_of(self.body, np.asarray(frequency_hz, np.float64))
+
+    def save(self, target: Path, *, overwrite: bool = False) -> tuple[Path, ...]:
+        """Write an instrument file (.toml) with its body file, or a body file (.json) alone.
+
+        Returns
+        -------
+        written : tuple of Path
+
+        Raises
+        ------
+        OutputError
+            Where they cannot be written, or other files are in their place.
+        """
+        from yehu_server.lab.body.body_file import save
+
+        return save(self, Path(target), overwrite=overwrite)
+
+
+def fit(
+    measurement: Measurement,
+    *,
+    band_hz: tuple[float, float] | None = None,
+    modes: int | None = None,
+    sections: int = MAX_SECTIONS,
+) -> Fit:
+    """Fit a body: bridge modes to the admittance, sections to the radiation.
+
+    What was not measured is kept of the body that comes with the package.
+
+    Parameters
+    ----------
+    band_hz : tuple of float, optional
+        Lowest and highest frequency to be met; by default from 100 Hz to where the hammer stops
+        to excite, at most 8 kHz.
+    modes : int, optional
+        Number of bridge modes; by default as many as the measurement shows, at most 16.
+    sections : int
+        Number of sections of the radiation, at most 32.
+
+    Raises
+    ------
+    MeasurementError
+        Where nothing was measured, or too little in the band.
+    """
+    if modes is not None and not 1 <= modes <= MAX_MODES:
+        raise MeasurementError(f"{modes} modes: a body has 1 to {MAX_MODES}")
+    if not 1 <= sections <= MAX_SECTIONS:
+        raise MeasurementError(f"{sections} sections: a body has 1 to {MAX_SECTIONS}")
+    band = band_hz or (LOWEST_HZ, min(measurement.highest_hz, HIGHEST_HZ))
+    within = replace(
+        measurement,
+        admittance=_in_band(measurement.admittance, band, "admittance"),
+        radiation=_in_band(measurement.radiation, band, "radiation"),
+    )
+    body = measured_body()
+    warnings = list(measurement.warnings)
+    admittance_db = radiation_db = None
+    if within.admittance is not None:
+        found = fit_modes(within.admittance, modes)
+        body = replace(
+            body,
+            frequency_hz=tuple(found.frequency_hz.tolist()),
+            mass=tuple(found.mass.tolist()),
+            damping=tuple(found.resistance.tolist()),
+        )
+        admittance_db = differences(within.admittance, found.admittance)
+        warnings += _doubts(found, admittance_db)
+    else:
+        warnings.append("no admittance was measured: the bridge is the shipped yehu's")
+    if within.radiation is not None:
+        fitted = fit_sections(within.radiation, sections, RATE)
+        body = replace(body, **_as_fields(fitted))
+        within = replace(within, radiation=_without(within.radiation, fitted.delay_s))
+        radiation_db = differences(within.radiation, fitted.response)  # type: ignore[arg-type]
+        warnings += _poor(radiation_db, "radiation")
+    else:
+        warnings.append("no radiation was measured: the sound is radiated as by the shipped yehu")
+    if within.admittance is None and within.radiation is None:
+        raise MeasurementError("nothing was measured: neither admittance nor radiation")
+    check_body(body)
+    return Fit(body, within, band, admittance_db, radiation_db, tuple(warnings))
+
+
+def fit_modes(curve: Curve, count: int | None = None) -> Modes:
+    """Fit bridge modes to an admittance (s/kg); `count` of them, or as many as it shows.
+
+    Raises
+    ------
+    MeasurementError
+        Where it shows none.
+    """
+    weight = 1.0 / np.hypot(curve.deviation, FLOOR * np.abs(curve.values))
+    found = Search(Problem(curve.frequency_hz, curve.values, weight)).find(MAX_MODES, count)
+    if not len(found.mass):
+        raise MeasurementError("admittance: no mode stands out of the noise")
+    return found
+
+
+def differences(curve: Curve, response_at: Any) -> Differences:
+    """How far a fitted response is from a curve in level."""
+    octaves = np.gradient(np.log2(curve.frequency_hz))
+    octaves = octaves / octaves.sum()
+    off = as_db(response_at(curve.frequency_hz)) - as_db(curve.values)
+    uncertain = curve.deviation / np.abs(curve.values) / np.sqrt(2.0) * 20.0 / np.log(10.0)
+    return Differences(
+        float(np.sqrt(octaves @ off**2)),
+        float(np.abs(off).max()),
+        float(np.sqrt(octaves @ np.minimum(uncertain, 20.0) ** 2)),
+    )
+
+
+def modes_of(body: Body) -> Modes:
+    """The bridge modes of a body, as arrays."""
+    mass, omega = np.array(body.mass), np.array(body.omega)
+    return Modes(
+        np.array(body.frequency_hz), np.array(body.damping) / (2.0 * mass * omega), 1.0 / mass
+    )
+
+
+def radiation_of(body: Body, frequency_hz: Floats) -> Complexes:
+    """Pressure per force (Pa/N) of a body's sections at frequencies [shape=(lines,)]."""
+    sections = np.array(body.sections).reshape(-1, 4)
+    values = response(sections, np.array([body.direct_gain]), body.radiation_rate, frequency_hz)
+    return np.asarray(values)
+
+
+def _in_band(curve: Curve | None, band: tuple[float, float], what: str) -> Curve | None:
+    if curve is None:
+        return None
+    lo, hi = band
+    if not 0.0 < lo < hi:
+        raise MeasurementError(f"band: {lo:g} to {hi:g} Hz is none")
+    found = curve.within(lo, hi)
+    if len(found.values) < 50:
+        raise MeasurementError(
+            f"{what}: {len(found.values)} lines from {lo:g} to {hi:g} Hz are too few to fit"
+        )
+    return found
+
+
+def _without(curve: Curve, delay_s: float) -> Curve:
+    """The curve as if the microphone had been nearer."""
+    return replace(curve, values=curve.values * np.exp(2j * np.pi * curve.frequency_hz * delay_s))
+
+
+def _as_fields(fitted: Sections) -> dict[str, Any]:
+    return {
+        "radiation_rate": fitted.rate,
+        "sections": tuple(tuple(row) for row in fitted.coefficients.tolist()),
+        "direct_gain": fitted.direct_gain,
+    }
+
+
+def _doubts(modes: Modes, off: Differences) -> list[str]:
+    """Warnings about fitted modes."""
+    found = []
+    ring_s = 3.0 * np.log(10.0) / (2.0 * np.pi * modes.frequency_hz * modes.damping)
+    strong = modes.inverse_mass / modes.damping / modes.frequency_hz
+    long = (ring_s > LONGEST_S) & (strong > 0.01 * strong.max())
+    if long.any():
+        places = ", ".join(f"{hz:.0f}" for hz in modes.frequency_hz[long])
+        longest_s = float(ring_s[long].max())
+        told = f"modes at {places} Hz ring for {longest_s:.1f} s"
+        told = f"modes at {places} Hz ring for {ring_s[long].max():.1f} s"
+        found.append(f"{told}, as strings that are not damped do")
+    return found + _poor(off, "admittance")
+
+
+def _poor(off: Differences, what: str) -> list[str]:
+    if off.rms > POOR_DB and off.rms > 2.0 * off.scatter:
+        told = f"{what}: the fit is {off.rms:.1f} dB off the measurement (rms)"
+        return [f"{told}, which itself scatters by {off.scatter:.1f} dB"]
+    return []

@@ -1,0 +1,188 @@
+"""Fit stable second-order sections, side by side, to a measured radiation.
+
+The model's body makes sound pressure of bridge force by such sections and a direct gain. Poles
+are found by vector fitting; then the error is evened out over the band.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from yehu_server.errors import MeasurementError
+from yehu_server.lab.body.curve import Curve, as_db
+from yehu_server.lab.body.vector_fitting import LOWEST_HZ, Lines, moved, numerators
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Complexes = np.ndarray[Any, np.dtype[np.complex128]]
+
+ROUNDS, FEW_ROUNDS = 20, 4
+EVENING = 8  # rounds in which weight goes to where the error is large
+ENOUGH, PATIENCE = 0.99, 3  # an error as much smaller is progress; rounds without that
+LATER, STEP = 4, 0.4  # onsets that are tried after the first; periods of the highest frequency
+GROUP = 1.0 / 250.0  # of the frequency: lines that are averaged before the fit
+START_DAMPING = 0.02
+FLOOR, NOISE = 0.02, 4.0  # errors that do not matter: relative, and in deviations
+OUTSIDE, OUTSIDE_LINES = 0.15, 60  # weight of silence outside the band, and at how many places
+MOST_DELAY_S = 0.02  # of sound on its way to the microphone: 7 m
+
+
+@dataclass(frozen=True)
+class Sections:
+    """Second-order sections b0, b1, a1, a2 [shape=(sections, 4)], a direct gain, and their rate."""
+
+    coefficients: Floats
+    direct_gain: float
+    rate: float
+    delay_s: float  # that was taken off the measurement
+
+    def response(self, frequency_hz: Floats) -> Complexes:
+        """Pressure per force (Pa/N) at frequencies [shape=(lines,)], without the delay."""
+        z_1 = np.exp(-2j * np.pi * frequency_hz / self.rate)[:, np.newaxis]
+        b_0, b_1, a_1, a_2 = self.coefficients.T
+        each = (b_0 + b_1 * z_1) / (1.0 + a_1 * z_1 + a_2 * z_1**2)
+        return np.asarray(each.sum(axis=1) + self.direct_gain)
+
+
+def fit_sections(curve: Curve, count: int = 32, rate: float = 44100.0) -> Sections:
+    """Fit sections to a radiation.
+
+    Parameters
+    ----------
+    curve : Curve
+        Pressure per force (Pa/N) over the band that counts. Outside of it the sections are kept
+        quiet, since nobody measured there.
+    count : int
+        Number of sections.
+    rate : float
+        Sample rate (Hz) that the sections are for.
+
+    Raises
+    ------
+    MeasurementError
+        Where there are fewer lines than numbers to find.
+
+    Notes
+    -----
+    The time that sound takes to the microphone is estimated, and taken off before the fit: as a
+    filter it would want poles of its own.
+    """
+    curve = curve.within(LOWEST_HZ, 0.49 * rate)
+    lo, hi = float(curve.frequency_hz[0]), float(curve.frequency_hz[-1])
+    start_hz = np.geomspace(lo, min(hi, 0.45 * rate), count)
+    poles = np.exp((1j - START_DAMPING) * 2.0 * np.pi * start_hz / rate)
+    onset_s = _delay(curve)
+    best = _fitted(curve, onset_s, poles, rate, ROUNDS)
+    for later in range(1, LATER + 1):
+        delay_s = onset_s + later * STEP / hi
+        other = _fitted(curve, delay_s, best.poles, rate, FEW_ROUNDS)
+        best = min(best, other, key=lambda tried: tried.error)
+    return _evened(best)
+
+
+@dataclass(frozen=True)
+class _Tried:
+    error: float
+    lines: Lines
+    matters: Floats  # errors (Pa/N) that are neither noise nor inaudible
+    poles: Complexes
+    found: Sections
+
+
+def _fitted(curve: Curve, delay_s: float, poles: Complexes, rate: float, rounds: int) -> _Tried:
+    """The best of some rounds that begin with given poles."""
+    steady = curve.values * np.exp(2j * np.pi * curve.frequency_hz * delay_s)
+    grouped = _grouped(Curve(curve.frequency_hz, steady))
+    if len(grouped.values) < 2 * len(poles):
+        raise MeasurementError(
+            f"radiation: {len(grouped.values)} lines are too few for {len(poles)} sections"
+        )
+    lines, matters = _with_silence(grouped, rate)
+    tried: list[_Tried] = []
+    best, since = np.inf, 0
+    for _ in range(rounds):
+        found = Sections(*numerators(lines, poles), rate, delay_s)
+        error = float(
+            np.linalg.norm((found.response(lines.frequency_hz) - lines.wanted) * lines.weight)
+        )
+        since = 0 if error < ENOUGH * best else since + 1
+        best = min(best, error)
+        tried.append(_Tried(error, lines, matters, poles, found))
+        if since > PATIENCE:
+            break
+        poles = moved(lines, poles)
+    return min(tried, key=lambda one: one.error)
+
+
+def _evened(best: _Tried) -> Sections:
+    """Numerators again, with more weight where the error matters: its largest becomes smaller."""
+    lines, found, weight = best.lines, best.found, best.lines.weight
+    chosen, least = found, np.inf
+    for _ in range(EVENING):
+        off = np.abs(found.response(lines.frequency_hz) - lines.wanted) / best.matters
+        if off.max() < least:
+            chosen, least = found, float(off.max())
+        if least < 1.0:
+            break
+        weight = weight * np.sqrt(np.maximum(off, 1.0))
+        again = replace(lines, weight=weight)
+        found = Sections(*numerators(again, best.poles), found.rate, found.delay_s)
+    return chosen
+
+
+def _with_silence(curve: Curve, rate: float) -> tuple[Lines, Floats]:
+    """The lines to be met, and silence outside the band, with weights; and what error matters."""
+    level = np.abs(curve.values)
+    weight = 1.0 / np.sqrt(curve.deviation**2 + (FLOOR * level) ** 2)
+    # As many lines an octave count as much low as high.
+    weight *= np.sqrt(np.gradient(np.log(curve.frequency_hz)))
+    lo, hi = float(curve.frequency_hz[0]), float(curve.frequency_hz[-1])
+    below = (
+        np.geomspace(LOWEST_HZ, lo / 1.1, OUTSIDE_LINES) if lo > 1.5 * LOWEST_HZ else np.empty(0)
+    )
+    above = np.linspace(min(1.15 * hi, 0.499 * rate), 0.499 * rate, OUTSIDE_LINES)
+    edge = np.median(weight * FLOOR * level) * OUTSIDE
+    edges = [
+        np.full(len(places), edge / (FLOOR * np.median(level[ends])))
+        for places, ends in ((below, slice(0, 20)), (above, slice(-20, None)))
+    ]
+    at_hz = np.concatenate([below, curve.frequency_hz, above])
+    wanted = np.concatenate([np.zeros(len(below)), curve.values, np.zeros(len(above))])
+    matters = np.full(len(at_hz), np.inf)
+    matters[len(below) : len(at_hz) - len(above)] = np.hypot(FLOOR * level, NOISE * curve.deviation)
+    lines = Lines(at_hz, wanted, np.concatenate([edges[0], weight, edges[1]]), rate)
+    return lines, matters
+
+
+def _grouped(curve: Curve) -> Curve:
+    """Average neighbouring lines, as many as the ear does not tell apart."""
+    number = np.floor(np.log(curve.frequency_hz) / GROUP).astype(int)
+    _, first = np.unique(number, return_index=True)
+    counts = np.diff(np.append(first, len(number)))
+    return Curve(
+        np.add.reduceat(curve.frequency_hz, first) / counts,
+        np.asarray(np.add.reduceat(curve.values, first) / counts),
+    )
+
+
+def _delay(curve: Curve) -> float:
+    """How long (s) sound is on its way: when the impulse response begins.
+
+    By the envelope of the band's impulse response: the first moment above a fifth of its peak,
+    less half the time that the band's width blurs it.
+    """
+    step = float(np.median(np.diff(curve.frequency_hz)))
+    even = np.arange(0.0, curve.frequency_hz[-1], step)
+    values = np.interp(even, curve.frequency_hz, curve.values.real, left=0.0) + 1j * np.interp(
+        even, curve.frequency_hz, curve.values.imag, left=0.0
+    )
+    inside = even >= curve.frequency_hz[0]
+    values[inside] *= np.hanning(int(inside.sum()))
+    envelope = np.abs(np.fft.ifft(values, 8 * len(values)))
+    time = np.arange(len(envelope)) / (8 * len(values) * step)
+    envelope, time = envelope[time < MOST_DELAY_S], time[time < MOST_DELAY_S]
+    onset = float(time[int(np.argmax(envelope > 0.2 * envelope.max()))])
+    width = float(curve.frequency_hz[-1] - curve.frequency_hz[0])
+    return max(0.0, onset - 1.0 / width) if as_db(envelope.max()) > -280.0 else 0.0

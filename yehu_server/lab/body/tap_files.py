@@ -1,0 +1,98 @@
+"""Taps of a force hammer in sound files: read, and written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from yehu_server.errors import MeasurementError
+from yehu_server.lab.body.channels import SKIPPED, Channel
+from yehu_server.lab.body.tap import QUANTITIES, Tap, cut
+from yehu_server.util.files import anything, make_folder, nothing, replacing, why
+
+LONGEST_S = 600.0
+LOWEST_RATE, HIGHEST_RATE = 8000, 400_000
+ENDINGS = (".wav", ".wave", ".flac", ".aif", ".aiff")
+
+
+def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
+    """Read the taps of a sound file.
+
+    Parameters
+    ----------
+    channels : sequence of Channel
+        What each channel is, and how many SI units full scale is.
+
+    Raises
+    ------
+    MeasurementError
+        Where it cannot be read, holds other channels, or no tap.
+    """
+    import soundfile
+
+    try:
+        with path.open("rb") as data, soundfile.SoundFile(data) as file:
+            rate = file.samplerate
+            if not LOWEST_RATE <= rate <= HIGHEST_RATE or file.frames > LONGEST_S * rate:
+                raise MeasurementError(f"{path}: not a recording of taps: {rate} Hz, or too long")
+            samples = file.read(dtype="float64", always_2d=True)
+    except OSError as error:
+        raise MeasurementError(f"{path}: {why(error)}") from error
+    except soundfile.LibsndfileError as error:
+        raise MeasurementError(f"{path}: not a sound file ({error.error_string})") from error
+    count = samples.shape[1]
+    if channels is None:
+        raise MeasurementError(
+            f"{path}: say what its {count} channels are, such as "
+            "--channels force=100,velocity=0.5: their SI units at full scale"
+        )
+    if len(channels) != count:
+        raise MeasurementError(f"{path}: has {count} channels, not {len(channels)} as told")
+    named = {
+        channel.quantity: np.ascontiguousarray(samples[:, i]) * channel.scale
+        for i, channel in enumerate(channels)
+        if channel.quantity != SKIPPED
+    }
+    return cut(float(rate), named, path.name)
+
+
+SUBTYPE = "PCM_24"
+
+
+def write_taps(
+    taps: Sequence[Tap], folder: Path, *, overwrite: bool = False
+) -> tuple[list[Path], str]:
+    """Write a WAV file for each tap.
+
+    Returns
+    -------
+    files : list of Path
+    channels : str
+        What their channels are, as `measurement.read` takes it.
+
+    Raises
+    ------
+    OutputError
+        Where they cannot be written, or are there already.
+    """
+    import soundfile
+
+    names = [what for what in QUANTITIES if what == "force" or what in taps[0].responses]
+    columns = [
+        [tap.force if what == "force" else tap.responses[what] for what in names] for tap in taps
+    ]
+    # Full scale is the next power of two above the largest value: easy to write.
+    largest = [max(float(np.abs(row[i]).max()) for row in columns) for i in range(len(names))]
+    scales = [2.0 ** math.ceil(math.log2(1.05 * max(peak, 1e-12))) for peak in largest]
+    make_folder(folder)
+    files = [folder / f"tap{i + 1}.wav" for i in range(len(taps))]
+    for file, row, tap in zip(files, columns, taps, strict=True):
+        samples = np.stack([values / scale for values, scale in zip(row, scales, strict=True)], 1)
+        may_replace = anything if overwrite else nothing
+        with replacing(file, may_replace) as partial, partial.open("wb") as stream:
+            soundfile.write(stream, samples, round(tap.rate), SUBTYPE, format="WAV")
+    told = ",".join(f"{name}={scale:g}" for name, scale in zip(names, scales, strict=True))
+    return files, told

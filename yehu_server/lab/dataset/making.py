@@ -1,0 +1,188 @@
+"""Makes the sounds of a data set, some at a time, in whatever process or machine."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Generator, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from yehu_server.errors import YehuError
+from yehu_server.lab.dataset.description import Description
+from yehu_server.lab.dataset.files import Line, names_of, write_sound
+from yehu_server.render import build_records
+from yehu_server.render.build_records import write_manifest
+from yehu_server.render.workers import Event, Tell
+from yehu_server.util.files import make_folder
+
+TOGETHER = 16  # sounds that are made, and kept in the records, as one
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some sounds of a data set, for another process.
+
+    Attributes
+    ----------
+    numbers : range
+        Those of the sounds.
+    folder : Path
+        Of the data set.
+    mark : Path, optional
+        A file in it, by which a worker knows whether it sees the folder; None: it does.
+    key : str
+        Of description and code.
+    """
+
+    description: Description
+    numbers: range
+    folder: Path
+    key: str
+    mark: Path | None = None
+
+    @property
+    def target(self) -> Path:
+        """What stands for all of them among the records."""
+        return self.folder / f"sounds-{self.numbers.start:08}"
+
+    @property
+    def names(self) -> list[str]:
+        """Their files, within the folder."""
+        return [name for each in self.numbers for name in names_of(self.description, each)]
+
+
+@dataclass(frozen=True)
+class Made:
+    """What became of some sounds: lines of the manifest; and files by name, where they travel."""
+
+    lines: tuple[Line, ...]
+    files: tuple[tuple[str, bytes], ...] = ()
+
+
+def perform(part: Part, tell: Tell) -> Made:
+    """Make some sounds, where the folder is; where it is not seen, they are sent back."""
+    if part.mark is None or part.mark.is_file():
+        return Made(_made(part, part.folder, tell))
+    with tempfile.TemporaryDirectory(prefix="yehu-server-") as name:
+        folder = Path(name)
+        lines = _made(part, folder, tell)
+        names = [line[each] for line in lines if "error" not in line for each in ("file", "arrays")]
+        return Made(lines, tuple((each, (folder / each).read_bytes()) for each in names))
+
+
+def _made(part: Part, folder: Path, tell: Tell) -> tuple[Line, ...]:
+    from yehu_server.lab.dataset.notes import melody
+    from yehu_server.lab.dataset.strokes import stroke
+
+    make = stroke if part.description.kind == "strokes" else melody
+    lines = []
+    for done, number in enumerate(part.numbers, start=1):
+        name = names_of(part.description, number)[0]
+        try:
+            make_folder((folder / name).parent)
+            sound = make(part.description, number)
+            lines.append(write_sound(folder, part.description, number, sound))
+        except YehuError as error:
+            lines.append({"file": name, "number": number, "error": str(error)})
+        except MemoryError:
+            lines.append({"file": name, "number": number, "error": "not enough memory"})
+        tell(done, len(part.numbers))
+    return tuple(lines)
+
+
+def set_up(rate: float) -> None:
+    """Compile what sounds need, once before all processes do, and load the calibration."""
+    from yehu_server.core.engine.warming import warm_up
+    from yehu_server.lab.dataset.description import description_of
+    from yehu_server.lab.dataset.notes import melody
+    from yehu_server.lab.dataset.strokes import stroke
+
+    warm_up()
+    strokes = {"duration": 0.1}
+    notes = {"length": 0.1, "tail": 0.0}
+    for make, kind, draw in ((stroke, "strokes", strokes), (melody, "notes", notes)):
+        make(description_of({"kind": kind, "sample_rate": rate, "draw": draw}), 0)
+
+
+class PerformAll(Protocol):
+    """Does all parts, such as ``render.cluster.Cluster.perform_all``."""
+
+    def __call__(self, parts: Sequence[Part]) -> Iterable[Event]:
+        """Yield what becomes of them."""
+        ...
+
+
+def parts_of(description: Description, folder: Path, key: str) -> list[Part]:
+    """All sounds of a data set, in parts."""
+    starts = range(0, description.count, TOGETHER)
+    ends = (min(start + TOGETHER, description.count) for start in starts)
+    return [
+        Part(description, range(start, end), folder, key)
+        for start, end in zip(starts, ends, strict=True)
+    ]
+
+
+def sorted_out(parts: Iterable[Part]) -> tuple[list[Part], list[Line]]:
+    """The parts that have to be made, and the lines of those that are up to date."""
+    left, lines = [], []
+    for part in parts:
+        results = [part.folder / name for name in part.names]
+        line = build_records.up_to_date(part.target, part.key, results)
+        if line is None or len(line.get("lines", ())) != len(part.numbers):
+            left.append(part)
+        else:
+            lines += line["lines"]
+    return left, lines
+
+
+def make_all(
+    parts: Sequence[Part], perform_all: PerformAll
+) -> Generator[tuple[float, Sequence[Line]]]:
+    """Make all parts; yield how many sounds are done, and the lines of those that just were.
+
+    Raises
+    ------
+    OutputError
+        Where what has travelled cannot be written.
+    """
+    shares = [0.0] * len(parts)
+    for event in perform_all(parts):
+        part = parts[event.job]
+        shares[event.job] = event.share * len(part.numbers)
+        lines: Sequence[Line] = ()
+        if event.died:
+            why = f"the process that made it was {event.died}"
+            lines = [
+                {"file": names_of(part.description, number)[0], "number": number, "error": why}
+                for number in part.numbers
+            ]
+        elif event.is_end:
+            lines = received(part, event.result)
+        yield sum(shares), lines
+
+
+def received(part: Part, made: Made) -> Sequence[Line]:
+    """Put files that have travelled in their places, and keep a record where all is well."""
+    for name, data in made.files:
+        from yehu_server.util.files import replacing
+
+        make_folder((part.folder / name).parent)
+        with replacing(part.folder / name) as partial:
+            partial.write_bytes(data)
+    if not any("error" in line for line in made.lines):
+        results = [part.folder / name for name in part.names]
+        build_records.make_folder_for(part.target)
+        build_records.keep(part.target, part.key, (), results, {"lines": list(made.lines)})
+    return made.lines
+
+
+def write_lines(folder: Path, lines: Iterable[Line]) -> None:
+    """Write the manifest, in the order of the numbers.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written.
+    """
+    write_manifest(folder, lines, order="number")

@@ -1,0 +1,101 @@
+"""PNG files of pictures: whether they may be written, and the same bytes for the same picture."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from yehu_server.errors import OutputError, one_line
+from yehu_server.lab.plot.axes import check_matplotlib
+from yehu_server.util.files import anything, check_free, check_target, replacing, why
+
+SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
+BEGINNING = 4096  # bytes of a file in which it is named
+MOST_TEXT = 120  # characters
+
+
+def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
+    """Check that a picture can be drawn, and may be written.
+
+    Parameters
+    ----------
+    what : str
+        What needs it, for the message, such as ``--plot``.
+
+    Raises
+    ------
+    ParameterError
+        Where matplotlib is missing.
+    OutputError
+        Where it may not, or its name ends otherwise than in .png.
+    """
+    check_matplotlib(what)
+    if target.suffix.lower() != ".png":
+        raise OutputError(f"{target}: a picture is a .png file")
+    check_target(target)
+    check_free(target, anything if overwrite else is_ours)
+
+
+def is_ours(target: Path) -> bool:
+    """Whether a file is a picture that `write_picture` made, or is empty."""
+    try:
+        with target.open("rb") as file:
+            data = file.read(BEGINNING)
+    except OSError:
+        return False
+    return not data or (data.startswith(b"\x89PNG") and SOFTWARE.encode() in data)
+
+
+def write_picture(
+    target: Path,
+    size: tuple[float, float],
+    fill: Callable[[Any], None],
+    *,
+    dpi: int = 110,
+    overwrite: bool = False,
+) -> None:
+    """Draw a picture and write it to a PNG file. The same picture has the same bytes.
+
+    Parameters
+    ----------
+    size : tuple of float, inches
+    fill : callable
+        Draws into a matplotlib Figure.
+    dpi : int
+        Pixels to an inch.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written.
+    """
+    data = drawn(size, fill, dpi)
+    with replacing(target, anything if overwrite else is_ours) as partial:
+        try:
+            partial.write_bytes(data)
+        except OSError as error:
+            raise OutputError(f"{target}: cannot write: {why(error)}") from error
+
+
+def drawn(size: tuple[float, float], fill: Callable[[Any], None], dpi: int) -> bytes:
+    """Draw a picture; return the bytes of its PNG file."""
+    import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    settings: Any = {"font.size": 10.0, "text.parse_math": False}
+    # Not as the user has set matplotlib up, which would change the picture.
+    with mpl.rc_context(mpl.rcParamsDefault), mpl.rc_context(settings):
+        figure = Figure(figsize=size, dpi=dpi, layout="constrained")
+        FigureCanvasAgg(figure)
+        fill(figure)
+        file = io.BytesIO()
+        figure.savefig(file, format="png", metadata={"Software": SOFTWARE})
+    return file.getvalue()
+
+
+def plain(text: str, most: int = MOST_TEXT) -> str:
+    """Text in characters that the font has: others would warn and be drawn as boxes."""
+    return one_line(text).encode("latin-1", "replace").decode("latin-1")[:most]

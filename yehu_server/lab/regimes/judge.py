@@ -1,0 +1,319 @@
+"""The rule that names the regime of a bowed string. Compiled.
+
+It is the rule of the player's ear (`player.ear`), extended: what counts is when the hair sticks and
+slips, and after what time that repeats. A pitch detector alone errs by octaves just where regimes
+meet. docs/sweep.md defines the regimes, and tells how the rule was checked.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import IS_PLAIN, compiled_exactly
+from yehu_server.compile.memory import with_attributes
+from yehu_server.core.player.ear import SEARCHED, STICKING, count_slips
+from yehu_server.errors import ParameterError
+from yehu_server.lab.regimes.names import (
+    ANOMALOUS_LOW,
+    APERIODIC,
+    HELMHOLTZ,
+    MULTIPLE_SLIP,
+    OCTAVE,
+    RAUCOUS,
+    REGIMES,
+    SILENT,
+)
+from yehu_server.lab.regimes.periods import (
+    NOWHERE,
+    centre,
+    correlate,
+    first_peak,
+    highest_peak,
+    refined,
+)
+from yehu_server.lab.regimes.slips import rectify, times_of_slips
+from yehu_server.lab.regimes.spectrum import centroid_hz
+
+Array = Any
+
+PERIODS = 10  # at the end of a stroke, which are judged
+LONGEST, SHORTEST = 4.3, 0.1  # periods after which motion may repeat
+LEAST_PERIODS = LONGEST + 2.0  # of a stroke
+QUIET = 0.15  # of the bow's speed: a string that moves less under the bow is silent
+SLIDING = 0.03  # of the time, sticking: below, the hair slides steadily
+STILL = 1e-4  # m/s, the same of a bow that is at rest
+REPEATS = 0.78  # correlation from which motion repeats after a period, noisy as it may be
+EXACTLY = 0.9  # after a part of a period, and where several slips repeat after more than one
+NEARLY = 0.95  # of the highest peak
+AFTER_MORE = 0.8  # after more than a period
+SEVERAL = 1.4  # slips a period
+ONE_EACH = 0.25  # deviation from one slip in each part of a period
+AT_MOST_ONE = 1.05  # slips a period
+
+FINDING = np.dtype(
+    [
+        ("regime", np.uint8),
+        ("faults", np.uint8),  # samples without a solution, and lost states; 255: or more
+        ("slips", np.float32),  # in a period of the note
+        ("certainty", np.float32),  # correlation at the period found
+        ("first_slip_s", np.float32),  # from the beginning; NaN: none
+        ("helmholtz_s", np.float32),  # from the beginning to lasting Helmholtz motion; NaN: never
+        ("pitch_hz", np.float32),  # NaN: none
+        ("level_db", np.float32),  # of the pressure, re 1 Pa (rms)
+        ("brightness_hz", np.float32),  # spectral centroid, by power
+    ],
+    align=True,
+)
+
+
+@compiled_exactly
+def name_regime(
+    slips: float,
+    sticking: float,
+    alike: Array,
+    count: int,
+    period: float,
+    motion: float,
+    speed: float,
+) -> tuple[int, int]:
+    """The regime, and the lag (samples) after which the motion repeats, or NOWHERE.
+
+    Parameters
+    ----------
+    slips : float
+        In a period of the note.
+    sticking : float
+        Share of the time.
+    alike : ndarray
+        Correlation at each lag below `count`.
+    period : float
+        Of the note (samples).
+    motion : float
+        Root mean square of the velocity (m/s) of string on hair, without its mean.
+    speed : float
+        Of the bow (m/s).
+    """
+    if motion < max(QUIET * speed, STILL) or sticking < SLIDING:
+        return SILENT, NOWHERE
+    shortest = max(2, math.ceil(SHORTEST * period))
+    before, after = (1.0 - SEARCHED) * period, (1.0 + SEARCHED) * period
+    lag = first_peak(alike, shortest, math.ceil(before) - 1, EXACTLY)
+    while lag != NOWHERE:
+        if abs(slips * lag / period - 1.0) < ONE_EACH:
+            return OCTAVE, lag
+        lag = first_peak(alike, lag + 1, math.ceil(before) - 1, EXACTLY)
+    at_period = highest_peak(alike, math.ceil(before), math.floor(after))
+    if at_period != NOWHERE and alike[at_period] >= REPEATS:
+        return (MULTIPLE_SLIP if slips >= SEVERAL else HELMHOLTZ), at_period
+    best = highest_peak(alike, shortest, count - 2)
+    if slips >= SEVERAL:
+        if best != NOWHERE and alike[best] >= EXACTLY:
+            return MULTIPLE_SLIP, best
+        return APERIODIC, NOWHERE
+    lower = highest_peak(alike, math.floor(after) + 1, count - 2)
+    if lower != NOWHERE and alike[lower] >= AFTER_MORE:
+        # Where it repeats after twice that too, perhaps a little better: the first.
+        return ANOMALOUS_LOW, first_peak(alike, math.floor(after) + 1, lower, NEARLY * alike[lower])
+    return (RAUCOUS if slips <= AT_MOST_ONE else APERIODIC), NOWHERE
+
+
+@compiled_exactly
+def judge_end(
+    relative_velocity: Array,
+    slipping: Array,
+    frames: int,
+    rate: float,
+    period: float,
+    speed: float,
+    work: Array,
+    out: Any,
+) -> None:
+    """Judge the last periods of a stroke; write regime, slips, certainty and pitch.
+
+    Parameters
+    ----------
+    relative_velocity, slipping : ndarray [shape=(at least frames,)]
+        Of string on hair (m/s), and as of `slips.rectify`.
+    period : float
+        Of the note (samples); there are at least LEAST_PERIODS.
+    speed : float
+        Of the bow (m/s), not negative.
+    work : ndarray [shape=(2, at least frames)]
+        Written.
+    out : record of dtype FINDING
+    """
+    count = int(LONGEST * period) + 2
+    span = min(int(np.rint(PERIODS * period)), frames - count - 1)
+    window, alike = work[0], work[1]
+    begin, size = frames - span - count - 1, span + count + 1
+    centre(relative_velocity, begin, frames, window)
+    correlate(window, size, span, alike, count)
+    power = 0.0
+    for i in range(size - span, size):
+        power += window[i] * window[i]
+    slips = count_slips(slipping, frames, span) * period / span
+    sticking = share_of_sticking(slipping, frames, span)
+    regime, lag = name_regime(slips, sticking, alike, count, period, math.sqrt(power / span), speed)
+    out.regime, out.slips = regime, slips
+    out.certainty, out.pitch_hz = 0.0, math.nan
+    if lag != NOWHERE:
+        out.certainty = alike[lag]
+        out.pitch_hz = rate / refined(alike, lag, count)
+
+
+@compiled_exactly
+def share_of_sticking(slipping: Array, end: int, span: int) -> float:
+    """How much of the last `span` samples before `end` the hair sticks, 0 to 1."""
+    largest, stuck = 0.0, 0
+    for i in range(end - span, end):
+        largest = max(largest, slipping[i])
+    for i in range(end - span, end):
+        if slipping[i] <= STICKING * largest:
+            stuck += 1
+    return stuck / span
+
+
+@compiled_exactly
+def judge_stroke(
+    relative_velocity: Array,
+    bow_velocity: Array,
+    pressure: Array,
+    frames: int,
+    rate: float,
+    frequency_hz: float,
+    work: Array,
+    out: Any,
+) -> None:
+    """Judge a whole stroke; write all of a finding but its faults.
+
+    Parameters
+    ----------
+    relative_velocity, bow_velocity, pressure : ndarray [shape=(at least frames,)]
+        Of string on hair, of the bow (m/s); of the sound (Pa).
+    frequency_hz : float
+        Of the note.
+    work : ndarray [shape=(3, at least frames)]
+        Written.
+    out : record of dtype FINDING
+    """
+    period = rate / frequency_hz
+    slipping, rest = work[2], work[:2]
+    rectify(relative_velocity, bow_velocity, frames, slipping)
+    first, begun = times_of_slips(slipping, bow_velocity, frames, period)
+    out.first_slip_s = first / rate if first >= 0 else math.nan
+    out.helmholtz_s = begun / rate if begun >= 0 else math.nan
+    speed = abs(bow_velocity[frames - 1])
+    judge_end(relative_velocity, slipping, frames, rate, period, speed, rest, out)
+    count = min(frames, int(np.rint(PERIODS * period)))
+    out.level_db = level_db(pressure, frames - count, frames)
+    out.brightness_hz = centroid_hz(pressure, frames, rate, rest)
+
+
+@compiled_exactly
+def level_db(signal: Array, begin: int, end: int) -> float:
+    """The level (dB re 1, rms) of a part of a signal, without its mean."""
+    total, squares = 0.0, 0.0
+    for i in range(begin, end):
+        total += signal[i]
+        squares += signal[i] * signal[i]
+    mean = total / (end - begin)
+    return 10.0 * math.log10(max(squares / (end - begin) - mean * mean, 1e-30))
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found of a stroke.
+
+    Attributes
+    ----------
+    regime : str
+        One of `names.REGIMES`.
+    slips : float
+        In a period of the note, at the end.
+    certainty : float
+        How alike the motion is to that a period before: 1 is the same. 0 where none is found.
+    first_slip_s, helmholtz_s : float
+        When the hair slips first, and from when it slips once a period (s); NaN for never.
+    pitch_hz : float
+        NaN where the motion doesn't repeat.
+    level_db : float
+        Of the pressure at the end, re 1 Pa (rms).
+    brightness_hz : float
+        Centroid of its spectrum, by power; NaN for silence.
+    """
+
+    regime: str
+    slips: float
+    certainty: float
+    first_slip_s: float
+    helmholtz_s: float
+    pitch_hz: float
+    level_db: float
+    brightness_hz: float
+
+
+def judge(
+    relative_velocity: Array,
+    bow_velocity: Array | float,
+    pressure: Array,
+    rate: float,
+    frequency_hz: float,
+) -> Finding:
+    """Judge the end of a stroke, and when its Helmholtz motion began.
+
+    Parameters
+    ----------
+    relative_velocity : ndarray [shape=(frames,)]
+        Of the bowed string on the hair (m/s), as `simulate` keeps it.
+    bow_velocity : ndarray [shape=(frames,)] or float
+        m/s.
+    pressure : ndarray [shape=(frames,)]
+        Of the sound (Pa).
+    rate : float
+        Sample rate (Hz).
+    frequency_hz : float
+        Of the note that is fingered. It may be off by 6 %.
+
+    Raises
+    ------
+    ParameterError
+        Where the stroke has less than LEAST_PERIODS.
+    """
+    velocity = np.ascontiguousarray(relative_velocity, np.float64)
+    check_length(len(velocity), rate, frequency_hz)
+    bow = np.ascontiguousarray(np.broadcast_to(bow_velocity, velocity.shape), np.float64)
+    sound = np.ascontiguousarray(pressure, np.float64)
+    found = new_findings(1)
+    work = np.zeros((3, len(velocity)))
+    judge_stroke(velocity, bow, sound, len(velocity), rate, frequency_hz, work, found[0])
+    return finding_of(found[0])
+
+
+def new_findings(count: int) -> Array:
+    """Room for findings [shape=(count,), dtype=FINDING]."""
+    return np.zeros(count, with_attributes(FINDING) if IS_PLAIN else FINDING)
+
+
+def finding_of(row: Any) -> Finding:
+    """A record of dtype FINDING, for Python."""
+    names = Finding.__dataclass_fields__.keys() - {"regime"}
+    return Finding(REGIMES[int(row["regime"])], **{name: float(row[name]) for name in names})
+
+
+def check_length(frames: int, rate: float, frequency_hz: float) -> None:
+    """Refuse a stroke that is too short to be judged.
+
+    Raises
+    ------
+    ParameterError
+        Where it has less than LEAST_PERIODS of the note.
+    """
+    if not frames * frequency_hz >= LEAST_PERIODS * rate:
+        raise ParameterError(
+            f"{frames / rate:g} s are too short to judge a note of {frequency_hz:.4g} Hz: "
+            f"{LEAST_PERIODS / frequency_hz:.3g} s are needed"
+        )

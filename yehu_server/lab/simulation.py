@@ -1,0 +1,199 @@
+"""Run the model with a gesture and keep every signal, to study the model.
+
+It uses the kernel that plays notes. docs/simulate.md describes the gesture file and the arrays.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.bow import friction_bound
+from yehu_server.core.physics.energy import stored_energy
+from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
+from yehu_server.core.physics.pluck import pluck_string
+from yehu_server.errors import OutputError
+from yehu_server.scores.gesture import CONTROLS, Gesture
+from yehu_server.util import __version__
+from yehu_server.util.files import replacing
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+MAX_BYTES = 8 * 2**30
+CHUNK = 1 << 14  # frames between two progress reports
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """The signals of one run, and what it was.
+
+    Attributes
+    ----------
+    arrays : mapping of ndarray
+        By name, with a value for each sample; docs/simulate.md lists them.
+    meta : mapping
+        The gesture, the sample rate, the grid, and counts of what went wrong.
+    """
+
+    arrays: Mapping[str, Floats]
+    meta: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        seconds = self.meta["frames"] / self.meta["sample_rate"]
+        return f"<yehu_server.Simulation of {seconds:g} s: {', '.join(self.arrays)}>"
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write an uncompressed ``.npz``; ``meta`` is JSON text within it.
+
+        Raises
+        ------
+        OutputError
+            Where it cannot be written.
+        """
+        target = Path(path)
+        with replacing(target) as partial, partial.open("wb") as file:
+            np.savez(
+                file,
+                allow_pickle=False,
+                meta=np.array(json.dumps(self.meta)),
+                **self.arrays,
+            )
+
+
+def simulate(
+    gesture: Gesture,
+    *,
+    energy: bool = False,
+    strings_every: int = 0,
+    progress: Callable[[float, float], None] | None = None,
+) -> Simulation:
+    """Run the model with a gesture.
+
+    Parameters
+    ----------
+    energy : bool
+        Keep the energy ledger too: energy (J), power and losses (W), energy_error (W).
+    strings_every : int
+        Keep the shapes of both strings every so many samples; 0 for never.
+    progress : callable
+        Called with the seconds done and in all.
+
+    Raises
+    ------
+    ParameterError
+        Where the quantities make no stable model at this rate.
+    OutputError
+        Where the arrays would take more than MAX_BYTES.
+    """
+    model = kernel.prepare(gesture.quantities, gesture.sample_rate)
+    m = model[0]
+    frames = gesture.frames
+    columns = layout.probe_columns(1) + layout.control_columns(1) + len(LEDGER) * energy
+    shapes = (frames // strings_every) * int(m["N"].sum() + STRINGS) if strings_every else 0
+    if 8 * (frames * columns + shapes) > MAX_BYTES:
+        raise OutputError(
+            f"{frames} samples would take more than {MAX_BYTES >> 30} GiB: "
+            "shorten the gesture or keep the strings less often"
+        )
+    state = kernel.at_rest(model)
+    if gesture.pluck is not None:
+        pluck = gesture.pluck
+        pluck_string(model, state, pluck.string - 1, pluck.position, pluck.amplitude)
+    state["motion"]["stored"] = stored_energy(m, state[0]["motion"], 0, 2)
+
+    controls = gesture.control_rows()
+    probes = np.zeros((frames, layout.probe_columns(1)))
+    ledger = np.zeros((frames if energy else 0, len(LEDGER)))
+    kept: list[list[Floats]] = [[], []]
+    hop = strings_every or CHUNK
+    for start in range(0, frames, hop):
+        if strings_every:
+            for i in range(STRINGS):
+                kept[i].append(shape_of(m, state["motion"][0], i))
+        part = slice(start, min(start + hop, frames))
+        kernel.advance(model, state, controls[part], probes[part], ledger[part] if energy else None)
+        if progress is not None:
+            progress(part.stop / gesture.sample_rate, gesture.duration)
+
+    arrays = signals(probes, controls, gesture.sample_rate)
+    if energy:
+        arrays |= {name: ledger[:, column] for column, name in enumerate(LEDGER)}
+    if strings_every:
+        arrays["strings_time"] = arrays["time"][::strings_every]
+        for i in range(STRINGS):
+            arrays[f"string_{i + 1}"] = np.array(kept[i])
+            length = gesture.quantities.strings[i].L
+            arrays[f"x_{i + 1}"] = np.linspace(0.0, length, int(m["N"][i]) + 1)
+    meta = {"version": __version__, "gesture": dict(gesture.source)} | about(m, state[0], frames)
+    return Simulation(arrays, meta)
+
+
+def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, Floats]:
+    """Name the columns of what the kernel gave and was given.
+
+    Parameters
+    ----------
+    probes, controls : ndarray [shape=(frames, columns)]
+        See ``physics.layout``; with one finger or more.
+
+    Returns
+    -------
+    dict of ndarray
+        By name; first axis frames. With more than one finger, those of fingers have one axis more.
+    """
+    fingers = (controls.shape[1] - layout.FINGER_CONTROLS) // layout.CONTROLS_PER_FINGER
+    shape = (len(probes), fingers, layout.PROBES_PER_FINGER)
+    touch = probes[:, layout.FINGER_PROBES :].reshape(shape)
+    hands = controls[:, layout.FINGER_CONTROLS :].reshape(len(controls), fingers, -1)
+    if fingers == 1:
+        touch, hands = touch[:, 0], hands[:, 0]
+    arrays: dict[str, Floats] = {
+        "time": np.arange(len(probes)) / sample_rate,
+        "bridge_force": probes[:, layout.BRIDGE_FORCE],
+        "bridge_force_1": probes[:, layout.BRIDGE_FORCE_1],
+        "bridge_force_2": probes[:, layout.BRIDGE_FORCE_2],
+        "bridge_velocity": probes[:, layout.BRIDGE_VELOCITY],
+        "pressure": probes[:, layout.PRESSURE],
+        "finger_displacement": touch[..., 0],
+        "contact_force": touch[..., 1:],
+        "friction_force": probes[:, layout.FRICTION_FORCE],
+        "relative_velocity": probes[:, layout.RELATIVE_VELOCITY],
+        "iterations": probes[:, layout.ITERATIONS].astype(np.int64),
+    }
+    for name, control in CONTROLS.items():
+        place = control.column - layout.FINGER_CONTROLS
+        arrays[name] = controls[:, control.column] if place < 0 else hands[..., place]
+    return arrays
+
+
+def about(m: Any, state: Any, frames: int) -> dict[str, Any]:
+    """What a run's metadata tell of the model (MODEL) and its state (STATE) at the end."""
+    return {
+        "sample_rate": float(m["rate"]),
+        "frames": frames,
+        "grid_intervals": [int(N) for N in m["N"]],
+        "grid_spacing_m": [float(h) for h in m["h"]],
+        "bridge_x_m": float(m["bridge_x"]),
+        "friction_bound": friction_bound(m),
+        "unconverged_solves": int(state["unconverged"]),
+        "lost_states": int(state["lost"]),
+    }
+
+
+def shape_of(m: Any, motion: Any, string: int) -> Floats:
+    """Displacement (m) of the nodes of string 0 or 1 now, from its end at the loop.
+
+    Parameters
+    ----------
+    m, motion
+        Records of ``layout.MODEL`` and ``layout.MOTION``.
+    """
+    now: Floats = motion["u"][int(motion["level"]), string]
+    return now[GHOST : GHOST + int(m["N"][string]) + 1].copy()

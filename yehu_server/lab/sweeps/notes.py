@@ -1,0 +1,306 @@
+"""Strokes of a study that are given as a player thinks of them: a note, a force, a speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.physics.grid import check_rate
+from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, TEXTURE, V_B, X_B
+from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.player.calibration import (
+    OPEN_NOTES,
+    PITCHES,
+    SPEEDS,
+    Calibration,
+    frequency_hz,
+    wave_speed,
+)
+from yehu_server.errors import ParameterError
+from yehu_server.lab.regimes.judge import check_length
+from yehu_server.lab.regimes.strokes import STROKE, Hands, hands_of, prepared
+from yehu_server.lab.sweeps.axes import Axis
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.scores.gesture import CONTROLS, Gesture
+
+Array = Any
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A value of a stroke: default, bounds, unit, and whether it is a whole number."""
+
+    default: float
+    lo: float
+    hi: float
+    unit: str
+    whole: bool = False
+
+
+ENTRIES = {
+    "string": Entry(1, 1, 2, "", whole=True),
+    "note": Entry(70, 65, 96, "MIDI note"),
+    "force": Entry(0.5, 1e-3, 50.0, "N"),
+    "position": Entry(0.13, 0.01, 0.9, "of the sounding length"),
+    "speed": Entry(0.2, 1e-3, 5.0, "m/s"),
+    "acceleration": Entry(5.0, 1e-2, 1e3, "m/s^2"),
+    "press": Entry(1.5, 0.01, 50.0, "N"),
+    "place": Entry(0.0, -300.0, 300.0, "cents"),
+    "tension": Entry(1.0, 0.5, 1.5, ""),
+    "noise": Entry(0.0, 0.0, 1.0, ""),
+    "seed": Entry(0, 0, 65535, "", whole=True),
+}
+# s: finger and hair are on the string before the bow moves.
+FINGER_DOWN, HAIR_ON, HAIR_DOWN, BOW_MOVES = 0.01, 0.01, 0.02, 0.03
+LONGEST = 60.0  # s
+A4 = 440.0
+SLACK = 1.5  # by which a note may be lowered
+UNTOUCHED = 0.012  # m: where a lifted finger waits
+HANDS = hands_of(
+    {
+        F_N: [(HAIR_ON, 0.0), (HAIR_DOWN, 1.0)],
+        V_B: [(0.0, 0.0), (1.0, 1.0)],
+        X_B: [(0.0, 1.0)],
+        TEXTURE: [(0.0, 1.0)],
+        FINGER_CONTROLS: [(0.0, 1.0)],
+        FINGER_CONTROLS + 1: [(0.0, 0.0), (FINGER_DOWN, 1.0)],
+    }
+)
+
+
+@dataclass(frozen=True)
+class NoteBow:
+    """Makes strokes of notes on the tuned instrument.
+
+    Attributes
+    ----------
+    fixed : dict
+        The values that are not varied.
+    """
+
+    rate: float
+    duration: float
+    instrument: Mapping[str, Any]
+    fixed: Mapping[str, float]
+    folder: Path
+
+    @classmethod
+    def of(cls, data: Mapping[str, Any], folder: Path) -> NoteBow:
+        """Read the entries of a study.
+
+        Raises
+        ------
+        ParameterError
+            Where one is wrong.
+        """
+        rate = _number(data.get("sample_rate", 44100), "sample_rate")
+        check_rate(rate)
+        duration = _number(data.get("duration", 0.3), "duration")
+        if not BOW_MOVES < duration <= LONGEST:
+            raise ParameterError(f"duration: {duration} s is not within {BOW_MOVES} to {LONGEST} s")
+        stroke = data.get("stroke", {})
+        if not isinstance(stroke, Mapping):
+            raise ParameterError("stroke: expected a table of values")
+        for name, value in stroke.items():
+            _check(name, value)
+        fixed = {name: entry.default for name, entry in ENTRIES.items()} | dict(stroke)
+        instrument = data.get("instrument", {})
+        override(Quantities(), instrument, folder)
+        return cls(rate, duration, instrument, fixed, folder)
+
+    def check(self, axes: Sequence[Axis]) -> None:
+        """Refuse axes that are none, or out of bounds.
+
+        Raises
+        ------
+        ParameterError
+            Where one is.
+        """
+        values: dict[str, Sequence[Any]] = {name: [value] for name, value in self.fixed.items()}
+        for axis in axes:
+            if axis.name.startswith("instrument."):
+                continue
+            for value in axis.values:
+                _check(axis.name, value)
+            values[axis.name] = axis.values
+        for string in values["string"]:
+            lowest = OPEN_NOTES[int(string) - 1]
+            for note in values["note"]:
+                if not lowest <= note <= lowest + 24:
+                    raise ParameterError(
+                        f"note: {note:g} is not within {lowest} to {lowest + 24}, "
+                        f"which are on string {string:g}"
+                    )
+        models = [axis for axis in axes if _is_of_model(axis.name)]
+        for axis in models:
+            for value in axis.values:
+                self._quantities({axis.name: value})
+        deepest = float(min(values["note"]))
+        bowed = round((self.duration - BOW_MOVES) * self.rate)
+        check_length(bowed, self.rate, frequency_hz(deepest, A4) / SLACK)
+
+    def strokes(self, axes: Sequence[Axis], index: Array) -> tuple[Array, Array, Array, Hands]:
+        """Models, states at rest, strokes and curves of some points.
+
+        Parameters
+        ----------
+        index : ndarray [shape=(points, axes)]
+            The place of each point on each axis.
+        """
+        count = len(index)
+        columns = {axis.name: axis.as_array()[index[:, i]] for i, axis in enumerate(axes)}
+        value = {
+            name: columns.get(name, np.full(count, fixed)) for name, fixed in self.fixed.items()
+        }
+        names = [name for name in columns if _is_of_model(name)]
+        numbers, keys = distinct([columns[name] for name in names], count)
+        instruments = [
+            self._quantities(dict(zip(names, key, strict=True)), int(value["string"][at]))
+            for key, at in keys
+        ]
+        models, rests = prepared(instruments, [self.rate] * len(instruments))
+        strokes = np.zeros(count, STROKE)
+        strokes["model"], strokes["hair"] = numbers, value["seed"]
+        strokes["frames"] = round(self.duration * self.rate)
+        place, press, frequency = self._fingering(value, [instruments[i] for i in numbers])
+        strokes["frequency_hz"] = frequency
+        moves = strokes["moves"]
+        moves["pace"] = 1.0
+        scale = moves["scale"]
+        bridge = np.array([quantities.bridge_x for quantities in instruments])[numbers]
+        scale[:, F_N] = np.where(value["string"] == 1, value["force"], -value["force"])
+        scale[:, V_B] = value["speed"]
+        moves["start"][:, V_B] = BOW_MOVES
+        moves["pace"][:, V_B] = value["acceleration"] / value["speed"]
+        stop = np.where(press > 0.0, place, 0.0)
+        scale[:, X_B] = bridge - value["position"] * (bridge - stop)
+        scale[:, TEXTURE] = value["noise"]
+        scale[:, FINGER_CONTROLS], scale[:, FINGER_CONTROLS + 1] = place, press
+        return models, rests, strokes, HANDS
+
+    def gesture(self, axes: Sequence[Axis], place: Sequence[int]) -> Gesture:
+        """One of the strokes as a gesture, for `simulate`."""
+        index = np.array([place])
+        strokes, hands = self.strokes(axes, index)[2:]
+        values = {axis.name: axis.values[i] for axis, i in zip(axes, place, strict=True)}
+        varied = {name: value for name, value in values.items() if _is_of_model(name)}
+        string = int(values.get("string", self.fixed["string"]))
+        quantities = self._quantities(varied, string)
+        hair = float(strokes["hair"][0])
+        controls = {}
+        for name, control in CONTROLS.items():
+            move = strokes["moves"][0, control.column]
+            begin, end = hands.first[control.column : control.column + 2]
+            points = zip(hands.times[begin:end], hands.values[begin:end], strict=True)
+            if begin < end:
+                controls[name] = tuple(
+                    (float(time / move["pace"] + move["start"]), float(move["scale"] * value))
+                    for time, value in points
+                )
+        bow = replace(quantities.bow, hair=hair)
+        source = {"stroke": dict(self.fixed) | values, "instrument": dict(self.instrument)}
+        changed = replace(quantities, bow=bow)
+        return Gesture(self.rate, self.duration, changed, controls, source=source)
+
+    def _quantities(self, varied: Mapping[str, Any], string: int = 1) -> Quantities:
+        """The tuned instrument, with what the study changes, and some values of its axes."""
+        changed = override(calibration(self.rate).tuned(Quantities()), self.instrument, self.folder)
+        tension = float(varied.get("tension", self.fixed["tension"]))
+        for name, value in varied.items():
+            if name.startswith("instrument."):
+                changed = override(changed, nested(name.split(".")[1:], value), self.folder)
+        if tension != 1.0:
+            section = f"string_{string}"
+            own = changed.strings[string - 1].T * tension
+            changed = override(changed, {section: {"T": own}})
+        return changed
+
+    def _fingering(
+        self, value: Mapping[str, Array], instruments: Sequence[Quantities]
+    ) -> tuple[Array, Array, Array]:
+        """Finger positions (m), finger forces (N; 0 where the string is open), frequencies (Hz)."""
+        count = len(instruments)
+        place, press, frequency = np.empty(count), np.empty(count), np.empty(count)
+        for i, quantities in enumerate(instruments):
+            string, note = int(value["string"][i]) - 1, float(value["note"][i])
+            x, sounding = fingering(self.rate, string, note, float(value["speed"][i]))
+            tuned = calibration(self.rate).tensions[string]
+            quicker = math.sqrt(quantities.strings[string].T / tuned)
+            if note == OPEN_NOTES[string]:
+                place[i], press[i], frequency[i] = UNTOUCHED, 0.0, sounding * quicker
+                continue
+            shift = 2.0 ** (float(value["place"][i]) / 1200.0)
+            bridge = quantities.bridge_x
+            place[i], press[i] = bridge - (bridge - x) / shift, value["press"][i]
+            frequency[i] = sounding * shift * quicker
+        return place, press, frequency
+
+
+@cache
+def calibration(rate: float) -> Calibration:
+    """The calibration of the instrument as it is shipped."""
+    return calibration_for(rate)
+
+
+@cache
+def fingering(rate: float, string: int, note: float, speed: float) -> tuple[float, float]:
+    """Where a finger stops a note (m), as the player's tables have it, and its frequency (Hz)."""
+    tuned = calibration(rate)
+    frequency = frequency_hz(note, A4)
+    rows = np.array(tuned.sharpening[string])
+    logarithm = math.log(speed)
+    at_speed = [float(np.interp(logarithm, np.log(SPEEDS), row)) for row in rows]
+    sharp = float(np.interp(note, PITCHES[string], at_speed))
+    quantities = tuned.tuned(Quantities())
+    ideal = frequency * 2.0 ** (-sharp / 1200.0)
+    return quantities.bridge_x - wave_speed(quantities, string) / (2.0 * ideal), frequency
+
+
+def _is_of_model(name: str) -> bool:
+    return name.startswith("instrument.") or name in {"tension", "string"}
+
+
+def distinct(columns: Sequence[Array], count: int) -> tuple[Array, list[tuple[Any, int]]]:
+    """Number the combinations of some columns; the values of each, and where it is first."""
+    found: dict[tuple[Any, ...], int] = {}
+    keys: list[tuple[Any, int]] = []
+    numbers = np.zeros(count, np.int64)
+    for i in range(count):
+        key = tuple(column[i].item() for column in columns)
+        if key not in found:
+            found[key] = len(found)
+            keys.append((key, i))
+        numbers[i] = found[key]
+    return numbers, keys
+
+
+def nested(path: Sequence[str], value: Any) -> dict[str, Any]:
+    """A value below its names: ``{"bow": {"mu_S": 1.0}}``."""
+    entries: Any = value
+    for name in reversed(path):
+        entries = {name: entries}
+    return dict(entries)
+
+
+def _number(value: Any, name: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ParameterError(f"{name}: expected a number, got {value!r}")
+    return float(value)
+
+
+def _check(name: str, value: Any) -> None:
+    entry = ENTRIES.get(name)
+    if entry is None:
+        raise ParameterError(f"unknown name {name!r} (known: {', '.join(ENTRIES)}, instrument....)")
+    number = _number(value, name)
+    unit = f" {entry.unit}" if entry.unit else ""
+    if not entry.lo <= number <= entry.hi:
+        raise ParameterError(f"{name}: {number:g} is not within {entry.lo:g} to {entry.hi:g}{unit}")
+    if entry.whole and number != int(number):
+        raise ParameterError(f"{name}: {number:g} is not a whole number")

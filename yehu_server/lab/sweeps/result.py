@@ -1,0 +1,257 @@
+"""What a study found: a table of its strokes, in one file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.errors import OutputError, ParameterError, ScoreError, YehuError
+from yehu_server.lab.regimes.judge import FINDING
+from yehu_server.lab.regimes.names import HELMHOLTZ, REGIMES
+from yehu_server.lab.sweeps.gestures import ACCELERATION
+from yehu_server.lab.sweeps.refining import fill
+from yehu_server.lab.sweeps.study import Study, study_of
+from yehu_server.scores.gesture import CONTROLS
+from yehu_server.util import __version__
+from yehu_server.util.files import anything, replacing
+
+Array = Any
+
+FORMAT, VERSION = "yehu-server sweep", 1
+COLUMNS = tuple(FINDING.names or ())
+UNITS = {
+    "regime": "",
+    "faults": "",
+    "slips": "a period",
+    "certainty": "",
+    "first_slip_s": "s",
+    "helmholtz_s": "s",
+    "pitch_hz": "Hz",
+    "level_db": "dB re 1 Pa",
+    "brightness_hz": "Hz",
+}
+
+
+def unit_of(axis: str) -> str:
+    """The unit of an axis; of an entry of the instrument, none is known."""
+    if axis == ACCELERATION:
+        return "m/s²"
+    return CONTROLS[axis].unit if axis in CONTROLS else ""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a study found.
+
+    Attributes
+    ----------
+    meta : dict
+        ``format``, ``version``, ``regimes``, ``study`` (the data of its file), ``gesture``,
+        ``refine``, ``levels``.
+    axes : dict
+        The values of the finest grid along each axis, by name.
+    numbers : ndarray [dtype=int64]
+        The computed points, in order: places on the grid, the last axis changing fastest.
+    columns : dict
+        A finding of each computed point, by the names of COLUMNS.
+    """
+
+    meta: Mapping[str, Any]
+    axes: Mapping[str, Array]
+    numbers: Array
+    columns: Mapping[str, Array]
+
+    def __len__(self) -> int:
+        """Number of strokes."""
+        return len(self.numbers)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the finest grid."""
+        return tuple(len(values) for values in self.axes.values())
+
+    @property
+    def index(self) -> Array:
+        """The place of each stroke on each axis [shape=(strokes, axes)]."""
+        return np.stack(np.unravel_index(self.numbers, self.shape), axis=1)
+
+    @property
+    def regimes(self) -> tuple[str, ...]:
+        """The names of the numbers in the column ``regime``."""
+        return tuple(self.meta["regimes"])
+
+    def grid(self, name: str) -> Array:
+        """A column on the whole finest grid [shape=shape].
+
+        What refinement left out is as the computed point below it, whose cell was all alike.
+
+        Raises
+        ------
+        ParameterError
+            Where there is no such column.
+        """
+        if name not in self.columns:
+            raise ParameterError(f"unknown column {name!r} (known: {', '.join(self.columns)})")
+        refine, levels = self.meta["refine"], self.meta["levels"]
+        return fill(self.shape, refine, levels, self.numbers, self.columns[name])
+
+    def onset_periods(self) -> Array:
+        """Periods from the first slip to lasting Helmholtz motion, on the grid; NaN for never.
+
+        Also NaN where the stroke then left it again. A period is that of the pitch at the end.
+        """
+        seconds = self.grid("helmholtz_s") - self.grid("first_slip_s")
+        return np.where(self.grid("regime") == HELMHOLTZ, seconds * self.grid("pitch_hz"), np.nan)
+
+    def study(self) -> Study:
+        """The study that found it.
+
+        Raises
+        ------
+        ParameterError
+            Where it names a file that is not in this folder.
+        """
+        return study_of(dict(self.meta["study"]), Path())
+
+    def to_xarray(self) -> Any:
+        """Everything as an ``xarray.Dataset`` on the finest grid, by the names of the axes.
+
+        ``computed`` tells which points were; see `grid` for the others.
+
+        Raises
+        ------
+        YehuError
+            Where xarray is missing.
+        """
+        try:
+            import xarray
+        except ImportError:
+            raise YehuError("xarray is missing: install yehu-server[lab]") from None
+        names = tuple(self.axes)
+        computed = np.zeros(self.shape, bool)
+        computed.reshape(-1)[self.numbers] = True
+        found = {
+            name: (names, self.grid(name), {"units": UNITS.get(name, "")}) for name in self.columns
+        }
+        found["computed"] = (names, computed, {})
+        axes = {
+            name: (name, values, {"units": unit_of(name)}) for name, values in self.axes.items()
+        }
+        dataset = xarray.Dataset(found, coords=axes)
+        # As CF conventions have it: names of the numbers, without spaces.
+        dataset["regime"].attrs["flag_values"] = list(range(len(self.regimes)))
+        dataset["regime"].attrs["flag_meanings"] = " ".join(
+            name.replace(" ", "_") for name in self.regimes
+        )
+        return dataset
+
+    def save(self, target: Path, *, overwrite: bool = True) -> None:
+        """Write one file: compressed ``.npz``, or ``.zarr`` by its ending.
+
+        The same result makes the same bytes of an ``.npz``.
+
+        Raises
+        ------
+        OutputError
+            Where it cannot be written.
+        """
+        if target.suffix == ".zarr":
+            from yehu_server.lab.sweeps.zarr_store import save_zarr
+
+            save_zarr(self, target, overwrite=overwrite)
+            return
+        with replacing(target, anything) as partial, partial.open("wb") as file:
+            np.savez_compressed(file, allow_pickle=False, **self.arrays())
+
+    def arrays(self) -> dict[str, Array]:
+        """All of it by the names that the file has."""
+        axes = {f"axis_{name}": values for name, values in self.axes.items()}
+        meta = np.array(json.dumps(self.meta))
+        return {"meta": meta, **axes, "numbers": self.numbers, **self.columns}
+
+    @classmethod
+    def load(cls, path: Path) -> Result:
+        """Read a file that `save` wrote.
+
+        Raises
+        ------
+        ScoreError
+            Where it cannot be read, or is none.
+        """
+        try:
+            if path.suffix == ".zarr":
+                from yehu_server.lab.sweeps.zarr_store import load_zarr
+
+                return cls.of(load_zarr(path))
+            with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
+                return cls.of({name: file[name] for name in file.files})
+        except OSError as error:
+            raise ScoreError(f"{path}: {error.strerror or error}") from error
+        except Exception as error:  # damaged archives raise whatever they lead to
+            raise ScoreError(f"{path}: is not the result of a sweep") from error
+
+    @classmethod
+    def of(cls, arrays: Mapping[str, Array]) -> Result:
+        """Build it of the arrays of a file.
+
+        Raises
+        ------
+        ValueError
+            Where they are no result.
+        """
+        meta = json.loads(str(arrays["meta"]))
+        if meta["format"] != FORMAT or meta["version"] != VERSION:
+            raise ValueError("another format")
+        axes = {name: arrays[f"axis_{name}"] for name in meta["axes"]}
+        columns = {name: arrays[name] for name in COLUMNS}
+        numbers = arrays["numbers"]
+        size = int(np.prod([len(values) for values in axes.values()], dtype=np.int64))
+        if any(column.shape != (len(numbers),) for column in (numbers, *columns.values())):
+            raise ValueError("columns of other lengths")
+        if numbers.dtype.kind not in "iu" or any(values.ndim != 1 for values in axes.values()):
+            raise ValueError("axes or points of another kind")
+        if columns["regime"].max(initial=0) >= len(meta["regimes"]):
+            raise ValueError("a regime without a name")
+        if not {"spreads", "refine", "levels", "study", "made_by"} <= meta.keys():
+            raise ValueError("something is missing")
+        if len(numbers) == 0 or numbers.min() < 0 or numbers.max() >= size:
+            raise ValueError("points off the grid")
+        return cls(meta, axes, numbers, columns)
+
+
+def result_of(study: Study, numbers: Array, findings: Array) -> Result:
+    """The result of the points of a study, in any order."""
+    order = np.argsort(numbers, kind="stable")
+    data = {name: entry for name, entry in study.data.items() if name != "folder"}
+    meta = {
+        "format": FORMAT,
+        "version": VERSION,
+        "made_by": f"yehu-server {__version__}",
+        "regimes": list(REGIMES),
+        "axes": [axis.name for axis in study.axes],
+        "spreads": [axis.spread for axis in study.axes],
+        "refine": list(study.refine),
+        "levels": study.levels,
+        "study": data,
+        "gesture": data.get("gesture", {}),
+    }
+    columns = {name: np.ascontiguousarray(findings[name][order]) for name in COLUMNS}
+    axes = {axis.name: axis.as_array() for axis in study.axes}
+    return Result(meta, axes, numbers[order], columns)
+
+
+def check_result(target: Path) -> None:
+    """Check the ending of a result file.
+
+    Raises
+    ------
+    OutputError
+        Where it is neither ``.npz`` nor ``.zarr``.
+    """
+    if target.suffix not in {".npz", ".zarr"}:
+        raise OutputError(f"{target}: name a file that ends in .npz, or in .zarr")

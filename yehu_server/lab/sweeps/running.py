@@ -1,0 +1,226 @@
+"""Run a study: on the cores of this machine, or on a cluster; again where it was interrupted."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.errors import OutputError, YehuError
+from yehu_server.lab.regimes.judge import FINDING
+from yehu_server.lab.regimes.names import HELMHOLTZ
+from yehu_server.lab.regimes.strokes import find
+from yehu_server.lab.sweeps.journal import Journal, journal_of
+from yehu_server.lab.sweeps.refining import coarse_points, finer_points
+from yehu_server.lab.sweeps.result import Result, check_result, result_of
+from yehu_server.lab.sweeps.study import Study, study_from_text
+from yehu_server.util.files import check_target
+
+Array = Any
+Progress = Callable[[float, float], None]
+
+CHUNK = 64  # strokes that are one task
+
+
+def sweep(
+    study: Study,
+    *,
+    workers: int | None = None,
+    cluster: Any = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Run a study, and keep what it finds in memory.
+
+    The same study finds the same, to the bit, with any number of workers.
+
+    Parameters
+    ----------
+    workers : int
+        Number of threads; by default one per core. The model runs without the GIL.
+    cluster : jobs.cluster.Cluster
+        Where to run it instead.
+    progress : callable
+        Called with the number of strokes done, and of those known to be wanted.
+    """
+    known: list[tuple[Array, Array]] = []
+
+    def done() -> tuple[Array, Array]:
+        if not known:
+            return np.zeros(0, np.int64), np.zeros(0, FINDING)
+        numbers, findings = (np.concatenate(parts) for parts in zip(*known, strict=True))
+        return numbers, findings
+
+    run_levels(study, done, lambda *both: known.append(both), workers, cluster, progress)
+    return result_of(study, *done())
+
+
+def sweep_to(
+    study: Study,
+    target: Path,
+    *,
+    workers: int | None = None,
+    cluster: Any = None,
+    progress: Progress | None = None,
+    overwrite: bool = False,
+) -> Result:
+    """Run a study, and write what it finds to a file.
+
+    Where it is interrupted, what is done is in a journal beside the file, and the next call with
+    the same study goes on; a KeyboardInterrupt has a text that says so.
+
+    Parameters
+    ----------
+    overwrite : bool
+        Whether to replace a result, or a journal, that is there.
+    workers, cluster, progress
+        As of `sweep`.
+
+    Raises
+    ------
+    OutputError
+        Where there is a result, or the file cannot be written.
+    """
+    check_free_result(target, overwrite=overwrite)
+    journal = Journal(target, study, overwrite=overwrite)
+    try:
+        run_levels(study, journal.done, journal.add, workers, cluster, progress)
+        result = result_of(study, *journal.done())
+        result.save(target, overwrite=overwrite)
+        journal.close(remove=True)
+    except KeyboardInterrupt:
+        kept = f"{journal.count} strokes are in {journal_of(target)}; the same command goes on"
+        raise KeyboardInterrupt(kept) from None
+    finally:
+        with suppress(OSError):
+            journal.close()
+    return result
+
+
+def check_free_result(target: Path, *, overwrite: bool = False) -> None:
+    """Check that a result may be written.
+
+    Raises
+    ------
+    OutputError
+        Where it may not.
+    """
+    check_result(target)
+    if target.suffix == ".npz":
+        check_target(target)
+    if target.exists() and not overwrite:
+        raise OutputError(f"{target}: exists; --overwrite replaces it")
+
+
+def run_levels(
+    study: Study,
+    done: Callable[[], tuple[Array, Array]],
+    add: Callable[[Array, Array], None],
+    workers: int | None = None,
+    cluster: Any = None,
+    progress: Progress | None = None,
+    levels: int | None = None,
+) -> None:
+    """Compute what is not done, level by level of the refinement.
+
+    Parameters
+    ----------
+    done : callable
+        Returns the numbers of the points that are done, in order, and their findings.
+    add : callable
+        Takes more of them.
+    levels : int
+        After how many of the study's levels to stop; by default after all.
+    """
+    wanted = coarse_points(study.shape, study.refine, study.levels)
+    for level in range((study.levels if levels is None else levels) + 1):
+        if level > 0:
+            # Not of all that is done: an earlier run may have come to finer levels.
+            numbers, findings = done()
+            known = np.isin(numbers, wanted)
+            kinds = findings["regime"][known]
+            if study.border == "helmholtz":
+                kinds = kinds == HELMHOLTZ
+            shape, refine = study.shape, study.refine
+            more = finer_points(shape, refine, study.levels, level - 1, numbers[known], kinds)
+            wanted = np.union1d(wanted, more)
+        numbers, _ = done()
+        missing = np.setdiff1d(wanted, numbers, assume_unique=True)
+        before = len(wanted) - len(missing)
+        total = len(wanted)
+        if progress is not None:
+            progress(before, total)
+        for part, findings in _computed(study, missing, workers, cluster):
+            add(part, findings)
+            before += len(part)
+            if progress is not None:
+                progress(before, total)
+
+
+def _computed(
+    study: Study, numbers: Array, workers: int | None, cluster: Any
+) -> Iterator[tuple[Array, Array]]:
+    """Compute points in chunks; yield each chunk as it ends, with its findings."""
+    chunks = [numbers[i : i + CHUNK] for i in range(0, len(numbers), CHUNK)]
+    if cluster is not None:
+        yield from _on_cluster(study, chunks, cluster)
+        return
+    count = workers or os.cpu_count() or 1
+    pool = ThreadPoolExecutor(count)
+    try:
+        todo, running = iter(chunks), dict[Future[Array], Array]()
+        while True:
+            while len(running) < 2 * count and (chunk := next(todo, None)) is not None:
+                running[pool.submit(findings_of, study, chunk)] = chunk
+            if not running:
+                return
+            ended, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in ended:
+                yield running.pop(future), future.result()
+    finally:  # an interrupt or a failure: the others need not run
+        pool.shutdown(cancel_futures=True)
+
+
+def findings_of(study: Study, numbers: Array) -> Array:
+    """Bow the strokes of some points of a study: findings [dtype=FINDING]."""
+    index = np.stack(np.unravel_index(numbers, study.shape), axis=1)
+    return find(*study.bow.strokes(study.axes, index))
+
+
+def _on_cluster(study: Study, chunks: list[Array], cluster: Any) -> Iterator[tuple[Array, Array]]:
+    text = study.as_text()
+    tasks = [(text, chunk.tobytes()) for chunk in chunks]
+    for event in cluster.perform_all(perform, tasks):
+        if not event.is_end:
+            continue
+        if event.died:
+            raise YehuError(f"a chunk of strokes ended its workers: {event.died}")
+        if isinstance(event.result, str):
+            raise YehuError(event.result)
+        yield chunks[event.job], np.frombuffer(event.result, FINDING)
+
+
+def perform(task: tuple[str, bytes], _tell: Any = None) -> bytes | str:
+    """Bow the strokes of a task of a cluster: their findings as bytes, or what is wrong as text."""
+    text, numbers = task
+    try:
+        findings = findings_of(_study(text), np.frombuffer(numbers, np.int64))
+        return bytes(findings.tobytes())
+    except YehuError as error:
+        return str(error)
+
+
+@lru_cache(maxsize=4)
+def _study(text: str) -> Study:
+    return study_from_text(text)
+
+
+def warm_up() -> None:
+    """Compile what strokes need, before there are many."""
+    study = study_from_text('{"vary": {"force": [0.5]}, "duration": 0.06}')
+    findings_of(study, np.zeros(1, np.int64))

@@ -1,0 +1,234 @@
+"""A study: strokes that differ in some values. Its file is described in docs/sweep.md."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.lab.regimes.strokes import Hands
+from yehu_server.lab.sweeps.axes import Axis, axis_from
+from yehu_server.lab.sweeps.gestures import GestureBow
+from yehu_server.lab.sweeps.notes import NoteBow
+from yehu_server.scores.gesture import Gesture
+from yehu_server.util.documents import parse_json, parse_toml
+from yehu_server.util.files import read_text
+
+Array = Any
+
+MOST_BYTES = 16 * 2**20
+MOST_STROKES = 10**8
+MOST_POINTS = 10**8  # of the finest grid
+MOST_LEVELS = 8
+BORDERS = ("regimes", "helmholtz")
+KNOWN = (
+    "about",
+    "sample_rate",
+    "duration",
+    "instrument",
+    "stroke",
+    "gesture",
+    "vary",
+    "refine",
+)
+
+
+class Bow(Protocol):
+    """Makes strokes of values."""
+
+    def check(self, axes: Sequence[Axis]) -> None:
+        """Refuse axes that cannot be varied, or values that are out of bounds."""
+
+    def strokes(self, axes: Sequence[Axis], index: Array) -> tuple[Array, Array, Array, Hands]:
+        """Models, states at rest, strokes and curves: see `lab.regimes.strokes.find`."""
+
+    def gesture(self, axes: Sequence[Axis], place: Sequence[int]) -> Gesture:
+        """One of the strokes as a gesture, for `simulate`."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study.
+
+    Attributes
+    ----------
+    data : dict
+        The entries of its file, as JSON values, with what was asked for beside it.
+    axes : tuple of Axis
+        With all values of the finest grid.
+    refine : tuple of int
+        Axes that are refined where regimes meet.
+    levels : int
+        How often a step may be halved.
+    border : str
+        One of BORDERS: between all regimes, or between Helmholtz motion and all others.
+    bow
+        Makes the strokes.
+    """
+
+    data: Mapping[str, Any]
+    axes: tuple[Axis, ...]
+    refine: tuple[int, ...]
+    levels: int
+    border: str
+    bow: Bow
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values along each axis, of the finest grid."""
+        return tuple(len(axis.values) for axis in self.axes)
+
+    @property
+    def coarse(self) -> int:
+        """Number of strokes before any step is halved."""
+        step = 2**self.levels
+        return math.prod(
+            (length - 1) // step + 1 if i in self.refine else length
+            for i, length in enumerate(self.shape)
+        )
+
+    def as_text(self) -> str:
+        """All of it as JSON, from which `study_from_text` makes the same study."""
+        return json.dumps(self.data)  # in order, which is that of the axes
+
+
+def read_study(path: Path, vary: Sequence[Axis] = ()) -> Study:
+    """Read a study (TOML), or a gesture (JSON) that is to be varied.
+
+    Parameters
+    ----------
+    vary : sequence of Axis
+        Axes beside those of the file; they replace axes of the same name.
+
+    Raises
+    ------
+    ScoreError
+        Where the file cannot be read.
+    ParameterError
+        Where it is wrong.
+    """
+    try:
+        text = read_text(path, MOST_BYTES)
+        is_gesture = path.suffix == ".json"
+        data = parse_json(text) if is_gesture else parse_toml(text)
+    except OSError as error:
+        raise ScoreError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise ScoreError(f"{path}: not a study ({error})") from error
+    try:
+        data = {"gesture": data} if is_gesture else with_gesture(data, path.parent)
+        return study_of(with_axes(data, vary), path.parent)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def with_gesture(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """The data of a study, with the gesture file that it names read into it."""
+    name = data.get("gesture")
+    if not isinstance(name, str):
+        return dict(data)
+    try:
+        return {**data, "gesture": parse_json(read_text(folder / name, MOST_BYTES))}
+    except OSError as error:
+        raise ParameterError(f"gesture {name}: {error.strerror}") from error
+    except ValueError as error:
+        raise ParameterError(f"gesture {name}: not a gesture file ({error})") from error
+
+
+def with_axes(data: Mapping[str, Any], axes: Sequence[Axis]) -> dict[str, Any]:
+    """The data of a study, with more axes, or others of the same names."""
+    vary = data.get("vary", {})
+    if axes and isinstance(vary, Mapping):
+        vary = dict(vary)
+        for axis in axes:
+            vary[axis.name] = as_entry(axis)
+    return {**data, "vary": vary}
+
+
+def as_entry(axis: Axis) -> Any:
+    """An axis as a study has it."""
+    if not axis.spread:
+        return list(axis.values)
+    first, last = axis.values[0], axis.values[-1]
+    return {"from": first, "to": last, "steps": len(axis.values), "spread": axis.spread}
+
+
+def study_of(data: Any, folder: Path = Path()) -> Study:
+    """Build a study from the data of its file.
+
+    Parameters
+    ----------
+    data : mapping
+        With the contents of a gesture file, where it has a gesture.
+    folder : Path
+        Where files that it names, such as a body, are looked for.
+
+    Raises
+    ------
+    ParameterError
+        Where an entry is wrong.
+    """
+    if not isinstance(data, Mapping):
+        raise ParameterError("expected a table")
+    for name in data:
+        if name not in KNOWN:
+            raise ParameterError(f"unknown name {name!r} (known: {', '.join(KNOWN)})")
+    vary = data.get("vary", {})
+    if not isinstance(vary, Mapping):
+        raise ParameterError("vary: expected a table of names")
+    axes = tuple(axis_from(name, entry) for name, entry in _flat(vary).items())
+    if not axes:
+        raise ParameterError("nothing is varied: name it under [vary], or by --vary")
+    bow: Bow = GestureBow.of(data, folder) if "gesture" in data else NoteBow.of(data, folder)
+    refine, levels, border = _refinement(data.get("refine", {}), axes)
+    fine = tuple(axis.refined(levels) if i in refine else axis for i, axis in enumerate(axes))
+    kept = {**data, "folder": str(folder.absolute())}
+    study = Study(kept, fine, refine, levels, border, bow)
+    if study.coarse > MOST_STROKES:
+        raise ParameterError(f"{study.coarse} strokes are more than {MOST_STROKES}")
+    if math.prod(study.shape) > MOST_POINTS:
+        raise ParameterError("the finest grid has too many points")
+    bow.check(fine)
+    return study
+
+
+def study_from_text(text: str) -> Study:
+    """The study of `Study.as_text`, perhaps on another machine."""
+    data = json.loads(text)
+    folder = Path(data.pop("folder", ""))
+    return study_of(data, folder)
+
+
+def _flat(table: Mapping[str, Any], above: str = "") -> dict[str, Any]:
+    """Entries by dotted names: TOML makes tables of them, if they are not quoted."""
+    found: dict[str, Any] = {}
+    for name, entry in table.items():
+        path = f"{above}{name}"
+        if isinstance(entry, Mapping) and not {"from", "to", "steps"} & entry.keys():
+            found |= _flat(entry, f"{path}.")
+        else:
+            found[path] = entry
+    return found
+
+
+def _refinement(entry: Any, axes: Sequence[Axis]) -> tuple[tuple[int, ...], int, str]:
+    if not isinstance(entry, Mapping):
+        raise ParameterError("refine: expected a table of axes and levels")
+    for name in entry:
+        if name not in {"axes", "levels", "border"}:
+            raise ParameterError(f"refine: unknown name {name!r} (known: axes, levels, border)")
+    names = [axis.name for axis in axes]
+    wanted = entry.get("axes", [])
+    if not isinstance(wanted, list) or not all(name in names for name in wanted):
+        raise ParameterError(f"refine axes: expected some of {', '.join(names)}")
+    levels = entry.get("levels", 0)
+    if isinstance(levels, bool) or not isinstance(levels, int) or not 0 <= levels <= MOST_LEVELS:
+        raise ParameterError(f"refine levels: expected 0 to {MOST_LEVELS}, got {levels!r}")
+    border = entry.get("border", BORDERS[0])
+    if border not in BORDERS:
+        raise ParameterError(f"refine border: {border!r} is not one of {', '.join(BORDERS)}")
+    return tuple(sorted(names.index(name) for name in wanted)), levels if wanted else 0, border

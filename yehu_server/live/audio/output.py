@@ -1,0 +1,344 @@
+"""Play live: by an audio device, or by a silent clock while there is none.
+
+Exactly one of them computes samples at any time. When the device is lost, the clock continues at
+the same frame within some hundredths of a second, and a new process looks for the device until it
+is back.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import mmap
+import os
+import queue
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.rig import memory_bytes
+from yehu_server.errors import DeviceError
+from yehu_server.util.processes import Child, Message
+from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, keep_on, why
+
+log = logging.getLogger(__name__)
+
+NULL = "null"
+NULL_RATE = 48000.0
+FIRST_LOOK_S, COMPILING_S = 10.0, 300.0
+HUNG_AFTER_S = 2.0
+LISTEN_S = 0.05  # to wait at a time for events of the device's process
+AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
+HOPELESS_S = 0.5  # a delay that the silent clock does not make up for
+
+
+class SharedMemory:
+    """Memory for instruments and their stage, which child processes can map by its descriptor."""
+
+    def __init__(self, parts: int = 1) -> None:
+        self.size = memory_bytes(parts)
+        if hasattr(os, "memfd_create"):
+            self.descriptor = os.memfd_create("yehu-server")
+        else:
+            with tempfile.TemporaryFile() as file:
+                self.descriptor = os.dup(file.fileno())
+        os.ftruncate(self.descriptor, self.size)
+        self.buffer = mmap.mmap(self.descriptor, self.size)
+
+    def close(self) -> None:
+        """Close the descriptor; the memory is freed with the last process that has mapped it."""
+        if self.descriptor >= 0:
+            os.close(self.descriptor)
+        self.descriptor = -1
+
+
+class SilentClock:
+    """Computes the samples in real time, without a device."""
+
+    def __init__(self, ensemble: Ensemble, blocksize: int) -> None:
+        self._ensemble = ensemble
+        self._block = np.zeros((blocksize, ensemble.channels), np.float32)
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="silent clock", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop; when this returns, nothing is computed any more."""
+        self._ending.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        period = len(self._block) / self._ensemble.rate
+        due = time.monotonic()
+        while not self._ending.is_set():
+            with contextlib.suppress(MemoryError):
+                self._ensemble.process(self._block)
+            due += period
+            early = due - time.monotonic()
+            if early > 0.0:
+                time.sleep(early)
+            elif early < -HOPELESS_S:
+                due = time.monotonic()
+
+
+@dataclass
+class OutputOptions:
+    """The device and how to open it; see ``yehu-server serve --help``."""
+
+    device: str | None = None  # None: the system's default
+    rate: float | None = None  # None: the device's own
+    blocksize: int = 128
+    latency: str | float = "low"  # or seconds
+    channels: int = 2
+    parts: int = 1  # number of instruments that play together
+
+
+@dataclass
+class OutputState:
+    """The device that plays now, or why none does."""
+
+    device: str | None = None  # None: the silent clock
+    latency_ms: float = 0.0
+    losses: int = 0
+    problem: str = ""  # why there is no device
+
+
+class Output:
+    """Plays an ensemble on a device, which it looks for from its construction on.
+
+    Call `find`, make the ensemble with that rate in ``memory``, then call `begin`, and at last
+    `end`.
+
+    Parameters
+    ----------
+    changed : callable
+        Called with a line when the device plays, disappears, or is back; from another thread.
+    """
+
+    def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:
+        self._options = options
+        self._changed = changed
+        self.memory = SharedMemory(options.parts)
+        self.state = OutputState()
+        self._events: queue.Queue[Message] = queue.Queue()
+        self._child: Child | None = None
+        self._found: Message | None = None
+        self._clock: SilentClock | None = None
+        self._ensemble: Ensemble | None = None
+        self._thread = threading.Thread(target=self._supervise, name="audio", daemon=True)
+        self._ending = threading.Event()
+        self._awake = AwakeTime()
+        self._heart = (0, 0.0)  # number of callbacks, and the awake time of the last one
+        self._refused = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)  # the device refuses
+        self._short = Backoff()  # files or memory for a process are short
+        self._look_at = 0.0  # monotonic s
+        if options.device != NULL:
+            self._look()
+
+    def find(self) -> float:
+        """Wait for the device to be found; return the sample rate to play at (Hz).
+
+        Raises
+        ------
+        DeviceError
+            Where a named device is not there.
+        """
+        if self._options.device == NULL:
+            self.state.problem = "asked for silence"
+            return self._options.rate or NULL_RATE
+        if self._child is None:
+            return self._options.rate or NULL_RATE
+        event = self._await({"found", "missing", "failed", "gone"}, "the sound system")
+        if event["event"] == "found":
+            self._found = event
+            return self._options.rate or float(event["rate"])
+        self.state.problem = event.get("reason", "the sound system crashed")
+        if self._options.device is not None:
+            self._drop_child()
+            raise DeviceError(self.state.problem)
+        return self._options.rate or NULL_RATE
+
+    def begin(self, ensemble: Ensemble) -> None:
+        """Start to play an ensemble that lies in ``memory``.
+
+        Raises
+        ------
+        DeviceError
+            Where a named device cannot be opened.
+        """
+        self._ensemble = ensemble
+        self._start_clock()
+        if self._found is not None:
+            self._open(self._found)
+            reason = self._take_up()
+            if reason and self._options.device is not None:
+                self.end()
+                raise DeviceError(reason)
+            if reason:
+                self._give_up(reason, self._refused)
+        if self._options.device != NULL:
+            self._thread.start()
+
+    def end(self) -> None:
+        """Stop playing."""
+        self._ending.set()
+        if self._thread.is_alive():
+            self._thread.join()
+        self._drop_child(gently=True)
+        self._stop_clock()
+        self.memory.close()
+
+    # -- the device's process ----------------------------------------------------------------
+
+    def _look(self) -> None:
+        """Start a new process that looks for the device."""
+        self._events = queue.Queue()
+        try:
+            self._child = Child(
+                "yehu_server.live.audio.stream", self._events.put, share=[self.memory.descriptor]
+            )
+        except SHORTAGES as error:
+            self._give_up(f"the audio process cannot be started: {why(error)}", self._short)
+            return
+        self._child.send("look", device=self._options.device)
+
+    def _open(self, found: Message) -> None:
+        ensemble = self._ensemble
+        if self._child is None or ensemble is None:
+            return
+        channels = min(self._options.channels, found["channels"])
+        self._child.send(
+            "open",
+            memory=self.memory.descriptor,
+            size=self.memory.size,
+            rate=ensemble.rate,
+            blocksize=self._options.blocksize,
+            latency=self._options.latency,
+            channels=channels,
+        )
+        self._wanted = found
+        self._channels = channels
+
+    def _take_up(self) -> str:
+        """Hand the ensemble over from the clock to the device; return why that failed."""
+        ensemble = self._ensemble
+        ready = self._await({"ready", "failed", "gone"}, "the audio device")
+        if ready["event"] != "ready" or self._child is None or ensemble is None:
+            return self._reason(ready)
+        self._stop_clock()
+        ensemble.channels = self._channels
+        self._child.send("start")
+        started = self._await({"started", "failed", "gone"}, "the audio device")
+        if started["event"] != "started":
+            self._drop_child()
+            ensemble.recover()
+            self._start_clock()
+            return self._reason(started)
+        self._refused.worked()
+        self._short.worked()
+        self._heart = (-1, 0.0)
+        name = self._wanted["name"]
+        self.state = OutputState(name, ready["latency_ms"], self.state.losses)
+        self._changed(f"playing on {name} at {ensemble.rate:g} Hz")
+        return ""
+
+    @staticmethod
+    def _reason(event: Message) -> str:
+        return str(event.get("reason", "the audio process ended"))
+
+    def _give_up(self, reason: str, backoff: Backoff) -> None:
+        """Stop looking for the device for a while, longer each time."""
+        self._drop_child()
+        self._look_at = time.monotonic() + backoff.failed()
+        if reason != self.state.problem:
+            self.state.problem = reason
+            self._changed(f"no sound: {reason}")
+
+    def _await(self, kinds: set[str], what: str) -> Message:
+        """The next event of some kinds; without one in time, as if the process had ended."""
+        deadline = self._awake() + FIRST_LOOK_S
+        while not self._ending.is_set():
+            try:
+                event = self._events.get(timeout=LISTEN_S)
+            except queue.Empty:
+                if self._awake() < deadline:
+                    continue
+                return {"event": "gone", "reason": f"{what} does not answer"}
+            if event["event"] in kinds:
+                return event
+            if event["event"] == "compiling":
+                deadline = self._awake() + COMPILING_S
+                self._changed("compiling for the audio process, since nothing can be cached")
+        return {"event": "gone"}
+
+    def _drop_child(self, *, gently: bool = False) -> None:
+        child, self._child = self._child, None
+        self._events = queue.Queue()  # its last events are ignored
+        if child is not None:
+            child.stop() if gently else child.kill()
+
+    def _supervise(self) -> None:
+        keep_on(self._follow, self._ending, 0.0, "audio", self._changed)
+
+    def _follow(self) -> None:
+        """Handle an event of the device's process, or its silence."""
+        if self.state.device is None and self._clock is None:  # the last call has failed
+            self._rest_on_clock()
+        try:
+            event = self._events.get(timeout=LISTEN_S)
+        except queue.Empty:
+            event = {"event": ""}
+        if event["event"] == "found":
+            self._open(event)
+            reason = self._take_up()
+            if reason:
+                self._give_up(reason, self._refused)
+        elif event["event"] in ("lost", "gone", "failed") or self._has_stopped():
+            self._lose(self._reason(event))
+        is_time = self._child is None and time.monotonic() >= self._look_at
+        if is_time and not self._ending.is_set():
+            self._look()
+
+    def _has_stopped(self) -> bool:
+        """Whether the callbacks have stopped, in time in which this process was awake."""
+        beats, now = int(self._meters()["callbacks"]), self._awake()
+        if beats != self._heart[0] or self.state.device is None:
+            self._heart = beats, now
+        return now - self._heart[1] > HUNG_AFTER_S
+
+    def _lose(self, reason: str) -> None:
+        """Continue on the silent clock, once the device's process is gone."""
+        device = self.state.device
+        if device is None:
+            self._give_up(reason, self._refused)
+            return
+        problem = f"{device} is gone"
+        self.state = OutputState(losses=self.state.losses + 1, problem=problem)
+        self._rest_on_clock()
+        self._changed(f"{problem}; on the silent clock until it is back")
+
+    def _rest_on_clock(self) -> None:
+        self._drop_child()
+        if self._ensemble is not None:
+            self._ensemble.recover()
+        self._start_clock()
+
+    # -- the silent clock ----------------------------------------------------------------------
+
+    def _meters(self) -> Any:
+        return self._ensemble.meters() if self._ensemble is not None else {"callbacks": 0}
+
+    def _start_clock(self) -> None:
+        if self._clock is None and self._ensemble is not None:
+            self._clock = SilentClock(self._ensemble, self._options.blocksize)
+
+    def _stop_clock(self) -> None:
+        clock, self._clock = self._clock, None
+        if clock is not None:
+            clock.stop()

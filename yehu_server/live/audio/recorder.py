@@ -1,0 +1,148 @@
+"""Record live sound in stereo, from the tape of what plays."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from yehu_server.errors import OutputError
+from yehu_server.util.files import create, discard
+from yehu_server.util.sound_file import Samples, SoundWriter, format_of
+from yehu_server.util.wav import BYTES
+
+EVERY_S = 0.05
+CHANNELS = 2  # left and right
+SUBTYPES = {"wav": "float", "flac": "24"}
+ROOM_S = 1.0  # a recording begins only if so much fits on the disk
+
+
+class Tape(Protocol):
+    """What plays, and keeps the last seconds of it."""
+
+    @property
+    def rate(self) -> float:
+        """Frames in a second."""
+
+    @property
+    def frame(self) -> int:
+        """The next frame to play."""
+
+    def taped(self, start: int) -> tuple[int, Samples]:
+        """The samples that were played from a frame on.
+
+        Returns
+        -------
+        frame : int
+            The first frame returned: a later one where `start` is no longer kept.
+        samples : ndarray [shape=(frames, CHANNELS), float32]
+        """
+
+
+class Recorder:
+    """A recording in a thread of its own, to a file that is valid at every moment.
+
+    Parameters
+    ----------
+    start : int
+        The first frame to record.
+    said : callable
+        Called with a line when the recording ends by itself, such as on a full disk, or when
+        frames are missing.
+    overwrite : bool
+        Whether to replace an older file.
+
+    Raises
+    ------
+    OutputError
+        Where the file cannot be written, or is there.
+    """
+
+    def __init__(
+        self,
+        tape: Tape,
+        target: Path,
+        start: int,
+        said: Callable[[str], None],
+        *,
+        overwrite: bool = False,
+    ) -> None:
+        format_name, rate = format_of(target), round(tape.rate)
+        subtype = SUBTYPES[format_name]
+        room_bytes = round(ROOM_S * rate) * CHANNELS * BYTES[subtype]
+        self.target = target
+        self.missed_frames = 0
+        self.failure = ""  # why it ended by itself
+        self._tape = tape
+        self._position = start
+        self._said = said
+        self._file = create(target, overwrite=overwrite, room_bytes=room_bytes)
+        form = (rate, format_name, subtype)
+        self._writer = SoundWriter(self._file, target, *form, channels=CHANNELS)
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        self._thread.start()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it still records."""
+        return self._thread.is_alive()
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether no frame is missing so far."""
+        return not self.failure and self.missed_frames == 0
+
+    @property
+    def seconds(self) -> float:
+        """Length of the recording (s)."""
+        return self._writer.kept_frames / self._tape.rate
+
+    def stop(self) -> None:
+        """End the recording at the last frame played."""
+        self._ending.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            ending = False
+            while not ending:
+                ending = self._ending.wait(EVERY_S)
+                begin, samples = self._tape.taped(self._position)
+                if begin > self._position:  # the thread was late by more than the tape
+                    self._miss(begin)
+                self._writer.write(samples)
+                self._position = begin + len(samples)
+        except OutputError as error:
+            self.failure = str(error)
+        self._close()
+        if self.failure:
+            kept = f"; {self.seconds:.1f} s are kept" if self.seconds else ""
+            self._said(f"recording ended: {self.failure}{kept}")
+
+    def _miss(self, begin: int) -> None:
+        """Write silence for missing frames, so that later ones keep their time."""
+        rate = self._tape.rate
+        lost, at = begin - self._position, self._writer.frames
+        self.missed_frames += lost
+        self._said(
+            f"{self.target}: {lost / rate:.1f} s are missing from {at / rate:.1f} s on, as "
+            "silence: the disk was too slow"
+        )
+        while self._position < begin:
+            frames = min(begin - self._position, round(rate))
+            self._writer.write(np.zeros((frames, CHANNELS), np.float32))
+            self._position += frames
+
+    def _close(self) -> None:
+        try:
+            self._writer.close()
+        except OutputError as error:
+            self.failure = self.failure or str(error)
+        if self._writer.kept_frames == 0:
+            self.failure = self.failure or f"{self.target}: there is nothing to write"
+            discard(self._file, self.target)
+        self._file.close()

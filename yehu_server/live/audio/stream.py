@@ -1,0 +1,179 @@
+"""The process that holds the audio stream: ``python -m yehu_server.live.audio.stream``.
+
+It looks for the device until it is found, opens a stream with the compiled callback, and reports
+when the device is lost. The instruments lie in memory shared with the parent, so that another such
+process, or the silent clock, continues where this one stopped.
+"""
+
+from __future__ import annotations
+
+import itertools
+import mmap
+import os
+import queue
+import threading
+import time
+from typing import Any
+
+from yehu_server.errors import DeviceError
+from yehu_server.live.audio.devices import AudioDevice, choose, load_portaudio, outputs
+from yehu_server.util.processes import Message, Parent
+
+LOOK_EVERY_S, LATER_EVERY_S = 0.5, 2.0
+LATER = 60  # looks
+WATCH_EVERY_S = 0.02
+CLOSE_WITHIN_S = 0.5
+MOST_CHANNELS = 64
+
+
+class Stream:
+    """A PortAudio output stream."""
+
+    def __init__(self, sounddevice: Any, device: AudioDevice, order: Message) -> None:
+        import numpy as np
+
+        from yehu_server.core.engine import native
+
+        self._memory = mmap.mmap(order["memory"], order["size"])
+        address = np.frombuffer(self._memory, np.uint8).ctypes.data
+        foreign = sounddevice._ffi  # noqa: SLF001 - the documented way for C callbacks
+        self._stream = sounddevice._StreamBase(  # noqa: SLF001
+            kind="output",
+            device=device.index,
+            samplerate=order["rate"],
+            blocksize=order["blocksize"],
+            channels=order["channels"],
+            latency=order["latency"],
+            dtype="float32",
+            clip_off=True,
+            dither_off=True,
+            callback=foreign.cast("PaStreamCallback*", native.callback.address),
+            userdata=foreign.cast("void*", address),
+            wrap_callback=None,
+        )
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the device still asks for samples."""
+        return bool(self._stream.active)
+
+    @property
+    def latency_ms(self) -> float:
+        """Latency from callback to output, as PortAudio reports it."""
+        return 1e3 * float(self._stream.latency)
+
+    def start(self) -> None:
+        """Start the callbacks."""
+        self._stream.start()
+
+    def close(self) -> None:
+        """Close the stream; give up where PortAudio hangs, as it does without JACK's server."""
+        closing = threading.Thread(target=self._stream.close, daemon=True)
+        closing.start()
+        closing.join(CLOSE_WITHIN_S)
+
+
+def main() -> None:
+    """Serve the parent process until it closes the pipe."""
+    parent = Parent()
+    orders: queue.Queue[Message | None] = queue.Queue()
+
+    def listen() -> None:
+        for order in parent.orders():
+            orders.put(order)
+        orders.put(None)
+
+    threading.Thread(target=listen, daemon=True).start()
+    stream = None
+    try:
+        stream = _serve(parent, orders)
+    except DeviceError as error:
+        parent.tell("failed", reason=str(error))
+    if stream is not None:
+        stream.close()
+    os._exit(0)  # PortAudio's own clean-up may hang
+
+
+def _serve(parent: Parent, orders: queue.Queue[Message | None]) -> Stream | None:
+    order = orders.get()
+    if order is None:
+        return None
+    sounddevice = load_portaudio()
+    device = _look(parent, orders, sounddevice, order["device"])
+    if device is None:
+        return None
+    order = orders.get()
+    if order is None:
+        return None
+    from yehu_server.core.engine.warming import is_warm
+
+    if not is_warm():
+        parent.tell("compiling")
+    try:
+        stream = Stream(sounddevice, device, order)
+    except sounddevice.PortAudioError as error:
+        raise DeviceError(_reason(sounddevice, device, order, error)) from error
+    parent.tell("ready", latency_ms=stream.latency_ms)
+    if orders.get() is not None:
+        try:
+            stream.start()
+        except sounddevice.PortAudioError as error:
+            raise DeviceError(f"{device.full_name}: {error}") from error
+        parent.tell("started")
+        _watch(parent, orders, stream)
+    return stream
+
+
+def _look(
+    parent: Parent, orders: queue.Queue[Message | None], sounddevice: Any, wanted: str | None
+) -> AudioDevice | None:
+    """Wait for the device. PortAudio lists new devices only after it is started again."""
+    missing = ""
+    for look in itertools.count():
+        try:
+            devices = outputs(sounddevice)
+            device = choose(devices, wanted)
+        except DeviceError as error:
+            if str(error) != missing:
+                missing = str(error)
+                parent.tell("missing", reason=missing)
+        else:
+            parent.tell(
+                "found",
+                name=device.full_name,
+                rate=device.rate,
+                channels=min(device.channels, MOST_CHANNELS),
+            )
+            return device
+        try:
+            if orders.get(timeout=LOOK_EVERY_S if look < LATER else LATER_EVERY_S) is None:
+                return None
+        except queue.Empty:
+            pass
+        sounddevice._terminate()  # noqa: SLF001 - there is no other way to look again
+        sounddevice._initialize()  # noqa: SLF001
+    return None
+
+
+def _watch(parent: Parent, orders: queue.Queue[Message | None], stream: Stream) -> None:
+    while stream.is_active:
+        try:
+            if orders.get(timeout=WATCH_EVERY_S) is None:
+                return
+        except queue.Empty:
+            continue
+    parent.tell("lost", at=time.monotonic())
+    os._exit(1)
+
+
+def _reason(sounddevice: Any, device: AudioDevice, order: Message, error: Exception) -> str:
+    if getattr(error, "args", (0, 0))[-1] == sounddevice._lib.paInvalidSampleRate:  # noqa: SLF001
+        return (
+            f"{device.full_name} does not run at {order['rate']:g} Hz "
+            f"(its own rate is {device.rate:g} Hz)"
+        )
+    return f"{device.full_name}: {str(error).replace(chr(10), ' ')}"
+
+
+if __name__ == "__main__":
+    main()

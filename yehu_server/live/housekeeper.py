@@ -1,0 +1,186 @@
+"""What a server does beside playing, some times a second, in a thread of its own.
+
+The delay follows the device's period, the capture is written, mappings are read again, and what
+goes wrong is told.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.errors import MappingError
+from yehu_server.live.osc.limits import Allowance
+from yehu_server.playing.delay import Delay
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import Mapping as ControllerMapping
+from yehu_server.playing.mapping_watch import MappingWatch
+from yehu_server.scores.capture_writer import LiveCapture
+from yehu_server.util.retry import keep_on
+
+LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each trouble
+
+
+class Troubles:
+    """Reports counts that grow: at once, and then at most every ten seconds.
+
+    Parameters
+    ----------
+    said : callable
+        Called with each line.
+    """
+
+    def __init__(self, said: Callable[[str], None]) -> None:
+        self._said = said
+        self._told: dict[str, int] = {}
+        self._allowances: dict[str, Allowance] = defaultdict(
+            partial(Allowance, LINES_PER_S, LINES_AT_ONCE)
+        )
+
+    def look(self, counts: Mapping[str, int]) -> None:
+        """Report counts that have grown since they were last reported.
+
+        Parameters
+        ----------
+        counts : mapping
+            Each by a phrase for what is counted.
+        """
+        now = time.monotonic()
+        for what, count in counts.items():
+            if count > self._told.get(what, 0) and self._allowances[what].takes(now):
+                self._told[what] = count
+                self._said(f"{what} ({count} so far)")
+
+
+LOOK_EVERY_S = 0.5
+
+
+class MappingFollower:
+    """Watches a mapping's files, and gives the player the new mapping where they are right.
+
+    Parameters
+    ----------
+    reread : callable
+        Reads the files. Raises MappingError.
+    changed : callable
+        Called when the player has got a new mapping.
+    said : callable
+        Called with a line about each change, and about what is wrong with the files.
+    """
+
+    def __init__(
+        self,
+        player: LivePlayer,
+        reread: Callable[[], ControllerMapping],
+        changed: Callable[[], None],
+        said: Callable[[str], None],
+    ) -> None:
+        self._player = player
+        self._watch = MappingWatch(player.mapping, reread)
+        self._changed = changed
+        self._said = said
+        self._next_look = 0.0  # monotonic s
+
+    def look(self) -> None:
+        """Look at the files, at most every LOOK_EVERY_S."""
+        if time.monotonic() < self._next_look:
+            return
+        self._next_look = time.monotonic() + LOOK_EVERY_S
+        try:
+            mapping = self._watch.look()
+        except MappingError as error:
+            self._said(f"{error}; the mapping stays as it was")
+            return
+        if mapping is not None:
+            self._player.remap(mapping, frame=self._player.frame_of())
+            self._changed()
+            self._said(f"the mapping {mapping.name} has changed; it is used from now on")
+
+
+KEEP_EVERY_S = 0.05
+PROGRAMS_EVERY_S = 1.0  # between looks whether files of presets changed
+
+
+class Keeper:
+    """Keeps a server's delay, capture, mappings and programs up to date, from `start` to `stop`.
+
+    Parameters
+    ----------
+    osc_drops : callable
+        Returns the number of OSC packets that the system dropped.
+    said : callable
+        Called with a line for the player.
+
+    Attributes
+    ----------
+    capture : LiveCapture, optional
+        What the session is written into; set before `start`.
+    """
+
+    def __init__(
+        self,
+        ensemble: Ensemble,
+        players: Sequence[LivePlayer],
+        delay: Delay,
+        followers: Sequence[MappingFollower],
+        osc_drops: Callable[[], int],
+        said: Callable[[str], None],
+    ) -> None:
+        self.capture: LiveCapture | None = None
+        self._ensemble = ensemble
+        self._players = players
+        self._delay = delay
+        self._followers = followers
+        self._osc_drops = osc_drops
+        self._troubles = Troubles(said)
+        self._ending = threading.Event()
+        self._next_programs = 0.0  # monotonic s
+        keep = (self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", said)
+        self._thread = threading.Thread(target=keep_on, args=keep, name="keeper", daemon=True)
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    @property
+    def is_ended(self) -> bool:
+        """Whether `stop` was called."""
+        return self._ending.is_set()
+
+    def stop(self) -> None:
+        """End the thread, and close the capture."""
+        self._ending.set()
+        self._thread.join()
+        if self.capture is not None:
+            self.capture.close()
+
+    @property
+    def kept_all(self) -> bool:
+        """Whether nothing is missing in the capture."""
+        return self.capture is None or self.capture.is_whole
+
+    def _keep_up(self) -> None:
+        self._delay.look()
+        for player in self._players:
+            player.delay = self._delay.frames  # as the device's period requires
+        if self.capture is not None:
+            self.capture.keep_up()
+        self._troubles.look(
+            {
+                "the model lost its state and was put back to rest": self._ensemble.lost_states,
+                "events were dropped, as the ring was full": sum(
+                    instrument.dropped_events for instrument in self._ensemble.instruments
+                ),
+                "OSC packets were dropped by the system": self._osc_drops(),
+            }
+        )
+        for follower in self._followers:
+            follower.look()
+        if time.monotonic() > self._next_programs:
+            self._next_programs = time.monotonic() + PROGRAMS_EVERY_S
+            for player in self._players:
+                player.know_programs()

@@ -1,0 +1,1 @@
+"""MIDI inputs, as they come and go; which plays which part."""

@@ -1,0 +1,181 @@
+"""Play from MIDI inputs as they are connected; tell of those that come and go."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import astuple, dataclass
+
+import mido
+
+from yehu_server.core.engine.mailbox import MIDI_INPUTS
+from yehu_server.core.engine.rig import ring_place
+from yehu_server.core.midi.events import DISCONNECT, MESSAGE
+from yehu_server.live.midi.routes import Route, Router
+from yehu_server.playing.live import LivePlayer
+from yehu_server.util.processes import Child, ChildKeeper, Message
+
+log = logging.getLogger(__name__)
+
+
+@dataclass
+class MidiOptions:
+    """The MIDI inputs to open; see ``yehu-server serve --help``."""
+
+    patterns: Sequence[str] = ()  # empty: all but through ports
+    virtual: str | None = None
+    api: str | None = None  # None: the first there is
+    routes: Sequence[Route] = ()  # see midi_routes.Router
+
+
+class MidiPorts:
+    """Keeps the process that holds the MIDI inputs, and plays all parts from them.
+
+    Its messages reach the audio callback by shared memory; the server hears of them only where
+    something is to be learned.
+
+    Parameters
+    ----------
+    memory : int
+        File descriptor of the memory that has the instruments.
+    rigs : sequence of int
+        The first instrument of each part.
+    changed : callable
+        Called with a line when a port or the MIDI system appears or disappears; from another
+        thread.
+    """
+
+    def __init__(
+        self,
+        players: Sequence[LivePlayer],
+        options: MidiOptions,
+        memory: int,
+        rigs: Sequence[int],
+        changed: Callable[[str], None],
+    ) -> None:
+        self._players = players
+        self._router = Router(options.routes, len(players))
+        self._memory, self._rigs = memory, rigs
+        self._options = options
+        self._changed = changed
+        self._numbers: dict[str, int] = {}  # a port that comes back gets its old one
+        self._connected: dict[str, None] = {}
+        self._keeper = ChildKeeper(  # it ends as JACK's server does
+            "yehu_server.live.midi.process",
+            "MIDI inputs",
+            heard=self._heard,
+            attend=self._attend,
+            ended=self._ended,
+            told=changed,
+            share=[memory],
+        )
+        self._child: Child | None = None
+        self._missing: set[str] = set()  # patterns reported as matching nothing
+        self.problem = ""
+        for player in players:
+            player.listening = self._tell_hearing
+
+    @property
+    def connected(self) -> list[str]:
+        """Names of the open ports."""
+        return list(self._connected)
+
+    def start(self) -> None:
+        """Start to receive."""
+        self._keeper.start()
+
+    def stop(self) -> None:
+        """Stop receiving."""
+        self._keeper.stop()
+
+    def _attend(self, child: Child, gone: threading.Event) -> None:
+        options, routed = self._options, self._router.patterns
+        child.send(
+            "open",
+            patterns=[*options.patterns, *routed],
+            others=not options.patterns and self._router.wants_others,
+            virtual=options.virtual,
+            api=options.api,
+            routes=[astuple(route) for route in options.routes],
+            known=self._router.others,
+            numbers=self._numbers,
+            memory=self._memory,
+            rings=[ring_place(MIDI_INPUTS, rig) for rig in self._rigs],
+            message=MESSAGE,
+            disconnect=DISCONNECT,
+        )
+        self._child = child
+        self._tell_hearing()
+        gone.wait()
+
+    def _tell_hearing(self) -> None:
+        """Have the process tell of messages while something is to be learned, and only then."""
+        if self._child is not None:
+            self._child.send("hear", hear=any(player.listens for player in self._players))
+
+    def _ended(self, by_itself: bool) -> None:
+        if by_itself:
+            self._let_go()
+
+    def _heard(self, event: Message) -> None:
+        kind = event["event"]
+        if kind == "midi":
+            self._hear(event["port"], event["bytes"])
+        elif kind == "appeared":
+            self._connected[event["port"]] = None
+            self._number(event["port"], event["number"])
+            self._changed(f"MIDI: {event['port']} is connected{self._whose(event['port'])}")
+        elif kind == "vanished":
+            self._connected.pop(event["port"], None)
+            self._changed(f"MIDI: {event['port']} is gone; its notes are ended")
+        elif kind == "silent":
+            log.info("MIDI: %s fell silent (active sensing)", event["port"])
+        elif kind == "missing":
+            self._tell_missing(event["pattern"], event["present"])
+        elif kind == "refused":
+            self._changed(f"MIDI: {event['port']} cannot be opened: {event['reason']}")
+        elif kind == "none":
+            self.problem = event["reason"]
+            self._changed(f"MIDI: none ({event['reason']}); looking again now and then")
+        elif kind == "system":
+            self.problem = ""
+            log.info("MIDI: through %s", event["api"])
+
+    def _whose(self, port: str) -> str:
+        """What a port plays, where there are several parts."""
+        if len(self._players) == 1:
+            return ""
+        parts = [str(part + 1) for part in self._router.parts_of(port)]
+        if not parts:
+            return ", and plays no part"
+        return f" to part {parts[0]}" if len(parts) == 1 else f" to parts {', '.join(parts)}"
+
+    def _tell_missing(self, pattern: str, present: Sequence[str]) -> None:
+        if pattern not in self._missing:  # once, however often the process starts
+            self._missing.add(pattern)
+            there = ", ".join(present) or "none"
+            self._changed(f"MIDI: no input matches {pattern!r} yet (there are: {there})")
+
+    def _number(self, port: str, number: int) -> None:
+        """Remember the number of a port; one that is gone may have had it before."""
+        self._numbers = {name: old for name, old in self._numbers.items() if old != number}
+        self._numbers[port] = number
+
+    def _hear(self, port: str, data: Sequence[int]) -> None:
+        """Hear a message that is played already, for what is to be learned."""
+        with contextlib.suppress(ValueError, IndexError):  # damaged
+            message = mido.Message.from_bytes(data)
+            for part in self._router.parts_of(port, getattr(message, "channel", None)):
+                self._players[part].hear_message(message, self._numbers[port])
+
+    def _let_go(self) -> None:
+        """End the notes of all ports, whose process is gone."""
+        for port in self._connected:
+            for part in self._router.parts_of(port):
+                player = self._players[part]
+                player.let_go_of(self._numbers[port], frame=player.frame_of())
+        if self._connected:
+            self._changed(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
+        self._connected.clear()

@@ -1,0 +1,294 @@
+"""The process that holds the MIDI inputs: ``python -m yehu_server.live.midi.process``.
+
+It opens the wanted inputs as they appear, stamps each message on arrival, and puts it where the
+audio callback takes it (``midi_feed``). RtMidi over JACK crashes when the JACK server dies: then
+this process ends, and a new one takes its place.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import threading
+import time
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from yehu_server.core.midi.packing import MOST_BYTES
+from yehu_server.errors import ParameterError
+from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
+from yehu_server.live.midi.jack_watch import JackWatch
+from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted, stable_names
+from yehu_server.util.processes import Message, Parent
+
+LOOK_EVERY_S = 0.5
+SYSTEM_EVERY_S = 2.0  # between looks for a MIDI system, where there is none
+SENSE_EVERY_S = 0.05
+SENSE_WITHIN_S = 0.33  # active sensing promises a message every 300 ms
+SLEPT_S = 0.25  # a longer pause between two checks: this process was stopped
+CLIENT = "yehu-server MIDI"
+ACTIVE_SENSING, CLOCKS = 0xFE, {0xF8, 0xF9}
+
+APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windows": "WINDOWS_MM"}
+
+
+class Input:
+    """An open MIDI input.
+
+    Attributes
+    ----------
+    is_heard : bool
+        Whether the parent is told of each message, too.
+    """
+
+    def __init__(
+        self, midi: Any, name: str, full_name: str | None, feed: MidiFeed, parent: Parent
+    ) -> None:
+        self.midi = midi
+        self.name = name
+        self.full_name = full_name
+        self.is_heard = False
+        self._feed = feed
+        self._parent = parent
+        self._last = 0.0
+        self._senses = False
+        midi.ignore_types(sysex=True, timing=True, active_sense=False)
+        midi.set_callback(self._receive)
+
+    def _receive(self, event: tuple[Sequence[int], float], _data: Any = None) -> None:
+        at = time.monotonic_ns()
+        data = event[0]
+        self._last = 1e-9 * at
+        if data[0] == ACTIVE_SENSING:
+            self._senses = True
+        elif data[0] not in CLOCKS and len(data) <= MOST_BYTES:  # no system exclusive
+            self._feed.receive(self.name, data, at)
+            if self.is_heard:
+                self._parent.tell("midi", port=self.name, bytes=list(data))
+
+    def sense(self) -> None:
+        """End the notes of the port where active sensing has stopped."""
+        if self._senses and time.monotonic() - self._last > SENSE_WITHIN_S:
+            self._senses = False
+            self._feed.let_go_of(self.name, time.monotonic_ns(), is_gone=False)
+            self._parent.tell("silent", port=self.name)
+
+    def wait_anew(self) -> None:
+        """Begin the time for active sensing again."""
+        self._last = time.monotonic()
+
+    def close(self) -> None:
+        """Close the port."""
+        self.midi.cancel_callback()
+        self.midi.close_port()
+
+
+class Inputs:
+    """The wanted MIDI inputs, opened and closed as they appear and disappear."""
+
+    def __init__(self, parent: Parent, feed: MidiFeed, order: Message) -> None:
+        self._parent = parent
+        self._feed = feed
+        self._is_heard = False
+        self._patterns: Sequence[str] = order["patterns"]
+        # Whether all others but through ports are opened, too.
+        self._others = bool(order.get("others", not self._patterns))
+        self._virtual: str | None = order["virtual"]
+        self._api = order["api"]
+        self._open: dict[str, Input] = {}
+        self._names = StableNames()
+        self._finder: Any = None  # the client that lists port names
+        self._problem = ""
+        self._refused: set[str] = set()
+        self._sought: set[str] = set(self._patterns)  # those that no port has matched yet
+        self._watch: JackWatch | None = None
+        self._sensed = time.monotonic()
+
+    @property
+    def has_system(self) -> bool:
+        """Whether there is a MIDI system."""
+        return self._finder is not None
+
+    def look(self) -> None:
+        """Open ports that appeared, close those that disappeared."""
+        if self._finder is None and not self._start():
+            return
+        names = self._finder.get_ports()
+        stable = dict(zip(self._names.of(names), names, strict=True))
+        gone = set(self._open) - set(stable) - {self._virtual}
+        if self._watch is not None:  # ports that went and are back under the same name
+            left = self._watch.left()
+            gone |= {name for name, port in self._open.items() if port.full_name in left}
+        for name in gone:
+            self._open.pop(name).close()
+            self._feed.let_go_of(name, time.monotonic_ns(), is_gone=True)
+            self._parent.tell("vanished", port=name)
+        self._refused &= set(stable)
+        for name, full_name in stable.items():
+            if name not in self._open | dict.fromkeys(self._refused) and self._wants(name):
+                self._add(name, full_name)
+        self._seek(stable)
+
+    def _wants(self, name: str) -> bool:
+        named = bool(self._patterns) and is_wanted(name, self._patterns)
+        return named or (self._others and is_wanted(name, ()))
+
+    def _seek(self, names: Iterable[str]) -> None:
+        """Report patterns that no port matches, at the first look."""
+        present = list(names)
+        for pattern in self._sought:
+            if not any(is_wanted(name, [pattern]) for name in present):
+                self._parent.tell("missing", pattern=pattern, present=present)
+        self._sought.clear()
+
+    def sense(self) -> None:
+        """See `Input.sense`. What came while we were stopped is still to be heard."""
+        before, self._sensed = self._sensed, time.monotonic()
+        for port in list(self._open.values()):
+            if self._sensed - before > SLEPT_S:
+                port.wait_anew()
+            else:
+                port.sense()
+
+    def hear(self, is_heard: bool) -> None:
+        """Tell the parent of each message from now on, or no more; any thread may call."""
+        self._is_heard = is_heard
+        for port in list(self._open.values()):
+            port.is_heard = is_heard
+
+    def _start(self) -> bool:
+        finder, problem = open_client(self._api)
+        if finder is None:
+            if problem != self._problem:
+                self._problem = problem
+                self._parent.tell("none", reason=problem)
+            return False
+        self._finder = finder
+        self._api = finder.get_current_api()
+        if self._api == _number("jack"):
+            self._watch = JackWatch(f"{CLIENT} watch")
+        self._parent.tell("system", api=api_name(self._api))
+        if self._virtual is not None:
+            self._add(self._virtual, None)
+        return True
+
+    def _add(self, name: str, full_name: str | None) -> None:
+        """Open a port, or (without a full name) a virtual one."""
+        import rtmidi
+
+        number = self._feed.open(name)
+        if number is None:
+            self._refused.add(name)
+            self._parent.tell("refused", port=name, reason=f"{PORTS} are open, which is the most")
+            return
+        try:
+            port = Input(self._client(), name, full_name, self._feed, self._parent)
+            if full_name is None:
+                port.midi.open_virtual_port(name)
+            else:
+                port.midi.open_port(port.midi.get_ports().index(full_name), name=name[:32])
+        except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
+            self._refused.add(name)
+            self._feed.let_go_of(name, time.monotonic_ns(), is_gone=True)
+            self._parent.tell("refused", port=name, reason=str(error))
+            return
+        self._open[name] = port
+        port.is_heard = self._is_heard
+        self._parent.tell("appeared", port=name, number=number)
+
+    def _client(self) -> Any:
+        import rtmidi
+
+        return rtmidi.MidiIn(self._api, name=CLIENT)
+
+
+def check_api(api: str | None) -> None:
+    """Refuse a MIDI system that RtMidi does not have here: it would take another one silently.
+
+    Raises
+    ------
+    ParameterError
+        Where it has no such system.
+    """
+    import rtmidi
+
+    compiled = rtmidi.get_compiled_api()
+    if api is not None and _number(api) not in compiled:
+        there = ", ".join(name for name in APIS if _number(name) in compiled) or "none"
+        raise ParameterError(f"--midi-api {api}: is not of this system; there are: {there}")
+
+
+def open_client(api: str | int | None) -> tuple[Any, str]:
+    """Open a client of the named MIDI system, or of the first there is; or None, and why."""
+    import rtmidi
+
+    if isinstance(api, str):
+        wanted = [_number(api)]
+    else:
+        wanted = [api] if api is not None else list(rtmidi.get_compiled_api())
+    problem = "RtMidi knows no MIDI system here"
+    for number in wanted:
+        try:
+            return rtmidi.MidiIn(number, name=CLIENT), ""
+        except (rtmidi.RtMidiError, SystemError) as error:
+            problem = str(error)
+    return None, problem
+
+
+def list_inputs() -> tuple[str, list[str], str]:
+    """List the MIDI inputs: the system, their stable names, and why there is no system."""
+    client, problem = open_client(None)
+    if client is None:
+        return "", [], problem
+    return api_name(client.get_current_api()), stable_names(client.get_ports()), ""
+
+
+def _number(api: str) -> int:
+    import rtmidi
+
+    return int(getattr(rtmidi, f"API_{APIS[api]}"))
+
+
+def api_name(number: int) -> str:
+    """A MIDI system's display name."""
+    import rtmidi
+
+    return str(rtmidi.get_api_display_name(number))
+
+
+def _feed(order: Message) -> MidiFeed:
+    """Make the feed that an order describes."""
+    memory = mmap.mmap(order["memory"], os.fstat(order["memory"]).st_size)
+    rings = [SharedRing(memory, place) for place in order["rings"]]
+    routes = [Route(*route) for route in order["routes"]]
+    router = Router(routes, len(rings), order["known"])
+    kinds = {name: order[name] for name in ("message", "disconnect")}
+    return MidiFeed(rings, router, numbers=order["numbers"], **kinds)
+
+
+def main() -> None:
+    """Serve the parent process until it closes the pipe."""
+    parent = Parent()
+    orders = parent.orders()
+    order = next(orders)
+    inputs = Inputs(parent, _feed(order), order)
+    hung_up = threading.Event()
+
+    def listen() -> None:
+        for later in orders:
+            inputs.hear(later["hear"])
+        hung_up.set()
+
+    threading.Thread(target=listen, daemon=True).start()
+    looked = -SYSTEM_EVERY_S
+    while not hung_up.wait(SENSE_EVERY_S):
+        inputs.sense()
+        pause = LOOK_EVERY_S if inputs.has_system else SYSTEM_EVERY_S
+        if time.monotonic() - looked > pause:
+            inputs.look()
+            looked = time.monotonic()
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,47 @@
+"""Options of a live server, and of each of its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from platformdirs import user_music_path
+
+from yehu_server.live.addresses import OSC_ADDRESS, Address, Allowed
+from yehu_server.live.audio.output import OutputOptions
+from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.page.pages import PageOptions
+from yehu_server.live.web.server import WebOptions
+from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.style import Style
+
+
+@dataclass
+class PartOptions:
+    """Options of one part."""
+
+    style: Style = field(default_factory=Style)
+    reread: Callable[[], Mapping] | None = (
+        None  # reads the mapping's files; None: they are not watched
+    )
+
+
+@dataclass
+class ServeOptions:
+    """Options of a server; see ``yehu-server serve --help``."""
+
+    output: OutputOptions = field(default_factory=OutputOptions)
+    midi: MidiOptions | None = field(default_factory=MidiOptions)  # None: no MIDI
+    osc: Address = OSC_ADDRESS
+    allowed: Allowed = field(default_factory=Allowed)
+    http: WebOptions | None = None  # None: no OSCQuery
+    page: PageOptions | None = None  # None: no page
+    announce: bool | None = None  # None: what other machines can reach
+    parts: Sequence[PartOptions] = field(default_factory=lambda: [PartOptions()])
+    has_room: bool = True
+    jitter_ms: float | None = None  # None: see playing.delay
+    record: Path | None = None
+    capture: Path | None = None
+    overwrite: bool = False  # whether these two may replace older files
+    recordings: Path = field(default_factory=lambda: user_music_path() / "yehu-server")

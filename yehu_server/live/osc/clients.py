@@ -1,0 +1,209 @@
+"""What OSC clients are told: values they set, changes they subscribed to, and errors.
+
+All is sent from the listening port, each message by itself: Pure Data does not read bundles.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+
+from yehu_server.errors import shortened
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.peers import Peer
+from yehu_server.live.osc.status import PLACE
+from yehu_server.live.osc.subscriptions import (
+    ERRORS_A_SECOND,
+    ERRORS_AT_ONCE,
+    Listener,
+    Status,
+    Telling,
+    Values,
+)
+from yehu_server.live.part_addresses import FIRST, divided
+
+FLUSH_S = 1.0 / 60.0  # between rounds of telling
+SLICE_S = 0.0005  # of a round, after which other messages are handled
+SWEEP_S = 1.0
+MOST_SUBSCRIBERS, MOST_OF_A_HOST = 64, 32
+MOST_KNOWN, MOST_CROWDED = 1024, 8192
+FORGIVEN_S = ERRORS_AT_ONCE / ERRORS_A_SECOND
+
+
+class Clients:
+    """The peers that are sent values and errors.
+
+    Addresses come in groups (``parts``): those of a part have its group before them, which is
+    left out of what `values` and `status` return.
+
+    Parameters
+    ----------
+    values : callable
+        Returns the values of all parameters of a group, by address.
+    prefix : str
+        Put before addresses.
+    status : callable, optional
+        Returns the status values of a group, by name; their addresses are PLACE and the name.
+    """
+
+    def __init__(self, values: Values, prefix: str, status: Status = lambda _group: {}) -> None:
+        self._values = values
+        self.prefix = prefix
+        self._status = status
+        self._clients: dict[Peer, Listener] = {}
+        self._telling = Telling(values, status, prefix)
+        self._round: Iterator[None] | None = None  # what is left of a round
+        self._flushed = 0.0  # when it began
+        self._swept = 0.0
+        self._is_waiting = False
+        self._crowded = MOST_KNOWN  # number of clients at which idle ones are dropped
+        self.errors_sent = 0
+        self.errors_withheld = 0
+
+    @property
+    def subscribers(self) -> int:
+        """Number of clients with a subscription."""
+        now = time.monotonic()
+        return sum(client.subscribes(now) for client in list(self._clients.values()))  # any thread
+
+    def _client(self, peer: Peer) -> Listener:
+        client = self._clients.get(peer)
+        if client is None:
+            if len(self._clients) >= self._crowded:
+                self._forget_idle()
+                self._crowded = max(MOST_KNOWN, 2 * len(self._clients))
+            client = self._clients[peer] = Listener(peer)
+        return client
+
+    def _forget_idle(self, *, forgiven_s: float = 0.0) -> None:
+        """Drop clients with nothing to be sent, some time after their last error."""
+        now = time.monotonic()
+        for peer, client in list(self._clients.items()):
+            until = max(client.until, client.hushed_until, client.complained + forgiven_s)
+            if until <= now and client.is_idle:
+                del self._clients[peer]
+
+    # -- what clients are sent ---------------------------------------------------------------
+
+    def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
+        """Send a peer the values that it has set, with the next flush."""
+        if len(self._clients) >= MOST_CROWDED and peer not in self._clients:
+            return
+        client = self._client(peer)
+        if client.hushed_until <= time.monotonic():
+            client.to_tell.update((address, divided(address)[0]) for address in addresses)
+            self._is_waiting = True
+
+    def hush(self, peer: Peer, seconds: float) -> None:
+        """Do not answer a peer for some time: another server that sends us its own values.
+
+        Two servers that answer each other would go on for ever.
+        """
+        self._client(peer).hushed_until = time.monotonic() + seconds
+
+    def subscribe(self, peer: Peer, seconds: float, form: str = "", addressed: str = FIRST) -> bool:
+        """Send a peer every change for some time; return whether there was room for one more.
+
+        `form` is empty for plain values, UNIT for values as 0 to 1, or PLACE for the status;
+        `addressed` is the group of addresses.
+        """
+        client, now = self._client(peer), time.monotonic()
+        if not client.subscribes(now):
+            hosts = [one.peer.host for one in self._clients.values() if one.subscribes(now)]
+            if len(hosts) >= MOST_SUBSCRIBERS or hosts.count(peer.host) >= MOST_OF_A_HOST:
+                return False
+        self._is_waiting = True
+        if form == PLACE:
+            client.asked_status[addressed] = now + seconds
+            names = self._status(addressed)
+            told = (addressed + PLACE + name for name in names)
+            client.to_tell.update(dict.fromkeys(told, addressed))
+            return True
+        client.subscribed[addressed] = now + seconds, form
+        values = self._values(addressed)
+        told = (addressed + address + form for address in values)
+        client.to_tell.update(dict.fromkeys(told, addressed))
+        return True
+
+    def unsubscribe(self, peer: Peer) -> None:
+        """End a peer's subscriptions."""
+        client = self._client(peer)
+        client.subscribed.clear()
+        client.asked_status.clear()
+
+    def listen(self, peer: Peer, address: str) -> None:
+        """Send a peer the value at an address (without the prefix) now, and whenever it changes."""
+        client = self._client(peer)
+        addressed, among = client.among(address)
+        among.setdefault(addressed, set()).add(address)
+        client.to_tell[address] = addressed
+        self._is_waiting = True
+
+    def ignore(self, peer: Peer, address: str) -> None:
+        """End what `listen` began."""
+        self._client(peer).ignore(address)
+
+    def hears(self, peer: Peer) -> bool:
+        """Whether a peer is sent changes of values."""
+        client = self._clients.get(peer)
+        if client is None:
+            return False
+        return bool(client.listens or client.watches or client.forms(time.monotonic()))
+
+    def forget(self, peer: Peer) -> None:
+        """Drop a peer that has hung up."""
+        self._clients.pop(peer, None)
+
+    def complain(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
+        """Send a peer an error, unless it has been sent many of late.
+
+        A callable `reason` is called only where the error is sent.
+        """
+        client = self._client(peer)
+        now = time.monotonic()
+        if client.hushed_until > now:
+            return
+        client.complained = now
+        if not client.errors.takes(now):
+            self.errors_withheld += 1
+            return
+        self.errors_sent += 1
+        reason = reason if isinstance(reason, str) else reason()
+        peer.send(pack(f"{self.prefix}/error", shortened(address), shortened(reason)))
+
+    # -- flushing ----------------------------------------------------------------------------
+
+    @property
+    def _is_watched(self) -> bool:
+        now = time.monotonic()
+        return any(
+            client.subscribes(now) or client.listens or client.watches
+            for client in self._clients.values()
+        )
+
+    def wait_s(self) -> float | None:
+        """Seconds until the next flush; None where there is nothing to send."""
+        if self._round is not None:
+            return 0.0
+        if not self._is_waiting and not self._is_watched:
+            return None
+        return max(0.0, self._flushed + FLUSH_S - time.monotonic())
+
+    def flush(self) -> None:
+        """Send what is due, at most 60 times a second; go on with it for up to SLICE_S."""
+        now = time.monotonic()
+        if now - self._swept > SWEEP_S:
+            self._swept = now
+            self._forget_idle(forgiven_s=FORGIVEN_S)
+        if self._round is None:
+            if now - self._flushed < FLUSH_S or not (self._is_waiting or self._is_watched):
+                return
+            self._flushed = now
+            self._is_waiting = False
+            self._round = self._telling.round(self._clients, now)
+        steps, self._round = self._round, None  # an error ends a round
+        for _ in steps:
+            if time.monotonic() > now + SLICE_S:
+                self._round = steps
+                return
+        self._is_waiting |= any(client.telling for client in self._clients.values())

@@ -1,0 +1,77 @@
+"""Open the sockets for OSC, and set what the kernel does for them."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import socket
+import struct
+import sys
+
+from yehu_server.errors import DeviceError
+from yehu_server.live.addresses import shown, why
+
+BUFFER_BYTES = 32 << 20  # asked for; the system may grant less
+DATAGRAM_BYTES = 1 << 14  # longer ones are dropped: a few would fill the system's buffer
+TRIES_FOR_A_PORT = 20
+# Linux's numbers of options that Python's socket module does not name.
+SO_ATTACH_FILTER, SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 26, 33, 35, 40
+UDP_HEADER_BYTES = 8
+# A kernel filter (BPF) that drops longer datagrams before they take room in the buffer.
+FILTER = (
+    (0x80, 0, 0, 0),  # load the length
+    (0x25, 0, 1, DATAGRAM_BYTES + UDP_HEADER_BYTES),  # skip one if it is no more than this
+    (0x06, 0, 0, 0),  # drop
+    (0x06, 0, 0, 0xFFFFFFFF),  # keep
+)
+
+
+def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
+    """Open a UDP socket and a listening TCP socket at one address.
+
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
+    """
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0][0]
+        for _ in range(TRIES_FOR_A_PORT if port == 0 else 0):
+            with contextlib.suppress(OSError):  # in use for TCP only
+                return _bind(family, host, port)
+        return _bind(family, host, port)
+    except OSError as error:
+        raise DeviceError(f"OSC: cannot listen at {shown(host, port)}: {why(error)}") from error
+
+
+def _bind(family: int, host: str, port: int) -> tuple[socket.socket, socket.socket]:
+    with contextlib.ExitStack() as undo:
+        udp = undo.enter_context(socket.socket(family, socket.SOCK_DGRAM))
+        tcp = undo.enter_context(socket.socket(family, socket.SOCK_STREAM))
+        udp.bind((host, port))
+        tcp.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        tcp.bind((host, udp.getsockname()[1]))
+        tcp.listen()
+        undo.pop_all()
+    return udp, tcp
+
+
+def widen(udp: socket.socket) -> int:
+    """Ask for a large receive buffer, and for the kernel's time stamps, drop counts and filter.
+
+    Returns the size of the buffer that is granted (bytes).
+    """
+    with contextlib.suppress(OSError):
+        udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
+    if sys.platform == "linux":
+        with contextlib.suppress(OSError):  # with privileges only
+            udp.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, BUFFER_BYTES)
+        for option in (SO_TIMESTAMPNS, SO_RXQ_OVFL):
+            with contextlib.suppress(OSError):
+                udp.setsockopt(socket.SOL_SOCKET, option, 1)
+        program = b"".join(struct.pack("HBBI", *line) for line in FILTER)
+        buffer = ctypes.create_string_buffer(program, len(program))
+        with contextlib.suppress(OSError):
+            described = struct.pack("HP", len(FILTER), ctypes.addressof(buffer))
+            udp.setsockopt(socket.SOL_SOCKET, SO_ATTACH_FILTER, described)
+    return udp.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)

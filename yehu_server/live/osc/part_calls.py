@@ -1,0 +1,189 @@
+"""Carry out what OSC messages ask of one part: its parameters, its notes, its services."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+
+from yehu_server.errors import RefusedError
+from yehu_server.live.osc.calls import LONGEST_SUBSCRIPTION_S
+from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.learn_calls import LearnCalls
+from yehu_server.live.osc.limits import Allowance
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.peers import Peer
+from yehu_server.live.osc.preset_calls import SAVES_A_SECOND, SAVES_AT_ONCE, PresetCalls
+from yehu_server.live.osc.request import Desk, Request
+from yehu_server.live.osc.status import PLACE, as_argument
+from yehu_server.live.part_addresses import OWN, part_of
+from yehu_server.params.spec import Param
+from yehu_server.params.table import PREFIX, TABLE, UNIT
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import Mapping
+
+Act = Callable[[Request], None]
+
+SUBSCRIBED_S = 60.0
+
+
+@dataclass(frozen=True)
+class Backstage:
+    """What the calls of all parts share."""
+
+    clients: Clients
+    desk: Desk
+    complain: Callable[[Peer, str, str], None]  # sends a peer an error, with the address it sent to
+    forget: Callable[[str], None]  # drops the messages of a group that wait for their time
+    changed: Callable[[str], None]  # tells that the tree changed, at a path below each group
+    remap: Callable[[LivePlayer, Mapping], None]  # gives a mapping to a player and its like
+    saves: Allowance = field(default_factory=lambda: Allowance(SAVES_A_SECOND, SAVES_AT_ONCE))
+
+
+class PartCalls:
+    """Carries out the calls of a part, and sets its parameters.
+
+    Parameters
+    ----------
+    addressed : str
+        The group of addresses (``parts``) that it has.
+
+    Attributes
+    ----------
+    by_address : dict
+        What carries out each address after the group; each raises YehuError where it refuses.
+    """
+
+    def __init__(self, player: LivePlayer, addressed: str, backstage: Backstage) -> None:
+        self._player = player
+        self._addressed = addressed
+        self._prefix = PREFIX + addressed
+        self._clients = backstage.clients
+        self._desk = backstage.desk
+        self._forget = backstage.forget
+        self._params = OWN if addressed else TABLE
+        self.by_address: dict[str, Act] = {
+            "/note": self._note,
+            "/note/off": self._note_off,
+            "/pitch": self._pitch,
+            "/bend": lambda call: self._set(call, "/playing/bend"),
+            "/press": lambda call: self._set(call, "/playing/press"),
+            "/bow": self._bow,
+            "/release": self._release,
+            "/panic": self._panic,
+            "/reset": self._reset,
+            "/params": self._send_params,
+            "/status": self._status,
+            "/subscribe": self._subscribe,
+            "/subscribe/unit": lambda call: self._subscribe(call, UNIT),
+            "/subscribe/status": lambda call: self._subscribe(call, PLACE),
+        }
+        self.by_address |= PresetCalls(player, addressed, backstage).by_address
+        self.by_address |= LearnCalls(player, addressed, backstage).by_address
+        for param in self._params:
+            self.by_address[param.address] = self._setter(param.address)
+            self.by_address[param.address + UNIT] = self._unit_setter(param)
+
+    def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
+        """Send a peer the values that it has set, of those that the part has."""
+        own = {param.address for param in self._params}
+        told = [self._addressed + one for one in addresses if one.removesuffix(UNIT) in own]
+        self._clients.echo(peer, told)
+
+    # -- parameters --------------------------------------------------------------------------
+
+    def _setter(self, address: str) -> Act:
+        return lambda call: self._set(call, address)
+
+    def _set(self, call: Request, address: str) -> None:
+        (value,) = call.numbers(1)
+        self._player.write(address, value, frame=call.frame)
+        self._clients.echo(call.peer, [self._addressed + address])
+
+    def _unit_setter(self, param: Param) -> Act:
+        def set_unit(call: Request) -> None:
+            (unit,) = call.numbers(1)
+            self._player.write(param.address, param.from_unit(unit), frame=call.frame)
+            self._clients.echo(call.peer, [self._addressed + param.address + UNIT])
+
+        return set_unit
+
+    def _send_params(self, call: Request) -> None:
+        call.check_peer()
+        values = self._player.values()
+        for param in self._params:
+            value = values[param.address]
+            row = (self._prefix + param.address, value, param.lo, param.hi, param.default)
+            call.peer.send(pack(f"{self._prefix}/param", *row, param.unit, param.doc))
+        call.peer.send(pack(f"{self._prefix}/params", len(self._params)))
+
+    # -- playing -----------------------------------------------------------------------------
+
+    def _note(self, call: Request) -> None:
+        note, velocity = call.numbers(2)
+        if velocity == 0.0:
+            self._player.note_off(note, frame=call.frame)
+        else:
+            self._player.note_on(note, velocity, frame=call.frame)
+
+    def _note_off(self, call: Request) -> None:
+        self._player.note_off(call.numbers(1, 2)[0], frame=call.frame)
+
+    def _pitch(self, call: Request) -> None:
+        self._player.slide(call.numbers(1)[0], frame=call.frame)
+
+    def _bow(self, call: Request) -> None:
+        speed, force = call.numbers(2)
+        self._player.draw(speed, force, frame=call.frame)
+        self.echo(call.peer, ["/bow/speed", "/bow/force"])
+
+    def _release(self, call: Request) -> None:
+        self._player.release(frame=call.frame)
+
+    def _panic(self, call: Request) -> None:
+        self._forget(self._addressed)
+        self._player.panic(frame=call.frame)
+
+    def _reset(self, call: Request) -> None:
+        self._forget(self._addressed)
+        self._player.reset(frame=call.frame)
+        self.echo(call.peer, [param.address for param in self._params])
+
+    # -- services ----------------------------------------------------------------------------
+
+    def _status(self, call: Request) -> None:
+        call.check_peer()
+        for address, value in self._states():
+            call.peer.send(pack(address, as_argument(value)))
+
+    def _states(self) -> Iterator[tuple[str, float | str]]:
+        values = self._desk.status()
+        if self._addressed:
+            values = self._desk.part_status(part_of(self._addressed))
+        for name, value in values.items():
+            yield f"{self._prefix}{PLACE}{name}", value
+
+    def _subscribe(self, call: Request, form: str = "") -> None:
+        numbers = call.numbers(0, 2)
+        seconds = within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
+        peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer
+        if not self._clients.subscribe(peer, seconds, form, self._addressed):
+            raise RefusedError("there are too many subscribers")
+        peer.send(pack(f"{self._prefix}/subscribed", seconds))
+
+
+def within_an_hour(seconds: float) -> float:
+    """The nearest length of a subscription (s) to one that is asked for."""
+    return min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
+
+
+def port_of(number: float) -> int:
+    """The port of an argument.
+
+    Raises
+    ------
+    RefusedError
+        Where it is none.
+    """
+    if not 0 < number <= 65535 or number != int(number):
+        raise RefusedError(f"{number:g} is not a port")
+    return int(number)

@@ -1,0 +1,205 @@
+"""The peers that send OSC, and how each is answered: by datagram, or over a connection.
+
+Answers are limited. A sender of datagrams gets so many bytes a second, and another host twice as
+many for all of its ports, since a small request may have large answers, and its address may be
+forged; a connection gets what its other end reads.
+"""
+
+from __future__ import annotations
+
+import selectors
+import socket
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from yehu_server.live.addresses import Address
+from yehu_server.live.osc.framing import Framing
+from yehu_server.live.osc.limits import Allowance
+
+MOST_UNSENT_BYTES = 1 << 18  # waiting for one peer
+ANSWERED_AT_ONCE_BYTES, ANSWERED_BYTES_A_SECOND = 1 << 17, 1 << 17
+SENDERS_OF_A_HOST = 2  # that are answered in full; of this machine, all
+
+
+class Peer(Protocol):
+    """A sender of OSC, which can be answered."""
+
+    @property
+    def name(self) -> str:
+        """Host and port, for display."""
+
+    @property
+    def host(self) -> str:
+        """IP address of the host."""
+
+    @property
+    def takes_more(self) -> bool:
+        """Whether it may be sent more than it must be."""
+
+    def send(self, packet: bytes) -> None:
+        """Send a packet, or drop it where the limit is reached."""
+
+    def at(self, port: int) -> Peer:
+        """A peer at another port of the same host."""
+
+
+@dataclass
+class Traffic:
+    """Counters of OSC traffic since the start, and what there is now."""
+
+    packets: int = 0
+    refused: int = 0  # packets from senders that are not allowed, and refused connections
+    excess: int = 0  # packets dropped because too many wait
+    kernel_drops: int = 0  # packets dropped by the kernel, its buffer being full
+    unsent: int = 0
+    failures: int = 0  # messages that met a defect of the server
+    connections: int = 0
+    buffer_bytes: int = 0  # of the UDP socket, as the kernel grants
+
+
+@dataclass
+class WebTraffic:
+    """Counters of HTTP and WebSocket traffic since the start, and what there is now."""
+
+    requests: int = 0
+    refused: int = 0
+    failures: int = 0  # requests that met a defect of the server
+    unsent: int = 0
+    web_sockets: int = 0  # open now
+
+
+def answers(senders: int = 1) -> Allowance:
+    """The bytes of answers to as many senders of datagrams, taken together."""
+    return Allowance(senders * ANSWERED_BYTES_A_SECOND, senders * ANSWERED_AT_ONCE_BYTES)
+
+
+@dataclass(frozen=True)
+class UdpPeer:
+    """A sender of datagrams; what it is sent counts for all of its `allowances`."""
+
+    socket: socket.socket = field(compare=False)
+    address: Address
+    traffic: Traffic = field(compare=False)
+    allowances: tuple[Allowance, ...] = field(default_factory=lambda: (answers(),), compare=False)
+
+    @property
+    def name(self) -> str:
+        """See `Peer`."""
+        return f"{self.address[0]}:{self.address[1]}"
+
+    @property
+    def host(self) -> str:
+        """See `Peer`."""
+        return self.address[0]
+
+    @property
+    def takes_more(self) -> bool:
+        """See `Peer`."""
+        now = time.monotonic()
+        return all(allowance.left(now) > 0.0 for allowance in self.allowances)
+
+    def send(self, packet: bytes) -> None:
+        """See `Peer`."""
+        if not self.takes_more:
+            self.traffic.unsent += 1
+            return
+        for allowance in self.allowances:
+            allowance.spend(len(packet))
+        try:
+            self.socket.sendto(packet, self.address)
+        except OSError:
+            self.traffic.unsent += 1
+
+    def at(self, port: int) -> UdpPeer:
+        """See `Peer`; bytes sent there count for this peer too."""
+        address = (self.address[0], port, *self.address[2:])
+        return UdpPeer(self.socket, address, self.traffic, self.allowances)
+
+
+class TcpPeer:
+    """A TCP connection.
+
+    Parameters
+    ----------
+    watch : callable
+        Called with the peer when its `events` may have changed.
+    hear_out : callable
+        Called with the peer when its connection is broken.
+    """
+
+    def __init__(
+        self,
+        connection: socket.socket,
+        address: Address,
+        traffic: Traffic,
+        watch: Callable[[TcpPeer], None],
+        hear_out: Callable[[TcpPeer], None],
+    ) -> None:
+        self.socket = connection
+        self.name = f"{address[0]}:{address[1]} (TCP)"
+        self.host = address[0]
+        self.framing = Framing()
+        self.has_spoken = False  # sent a whole packet
+        self.heard_s = time.monotonic()  # time of its last packet, or of its connecting
+        self.is_being_heard = False  # packets of it wait or are handled; no more are read
+        self.reads = True  # until its end of the connection is closed
+        self._unsent = bytearray()
+        self._finished = False
+        self._traffic = traffic
+        self._watch = watch
+        self._hear_out = hear_out
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether nothing more will be sent."""
+        return self._finished
+
+    @property
+    def takes_more(self) -> bool:
+        """See `Peer`."""
+        return len(self._unsent) < MOST_UNSENT_BYTES // 2
+
+    @property
+    def events(self) -> int:
+        """The events that a selector should wait for."""
+        return (selectors.EVENT_READ if self.reads else 0) | (
+            selectors.EVENT_WRITE if self._unsent else 0
+        )
+
+    def send(self, packet: bytes) -> None:
+        """See `Peer`; packets are dropped while the peer does not read."""
+        if len(self._unsent) > MOST_UNSENT_BYTES:
+            self._traffic.unsent += 1
+        elif not self._finished:
+            self._unsent += self.framing.wrap(packet)
+            self.flush()
+
+    def flush(self) -> None:
+        """Send waiting bytes, as many as the connection takes now."""
+        try:
+            while self._unsent:
+                del self._unsent[: self.socket.send(self._unsent)]
+        except BlockingIOError:
+            pass
+        except OSError:
+            self.cut_off()
+        self._watch(self)
+
+    def cut_off(self) -> None:
+        """End the connection at once."""
+        self._unsent.clear()
+        self._finished = True
+        if self.reads:
+            self._hear_out(self)
+
+    def finish(self) -> None:
+        """End the connection once all waiting bytes are sent."""
+        self._finished = True
+        self._watch(self)
+
+    def at(self, port: int) -> TcpPeer:
+        """See `Peer`: a connection has no other port."""
+        del port
+        return self

@@ -1,0 +1,106 @@
+"""The OSC calls that load, save, delete and list presets, and morph between two."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from yehu_server.errors import PresetError, shortened
+from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.request import Request
+from yehu_server.live.part_addresses import OF_PARTS, PLAIN
+from yehu_server.params.preset import Preset, morph
+from yehu_server.params.table import PREFIX
+from yehu_server.playing.live import LivePlayer
+
+if TYPE_CHECKING:
+    from yehu_server.live.osc.part_calls import Backstage
+
+SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # of all clients together: each writes a file
+
+
+class PresetCalls:
+    """Carries out the calls under ``/preset``, of a player at a group of addresses.
+
+    Attributes
+    ----------
+    by_address : dict
+        The function that carries out each call; each raises YehuError where it refuses.
+    """
+
+    def __init__(self, player: LivePlayer, addressed: str, backstage: Backstage) -> None:
+        self._player = player
+        self._presets = player.presets
+        self._addressed = addressed
+        self._clients = backstage.clients
+        self._complain = backstage.complain
+        self._changed = backstage.changed
+        self._prefix = PREFIX + addressed
+        self._saves = backstage.saves
+        self.by_address: dict[str, Callable[[Request], None]] = {
+            "/preset/load": self._load,
+            "/preset/morph": self._morph,
+            "/preset/save": self._save,
+        }
+        if not addressed:  # presets are everyone's
+            self.by_address |= {"/preset/delete": self._delete, "/preset/list": self._list}
+
+    def _load(self, call: Request) -> None:
+        preset = self._presets.load(call.word())
+        self._set(call, "/preset/load", preset.values)
+        call.peer.send(pack(f"{self._prefix}/preset/loaded", preset.name))
+        for remark in preset.remarks():
+            self._complain(call.peer, f"{self._prefix}/preset/load", remark)
+
+    def _set(self, call: Request, address: str, values: Mapping[str, float]) -> None:
+        """Set values of presets, but those that all parts share in the first part alone."""
+        shared = [one for one in values if self._player.part > 0 and one not in OF_PARTS]
+        own = {one: value for one, value in values.items() if one not in shared}
+        self._player.load(own, frame=call.frame)
+        known = OF_PARTS if self._addressed else PLAIN
+        self._clients.echo(call.peer, [self._addressed + one for one in own if one in known])
+        if shared:
+            which = f"{', '.join(shared)}: one for all parts, left out; "
+            self._complain(
+                call.peer, self._prefix + address, f"{which}{PREFIX}{address} sets what all share"
+            )
+
+    def _morph(self, call: Request) -> None:
+        if len(call.arguments) != 3:
+            raise PresetError("expected two names and a number from 0 to 1")
+        one, other = self._named(call, 0), self._named(call, 1)
+        (amount,) = replace(call, arguments=call.arguments[2:]).numbers(1)
+        self._set(call, "/preset/morph", morph(one, other, amount))
+
+    def _named(self, call: Request, place: int) -> Preset:
+        return self._presets.load(replace(call, arguments=call.arguments[place:][:1]).word())
+
+    def _save(self, call: Request) -> None:
+        name = call.word()
+        if not self._saves.takes(time.monotonic()):
+            raise PresetError("presets are saved too often; try again in a second")
+        self._presets.save(name, self._player.sound())
+        self._know()
+        call.peer.send(pack(f"{self._prefix}/preset/saved", name))
+
+    def _know(self) -> None:
+        """Tell everybody that there are other presets."""
+        self._player.know_programs()
+        self._changed("/preset")
+
+    def _delete(self, call: Request) -> None:
+        name = call.word()
+        self._presets.delete(name)
+        self._know()
+        call.peer.send(pack(f"{self._prefix}/preset/deleted", name))
+
+    def _list(self, call: Request) -> None:
+        presets, errors = self._presets.all()
+        for preset in presets:
+            row = (preset.name, preset.program or 0, shortened(preset.about))
+            call.peer.send(pack(f"{self._prefix}/preset", *row))
+        call.peer.send(pack(f"{self._prefix}/presets", len(presets)))
+        for error in errors:
+            self._complain(call.peer, f"{self._prefix}/preset/list", str(error))

@@ -1,0 +1,123 @@
+"""Keep messages with time tags until they are due.
+
+A tag is a time of the system's clock; the instrument counts frames. The first tag of a series
+gives a time and its frame, and later tags are counted from it at the nominal sample rate, so that
+intervals are exact to the frame. Once the device's own rate has led more than a millisecond away
+from that, a new pair of time and frame is taken.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import time
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+from yehu_server.live.osc.limits import OVERHEAD_BYTES, Room
+from yehu_server.playing.live import LivePlayer
+
+AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
+TOGETHER_NS, TRIES = 100_000, 10
+STRAY_S = 0.001
+MOST_BYTES = 20 << 20  # some 65,000 notes, half as many of one sender
+
+
+T = TypeVar("T")
+Sender = TypeVar("Sender")
+
+
+def both_clocks() -> tuple[float, int]:
+    """The system's clock (s since 1970) and the monotonic clock (ns) at the same moment."""
+    for _ in range(TRIES):
+        before = time.monotonic_ns()
+        now_s = time.time()
+        if time.monotonic_ns() - before < TOGETHER_NS:  # the thread was not held up in between
+            break
+    return now_s, before
+
+
+class TagClock:
+    """Converts time tags to frames."""
+
+    def __init__(self, player: LivePlayer) -> None:
+        self._player = player
+        self._tie: tuple[float, int] | None = None  # a time (s since 1970) and its frame
+
+    def frame_at(self, due_s: float) -> int:
+        """The frame that is played at a time (s since 1970)."""
+        rate = self._player.instrument.rate
+        now_s, now_ns = both_clocks()
+        true = self._player.instrument.frame_at(now_ns) + (due_s - now_s) * rate
+        if self._tie is not None:
+            moment, frame = self._tie
+            counted = frame + round((due_s - moment) * rate)
+            if abs(counted - true) < STRAY_S * rate:
+                return counted
+        self._tie = (due_s, round(true))
+        return self._tie[1]
+
+
+class Schedule(Generic[T, Sender]):
+    """Things that wait for their time.
+
+    Parameters
+    ----------
+    ahead_s : float
+        How long before its time a thing is due.
+    most_bytes : int
+        Limit on the size of all of them; one sender may have half of it.
+    """
+
+    def __init__(self, ahead_s: float = AHEAD_S, most_bytes: int = MOST_BYTES) -> None:
+        self.ahead_s = ahead_s
+        self._room = Room(most_bytes)
+        self._order = itertools.count()
+        self._waiting: list[tuple[float, int, T, Sender, int]] = []
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def add(self, due_s: float, thing: T, sender: Sender, size: int = 0) -> bool:
+        """Keep a thing of some size (bytes) until its time (s since 1970).
+
+        Returns whether there was room.
+        """
+        size += OVERHEAD_BYTES
+        if not self._room.take(sender, size):
+            return False
+        heapq.heappush(self._waiting, (due_s, next(self._order), thing, sender, size))
+        return True
+
+    def due(self, most: int) -> list[tuple[float, T, Sender]]:
+        """Remove and return what is due now, at most so many, each with its time and sender."""
+        ready: list[tuple[float, T, Sender]] = []
+        horizon = time.time() + self.ahead_s
+        while self._waiting and self._waiting[0][0] <= horizon and len(ready) < most:
+            due_s, _, thing, sender, size = heapq.heappop(self._waiting)
+            self._room.give_back(sender, size)
+            ready.append((due_s, thing, sender))
+        return ready
+
+    def wait_s(self) -> float | None:
+        """Seconds until the next thing is due; None where there is none."""
+        if not self._waiting:
+            return None
+        return max(0.0, self._waiting[0][0] - self.ahead_s - time.time())
+
+    def drop(self, which: Callable[[T], bool]) -> None:
+        """Drop some things."""
+        kept = []
+        for entry in self._waiting:
+            _, _, thing, sender, size = entry
+            if which(thing):
+                self._room.give_back(sender, size)
+            else:
+                kept.append(entry)
+        self._waiting = kept
+        heapq.heapify(self._waiting)
+
+    def clear(self) -> None:
+        """Drop everything."""
+        self._waiting.clear()
+        self._room.clear()

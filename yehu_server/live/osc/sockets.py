@@ -1,0 +1,347 @@
+"""Serve OSC by UDP and TCP at one address, in one thread.
+
+The UDP socket is emptied before packets are parsed, so that memory holds a burst and not the
+kernel's small buffer; packets of a sender that has too many waiting are dropped and counted. A
+connection is not read again before its last packets are handled, so that its sender waits. On
+Linux the kernel stamps packets on arrival and counts those it drops: a message has its true time
+however busy Python is.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import math
+import selectors
+import socket
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from typing import Protocol
+
+from yehu_server.live.addresses import Address, Allowed, is_here
+from yehu_server.live.osc.backlog import Backlog
+from yehu_server.live.osc.datagrams import datagrams
+from yehu_server.live.osc.framing import FramingError
+from yehu_server.live.osc.limits import Allowance
+from yehu_server.live.osc.listening import DATAGRAM_BYTES, open_both, widen
+from yehu_server.live.osc.peers import SENDERS_OF_A_HOST, Peer, TcpPeer, Traffic, UdpPeer, answers
+
+log = logging.getLogger(__name__)
+
+STREAM_BYTES = 1 << 16  # of a connection, read at a time
+BEHIND_BYTES = 1 << 16  # waiting of one WebSocket, before it has to wait
+MOST_ASKED = 64
+READ_FOR_NS = 4_000_000  # before packets are handled in between
+MOST_PEERS = 1024  # UDP peers that are kept, and hosts
+ACCEPT_AGAIN_S = 1.0
+MOST_CONNECTIONS, MOST_OF_A_HOST = 64, 32
+# Where there are too many connections, a new one replaces one that has sent nothing for the first
+# time, or never sent a packet in the second, unless it is sent changes of values.
+QUIET_S, SPEAKS_WITHIN_S = 60.0, 10.0
+WARN_AGAIN_S = 1.0
+LONGEST_WAIT_S = 0.5
+
+
+class Handler(Protocol):
+    """Handles packets; called from the sockets' thread."""
+
+    def handle(self, packet: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
+        """Handle a packet in steps, between which other packets may be handled."""
+
+    def tick(self) -> None:
+        """Do what is due."""
+
+    def wait_s(self) -> float | None:
+        """Seconds until `tick` has something to do; None where it has nothing."""
+
+    def hears(self, peer: Peer) -> bool:
+        """Whether a peer is sent changes of values."""
+
+    def gone(self, peer: Peer) -> None:
+        """Drop a peer that has hung up."""
+
+
+class OscPorts:
+    """A UDP and a TCP port, and the thread that serves them.
+
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
+    """
+
+    def __init__(self, host: str, port: int, allowed: Allowed, handler: Handler) -> None:
+        self.traffic = Traffic()
+        self._allowed = allowed
+        self._handler = handler
+        self._backlog: Backlog[bytes] = Backlog(self._handle, self._end)
+        self._has_more = False  # whether the UDP socket was not emptied
+        self._handled_ns = 0
+        self._accept_from = math.inf  # monotonic s
+        self._warned = 0.0  # monotonic s
+        self._peers: dict[Address, UdpPeer] = {}
+        self._hosts: dict[str, Allowance] = {}
+        self._streams: set[TcpPeer] = set()
+        self._selector = selectors.DefaultSelector()
+        self._udp, self._tcp = open_both(host, port)
+        self.port = int(self._udp.getsockname()[1])
+        self.host = str(self._udp.getsockname()[0])
+        self.traffic.buffer_bytes = widen(self._udp)
+        self._datagrams = datagrams(self._udp)
+        self._wake_here, self._wake_there = socket.socketpair()
+        self._wake_there.setblocking(False)
+        self._asked: deque[Callable[[], object]] = deque()
+        for readable in (self._udp, self._tcp, self._wake_here):
+            readable.setblocking(False)
+            self._selector.register(readable, selectors.EVENT_READ)
+        self._ending = False
+        self._thread = threading.Thread(target=self._run, name="OSC", daemon=True)
+
+    def start(self) -> None:
+        """Start to serve."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop serving and close all sockets."""
+        self._ending = True
+        self._wake_there.send(b"!")
+        if self._thread.is_alive():
+            self._thread.join()
+        for peer in list(self._streams):
+            peer.socket.close()
+        for key in list(self._selector.get_map().values()):
+            with contextlib.suppress(AttributeError):
+                key.fileobj.close()  # type: ignore[union-attr]
+        self._wake_there.close()
+        self._selector.close()
+
+    def receive(self, packet: bytes, peer: Peer) -> None:
+        """Take a packet that a WebSocket received; any thread may call."""
+        arrived_ns = time.monotonic_ns()
+
+        def take_in() -> None:
+            self.traffic.packets += 1
+            self._backlog.add(packet, peer, arrived_ns, len(packet), is_due=True)
+
+        self.call_soon(take_in)
+
+    def leave(self, peer: Peer) -> None:
+        """Drop a WebSocket's peer once its packets are handled; any thread may call."""
+        self.call_soon(lambda: self._backlog.add(None, peer, 0))
+
+    def call_soon(self, action: Callable[[], object]) -> None:
+        """Call a function in the thread that serves; any thread may call."""
+        self._asked.append(action)
+        self._wake()
+
+    def _wake(self) -> None:
+        with contextlib.suppress(OSError):  # full: the thread will wake anyway
+            self._wake_there.send(b"!")
+
+    def _run(self) -> None:
+        while not self._ending:
+            try:
+                self._turn()
+            except Exception:  # a defect of the server must not end the thread
+                self.traffic.failures += 1
+                log.exception("OSC: a message could not be handled")
+
+    def _turn(self) -> None:
+        """Read the sockets, handle packets for a while, and do what is due."""
+        asked = self._handler.wait_s()
+        wait = LONGEST_WAIT_S if asked is None else min(asked, LONGEST_WAIT_S)
+        self._has_more = False
+        for key, events in self._selector.select(0.0 if self._backlog else wait):
+            self._serve(key, events)
+        now_ns = time.monotonic_ns()
+        # Empty the socket's small buffer first: the backlog has more room.
+        if not self._has_more or now_ns - self._handled_ns > READ_FOR_NS:
+            self._backlog.work()
+            self._handled_ns = time.monotonic_ns()
+        self._handler.tick()
+        now = time.monotonic()
+        if now > self._accept_from:
+            self._accept_from = math.inf
+            self._selector.register(self._tcp, selectors.EVENT_READ)
+
+    def is_behind(self, peer: Peer) -> bool:
+        """Whether a WebSocket's peer should wait before it sends more; any thread may call."""
+        return len(self._asked) >= MOST_ASKED or self._backlog.bytes_of(peer) >= BEHIND_BYTES
+
+    def _handle(self, data: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
+        """The steps that handle a packet, or a part of a stream."""
+        if isinstance(peer, TcpPeer):
+            return self._handle_stream(data, peer, arrived_ns)
+        return self._handler.handle(data, peer, arrived_ns)
+
+    def _handle_stream(self, data: bytes, peer: TcpPeer, arrived_ns: int) -> Iterator[None]:
+        try:
+            for packet in peer.framing.packets(data):
+                self.traffic.packets += 1
+                peer.has_spoken = True
+                peer.heard_s = time.monotonic()
+                try:
+                    yield from self._handler.handle(packet, peer, arrived_ns)
+                except Exception:  # a defect of the server; later packets are handled
+                    self.traffic.failures += 1
+                    log.exception("OSC: a message could not be handled")
+                yield
+        except FramingError as error:
+            self.traffic.refused += 1
+            self._warn(f"{peer.name}: {error}; connection closed")
+            self.hear_out(peer)
+        finally:
+            peer.is_being_heard = False
+
+    def _warn(self, what: str) -> None:
+        """Log what a peer did wrong, as a warning once a second at most."""
+        now = time.monotonic()
+        log.log(
+            logging.WARNING if now > self._warned + WARN_AGAIN_S else logging.DEBUG, "OSC: %s", what
+        )
+        self._warned = now
+
+    def _end(self, peer: Peer) -> None:
+        """Drop a peer that hung up, once all of its packets are handled."""
+        if isinstance(peer, TcpPeer):
+            peer.finish()
+        self._handler.gone(peer)
+
+    def _serve(self, key: selectors.SelectorKey, events: int) -> None:
+        if key.fileobj is self._udp:
+            self._read_datagrams()
+        elif key.fileobj is self._tcp:
+            self._accept()
+        elif key.fileobj is self._wake_here:
+            self._do_asked()
+        elif isinstance(key.data, TcpPeer):
+            if events & selectors.EVENT_WRITE:
+                key.data.flush()
+            if events & selectors.EVENT_READ and key.data.reads:
+                self._read_stream(key.data)
+
+    def _do_asked(self) -> None:
+        with contextlib.suppress(BlockingIOError):
+            self._wake_here.recv(STREAM_BYTES)
+        for _ in range(len(self._asked)):  # what is added meanwhile waits for the next turn
+            self._asked.popleft()()
+        if self._asked:
+            self._wake()
+
+    def _read_datagrams(self) -> None:
+        """Read some of the waiting datagrams."""
+        found, self._has_more = self._datagrams.read()
+        self.traffic.kernel_drops = self._datagrams.dropped
+        for packet, address, arrived_ns in found:
+            if address[1] == self.port and is_here(address[0]):
+                self.traffic.refused += 1  # from this server: someone subscribed it to itself
+            elif address[0] in self._allowed:
+                self._enqueue(packet, self._peer(address), arrived_ns)
+            else:
+                self.traffic.refused += 1
+
+    def _peer(self, address: Address) -> UdpPeer:
+        peer = self._peers.get(address)
+        if peer is None:
+            if len(self._peers) >= MOST_PEERS:
+                del self._peers[next(iter(self._peers))]
+            allowances: tuple[Allowance, ...] = (answers(),)
+            if not is_here(address[0]):
+                allowances += (self._answers_to(address[0]),)
+            peer = self._peers[address] = UdpPeer(self._udp, address, self.traffic, allowances)
+        return peer
+
+    def _answers_to(self, host: str) -> Allowance:
+        """The bytes of answers to all ports of another host."""
+        if host not in self._hosts:
+            if len(self._hosts) >= MOST_PEERS:
+                del self._hosts[next(iter(self._hosts))]
+            self._hosts[host] = answers(SENDERS_OF_A_HOST)
+        return self._hosts[host]
+
+    def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
+        self.traffic.packets += 1
+        is_short = len(packet) <= DATAGRAM_BYTES  # the kernel drops longer ones on Linux only
+        if not (is_short and self._backlog.add(packet, peer, arrived_ns, len(packet))):
+            self.traffic.excess += 1
+
+    # -- TCP -----------------------------------------------------------------------------------
+
+    def _accept(self) -> None:
+        try:
+            connection, address = self._tcp.accept()
+        except OSError:  # too many open files: try again later
+            self._selector.unregister(self._tcp)
+            self._accept_from = time.monotonic() + ACCEPT_AGAIN_S
+            return
+        if address[0] not in self._allowed or not self._has_place(address[0]):
+            self.traffic.refused += 1
+            connection.close()
+            return
+        connection.setblocking(False)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.traffic.connections += 1
+        peer = TcpPeer(connection, address, self.traffic, self.watch, self.hear_out)
+        self._streams.add(peer)
+        self._selector.register(connection, selectors.EVENT_READ, peer)
+
+    def _has_place(self, host: str) -> bool:
+        """Whether there is room for one more connection; ends a silent one for it."""
+        open_ = [peer for peer in self._streams if not peer.is_finished]
+        of_host = [peer for peer in open_ if peer.host == host]
+        if len(of_host) >= MOST_OF_A_HOST:
+            silent = self._longest_silent(of_host)
+        elif len(open_) >= MOST_CONNECTIONS:
+            silent = self._longest_silent(open_)
+        else:
+            return True
+        if silent is not None:
+            self._warn(f"{silent.name}: closed for another connection, as it was silent for long")
+            silent.cut_off()
+        return silent is not None
+
+    def _longest_silent(self, peers: list[TcpPeer]) -> TcpPeer | None:
+        """The connection that has sent nothing for longest, if that was too long."""
+        now = time.monotonic()
+        silent = [
+            peer
+            for peer in peers
+            if now - peer.heard_s > (QUIET_S if peer.has_spoken else SPEAKS_WITHIN_S)
+            and not peer.is_being_heard
+            and not self._handler.hears(peer)
+        ]
+        return min(silent, key=lambda peer: peer.heard_s, default=None)
+
+    def _read_stream(self, peer: TcpPeer) -> None:
+        if peer.is_being_heard:  # the sender waits; nothing is lost
+            return
+        try:
+            data = peer.socket.recv(STREAM_BYTES)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if data:
+            peer.is_being_heard = True
+            self._backlog.add(data, peer, time.monotonic_ns(), len(data), is_due=True)
+        else:
+            self.hear_out(peer)
+
+    def hear_out(self, peer: TcpPeer) -> None:
+        """Read no more from a peer; its packets are still handled and answered."""
+        peer.reads = False
+        self.watch(peer)
+        self._backlog.add(None, peer, 0)
+
+    def watch(self, peer: TcpPeer) -> None:
+        """Let the selector wait for the peer's events; close the connection if it has none."""
+        with contextlib.suppress(KeyError, ValueError):
+            self._selector.unregister(peer.socket)
+        if peer.events:
+            self._selector.register(peer.socket, peer.events, peer)
+        elif peer.is_finished and peer.socket.fileno() >= 0:
+            peer.socket.close()
+            self._streams.discard(peer)
+            self.traffic.connections -= 1

@@ -1,0 +1,222 @@
+"""The facts that the page shares with the server, so that no table is written twice."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import fields
+from enum import Enum
+from pathlib import Path
+from typing import Any
+
+from yehu_server.ahead.build import RATES
+from yehu_server.ahead.interpreter import interpreter_layout, look_layout, look_length
+from yehu_server.ahead.source_hash import sources_hash
+from yehu_server.core.midi import messages, tables
+from yehu_server.core.midi.events import EVENTS
+from yehu_server.core.midi.tables import MOST_BINDS, TABLES
+from yehu_server.core.player import fingering
+from yehu_server.core.player.calibration import OPEN_NOTES
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.player.wishes import KINDS
+from yehu_server.errors import ParameterError
+from yehu_server.live.page.examples import examples
+from yehu_server.params.preset import SAVED, Preset
+from yehu_server.params.spec import Param
+from yehu_server.params.table import SLOT, TABLE
+from yehu_server.playing import learn, sources
+from yehu_server.playing.binds import Bind
+from yehu_server.playing.live import ELSEWHERE
+from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
+from yehu_server.playing.mapping import Mapping as ControllerMapping
+from yehu_server.playing.pitch_and_level import NOTE_NAMES
+from yehu_server.playing.presets import read_preset
+from yehu_server.playing.tables import CURVES, WORDS, Controls, make_tables
+from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, RangePolicy, Tuning, read_tuning
+from yehu_server.util.files import shipped_folder, write_text
+
+
+def kinds() -> dict[str, int]:
+    """The number of each kind of wish, by its name."""
+    return {name.upper(): number for number, name in enumerate(KINDS)}
+
+
+def events() -> dict[str, int]:
+    """The number of each other kind of event, by its name."""
+    return {name.upper(): number for number, name in enumerate(EVENTS, len(KINDS))}
+
+
+def parameters() -> list[dict[str, Any]]:
+    """The rows of the parameter table, in its order."""
+    return [parameter(param) for param in TABLE]
+
+
+def parameter(param: Param) -> dict[str, Any]:
+    """One row: its fields, and its numbers in the player (`row`) and in the engine (`slot`)."""
+    own = {camel(field.name): _plain(getattr(param, field.name)) for field in fields(param)}
+    group, *words = param.address.split("/")[1:]
+    return own | {
+        "group": group,
+        "label": " ".join(words).replace("_", " "),
+        "row": ROW[param.address],
+        "slot": SLOT.get(param.address),
+    }
+
+
+def camel(name: str) -> str:
+    """A name as JavaScript writes it: ``smooth_ms`` becomes ``smoothMs``."""
+    first, *rest = name.split("_")
+    return first + "".join(word.capitalize() for word in rest)
+
+
+def _plain(value: Any) -> Any:
+    return value.value if isinstance(value, Enum) else value
+
+
+# What a table has of each bind, but for what the page finds itself, as it learns binds over a
+# mapping, and for what is of named controls: nothing moves those of a page.
+FOUND = {"first", "target", "same", "input_lo", "input_hi"}
+OF_BIND = [
+    name for name in TABLES.names or () if TABLES[name].shape == (MOST_BINDS,) and name not in FOUND
+]
+
+
+def mappings() -> dict[str, Any]:
+    """The shipped mappings by name, each merged with its bases."""
+    return {name: mapping(load(name)) for name in shipped_mappings()}
+
+
+def mapping(one: ControllerMapping) -> dict[str, Any]:
+    """A mapping, without the files it was read from; binds and points as tables have them."""
+    t = make_tables(one, Controls(), tuning=EQUAL, a4=STANDARD_A4, policy=RangePolicy.TRANSPOSE)[0]
+    points = int(t["points"].sum())
+    return {
+        "name": one.name,
+        "about": one.about,
+        "mpe": one.mpe,
+        "start": dict(one.start),
+        "x": t["x"][:points].tolist(),
+        "y": t["y"][:points].tolist(),
+        "binds": [bind(each, t, number) for number, each in enumerate(one.binds)],
+    }
+
+
+def bind(one: Bind, table: Any, number: int) -> dict[str, Any]:
+    """A bind: whom it overrides, and its row of the table, without what is 0."""
+    row = {name: plain(table[name][number]) for name in OF_BIND if table[name][number]}
+    channels = {"channels": list(one.channels)} if one.channels else {}
+    return {"source": one.source, "target": one.target, **channels, "row": row}
+
+
+def plain(number: float) -> float | int:
+    """A number as JSON has it, whole ones without a fraction."""
+    return int(number) if number == int(number) else float(number)
+
+
+def presets() -> dict[str, Any]:
+    """The shipped presets by name, in the order of their names; and what a preset keeps."""
+    files = sorted(shipped_folder("presets").glob("*.toml"))
+    found = map(read_preset, files)
+    return {"shipped": {each.name: preset(each) for each in found}, "saved": list(SAVED)}
+
+
+def preset(one: Preset) -> dict[str, Any]:
+    """A preset."""
+    return {
+        "name": one.name,
+        "about": one.about,
+        "program": one.program,
+        "values": dict(one.values),
+    }
+
+
+def tunings() -> dict[str, Any]:
+    """Equal temperament, and the shipped scales: each by itself and on each map that takes it."""
+    folder = shipped_folder("tunings")
+    scales, maps = (sorted(folder.glob(ending)) for ending in ("*.scl", "*.kbm"))
+    found = {"equal": tuning(EQUAL)}
+    for scale in scales:
+        found[scale.stem] = tuning(read_tuning(scale))
+        for keyboard in maps:
+            with suppress(ParameterError):  # the scale is not one for this map
+                found[_name(scale, keyboard)] = tuning(read_tuning(scale, keyboard))
+    return found
+
+
+def tuning(one: Tuning) -> dict[str, Any]:
+    """A tuning: the pitch of each key at the usual A4, or None where each sounds its own number."""
+    keys = None if one.keys is None else [one.pitch(float(key), STANDARD_A4) for key in KEYS]
+    return {"name": one.name, "keys": keys}
+
+
+def _name(scale: Path, keyboard: Path) -> str:
+    return f"{scale.stem}, {keyboard.stem}"
+
+
+HEAD = "// Written by `python -m yehu_server.live.page`; changes are lost.\n"
+
+
+def facts() -> dict[str, Any]:
+    """All facts, of JSON's types; the same for the same sources."""
+    return {
+        "kinds": kinds(),
+        "events": events(),
+        "parameters": parameters(),
+        "notes": {
+            "NAMES": list(NOTE_NAMES),
+            "OPEN": list(map(float, OPEN_NOTES)),
+            "LOWEST_NOTE": fingering.LOWEST_NOTE,
+            "HIGHEST_NOTE": fingering.HIGHEST_NOTE,
+            "OPEN_WITHIN": fingering.OPEN_WITHIN,
+            "KEYS": KEYS[-1] + 1,
+            "ELSEWHERE": ELSEWHERE,
+        },
+        "sources": {
+            "BEND": sources.BEND,
+            "OF_ONE_NOTE": sorted(sources.OF_ONE_NOTE),
+            "COARSE": [sources.COARSE[0], sources.COARSE[-1]],
+            "FINE_ABOVE": sources.FINE_ABOVE,
+            "STEPS": sources.STEPS,
+            "FINEST": sources.FINEST,
+            "CHANNELS": sources.CHANNELS,
+            "RESERVED": sorted(sources.RESERVED),
+            "NO_NRPN": sources.NO_NRPN,
+            "DATA_ENTRY": messages.DATA_ENTRY,
+            "NRPN": [messages.NRPN_COARSE, messages.NRPN_FINE],
+            "RPN": [messages.RPN_COARSE, messages.RPN_FINE],
+        },
+        "codes": {**WORDS, "PAIR": tables.PAIR, "NRPN": tables.NRPN},
+        "curves": {curve.value: code for curve, code in CURVES.items()},
+        "learner": {"DISTANCE": learn.DISTANCE, "AT_REST": dict(learn.AT_REST)},
+        "interpreter": interpreter_layout(),
+        "mappings": mappings(),
+        "defaultMapping": DEFAULT,
+        "presets": presets(),
+        "tunings": tunings(),
+        "look": look_layout(),
+        "lookLength": look_length(),
+        "rates": list(RATES),
+        "builtFrom": sources_hash(),
+    }
+
+
+def module(values: Mapping[str, Any]) -> str:
+    """The text of a JavaScript module that exports values of JSON's types, a line for each."""
+    lines = [
+        f"  {json.dumps(name)}: {json.dumps(value, separators=(',', ':'), allow_nan=False)},\n"
+        for name, value in values.items()
+    ]
+    return f"{HEAD}export default {{\n{''.join(lines)}}};\n"
+
+
+def write(folder: Path) -> None:
+    """Write ``facts.js`` and ``examples.js``.
+
+    Raises
+    ------
+    OutputError
+        Where one cannot be written.
+    """
+    write_text(folder / "facts.js", module(facts()))
+    write_text(folder / "examples.js", module(examples()))

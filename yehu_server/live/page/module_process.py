@@ -1,0 +1,36 @@
+"""Makes what pages need to sound themselves: it may take a minute.
+
+The process of its own has the lowest priority: whoever plays meanwhile must not hear of it.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+from yehu_server.ahead.module_cache import page_module
+from yehu_server.errors import YehuError
+from yehu_server.live.page.examples import write_beginnings
+from yehu_server.util.processes import Parent
+
+LOWEST = 19
+
+
+def main() -> None:
+    """Tell the parent process the module's file, or why there is none; before, small files."""
+    parent = Parent()
+    os.nice(LOWEST)
+    try:
+        with tempfile.TemporaryDirectory(prefix="yehu-page-") as folder:
+            for file in write_beginnings(Path(folder)):
+                parent.tell("beginning", name=file.name, text=file.read_text("utf-8"))
+        path = page_module()
+    except (YehuError, OSError) as error:
+        parent.tell("none", reason=str(error))
+    else:
+        parent.tell("module", path=str(path))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,123 @@
+"""Keeps the process that serves pages, which posts what they play by itself."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from yehu_server.core.midi.section_players import OWN
+from yehu_server.core.player.rows import ROW
+from yehu_server.errors import DeviceError
+from yehu_server.live.addresses import Address
+from yehu_server.live.page.players import CHANNELS, FIRST
+from yehu_server.live.page.sockets import MOST_PAGES
+from yehu_server.live.web.server import listen
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.section_people import SECTION
+from yehu_server.util.processes import Child, ChildKeeper
+
+STATUS_S = 0.5
+NAME = "the page"
+
+
+@dataclass(frozen=True)
+class PageOptions:
+    """Where pages are served, and to whom."""
+
+    address: Address
+    networks: Sequence[str] = ()  # that are answered; without any, all are
+    is_wished: bool = False  # whether the port has to be this one; else a free one may do
+
+
+class Pages:
+    """A port for pages, and the process that serves them.
+
+    Parameters
+    ----------
+    players : sequence of LivePlayer
+        The player of each part.
+    memory : int
+        File descriptor of the memory that has the instruments.
+    status : callable
+        What pages are told of the server, of JSON's types; any thread may call.
+    changed : callable
+        Called with a line when the process had to be started again; from another thread.
+    rigs : sequence of int
+        The instrument that shows each part: by default the first shows the first part, and so on.
+
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
+    """
+
+    def __init__(
+        self,
+        players: Sequence[LivePlayer],
+        options: PageOptions,
+        memory: int,
+        status: Callable[[], Mapping[str, Any]],
+        changed: Callable[[str], None],
+        rigs: Sequence[int] | None = None,
+    ) -> None:
+        self._players = tuple(players)
+        self._rigs = list(range(len(players)) if rigs is None else rigs)
+        self._options = options
+        self._memory = memory
+        self._status = status
+        self._changed = changed
+        host, port = options.address
+        try:
+            self._listening = listen(NAME, host, port)
+        except DeviceError:
+            if options.is_wished:
+                raise
+            self._listening = listen(NAME, host, 0)
+        self.host, self.port = self._listening.getsockname()[:2]
+        self._keeper = ChildKeeper(
+            "yehu_server.live.page.process",
+            "pages",
+            heard=lambda _event: None,  # it tells nothing
+            attend=self._attend,
+            ended=self._ended,
+            told=changed,
+            share=[memory, self._listening.fileno()],
+        )
+
+    def start(self) -> None:
+        """Start to serve."""
+        self._keeper.start()
+
+    def stop(self) -> None:
+        """Stop serving, and end the notes of pages."""
+        self._keeper.stop()
+        self._listening.close()
+
+    def _attend(self, child: Child, gone: threading.Event) -> None:
+        """Tell the process what to serve, and the status whenever it is another."""
+        allowed = list(self._options.networks)
+        listening = self._listening.fileno()
+        child.send("serve", memory=self._memory, rigs=self._rigs, socket=listening, allowed=allowed)
+        told: Any = None
+        while not gone.wait(STATUS_S):
+            if (news := (self._status(), self._own())) != told:
+                child.send("tell", status=news[0], own=news[1])
+                told = news
+
+    def _own(self) -> list[list[tuple[int, float]]]:
+        """Of each part that is a section, what each of its players has a value of its own of."""
+        return [
+            [(ROW[address], player.value(address)) for address in OWN]
+            if player.value(SECTION) > 1
+            else []
+            for player in self._players
+        ]
+
+    def _ended(self, by_itself: bool) -> None:
+        """End what the pages held, whose process is gone."""
+        for player in self._players:
+            player.let_go_of_channels(FIRST, MOST_PAGES * CHANNELS, frame=player.frame_of())
+        if by_itself:
+            self._changed("pages: their process ended; it is started again")

@@ -1,0 +1,130 @@
+"""The process that serves pages: ``python -m yehu_server.live.page.process``.
+
+It reads the instruments in shared memory, and posts wishes there itself. So neither pictures nor
+sound for twenty pages delay a note.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import socket
+import threading
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from aiohttp import web
+
+from yehu_server.live.addresses import Allowed
+from yehu_server.live.page.shared_view import Seen
+from yehu_server.live.page.site import HEADERS, Site
+from yehu_server.live.page.sockets import MOST_PAGES, PageSockets
+from yehu_server.live.web.guard import own_names, refusal
+from yehu_server.util.processes import Child, Message, Parent
+
+NICE = 5  # after the processes that play
+SOCKET, SOUND = "/socket", "/sound"
+ENDING_S = 0.2
+IDLE_S = 15.0  # before an idle connection is closed
+PREPARING, READY, NONE = "preparing", "ready", "none"
+
+
+class Pages:
+    """The site, the WebSockets, and what the control process tells them."""
+
+    def __init__(self, order: Message) -> None:
+        self._listening = socket.socket(fileno=order["socket"])
+        self._allowed = Allowed(order["allowed"])
+        self._names = own_names()
+        self._site = Site()
+        self._sounds = PREPARING  # whether pages can sound themselves
+        self._status: dict[str, Any] = {}
+        seen = Seen(order["memory"])
+        self._sockets = PageSockets(seen, order["rigs"], self._told)
+        self._loop = asyncio.new_event_loop()
+        self._finder = Child("yehu_server.live.page.module_process", self._hear_of_module)
+
+    def _hear_of_module(self, event: Message) -> None:
+        self._loop.call_soon_threadsafe(self._found, event)
+
+    def _told(self) -> dict[str, Any]:
+        return self._status | {"sounds": self._sounds}
+
+    def _found(self, event: Message) -> None:
+        """Hear of the module for pages."""
+        if event["event"] == "module":
+            self._site.add_module(Path(event["path"]).read_bytes())
+            self._sounds = READY
+        elif event["event"] == "beginning":
+            self._site.add_beginning(event["name"], event["text"])
+        elif self._sounds == PREPARING:
+            self._site.lack_module(event.get("reason", "what prepares it has ended"))
+            self._sounds = NONE
+
+    def hear(self, orders: Iterator[Message]) -> None:
+        """Hear of the state of the server, until the control process hangs up."""
+        for order in orders:
+            self._loop.call_soon_threadsafe(self._status.update, order["status"])
+            self._loop.call_soon_threadsafe(self._sockets.tell_own, order["own"])
+        self._finder.kill()
+        os._exit(0)
+
+    def run(self) -> None:
+        """Serve, for ever."""
+        self._loop.run_until_complete(self._serve())
+
+    async def _serve(self) -> None:
+        app = web.Application()
+        app.router.add_route("*", "/{path:.*}", self._answer)
+        quiet = logging.getLogger(__name__)
+        quiet.disabled = True  # malformed requests are not logged
+        runner = web.AppRunner(
+            app, access_log=None, logger=quiet, keepalive_timeout=IDLE_S, shutdown_timeout=ENDING_S
+        )
+        await runner.setup()
+        await web.SockSite(runner, self._listening).start()
+        sockets = self._sockets
+        await asyncio.gather(sockets.send_looks(), sockets.send_sound(), sockets.send_status())
+
+    async def _answer(self, request: web.Request) -> web.StreamResponse:
+        try:
+            return await self._respond(request)
+        except web.HTTPException as error:
+            error.headers.update(HEADERS)
+            raise
+
+    async def _respond(self, request: web.Request) -> web.StreamResponse:
+        if request.remote is None or request.remote not in self._allowed:
+            raise web.HTTPForbidden(text="this address is not allowed\n")
+        headers = request.headers
+        reason = refusal(headers.getall("Host", []), headers.getall("Origin", []), self._names)
+        if reason:
+            raise web.HTTPForbidden(text=f"{reason}\n")
+        if request.method not in {"GET", "HEAD"}:
+            raise web.HTTPMethodNotAllowed(request.method, ("GET", "HEAD"))
+        serve = {SOCKET: self._sockets.serve_page, SOUND: self._sockets.serve_listener}
+        if request.path not in serve:
+            return self._site.answer(request)
+        if headers.get("Upgrade", "").lower() != "websocket":
+            raise web.HTTPUpgradeRequired(text="for WebSockets\n")
+        if self._sockets.count >= MOST_PAGES:
+            raise web.HTTPServiceUnavailable(text="there are too many pages\n")
+        return await serve[request.path](request)
+
+
+def main() -> None:
+    """Serve the parent process until it closes the pipe."""
+    parent = Parent()
+    os.nice(NICE)
+    orders = parent.orders()
+    pages = Pages(next(orders))
+    threading.Thread(target=partial(pages.hear, orders), daemon=True).start()
+    parent.tell("serving")
+    pages.run()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""The instruments of the server, from the pages' process: it reads them, and posts wishes."""
+
+from __future__ import annotations
+
+import mmap
+import os
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.engine import native
+from yehu_server.core.engine.look import LOOK, look
+from yehu_server.core.engine.mailbox import PAGES
+from yehu_server.core.engine.rig import RIG, RIG_BYTES
+from yehu_server.core.engine.telemetry import METERS
+from yehu_server.core.player.rows import ROW
+from yehu_server.core.stage.record import STAGE, TAPE
+from yehu_server.params.table import TABLE
+
+Array = Any
+
+_NOTHING: Mapping[int, float] = MappingProxyType({})
+
+MARGIN = TAPE // 8  # frames of the tape that may be overwritten during a copy
+SHARED_ROWS = [ROW[param.address] for param in TABLE if param.is_shared]
+
+
+class Seen:
+    """Instruments on a stage in shared memory, while another process plays them.
+
+    Parameters
+    ----------
+    descriptor : int
+        File descriptor of the memory.
+    """
+
+    def __init__(self, descriptor: int) -> None:
+        self._memory = mmap.mmap(descriptor, os.fstat(descriptor).st_size)
+        count = int(np.frombuffer(self._memory, RIG, count=1)["parts"][0, 0])
+        self._rigs = np.frombuffer(self._memory, RIG, count=count)
+        self._stage = np.frombuffer(self._memory, STAGE, offset=count * RIG_BYTES, count=1)[0]
+        self._address = self._rigs.ctypes.data
+        self._look = np.zeros(1, LOOK)
+        self._meters = np.zeros(1, METERS)
+
+    @property
+    def rate(self) -> float:
+        """Sample rate (Hz)."""
+        return float(self._rigs["model"]["rate"][0])
+
+    def frame_of(self, arrived_ns: int) -> int:
+        """The frame at which a message sounds that arrived at this ``time.monotonic_ns()``."""
+        delay = int(self._rigs["mail"]["delay"][0, 0])
+        return int(native.frame_at.call(self._address, arrived_ns)) + delay
+
+    def post(
+        self,
+        rig: int,
+        frame: int,
+        kind: int,
+        index: int = 0,
+        value: float = 0.0,
+        other: float = 0.0,
+    ) -> bool:
+        """Post an event (``midi.events``) to the part that an instrument is the first of."""
+        address = self._address + rig * RIG_BYTES
+        return bool(native.post_from.call(address, PAGES, frame, kind, index, value, other))
+
+    def look(self, rig: int = 0, own: Mapping[int, float] = _NOTHING) -> bytes:
+        """A look at an instrument (``engine.look``), and then the value of each row of the table.
+
+        Its level is that of the mix, and what all share is as the first instrument has it.
+
+        Parameters
+        ----------
+        own : mapping
+            Values of rows in place of those that it has.
+        """
+        seen, values = self._look[0], self._rigs["player"]["value"][rig].copy()
+        look.call(self._address + rig * RIG_BYTES, self._look.ctypes.data)
+        if rig:
+            seen["peak"], seen["rms"] = self._stage["peak"], self._stage["rms"]
+            values[SHARED_ROWS] = self._rigs["player"]["value"][0, SHARED_ROWS]
+        for row, value in own.items():
+            values[row] = value
+        return self._look.tobytes() + bytes(values.tobytes())
+
+    def load(self) -> tuple[float, int]:
+        """The share of the time that computing takes, and the number of drop-outs so far."""
+        for _ in range(native.TRIES):
+            if native.read_meters.call(self._address, self._meters.ctypes.data):
+                break
+        meters = self._meters[0]
+        return float(meters["load"]), int(meters["underruns"] + meters["missed"])
+
+    def taped(self) -> int:
+        """Number of frames that were taped; the next frame to be heard."""
+        return int(native.taped.call(self._address))
+
+    def sound(self, begin: int, end: int) -> tuple[int, bytes]:
+        """Some frames of the mix, left and right in turn, float32.
+
+        They begin later where the tape has lost the first.
+        """
+        begin = max(begin, end - TAPE + MARGIN)
+        frames = self._stage["tape"][np.arange(begin, end) % TAPE]
+        return begin, frames.tobytes()

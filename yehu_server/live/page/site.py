@@ -1,0 +1,226 @@
+"""The page's files: written as a folder, or served, from memory or for a try."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import logging
+import shutil
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+from aiohttp import web
+
+from yehu_server.ahead.module_cache import SHIPPED, page_module, shipped_version
+from yehu_server.errors import OutputError, YehuError
+from yehu_server.live.page.examples import examples, write_beginnings
+from yehu_server.live.page.facts import facts, module, write
+from yehu_server.util.files import replacing, shipped_folder
+
+INDEX = "index.html"
+# By this the page knows that a server stands behind it: no file of its own tells.
+MARK = ('<meta charset="utf-8">', '<meta charset="utf-8">\n<meta name="yehu-server" content="1">')
+TYPES = {
+    ".css": "text/css; charset=utf-8",
+    ".html": "text/html; charset=utf-8",
+    ".json": "application/json",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".wasm": "application/wasm",
+    ".webmanifest": "application/manifest+json",
+}
+WORTH_IT = 0.9  # of the size, after compressing
+POLICY = (
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self'; "
+    "connect-src 'self'; worker-src 'self'; manifest-src 'self'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'"
+)
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-cache",  # it is asked each time whether it has changed
+}
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A file: its bytes, as they are and compressed, and what tells whether it has changed."""
+
+    content_type: str
+    plain: bytes
+    compressed: bytes | None
+    tag: str
+
+
+class Site:
+    """The files of the page, by their names in the address."""
+
+    def __init__(self) -> None:
+        self._files: dict[str, Kept] = {}
+        self._lacks: str | None = None
+        folder = page_folder()
+        for name in map(Path.as_posix, page_files()):
+            self._keep(name, (folder / name).read_bytes())
+        index = (folder / INDEX).read_text("utf-8").replace(*MARK, 1)
+        self._keep(INDEX, index.encode())
+        self._keep(FACTS, module(facts()).encode())
+        self._keep("examples.js", module(examples()).encode())
+
+    def add_module(self, data: bytes) -> None:
+        """Add the instrument in WebAssembly, once it is there."""
+        self._keep(MODULE, data)
+
+    def lack_module(self, reason: str) -> None:
+        """Answer with a reason that there is none, and that there won't be one."""
+        self._lacks = reason
+
+    def add_beginning(self, name: str, text: str) -> None:
+        """Add a file that captures of pages begin with."""
+        self._keep(f"{CAPTURES}/{name}", text.encode())
+
+    def answer(self, request: web.Request) -> web.Response:
+        """Answer with the file of a request's path."""
+        kept = self._files.get(request.path.removeprefix("/") or INDEX)
+        if kept is None and request.path == f"/{MODULE}":
+            if self._lacks is not None:
+                raise web.HTTPNotFound(text=f"{self._lacks}\n")
+            raise web.HTTPServiceUnavailable(headers={"Retry-After": "1"}, text="not built yet\n")
+        if kept is None:
+            raise web.HTTPNotFound(text="nothing here\n")
+        headers = HEADERS | {"ETag": kept.tag, "Vary": "Accept-Encoding"}
+        if kept.tag in request.headers.get("If-None-Match", ""):
+            return web.Response(status=304, headers=headers)
+        headers["Content-Type"] = kept.content_type
+        if kept.compressed is not None and "gzip" in request.headers.get("Accept-Encoding", ""):
+            headers["Content-Encoding"] = "gzip"
+            return web.Response(body=kept.compressed, headers=headers)
+        return web.Response(body=kept.plain, headers=headers)
+
+    def _keep(self, name: str, data: bytes) -> None:
+        small = gzip.compress(data, mtime=0)
+        self._files[name] = Kept(
+            TYPES[Path(name).suffix],
+            data,
+            small if len(small) < WORTH_IT * len(data) else None,
+            f'"{hashlib.sha256(data).hexdigest()[:32]}"',
+        )
+
+
+log = logging.getLogger(__name__)
+
+MODULE, CAPTURES = "yehu.wasm", "captures"
+SERVED = {".css", ".html", ".js", ".svg", ".webmanifest"}
+FACTS = "facts.js"
+GENERATED = {FACTS, "examples.js"}
+
+
+def page_files() -> Iterator[Path]:
+    """The files of the page that are written by hand, relative to `page_folder`."""
+    for file in _files_of(page_folder()):
+        if file.suffix in SERVED and file.name not in GENERATED:
+            yield file
+
+
+def page_folder() -> Path:
+    """The folder of the page."""
+    return shipped_folder("web")
+
+
+def write_page(folder: Path) -> list[Path]:
+    """Write the whole page into a folder; return its files, relative to the folder.
+
+    Where its module cannot be built, it is the page that was shipped, as it was then: parameters
+    and looks may lie elsewhere in a module of other sources.
+
+    Raises
+    ------
+    OutputError
+        Where one cannot be written.
+    YehuError
+        Where there is no WebAssembly module, and nothing to build it with.
+    """
+    try:
+        module = page_module()
+    except YehuError as error:
+        if not (version := shipped_version()):
+            raise
+        log.warning("the page is that of version %s: %s", version, error)
+        return _copy_all(_files_of(SHIPPED.parent), SHIPPED.parent, folder)
+    written = _copy_all(page_files(), page_folder(), folder)
+    try:
+        _copy(module, folder / MODULE)
+        write(folder)
+        beginnings = write_beginnings(folder / CAPTURES)
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror}") from error
+    written += [*map(Path, sorted(GENERATED)), Path(MODULE)]
+    return [*written, *(path.relative_to(folder) for path in beginnings)]
+
+
+def _files_of(folder: Path) -> Iterator[Path]:
+    """All files of a folder, relative to it."""
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            yield path.relative_to(folder)
+
+
+def _copy_all(files: Iterable[Path], source: Path, folder: Path) -> list[Path]:
+    """Copy files into another folder; return them."""
+    copied = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for file in files:
+            (folder / file).parent.mkdir(parents=True, exist_ok=True)
+            _copy(source / file, folder / file)
+            copied.append(file)
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror}") from error
+    return copied
+
+
+def _copy(source: Path, target: Path) -> None:
+    with replacing(target) as partial:
+        shutil.copyfile(source, partial)
+
+
+HOST = "127.0.0.1"
+CACHING = "no-cache"  # another version may be written into the folder
+
+
+class _Handler(SimpleHTTPRequestHandler):
+    extensions_map = {  # noqa: RUF012 - as the base class has it
+        **SimpleHTTPRequestHandler.extensions_map,
+        ".js": "text/javascript",
+        ".wasm": "application/wasm",
+    }
+
+    def end_headers(self) -> None:
+        self.send_header("Cache-Control", CACHING)
+        super().end_headers()
+
+    def log_message(self, *_: Any) -> None:
+        """Say nothing: who serves the page to himself knows."""
+
+
+def server_of(folder: Path, port: int) -> ThreadingHTTPServer:
+    """A server of a folder's files on a port (0: a free one) of this machine, not yet running.
+
+    Raises
+    ------
+    OutputError
+        Where the port is taken.
+    """
+    try:
+        return ThreadingHTTPServer((HOST, port), partial(_Handler, directory=str(folder)))
+    except OSError as error:
+        raise OutputError(f"{HOST}:{port}: {error.strerror}") from error
+
+
+def url_of(server: ThreadingHTTPServer) -> str:
+    """The address of the page."""
+    return f"http://{HOST}:{server.server_address[1]}/"

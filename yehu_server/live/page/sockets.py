@@ -1,0 +1,297 @@
+"""The WebSockets of pages: they get looks, sound and each other's wishes, and send wishes.
+
+A client that does not read gets none until it does, and nobody waits for it.
+
+A message of numbers is a sequence of float64, little-endian. From a page it is wishes, of WISH
+numbers each. To a page its first number says what follows: LOOK or WISHES, or it comes from the
+socket of sound: then it is one frame number, and float32 samples from there on, left and right in
+turn. A page plays one part, which its address names: `/socket?part=2`; without, the first.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import struct
+import time
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from aiohttp import WSMsgType, web
+
+from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
+from yehu_server.live.osc.limits import Allowance
+from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers
+from yehu_server.live.page.shared_view import Seen
+from yehu_server.params.table import TABLE
+
+TEXT, BINARY = 0x81, 0x82  # whole messages
+SHORT, MIDDLE = 126, 1 << 16  # payloads below have lengths of one and of two bytes
+
+
+def frame_of(payload: bytes, kind: int = BINARY) -> bytes:
+    """A message as the server sends it (RFC 6455, section 5.2)."""
+    size = len(payload)
+    if size < SHORT:
+        head = struct.pack(">BB", kind, size)
+    elif size < MIDDLE:
+        head = struct.pack(">BBH", kind, 126, size)
+    else:
+        head = struct.pack(">BBQ", kind, 127, size)
+    return head + payload
+
+
+def write(transport: asyncio.WriteTransport | None, frame: bytes, most_unsent: int) -> bool:
+    """Write a frame, unless so many bytes wait to be sent already; return whether it was."""
+    if transport is None or transport.is_closing():
+        return False
+    if transport.get_write_buffer_size() > most_unsent:
+        return False
+    transport.write(frame)
+    return True
+
+
+LOOK, WISHES = 0.0, 1.0
+WISH = 5  # numbers: frame or NOW, kind, index, value, other
+NOW = -1.0
+SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is the row of a parameter
+LOOK_S, SOUND_S, STATUS_S = 1 / 60, 0.001, 1.0
+IDLE_S = 0.05  # between looks whether somebody listens
+MOST_PAGES, MOST_UNSENT = 64, 1 << 16  # bytes
+MOST_WISHES = 1024  # of a message
+MESSAGE_BYTES = 8 * WISH * MOST_WISHES
+WISHES_PER_S, WISHES_AT_ONCE = 2000.0, 4000.0
+HEARTBEAT_S, CLOSING_S = 10.0, 0.3
+WRONG, NO_PART = 1008, 4404  # close codes: against the rules; there is no such part
+# A page that is heard for the first time hears this much of what was just played.
+FIRST_FRAMES = 512
+
+
+class Page:
+    """A page that is connected, by its number, and the part it plays, counted from 0."""
+
+    def __init__(self, number: int, part: int, transport: Any) -> None:
+        self.number = number
+        self.part = part
+        self.transport = transport
+        self.looks = self.sounds = False  # whether it wants looks; whether it sounds itself
+        self.allowance = Allowance(WISHES_PER_S, WISHES_AT_ONCE)
+
+
+class PageSockets:
+    """All WebSockets of pages.
+
+    Parameters
+    ----------
+    rigs : sequence of int
+        The instrument that shows each part.
+    status : callable
+        The state of the server, beside what is in the record, of JSON's types.
+    """
+
+    def __init__(
+        self,
+        seen: Seen,
+        rigs: Sequence[int],
+        status: Callable[[], Mapping[str, Any]],
+    ) -> None:
+        self._seen = seen
+        self._rigs = rigs
+        self._players = PagePlayers(seen, rigs)
+        self._status = status
+        self._pages: dict[web.WebSocketResponse, Page] = {}
+        self._listeners: dict[web.WebSocketResponse, Any] = {}
+        # Of each part, the values that it has where its instrument has others: in a section, whose
+        # players have seats of their own.
+        self._own: dict[int, dict[int, float]] = {}
+
+    @property
+    def count(self) -> int:
+        """Number of open WebSockets."""
+        return len(self._pages) + len(self._listeners)
+
+    # -- serving one -------------------------------------------------------------------------
+
+    async def serve_page(self, request: web.Request) -> web.WebSocketResponse:
+        """Serve a page until it goes."""
+        part = self._part_of(request)
+        socket = await _open(request)
+        if part is None:
+            await socket.close(code=NO_PART, message=f"there are {len(self._rigs)} parts".encode())
+            return socket
+        page = Page(self._free_number(), part, request.transport)
+        self._pages[socket] = page
+        try:
+            self._send_status(page)
+            async for message in socket:
+                if message.type is WSMsgType.BINARY:
+                    wishes = read_wishes(message.data)
+                elif message.type is WSMsgType.TEXT and self._obey(page, message.data):
+                    continue
+                else:
+                    wishes = None
+                if wishes is None:
+                    await socket.close(code=WRONG)
+                    break
+                await self._pass_on(page, wishes)
+        finally:
+            del self._pages[socket]
+            self._players.leave(page.number, time.monotonic_ns())
+            text = frame_of(json.dumps({"left": page.number}).encode(), TEXT)
+            for other in self._pages.values():
+                write(other.transport, text, MOST_UNSENT)
+        return socket
+
+    async def serve_listener(self, request: web.Request) -> web.WebSocketResponse:
+        """Send the sound to a page until it goes."""
+        socket = await _open(request)
+        self._listeners[socket] = request.transport
+        try:
+            async for _ in socket:  # only its end matters
+                pass
+        finally:
+            self._listeners.pop(socket, None)
+        return socket
+
+    def _part_of(self, request: web.Request) -> int | None:
+        """The part that an address names, counted from 0; None where there is none."""
+        words = [str(part) for part in range(1, len(self._rigs) + 1)]
+        word = request.query.get("part", "1")
+        return words.index(word) if word in words else None
+
+    def _free_number(self) -> int:
+        taken = {page.number for page in self._pages.values()}
+        return next(number for number in range(MOST_PAGES + 1) if number not in taken)
+
+    def _obey(self, page: Page, text: str) -> bool:
+        """Do what a page asks for; return whether that can be asked."""
+        try:
+            asked = json.loads(text)
+            page.looks, page.sounds = asked["looks"] is True, asked["sounds"] is True
+        except (ValueError, KeyError, TypeError, RecursionError):
+            return False
+        return True
+
+    async def _pass_on(self, page: Page, wishes: Any) -> None:
+        """Post wishes, and tell other pages that sound as this part; a hasty page waits."""
+        self._players.post(page.number, page.part, wishes, time.monotonic_ns())
+        own = self._own.get(page.part, {})
+        for _, kind, row, value, _ in wishes:
+            if kind in (WRITE, HOLD) and row in own:
+                own[int(row)] = value  # at once: the control process tells it later
+        frame = frame_of(struct.pack("<2d", WISHES, page.number) + wishes.tobytes())
+        for other in self._pages.values():
+            if other is not page and other.sounds and other.part == page.part:
+                write(other.transport, frame, MOST_UNSENT)
+        page.allowance.spend(len(wishes))
+        if (left := page.allowance.left(time.monotonic())) < 0.0:
+            await asyncio.sleep(-left / WISHES_PER_S)
+
+    # -- telling all -------------------------------------------------------------------------
+
+    def tell_own(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
+        """Take the values that parts have where their instruments have others.
+
+        Parameters
+        ----------
+        own : sequence
+            Of each part, rows and their values.
+        """
+        self._own = {
+            part: {int(row): value for row, value in values} for part, values in enumerate(own)
+        }
+
+    async def send_looks(self) -> None:
+        """Send looks, for ever."""
+        async for _ in every(LOOK_S):
+            viewers = [page for page in self._pages.values() if page.looks]
+            for part in {page.part for page in viewers}:
+                look = self._seen.look(self._rigs[part], self._own.get(part, {}))
+                frame = frame_of(struct.pack("<d", LOOK) + look)
+                for page in viewers:
+                    if page.part == part:
+                        write(page.transport, frame, MOST_UNSENT)
+
+    async def send_sound(self) -> None:
+        """Send the sound, for ever."""
+        sent = 0
+        while True:
+            if not self._listeners:
+                await asyncio.sleep(IDLE_S)
+                sent = self._seen.taped() - FIRST_FRAMES
+                continue
+            end = self._seen.taped()
+            if end > sent:
+                begin, samples = self._seen.sound(max(sent, 0), end)
+                frame = frame_of(struct.pack("<d", begin) + samples)
+                for transport in self._listeners.values():
+                    write(transport, frame, MOST_UNSENT)
+            sent = end
+            await asyncio.sleep(SOUND_S)
+
+    async def send_status(self) -> None:
+        """Send the status, for ever."""
+        async for _ in every(STATUS_S):
+            for page in self._pages.values():
+                self._send_status(page)
+
+    async def close(self) -> None:
+        """Close all."""
+        sockets = [*self._pages, *self._listeners]
+        await asyncio.gather(
+            *(socket.close(code=1001) for socket in sockets), return_exceptions=True
+        )
+
+    def _send_status(self, page: Page) -> None:
+        load, dropouts = self._seen.load()
+        status = {
+            "page": page.number,
+            "pages": len(self._pages),
+            "part": page.part + 1,
+            "parts": len(self._rigs),
+            "rate": self._seen.rate,
+            "frame": self._seen.taped(),
+            "load": load,
+            "dropouts": dropouts,
+            **self._status(),
+        }
+        text = json.dumps({"status": status}, allow_nan=False)
+        write(page.transport, frame_of(text.encode(), TEXT), MOST_UNSENT)
+
+
+def read_wishes(data: bytes) -> Any:
+    """The wishes of a message, in rows of WISH numbers; None where one is wrong."""
+    if not data or len(data) % (8 * WISH) or len(data) > MESSAGE_BYTES:
+        return None
+    wishes = np.frombuffer(data, "<f8").reshape(-1, WISH)
+    frames, kinds, indices = wishes[:, 0], wishes[:, 1], wishes[:, 2]
+    is_right = (
+        np.isfinite(wishes).all()
+        and (frames >= NOW).all()
+        and ((kinds > RAMP) & (kinds < len(KINDS))).all()
+        and (wishes[:, :3] == np.rint(wishes[:, :3])).all()
+        and (np.where(np.isin(kinds, SETTINGS), indices, 0) < len(TABLE)).all()
+        and (np.where(np.isin(kinds, SETTINGS), indices, 0) >= 0).all()
+        and (indices >= LOWEST).all()
+        and (indices < LOWEST + CHANNELS).all()
+        and (frames < 1 << 53).all()
+    )
+    return wishes if is_right else None
+
+
+async def every(period_s: float) -> AsyncIterator[None]:
+    """Yield periodically; periods that were missed are left out."""
+    due = time.monotonic()
+    while True:
+        yield
+        due = max(due + period_s, time.monotonic())
+        await asyncio.sleep(due - time.monotonic())
+
+
+async def _open(request: web.Request) -> web.WebSocketResponse:
+    socket = web.WebSocketResponse(
+        timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=MESSAGE_BYTES, compress=False
+    )
+    await socket.prepare(request)
+    return socket

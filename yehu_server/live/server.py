@@ -1,0 +1,271 @@
+"""The live server itself: makes everything, starts it in order, and ends it."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import logging
+import sys
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from yehu_server.compile.jit import IS_PLAIN
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.warming import warm_up
+from yehu_server.errors import YehuError
+from yehu_server.live.announce import Announcer, announced
+from yehu_server.live.audio.output import Output
+from yehu_server.live.audio.takes import Takes
+from yehu_server.live.housekeeper import Keeper, MappingFollower
+from yehu_server.live.midi.ports import MidiPorts
+from yehu_server.live.options import ServeOptions
+from yehu_server.live.osc.calls import more_calls
+from yehu_server.live.osc.handler import OscHandler
+from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.page.pages import Pages
+from yehu_server.live.services import ServerDesk
+from yehu_server.live.web.server import Sources, WebServer
+from yehu_server.playing.calibration import Progress
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.delay import Delay
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.parts import Part, assemble, number_of_instruments, player_of, seated
+from yehu_server.scores.capture_writer import LiveCapture
+from yehu_server.util.files import anything, check_free, check_target, nothing, shipped_folder
+
+log = logging.getLogger(__name__)
+FADE_MS = 50.0  # waited for after the notes' release
+# Python's threads take short turns, so that a busy one does not delay the others.
+SWITCH_INTERVAL_S = 0.0001
+
+
+class Server:
+    """Yehus that are played live, one or several on a stage, from `start` to `stop`.
+
+    Parameters
+    ----------
+    said : callable
+        Called with a line for the player: about devices that appear or disappear, and troubles.
+    progress : callable, optional
+        Called with the number of notes done and of all, while the instrument is calibrated.
+
+    Raises
+    ------
+    YehuError
+        Where nothing is compiled.
+    DeviceError
+        Where a named device is not there, or the address of OSC or OSCQuery cannot be used.
+    OutputError
+        Where `record` or `capture` cannot be written.
+    """
+
+    def __init__(
+        self,
+        options: ServeOptions,
+        said: Callable[[str], None] = log.info,
+        progress: Progress | None = None,
+    ) -> None:
+        if IS_PLAIN:
+            raise YehuError("NUMBA_DISABLE_JIT: plain Python cannot play live, only render")
+        for target in filter(None, (options.record, options.capture)):
+            check_target(target)
+            check_free(target, anything if options.overwrite else nothing)
+        self.options = options
+        self._said = said
+        self.desk = ServerDesk(self, said)
+        with contextlib.ExitStack() as undo:
+            styles = seated([part.style for part in options.parts])
+            number = number_of_instruments(styles)
+            self.output = Output(replace(options.output, parts=number), said)
+            undo.callback(self.output.end)
+            warm_up()  # meanwhile the device is looked for
+            rate = self.output.find()
+            calibration = calibration_for(rate, a4=styles[0].a4, progress=progress)
+            memory = self.output.memory.buffer
+            self.ensemble, instruments = assemble(
+                styles, rate, calibration, memory=memory, has_room=options.has_room
+            )
+            self.delay = Delay(self.instrument, options.output.blocksize, options.jitter_ms)
+            delay_ms = 1e3 * self.delay.frames / rate
+            self.parts = tuple(
+                Part(player_of(part, style, own, delay_ms=delay_ms), own)
+                for part, (style, own) in enumerate(zip(styles, instruments, strict=True))
+            )
+            self.players = tuple(part.player for part in self.parts)
+            self.player.presets.all()  # read now, so that listing them is quick later
+            self.handler = OscHandler(self.players, self.desk)
+            self.osc = OscPorts(*options.osc, options.allowed, self.handler)
+            undo.callback(self.osc.stop)
+            self.pages = self._pages()
+            undo.callback(self._close, self.pages)
+            self.web = self._web()
+            undo.callback(self._close, self.web)
+            if options.capture is not None:
+                for instrument in self.ensemble.instruments:
+                    instrument.report_wishes()
+            for player, style in zip(self.players, styles, strict=True):
+                for address, value in style.settings:
+                    player.hold(address, value)
+            undo.pop_all()
+        self.takes = Takes(self.ensemble, options.recordings, said)
+        self.is_interruptible = False  # whether `stop` may be interrupted by an exception now
+        self.midi = self._midi()
+        services = announced(self.osc, self.web, options.announce)
+        self._announcer = Announcer(services, said) if services else None
+        self._ways_in: list[OscPorts | WebServer | Announcer | MidiPorts | Pages] = [self.osc]
+        others = (self.web, self._announcer, self.midi, self.pages)
+        self._ways_in += [way for way in others if way is not None]
+        self._hurry = threading.Event()
+        self._keeper = self._make_keeper()
+
+    @property
+    def player(self) -> LivePlayer:
+        """The player of the first part."""
+        return self.players[0]
+
+    @property
+    def instrument(self) -> Instrument:
+        """The first instrument, whose parameters are those that all share."""
+        return self.ensemble.first
+
+    def _make_keeper(self) -> Keeper:
+        changed = partial(self.desk.tree_changed, "/")
+        followers = [
+            MappingFollower(player, part.reread, changed, self._said)
+            for player, part in zip(self.players, self.options.parts, strict=True)
+            if part.reread is not None
+        ]
+        return Keeper(
+            self.ensemble,
+            self.players,
+            self.delay,
+            followers,
+            lambda: self.osc.traffic.kernel_drops,
+            self._said,
+        )
+
+    def _pages(self) -> Pages | None:
+        if self.options.page is None:
+            return None
+        memory = self.output.memory.descriptor
+        return Pages(
+            self.players, self.options.page, memory, self.desk.for_pages, self._said, self._rigs
+        )
+
+    def _midi(self) -> MidiPorts | None:
+        if not self.options.midi:
+            return None
+        memory = self.output.memory.descriptor
+        return MidiPorts(self.players, self.options.midi, memory, self._rigs, self._said)
+
+    @property
+    def _rigs(self) -> list[int]:
+        """The first instrument of each part, by its number on the stage."""
+        return [self.ensemble.instruments.index(part.instruments[0]) for part in self.parts]
+
+    def _web(self) -> WebServer | None:
+        if self.options.http is None:
+            return None
+        sources = Sources(
+            self.desk.told,
+            shipped_folder("mappings"),
+            self.desk.told_of_parts if len(self.parts) > 1 else tuple,
+            len(self.parts),
+            lambda: more_calls(self.players),
+            lambda: None if self.pages is None else self.pages.port,
+        )
+        return WebServer(self.options.http, self.osc, self.handler.clients, sources)
+
+    @staticmethod
+    def _close(way: WebServer | Pages | None) -> None:
+        if way is not None:
+            way.stop()
+
+    def start(self) -> None:
+        """Start to play.
+
+        Raises
+        ------
+        DeviceError
+            Where a named device cannot be opened.
+        OutputError
+            Where `record` or `capture` cannot be written.
+        """
+        sys.setswitchinterval(SWITCH_INTERVAL_S)
+        gc.collect()
+        gc.freeze()  # later collections skip all objects of now, which stay
+        with contextlib.ExitStack() as undo:
+            undo.callback(self._close_ways_in)
+            undo.callback(self.output.end)
+            self.output.begin(self.ensemble)
+            if self.options.capture is not None:
+                self._keeper.capture = LiveCapture(
+                    self.ensemble,
+                    self.options.capture,
+                    self._said,
+                    has_room=self.options.has_room,
+                    overwrite=self.options.overwrite,
+                )
+                undo.callback(self._keeper.capture.discard)
+            if self.options.record is not None:
+                self.takes.record_everything(self.options.record, overwrite=self.options.overwrite)
+            undo.pop_all()
+        for way in self._ways_in:
+            way.start()
+        self._keeper.start()
+
+    def stop(self) -> None:
+        """End all notes, wait until they have faded, and close everything.
+
+        Recording and capture are closed whatever else fails. Called again, it does nothing.
+        """
+        if self._keeper.is_ended:
+            return
+        try:
+            self.is_interruptible = True
+            self._end_playing()
+        finally:
+            self.is_interruptible = False
+            self._keeper.stop()
+            self.desk.close()
+            self.takes.close()
+
+    def hurry(self) -> None:
+        """Let `stop` not wait for notes to fade; any thread or signal handler may call."""
+        self._hurry.set()
+
+    @property
+    def kept_all(self) -> bool:
+        """Whether nothing is missing in the command's recording and capture."""
+        return self.takes.is_whole and self._keeper.kept_all
+
+    def _close_ways_in(self) -> None:
+        for way in reversed(self._ways_in):
+            way.stop()
+
+    def _end_playing(self) -> None:
+        self._close_ways_in()
+        frame = self.player.frame_of()
+        for player in self.players:
+            player.end_notes(frame=frame)
+        fade_ms = max(player.value("/playing/release") for player in self.players) + FADE_MS
+        self._wait_for(frame + self.instrument.frames(fade_ms))
+        self.output.end()
+
+    def _wait_for(self, frame: int) -> None:
+        """Wait until a frame is played, but not if the clock stands still or after `hurry`."""
+        patience = time.monotonic() + 1.0 + (frame - self.instrument.frame) / self.instrument.rate
+        while self.instrument.frame < frame and time.monotonic() < patience:
+            if self._hurry.wait(0.005):
+                return
+
+    def status(self) -> dict[str, float | str]:
+        """The status values, by name; any thread may call."""
+        return self.desk.status()
+
+    def part_status(self, part: int) -> dict[str, float]:
+        """The status values of a part, counted from 0; any thread may call."""
+        return self.desk.part_status(part)

@@ -1,0 +1,1 @@
+"""OSCQuery and metrics, by HTTP and WebSocket."""

@@ -1,0 +1,279 @@
+"""Serve OSCQuery by HTTP and WebSocket, and metrics, in a thread.
+
+Only OSC messages in a WebSocket change anything. No path of a request is used as a file's name.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import ipaddress
+import json
+import logging
+import socket
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from aiohttp import web
+
+from yehu_server.errors import DeviceError, one_line
+from yehu_server.live.addresses import Address, Allowed, plain, shown, why
+from yehu_server.live.osc.calls import Call
+from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.peers import WebTraffic
+from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.web import query
+from yehu_server.live.web.guard import own_names, refusal
+from yehu_server.live.web.loops import LoopThread
+from yehu_server.live.web.metrics import Metrics
+from yehu_server.live.web.web_sockets import WebSockets
+from yehu_server.params.table import PREFIX
+
+log = logging.getLogger(__name__)
+
+NAME = "yehu-server"
+MOST_WEB_SOCKETS = 64
+MOST_CONNECTIONS = 256  # with those that have sent no request
+SWEEP_S = 0.25
+BODY_BYTES = 1 << 16
+IDLE_S = 15.0  # before an idle connection is closed
+ENDING_S = 0.2  # to finish answers at the end
+HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-store"}
+PARAMETERS = "parameters.html"
+PANEL = """
+<li><a href="/panel/">The instrument</a></li>"""
+PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>yehu-server</title></head>
+<body><h1>yehu-server</h1><ul>{panel}
+<li><a href="/{parameters}">Parameters</a></li>
+<li><a href="/?HOST_INFO">OSCQuery</a>: <a href="{prefix}">the tree</a></li>
+<li><a href="/metrics">Metrics</a></li>
+</ul></body></html>
+"""
+
+
+@dataclass(frozen=True)
+class WebOptions:
+    """The address to listen at, and the networks that are answered."""
+
+    address: Address
+    allowed: Allowed = field(default_factory=Allowed)
+
+
+@dataclass(frozen=True)
+class Sources:
+    """Where answers come from; all may be called by any thread."""
+
+    told: Callable[[], query.Told]  # of addresses without a part
+    folder: Path  # that has the page of parameters
+    # Of those of each part, where there are several.
+    parts: Callable[[], Sequence[query.Told]] = tuple
+    number: int = 1  # of parts
+    more_calls: Callable[[], Iterable[Call]] = tuple  # beside calls.CALLS
+    page_port: Callable[[], int | None] = lambda: None  # where the page is served, if it is
+
+
+class WebServer:
+    """A TCP port for HTTP and WebSockets, and the thread that serves it.
+
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
+    """
+
+    def __init__(
+        self, options: WebOptions, osc: OscPorts, clients: Clients, sources: Sources
+    ) -> None:
+        self.traffic = WebTraffic()
+        self._allowed = options.allowed
+        self._osc = osc
+        self._sources = sources
+        self._sockets = WebSockets(osc, clients, self.traffic, sources.number)
+        self._metrics = Metrics(sources.told, sources.parts)
+        self._names = own_names()
+        self._listening = listen("OSCQuery", *options.address)
+        self.host, self.port = self._listening.getsockname()[:2]
+        self._talking: set[web.RequestHandler] = set()  # connections that are WebSockets
+        self._thread = LoopThread(
+            self._serve, "OSCQuery", lambda error: log.warning("OSCQuery: %s; trying again", error)
+        )
+
+    def start(self) -> None:
+        """Start to serve."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Close all connections and stop serving."""
+        self._thread.stop()
+        self._listening.close()
+
+    def tree_changed(self, path: str) -> None:
+        """Tell all WebSockets that the tree has changed at a path or below; any thread may call."""
+        self._thread.call(self._sockets.tell, "PATH_CHANGED", path)
+
+    async def _serve(self) -> None:
+        app = web.Application(logger=log)
+        app.router.add_route("*", "/{path:.*}", self._answer)
+        quiet = logging.getLogger(f"{__name__}.http")  # malformed requests are not logged
+        quiet.disabled = True
+        runner = web.AppRunner(
+            app,
+            access_log=None,
+            logger=quiet,
+            keepalive_timeout=IDLE_S,
+            lingering_time=0.0,
+            shutdown_timeout=ENDING_S,
+        )
+        await runner.setup()
+        server = runner.server
+        assert server is not None  # noqa: S101 - setup makes it
+        try:
+            # A copy, since it is closed at the end, and serving may have to start again.
+            await web.SockSite(runner, self._listening.dup()).start()
+            while True:
+                await asyncio.sleep(SWEEP_S)
+                self._close_excess(server.connections)
+        finally:
+            await self._sockets.close()
+            await runner.cleanup()
+
+    def _close_excess(self, connections: Sequence[web.RequestHandler]) -> None:
+        """Close the oldest connections where there are too many, but no WebSockets."""
+        others = [one for one in connections if one not in self._talking]
+        for excess in others[: max(0, len(connections) - MOST_CONNECTIONS)]:
+            excess.force_close()
+
+    async def _answer(self, request: web.Request) -> web.StreamResponse:
+        self.traffic.requests += 1
+        try:
+            return await self._respond(request)
+        except web.HTTPException as error:
+            if error.status in {403, 405, 413, 503}:
+                self.traffic.refused += 1
+                error.force_close()
+            error.headers.update(HEADERS)
+            raise
+        except ConnectionError:  # the client hung up
+            raise
+        except Exception:  # a defect of the server must fail this request only
+            self.traffic.failures += 1
+            log.exception("OSCQuery: a request could not be answered")
+            raise web.HTTPInternalServerError from None
+
+    async def _respond(self, request: web.Request) -> web.StreamResponse:
+        self._check(request)
+        if request.headers.get("Upgrade", "").lower() == "websocket":
+            if self.traffic.web_sockets >= MOST_WEB_SOCKETS:
+                raise web.HTTPServiceUnavailable(text="there are too many WebSockets\n")
+            self._talking.add(request.protocol)
+            try:
+                return await self._sockets.serve(request)
+            finally:
+                self._talking.discard(request.protocol)
+        if request.path == "/metrics":
+            body, content_type = self._metrics.text(request.headers.get("Accept", ""))
+            return web.Response(body=body, headers=HEADERS | {"Content-Type": content_type})
+        if request.path == f"/{PARAMETERS}":
+            return self._parameters()
+        page_port = self._sources.page_port()
+        if request.path in {"/panel", "/panel/"} and page_port is not None:
+            raise web.HTTPTemporaryRedirect(f"http://{_with_port(request.host, page_port)}/")
+        if request.path == "/" and not request.query_string and _reads_html(request):
+            link = "" if page_port is None else PANEL
+            return _html(PAGE.format(panel=link, parameters=PARAMETERS, prefix=PREFIX))
+        return self._query(request)
+
+    def _check(self, request: web.Request) -> None:
+        if request.remote is None or request.remote not in self._allowed:
+            raise web.HTTPForbidden(text="this address is not allowed\n")
+        headers = request.headers
+        if not all(map(_is_text, (request.path, *headers.values()))):
+            refused = web.HTTPBadRequest(text="not UTF-8\n")
+            refused.force_close()
+            raise refused
+        reason = refusal(headers.getall("Host", []), headers.getall("Origin", []), self._names)
+        if reason:
+            raise web.HTTPForbidden(text=f"{reason}\n")
+        if request.method not in {"GET", "HEAD"}:
+            raise web.HTTPMethodNotAllowed(request.method, ("GET", "HEAD"))
+        if (request.content_length or 0) > BODY_BYTES:
+            raise web.HTTPRequestEntityTooLarge(BODY_BYTES, request.content_length or 0)
+
+    def _query(self, request: web.Request) -> web.Response:
+        """Answer with a node, or with those of its attributes that are asked for."""
+        asked = list(request.query)
+        if asked == ["HOST_INFO"]:
+            return _json(self._host_info(request))
+        for name in asked:
+            if name not in query.ATTRIBUTES:
+                raise web.HTTPBadRequest(text=one_line(f"unknown attribute {name!r}") + "\n")
+        sources = self._sources
+        root = query.tree(sources.told(), sources.more_calls(), sources.parts())
+        node = query.find(root, request.path)
+        if node is None:
+            raise web.HTTPNotFound(text=one_line(f"nothing at {request.path}") + "\n")
+        if not asked:
+            return _json(node)
+        found = {name: node[name] for name in asked if name in node}
+        return _json(found) if found else web.Response(status=204, headers=HEADERS)
+
+    def _host_info(self, request: web.Request) -> dict[str, Any]:
+        # The address by which the client reached this machine, which may have several.
+        reached = plain(request.get_extra_info("sockname", (self.host, self.port))[0])
+        is_anywhere = ipaddress.ip_address(plain(self._osc.host)).is_unspecified
+        osc_host = reached if is_anywhere else self._osc.host
+        return query.host_info(NAME, (osc_host, self._osc.port), (reached, self.port))
+
+    def _parameters(self) -> web.Response:
+        file = self._sources.folder / PARAMETERS
+        try:
+            return _html(file.read_text("utf-8"))
+        except OSError:
+            raise web.HTTPNotFound(text="this page is not installed\n") from None
+
+
+def listen(what: str, host: str, port: int) -> socket.socket:
+    """Listen at an address, by IPv4 and IPv6 where that is one; `what` is named in errors.
+
+    Raises
+    ------
+    DeviceError
+        Where the address is in use or not this machine's.
+    """
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+        dualstack = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
+        return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
+    except OSError as error:
+        where = shown(host, port)
+        raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}") from error
+
+
+def _with_port(host: str, port: int) -> str:
+    """The host of a request's header Host, which was checked, with another port."""
+    return shown(urlsplit(f"//{host}").hostname or "", port)
+
+
+def _is_text(received: str) -> bool:
+    """Whether a received text was UTF-8; otherwise it has surrogates, which cannot be sent back."""
+    try:
+        received.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _reads_html(request: web.Request) -> bool:
+    return "text/html" in request.headers.get("Accept", "")
+
+
+def _html(text: str) -> web.Response:
+    return web.Response(text=text, content_type="text/html", headers=HEADERS)
+
+
+def _json(what: Any) -> web.Response:
+    body = json.dumps(what, allow_nan=False).encode()
+    return web.Response(body=body, content_type="application/json", headers=HEADERS)

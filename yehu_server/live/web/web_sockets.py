@@ -1,0 +1,171 @@
+"""Serve WebSockets: OSC in binary frames, OSCQuery commands in text frames."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import threading
+from collections import deque
+from typing import Any
+
+from aiohttp import WSMsgType, web
+
+from yehu_server.errors import shortened
+from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.peers import MOST_UNSENT_BYTES, WebTraffic
+from yehu_server.live.osc.sockets import OscPorts
+from yehu_server.live.web.query import is_listenable
+from yehu_server.params.table import PREFIX
+
+FRAME_BYTES = 1 << 16  # longest frame that is read
+HEARTBEAT_S = 20.0  # a socket that does not answer within half of this is closed
+CLOSING_S = 0.3
+BEHIND_S = 0.005
+
+
+class CommandError(ValueError):
+    """A text frame that is not a command."""
+
+
+class WebPeer:
+    """A WebSocket, for the threads that send to it.
+
+    Packets wait here until the web's thread writes them. While the other end does not read, further
+    packets are dropped, and no other client is delayed.
+    """
+
+    def __init__(self, host: str, loop: asyncio.AbstractEventLoop, traffic: WebTraffic) -> None:
+        self.host = host
+        self.name = f"{host} (WebSocket)"
+        self._loop = loop
+        self._traffic = traffic
+        self._turn = threading.Lock()
+        self._queue: deque[bytes | str] = deque()
+        self._unsent_bytes = 0
+        self._is_awake = False
+        self._woken = asyncio.Event()
+
+    @property
+    def takes_more(self) -> bool:
+        """See `Peer`."""
+        return self._unsent_bytes < MOST_UNSENT_BYTES // 2
+
+    def send(self, packet: bytes | str) -> None:
+        """See `Peer`; text goes out as text."""
+        with self._turn:
+            if self._unsent_bytes + len(packet) > MOST_UNSENT_BYTES:
+                self._traffic.unsent += 1
+                return
+            self._queue.append(packet)
+            self._unsent_bytes += len(packet)
+            wake, self._is_awake = not self._is_awake, True
+        if wake:
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                self._loop.call_soon_threadsafe(self._woken.set)
+
+    def at(self, port: int) -> WebPeer:
+        """See `Peer`: a connection has no other port."""
+        del port
+        return self
+
+    async def write(self, socket: web.WebSocketResponse) -> None:
+        """Write packets as they are sent, until the connection ends."""
+        with contextlib.suppress(ConnectionError):
+            while await self._woken.wait():
+                self._woken.clear()
+                while (packet := self._next()) is not None:
+                    if isinstance(packet, str):
+                        await socket.send_str(packet)
+                    else:
+                        await socket.send_bytes(packet)
+
+    def _next(self) -> bytes | str | None:
+        with self._turn:
+            if not self._queue:
+                self._is_awake = False
+                return None
+            packet = self._queue.popleft()
+            self._unsent_bytes -= len(packet)
+            return packet
+
+
+class WebSockets:
+    """All open WebSockets; used by the web's thread."""
+
+    def __init__(
+        self, osc: OscPorts, clients: Clients, traffic: WebTraffic, parts: int = 1
+    ) -> None:
+        self._osc = osc
+        self._clients = clients  # used by the OSC thread only
+        self._traffic = traffic
+        self._parts = parts  # number of them
+        self._open: dict[web.WebSocketResponse, WebPeer] = {}
+
+    async def serve(self, request: web.Request) -> web.WebSocketResponse:
+        """Serve one client until either end closes the connection."""
+        socket = web.WebSocketResponse(
+            timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=FRAME_BYTES, compress=False
+        )
+        await socket.prepare(request)
+        peer = WebPeer(str(request.remote), asyncio.get_running_loop(), self._traffic)
+        self._open[socket] = peer
+        self._traffic.web_sockets += 1
+        writing = asyncio.ensure_future(peer.write(socket))
+        try:
+            async for frame in socket:
+                # The sender waits while its packets wait; nothing is lost.
+                while self._osc.is_behind(peer):  # noqa: ASYNC110 - the OSC thread has no event
+                    await asyncio.sleep(BEHIND_S)
+                if frame.type is WSMsgType.BINARY:
+                    self._osc.receive(frame.data, peer)
+                elif frame.type is WSMsgType.TEXT:
+                    self._obey(frame.data, peer)
+        finally:
+            del self._open[socket]
+            self._traffic.web_sockets -= 1
+            self._osc.leave(peer)
+            writing.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await writing
+        return socket
+
+    def tell(self, command: str, data: Any) -> None:
+        """Send a command to all clients."""
+        for peer in self._open.values():
+            peer.send(_command(command, data))
+
+    async def close(self) -> None:
+        """Close all WebSockets."""
+        closing = [socket.close(code=1001) for socket in list(self._open)]
+        await asyncio.gather(*closing, return_exceptions=True)
+
+    def _obey(self, text: str, peer: WebPeer) -> None:
+        try:
+            command, address = _read(text, self._parts)
+        except CommandError as error:
+            peer.send(_command("ERROR", str(error)))
+            return
+        act = self._clients.listen if command == "LISTEN" else self._clients.ignore
+        self._osc.call_soon(lambda: act(peer, address))
+
+
+def _command(command: str, data: Any) -> str:
+    return json.dumps({"COMMAND": command, "DATA": data})
+
+
+def _read(text: str, parts: int) -> tuple[str, str]:
+    """Read a command and its address (without the prefix); raises CommandError."""
+    try:
+        said = json.loads(text)
+    except (ValueError, RecursionError):
+        raise CommandError("not JSON") from None
+    if not isinstance(said, dict):
+        raise CommandError("expected an object with COMMAND and DATA")
+    command, path = said.get("COMMAND"), said.get("DATA")
+    if command not in ("LISTEN", "IGNORE"):
+        raise CommandError(f"unknown command {shortened(repr(command))}; there are LISTEN, IGNORE")
+    address = path.removeprefix(PREFIX) if isinstance(path, str) else ""
+    if not is_listenable(address, parts) or address == path:
+        raise CommandError(f"{command}: nothing to listen to at {shortened(repr(path))}")
+    return command, address

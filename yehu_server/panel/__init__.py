@@ -1,4 +1,0 @@
-"""The panel: what the page in `web/` is given, written by the modules that the server plays by.
-
-``python -m yehu_server.panel web`` writes it.
-"""

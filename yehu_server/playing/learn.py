@@ -1,0 +1,199 @@
+"""MIDI learn: detect which source the user moves, and keep its bind in a mapping file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import mido
+
+from yehu_server.core.midi.messages import DATA_ENTRY, NRPN_FINE, RPN_FINE
+from yehu_server.core.midi.messages import NRPN_COARSE as NRPN
+from yehu_server.core.midi.messages import RPN_COARSE as RPN
+from yehu_server.errors import MappingError
+from yehu_server.params.table import find
+from yehu_server.playing import sources
+from yehu_server.playing.binds import Bind, override_key
+from yehu_server.playing.mapping import Mapping, mapping_folder, own_folder, with_bases
+from yehu_server.playing.mapping_entries import free
+from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, text_of
+from yehu_server.playing.mapping_writer import as_toml, edited
+from yehu_server.playing.sources import COARSE, FINE_ABOVE, OF_ONE_NOTE, RESERVED, STEPS, is_address
+from yehu_server.util.files import write_text
+
+# How far a source has to move, 0 to 1: pedals and breath sensors are noisy at rest.
+DISTANCE = 1.0 / 16.0
+AT_REST = {sources.BEND: 0.5, sources.PRESSURE: 0.0, sources.POLY_PRESSURE: 0.0}
+
+
+@dataclass(frozen=True)
+class Found:
+    """A source that was moved; of an OSC address also the range of its values."""
+
+    source: str
+    input_range: tuple[float, float] = (0.0, 1.0)
+
+
+@dataclass
+class _Channel:
+    """The control changes received on one channel."""
+
+    before: int | None = None  # the control change before
+    nrpn: list[int | None] = field(default_factory=lambda: [None, None])
+
+
+class Learner:
+    """Compares each source with where it began, until one has moved far enough to be meant."""
+
+    def __init__(self) -> None:
+        self._began_at: dict[tuple[int, str], float] = {}
+        self._channels: dict[int, _Channel] = {}
+        self._pairs: set[tuple[int, int]] = set()  # channel, coarse half
+
+    def hear(self, message: mido.Message, port: int = 0) -> Found | None:
+        """Receive a MIDI message; return the source, once one has moved far enough."""
+        if not hasattr(message, "channel"):
+            return None
+        channel = sources.CHANNELS * port + message.channel
+        if message.type == "pitchwheel":
+            return self._moved(channel, sources.BEND, (message.pitch + 8192) / 16383.0)
+        if message.type == "aftertouch":
+            return self._moved(channel, sources.PRESSURE, message.value / STEPS)
+        if message.type == "polytouch":
+            return self._moved(channel, sources.POLY_PRESSURE, message.value / STEPS)
+        if message.type == "control_change":
+            return self._control(channel, message.control, message.value)
+        return None
+
+    def hear_address(self, address: str, argument: float) -> Found | None:
+        """Receive a number at an OSC address of the user's own; return as `hear` does."""
+        input_range = (0.0, 1.0) if 0.0 <= argument <= 1.0 else (0.0, float(STEPS))
+        found = self._moved(-1, address, argument / input_range[1])
+        return Found(found.source, input_range) if found else None
+
+    def _control(self, channel: int, control: int, value: int) -> Found | None:
+        state = self._channels.setdefault(channel, _Channel())
+        before, state.before = state.before, control
+        if control in (NRPN, NRPN_FINE):
+            state.nrpn[control == NRPN_FINE] = value
+        elif control in (RPN, RPN_FINE):
+            state.nrpn = [None, None]
+        elif control == DATA_ENTRY and None not in state.nrpn:
+            coarse, fine = (half or 0 for half in state.nrpn)
+            number = coarse << 7 | fine
+            if number < sources.NO_NRPN:
+                return self._moved(channel, sources.nrpn(number), value / STEPS)
+        if control in RESERVED:
+            return None
+        if control - FINE_ABOVE in COARSE:
+            if before == control - FINE_ABOVE:
+                self._pairs.add((channel, before))
+            if (channel, control - FINE_ABOVE) in self._pairs:
+                return None  # the fine half of a pair
+        found = self._moved(channel, sources.control(control), value / STEPS)
+        if found is not None and (channel, control) in self._pairs:
+            return Found(sources.pair(control))
+        return found
+
+    def _moved(self, channel: int, source: str, position: float) -> Found | None:
+        began = self._began_at.setdefault((channel, source), AT_REST.get(source, position))
+        return Found(source) if abs(position - began) >= DISTANCE else None
+
+
+def own_file(mapping: Mapping) -> Path:
+    """The file that keeps learned binds: the mapping's own, or for a shipped one the user's copy.
+
+    Raises
+    ------
+    MappingError
+        Where the mapping comes from no file.
+    """
+    if not mapping.files:
+        raise MappingError(f"the mapping {mapping.name} comes from no file")
+    own = mapping.files[0]
+    is_shipped = own.parent.resolve() == mapping_folder().resolve()
+    return own_folder() / own.name if is_shipped else own
+
+
+def learn(mapping: Mapping, target: str, found: Found, *, soft: bool) -> tuple[Mapping, Path]:
+    """Bind a source to a target, over its whole range, and save the bind.
+
+    It replaces all other binds of the target, and moves it for all notes, on whichever device
+    they are played.
+
+    Returns
+    -------
+    mapping : Mapping
+        With the bind.
+    path : Path
+        The file that it was saved to.
+
+    Raises
+    ------
+    MappingError
+        Where the file is wrong or cannot be written; nothing is changed then.
+    """
+    param = free(target, "learn one")
+    bind = Bind(
+        found.source,
+        param.address,
+        curve=param.curve,
+        input_range=found.input_range,
+        is_soft=soft and found.source not in OF_ONE_NOTE,
+        is_exclusive=True,
+        is_global=not (found.source in OF_ONE_NOTE or is_address(found.source)),
+    )
+    if bind.is_by_range:  # the bend range still sets its span
+        bind = replace(bind, is_soft=False)
+    path = own_file(mapping)
+    contents, text = _own_contents(mapping, path)
+    key = override_key(bind)
+    dropped = [
+        own for own in contents.binds if override_key(own) == key or own.target == bind.target
+    ]
+    return _save(mapping, path, edited(contents, text, dropped, [bind])), path
+
+
+def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
+    """Remove the binds of a target from the user's file.
+
+    Returns
+    -------
+    mapping : Mapping
+        Without them.
+    count : int
+        Number of binds removed.
+
+    Raises
+    ------
+    MappingError
+        As `learn`.
+    """
+    address = find(target).address
+    path = own_file(mapping)
+    if not path.exists():
+        return mapping, 0
+    contents, text = _own_contents(mapping, path)
+    dropped = [own for own in contents.binds if own.target == address]
+    if not dropped:
+        return mapping, 0
+    return _save(mapping, path, edited(contents, text, dropped, [])), len(dropped)
+
+
+def _own_contents(mapping: Mapping, path: Path) -> tuple[MappingFile, str]:
+    """Contents and text of the user's file; where there is none, of a new one with this base."""
+    if path.exists():
+        return read_mapping_file(path), text_of(path)
+    about = f"{mapping.about} With what you have taught it."
+    contents = MappingFile(mapping.name, base=mapping.files[0].stem, about=about)
+    return contents, as_toml(contents)
+
+
+def _save(mapping: Mapping, path: Path, text: str) -> Mapping:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise MappingError(f"{path.parent}: {error.strerror}") from error
+    write_text(path, text)
+    # `--mpe` is in no file.
+    return replace(with_bases(path, read_mapping_file(path)), mpe=mapping.mpe)

@@ -1,0 +1,253 @@
+"""Records of what was built, which tell what is up to date, and the manifest of a folder.
+
+Each folder of results has a hidden folder: a record for each result, and what is being made.
+A record holds a key of all that the result depends on, hashes of the files it was made from, and
+what may be told of it again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import secrets
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from yehu_server.errors import OutputError
+from yehu_server.util.files import make_folder, read_lines, read_text, why, write_text
+
+NAME = "manifest.jsonl"
+MOST_BYTES = 2**30
+
+
+def line_of(fields: Mapping[str, Any]) -> str:
+    """A line of the manifest, without its end."""
+    return json.dumps(fields)
+
+
+def write_manifest(folder: Path, lines: Iterable[Mapping[str, Any]], order: str = "file") -> None:
+    """Write the manifest, in the order of the names, or of another entry.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written.
+    """
+    ordered = sorted(lines, key=lambda line: line[order])
+    write_text(folder / NAME, "".join(f"{line_of(line)}\n" for line in ordered))
+
+
+def check_manifest(folder: Path) -> None:
+    """Check that the manifest may be written.
+
+    Raises
+    ------
+    OutputError
+        Where a file of its name is none.
+    """
+    path = folder / NAME
+    try:
+        first = next(read_lines(path, MOST_BYTES), "")
+        fields = json.loads(first) if first else {"file": ""}
+        if "file" in fields and isinstance(fields, dict):
+            return
+    except FileNotFoundError:
+        return
+    except (OSError, ValueError, RecursionError, TypeError):
+        pass
+    raise OutputError(f"{path}: is no manifest of yehu-server; move it away")
+
+
+HIDDEN = ".yehu-server"
+MOST_RECORD_BYTES = 16 * 2**20
+LONGEST_NAME = 255  # bytes
+CHUNK = 1 << 20
+
+Record = dict[str, Any]
+
+
+def hash_of(path: Path) -> str:
+    """Hash of a file's bytes (SHA-256, hexadecimal); empty where it cannot be read."""
+    digest = hashlib.sha256()
+    try:
+        if not path.is_file():  # a pipe may never end
+            return ""
+        with path.open("rb") as file:
+            while data := file.read(CHUNK):
+                digest.update(data)
+    except OSError:
+        return ""
+    return digest.hexdigest()
+
+
+def work_of(target: Path) -> Path:
+    """Where a result is made, on the same disk, before it is moved to its target.
+
+    Each time it is another place: a worker that was given up may still be making it.
+    """
+    return target.parent / HIDDEN / f"{secrets.token_hex(8)}.part"
+
+
+def record_of(target: Path) -> Path:
+    """The file of the record of a result."""
+    name = f"{target.name}.json"
+    encoded = os.fsencode(name)
+    if len(encoded) > LONGEST_NAME - 8:
+        name = f"{hashlib.sha256(encoded).hexdigest()}.json"
+    return target.parent / HIDDEN / name
+
+
+def make_folder_for(target: Path) -> None:
+    """Make the folders of a result.
+
+    Raises
+    ------
+    OutputError
+        Where they cannot be made.
+    """
+    make_folder(target.parent / HIDDEN)
+
+
+def keep(
+    target: Path, key: str, read: Iterable[Path], results: Iterable[Path], line: Record
+) -> None:
+    """Write the record of results that are in their places.
+
+    Parameters
+    ----------
+    key : str
+        Of all that they depend on beside files.
+    read : iterable of Path
+        The files that they were made from.
+    results : iterable of Path
+        The target, and what was made beside it.
+    line : dict
+        What may be told of them again.
+    """
+    record = {
+        "key": key,
+        "read": {str(path.absolute()): hash_of(path) for path in read},
+        "results": {_beside(target, path): _result(path) for path in results},
+        "line": line,
+    }
+    write_text(record_of(target), json.dumps(record) + "\n")
+
+
+def keep_failure(target: Path, key: str, error: Record) -> None:
+    """Write that there can be no result, as long as the key is the same.
+
+    Parameters
+    ----------
+    error : dict
+        What may be told of it again; it has an `error`.
+    """
+    record = {"key": key, "read": {}, "results": {}, "line": error}
+    write_text(record_of(target), json.dumps(record) + "\n")
+
+
+def _result(path: Path) -> Record:
+    status = path.stat()
+    return {
+        "size": status.st_size,
+        "mtime_ns": status.st_mtime_ns,
+        "hash": hash_of(path),
+    }
+
+
+def up_to_date(
+    target: Path, key: str, results: Iterable[Path], hashing: Callable[[Path], str] = hash_of
+) -> Record | None:
+    """Return what was kept to be told of a result, or of a failure; None where it has to be made.
+
+    Parameters
+    ----------
+    results : iterable of Path
+        The target, and what is wanted beside it.
+    """
+    try:
+        record = json.loads(read_text(record_of(target), MOST_RECORD_BYTES))
+        line: Record = record["line"]
+        made = record["results"]
+        wanted = {} if "error" in line else {_beside(target, path): path for path in results}
+        is_current = (
+            record["key"] == key
+            and made.keys() == wanted.keys()
+            and all(hashing(Path(path)) == old for path, old in record["read"].items())
+            and all(_is_whole(path, made[name]) for name, path in wanted.items())
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return None
+    return line if is_current and isinstance(line, dict) else None
+
+
+def told_before(target: Path) -> Record:
+    """What was told of a result, whether it is up to date or not; empty where nothing was."""
+    try:
+        line = json.loads(read_text(record_of(target), MOST_RECORD_BYTES))["line"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return {}
+    return line if isinstance(line, dict) else {}
+
+
+def _is_whole(path: Path, made: Record) -> bool:
+    """Whether a result is as it was made: by size and time, or else by its bytes."""
+    status = path.stat()
+    if status.st_size != made["size"]:
+        return False
+    return bool(status.st_mtime_ns == made["mtime_ns"] or hash_of(path) == made["hash"])
+
+
+def _beside(target: Path, path: Path) -> str:
+    """The name of a result, which holds wherever the folders are moved."""
+    return os.path.relpath(path, target.parent)
+
+
+def clear_work(folders: Iterable[Path]) -> None:
+    """Remove what processes that were killed left half made; nobody may be making any."""
+    for path in _leavings(folders):
+        with contextlib.suppress(OSError):
+            path.unlink()
+
+
+def _leavings(folders: Iterable[Path]) -> Iterator[Path]:
+    for folder in folders:
+        try:
+            files = list((folder / HIDDEN).iterdir())
+        except OSError:
+            continue
+        yield from (file for file in files if file.suffix != ".json" and file.name != LOCK)
+
+
+LOCK = "lock"
+
+
+@contextlib.contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Keep other processes from writing results to a folder.
+
+    Raises
+    ------
+    OutputError
+        Where one does, or the folder cannot be written.
+    """
+    path = folder / HIDDEN / LOCK
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = path.open("w")
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot write: {why(error)}") from error
+    with file:
+        try:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except ImportError:  # not on Windows
+            pass
+        except BlockingIOError:
+            raise OutputError(f"{folder}: another command writes to it") from None
+        except OSError:  # a disk without locks
+            pass
+        yield

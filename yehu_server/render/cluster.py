@@ -1,0 +1,296 @@
+"""Do jobs on a cluster of machines, by Dask: the same jobs, with the same results.
+
+A job whose worker dies is given to another one, by Dask's scheduler. docs/cluster.md tells how to
+start a cluster.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import json
+import logging
+import queue
+import re
+import secrets
+import time
+import warnings
+from collections.abc import Callable, Generator, Iterable, Iterator
+from pathlib import Path
+from typing import Any, Self
+
+from yehu_server.errors import YehuError
+from yehu_server.render import cluster_worker
+from yehu_server.render.workers import Event, Perform
+from yehu_server.util.files import read_text, why
+
+PORT = 8786  # Dask's own choice
+_ADDRESS = re.compile(r"(?:(tcp|tls|ucx|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+)(?::(\d+))?/?")
+
+
+def scheduler_address(text: str) -> str:
+    """Complete an address: ``HOST``, ``HOST:PORT``, ``tls://HOST:PORT``, or a scheduler's file.
+
+    Raises
+    ------
+    YehuError
+        Where it is none.
+    """
+    if text.endswith(".json"):
+        return _in_file(Path(text))
+    found = _ADDRESS.fullmatch(text)
+    if found is None or not 0 < int(found[3] or PORT) < 65536:
+        raise YehuError(
+            f"{text!r} is not the address of a scheduler, such as tcp://10.0.0.1:{PORT}"
+        )
+    return f"{found[1] or 'tcp'}://{found[2]}:{found[3] or PORT}"
+
+
+def _in_file(path: Path) -> str:
+    """The address in the file that ``dask scheduler --scheduler-file`` writes."""
+    try:
+        address = json.loads(read_text(path))["address"]
+        if not isinstance(address, str):
+            raise TypeError  # noqa: TRY301 - as where it is no JSON at all
+    except OSError as error:
+        raise YehuError(f"{path}: {why(error)}") from error
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise YehuError(f"{path}: is not the file of a Dask scheduler") from error
+    return scheduler_address(address.removesuffix(".json"))
+
+
+CONNECT_S = 10.0
+LOOK_EVERY_S = 2.0  # at how many workers there are
+JOBS_PER_THREAD = 4  # in flight, so that no worker waits for the next
+FEWEST_JOBS = 16
+BATCHES = 4  # in which they are sent off
+
+
+class Cluster:
+    """A connection to a Dask scheduler, for the time of a `with` block.
+
+    Parameters
+    ----------
+    address : str
+        Of the scheduler, such as ``tcp://10.0.0.1:8786``, or its file.
+    setup : callable, optional
+        Called in each process of a worker before its first job, by one process of a machine at a
+        time. It has to be picklable.
+    warn : callable
+        Told, in one line, what is no error.
+
+    Raises
+    ------
+    YehuError
+        Where there is no such scheduler, no worker, or one that has another version; where Dask is
+        not installed.
+    """
+
+    def __init__(
+        self,
+        address: str,
+        setup: Callable[[], object] | None = None,
+        warn: Callable[[str], None] = lambda _line: None,
+    ) -> None:
+        check_installed()
+        self.address = scheduler_address(address)
+        self._setup, self._warn = cluster_worker.packed_setup(setup), warn
+        self._client: Any = None
+        self._code = cluster_worker.identity().code
+
+    def __enter__(self) -> Self:
+        from distributed import Client
+
+        _hush()
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of versions: `_check` tells what matters
+                connect: Any = Client
+                self._client = connect(self.address, timeout=CONNECT_S, set_as_default=False)
+        except (OSError, ValueError, TypeError, ImportError, TimeoutError) as error:
+            raise YehuError(f"{self.address}: no Dask scheduler answers there") from error
+        try:
+            self._check()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with contextlib.suppress(Exception):
+            self._client.close(timeout=CONNECT_S)
+
+    @property
+    def threads(self) -> int:
+        """Number of jobs that all workers do at a time now."""
+        return max(1, len(self._reached(self._client.nthreads)))
+
+    def ask(self, question: Callable[..., Any], *arguments: Any) -> dict[str, Any]:
+        """Ask each worker something that it answers at once; its answers by their addresses."""
+        answers: dict[str, Any] = self._reached(self._client.run, question, *arguments)
+        return answers
+
+    def perform_all(self, perform: Perform, tasks: Iterable[Any]) -> Generator[Event]:
+        """Do all tasks; yield what becomes of them, in the order in which they end.
+
+        Parameters
+        ----------
+        perform : callable
+            A function of a module, as of ``render.workers.perform_all``; no progress is reported.
+        tasks : iterable
+            They are taken one by one, as workers are free.
+
+        Raises
+        ------
+        YehuError
+            Where the scheduler is lost, or a worker has another version.
+        """
+        name = f"yehu-{secrets.token_hex(8)}"
+        waiting = enumerate(tasks)
+        ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        jobs: dict[str, int] = {}
+        futures: dict[str, Any] = {}
+        room, looked = 0, -LOOK_EVERY_S
+        is_told = False
+        try:
+            while True:
+                if time.monotonic() - looked >= LOOK_EVERY_S:
+                    threads = self._reached(self._client.nthreads)
+                    room, looked = _room(len(threads)), time.monotonic()
+                    if not threads and not is_told:
+                        self._warn(f"{self.address}: no worker is left; waiting for one")
+                    is_told = not threads
+                free = room - len(futures)
+                if free >= room // BATCHES:
+                    for job, future in self._begin(name, perform, itertools.islice(waiting, free)):
+                        jobs[future.key], futures[future.key] = job, future
+                        future.add_done_callback(ended.put)
+                if not futures:
+                    return
+                for future, result in self._results(ended):
+                    job = jobs.pop(future.key)
+                    del futures[future.key]
+                    yield self._event(future, job, result)
+        finally:
+            with contextlib.suppress(Exception):
+                self._client.cancel(list(futures.values()), force=True)
+
+    def _begin(
+        self, name: str, perform: Perform, numbered: Iterable[tuple[int, Any]]
+    ) -> list[tuple[int, Any]]:
+        """Send some jobs off at once, as cheap as one; return their numbers and futures."""
+        numbers, packs = [], []
+        for job, task in numbered:
+            numbers.append(job)
+            packs.append(cluster_worker.packed(perform, task, self._setup))
+        keys = [f"{name}-{job}" for job in numbers]
+        futures = (
+            self._reached(
+                self._client.map,
+                cluster_worker.do,
+                packs,
+                code=self._code,
+                key=keys,
+                pure=False,
+                retries=0,
+            )
+            if keys
+            else []
+        )
+        return list(zip(numbers, futures, strict=True))
+
+    def _results(self, ended: queue.SimpleQueue[Any]) -> Iterator[tuple[Any, Any]]:
+        """Wait for a moment; return the futures that have ended, and their results."""
+        futures = []
+        with contextlib.suppress(queue.Empty):
+            futures.append(ended.get(timeout=LOOK_EVERY_S))
+            while True:
+                futures.append(ended.get_nowait())
+        done = [future for future in futures if future.status == "finished"]
+        keys = {future.key for future in done}
+        results = iter(self._reached(self._client.gather, done, errors="skip") if done else ())
+        if self._client.status == "closed" or any(
+            future.status in ("cancelled", "lost") for future in futures
+        ):
+            raise YehuError(f"{self.address}: the scheduler is lost")
+        return ((future, next(results) if future.key in keys else None) for future in futures)
+
+    def _event(self, future: Any, job: int, result: Any) -> Event:
+        if isinstance(result, cluster_worker.Stranger):
+            raise YehuError(self._unlike("a worker that came later", result.identity))
+        if future.status == "finished":
+            return Event(job, 1.0, result=result)
+        from distributed.scheduler import KilledWorker
+
+        error = future.exception()
+        if isinstance(error, KilledWorker):
+            return Event(job, 1.0, died=f"killed on {error.allowed_failures + 1} workers")
+        return Event(job, 1.0, died=f"ended by {type(error).__name__}: {error}")
+
+    def _check(self) -> None:
+        """Check that there are workers, and that all are like this process."""
+        deadline = time.monotonic() + CONNECT_S
+        while not self._reached(self._client.nthreads):
+            if time.monotonic() > deadline:
+                raise YehuError(f"{self.address}: the scheduler has no workers")
+            time.sleep(0.2)
+        try:
+            self._client.run_on_scheduler(cluster_worker.no_setup)
+            found = self._client.run(cluster_worker.identity)
+        except ImportError as error:
+            raise YehuError(
+                f"{self.address}: yehu-server is not installed there ({error})"
+            ) from error
+        except (AttributeError, TypeError) as error:  # it is so old that it lacks the question
+            raise YehuError(f"{self.address}: has another version of yehu-server") from error
+        own = cluster_worker.identity()
+        for worker, other in sorted(found.items()):
+            if other.code != own.code:
+                raise YehuError(self._unlike(worker, other))
+        others = {other.processor for other in found.values()} - {own.processor}
+        if others:
+            kinds = ", ".join(sorted(others))
+            self._warn(
+                f"{self.address}: workers have other processors ({kinds}; here {own.processor}): "
+                "samples may differ in the last bits"
+            )
+
+    def _unlike(self, worker: str, other: cluster_worker.Identity) -> str:
+        return (
+            f"{worker} has {other.shown}, and here is {cluster_worker.identity().shown}: "
+            "install the same version"
+        )
+
+    def _reached(self, call: Callable[..., Any], *arguments: Any, **named: Any) -> Any:
+        """Call something of the client; where that fails, the scheduler is lost."""
+        from distributed import CancelledError
+
+        try:
+            return call(*arguments, **named)
+        except (OSError, TimeoutError, CancelledError, RuntimeError) as error:
+            raise YehuError(f"{self.address}: the scheduler is lost") from error
+
+
+def check_installed() -> None:
+    """Check that Dask is there.
+
+    Raises
+    ------
+    YehuError
+        Where it is not.
+    """
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise YehuError("--dask needs Dask: pip install yehu-server[cluster]") from None
+
+
+def _room(threads: int) -> int:
+    """Number of jobs in flight, for so many workers."""
+    return max(FEWEST_JOBS, JOBS_PER_THREAD * threads)
+
+
+def _hush() -> None:
+    """Keep Dask's own messages from the terminal: what matters is told in one line."""
+    for name in ("distributed", "tornado.application", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -1,0 +1,128 @@
+"""What a worker of a cluster does: its part of a job, and who it is.
+
+Nothing heavy is imported here: the scheduler loads it too.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pickle
+import platform
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from yehu_server.render.workers import Perform
+from yehu_server.util import PACKAGE, __version__
+from yehu_server.util.source_key import key_of
+
+LOCK = "yehu-server-{user}.lock"
+
+_turn = threading.Lock()  # threads of one process take turns: warnings are gathered by process
+_set_up: set[bytes] = set()  # of this process
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What has to be the same for the same samples, and what may differ in the last bit.
+
+    Attributes
+    ----------
+    version : str
+    code : str
+        Key of all of the package's code.
+    processor : str
+        As LLVM names it, where that is installed.
+    """
+
+    version: str
+    code: str
+    processor: str
+
+    @property
+    def shown(self) -> str:
+        """Version and code, for a message."""
+        return f"yehu-server {self.version} ({self.code[:8]})"
+
+
+@cache
+def identity() -> Identity:
+    """Who this process is."""
+    code = key_of(sorted(PACKAGE.rglob("*.py")))
+    return Identity(__version__, code, _processor())
+
+
+def _processor() -> str:
+    try:
+        from llvmlite import binding
+    except ImportError:  # a scheduler may go without
+        return platform.machine()
+    return f"{platform.machine()} {binding.get_host_cpu_name()}"
+
+
+@dataclass(frozen=True)
+class Stranger:
+    """The answer of a worker that has another code than the client."""
+
+    identity: Identity
+
+
+def do(job: bytes, code: str) -> Any:
+    """Do a job that was pickled by `packed`, as the same code would elsewhere.
+
+    Returns what its function does, or a `Stranger` where this process has another code.
+    """
+    if code != identity().code:
+        return Stranger(identity())
+    perform, task, setup = pickle.loads(job)  # noqa: S301 - workers do what their scheduler says
+    with _turn:
+        if setup not in _set_up:
+            with one_at_a_time():
+                pickle.loads(setup)()  # noqa: S301
+            _set_up.add(setup)
+        return perform(task, _tell_nobody)
+
+
+def packed(perform: Perform, task: Any, setup: bytes) -> bytes:
+    """A job as bytes, which schedulers pass on as they are."""
+    return pickle.dumps((perform, task, setup))
+
+
+def no_setup() -> None:
+    """Prepare nothing."""
+
+
+def packed_setup(setup: Callable[[], object] | None) -> bytes:
+    """What is called in each process before its first job, as bytes."""
+    return pickle.dumps(setup or no_setup)
+
+
+def _tell_nobody(_done: float, _total: float) -> None:
+    pass
+
+
+@contextlib.contextmanager
+def one_at_a_time() -> Iterator[None]:
+    """Hold a lock of this machine's, as long as a block lasts.
+
+    What the first process compiles and keeps, the others find.
+    """
+    user = os.getuid() if hasattr(os, "getuid") else 0
+    path = Path(tempfile.gettempdir()) / LOCK.format(user=user)
+    with contextlib.ExitStack() as stack:
+        try:
+            import fcntl
+
+            flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+            file = os.open(path, flags, 0o600)
+            stack.callback(os.close, file)
+            fcntl.flock(file, fcntl.LOCK_EX)
+            stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # also where a fork has the file
+        except (ImportError, OSError):  # each compiles for itself then
+            pass
+        yield

@@ -1,0 +1,103 @@
+"""How to render: what each instrument plays, and the pitch it is asked for."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.rig import RIG
+from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.calibration import Calibration
+from yehu_server.core.player.rows import BEND
+from yehu_server.core.stage.geometry import EARS
+from yehu_server.playing.style import Style
+from yehu_server.scores.score import Score
+
+
+def asked_pitch(instrument: Instrument) -> float | None:
+    """Return the pitch of the sounding key with its bend (fractional MIDI note), if one sounds.
+
+    Meters tell it too, but only those of an instrument that the callback plays.
+    """
+    player = np.frombuffer(instrument.memory, RIG, count=1)["player"][0]
+    sounding = int(player["sounding"])
+    return None if sounding < 0 else float(player["held_pitch"][sounding] + player["value"][BEND])
+
+
+BLOCK = 4096  # frames; the sound does not depend on it
+
+
+@dataclass(frozen=True)
+class Part:
+    """A player on the stage, or a section of them: what they play, and how.
+
+    Attributes
+    ----------
+    channels : frozenset of int, optional
+        Those that it plays, counted from 0; by default all but percussion.
+    phrasing : float
+        Of the player; the score is shaped before (``scores.phrasing``).
+    calibration : Calibration, optional
+        By default looked up or measured.
+    gain_db : float, optional
+        By default that of the preset.
+    """
+
+    score: Score
+    name: str = ""
+    style: Style = field(default_factory=Style)
+    channels: frozenset[int] | None = None
+    phrasing: float = 0.0
+    quantities: Quantities = field(default_factory=Quantities)
+    calibration: Calibration | None = None
+    gain_db: float | None = None
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to render; see ``yehu-server render --help``.
+
+    What describes an instrument holds where one plays a score alone; an ensemble has it in parts.
+    """
+
+    rate: int = 44100
+    format_name: str = "wav"
+    subtype: str = "24"
+    channels: frozenset[int] | None = None
+    tail_s: float | None = None  # None: until it is quiet
+    gain_db: float | None = None
+    normalize: bool = False
+    phrasing: float = 0.0
+    style: Style = field(default_factory=Style)
+    quantities: Quantities = field(default_factory=Quantities)
+    calibration: Calibration | None = None
+    block: int = BLOCK
+    is_dry: bool = False  # without a room, and with a body that sounds alike to both sides
+    is_mono: bool = False
+    jobs: int | None = None  # number of cores; None: all
+
+    @property
+    def sound_channels(self) -> int:
+        """Channels of the sound: left and right, or one."""
+        return 1 if self.is_mono else EARS
+
+    @property
+    def cores(self) -> int:
+        """Number of cores to use."""
+        return self.jobs or os.cpu_count() or 1
+
+    def solo(self, score: Score) -> Part:
+        """The part of one instrument that plays a score alone."""
+        return Part(
+            score,
+            name=score.name,
+            style=self.style,
+            channels=self.channels,
+            phrasing=self.phrasing,
+            quantities=self.quantities,
+            calibration=self.calibration,
+            gain_db=self.gain_db,
+        )

@@ -1,0 +1,183 @@
+"""A performance: instruments on a stage play the events of their parts, block by block."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.params.table import find
+from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.parts import number_of_instruments
+from yehu_server.playing.section_people import part_specs
+from yehu_server.render.cores import Cores, shared
+from yehu_server.render.options import Options, Part
+from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
+
+END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
+
+
+class PartPlayer:
+    """Plays a part on an instrument, or on those of a section.
+
+    Attributes
+    ----------
+    part : Part
+    instruments : sequence of Instrument
+    wishes : Wishes
+    midi : MidiPlayer
+    """
+
+    def __init__(self, part: Part, instruments: Sequence[Instrument]) -> None:
+        self.part, self.instruments = part, instruments
+        style = part.style
+        self.wishes = style.wishes(instruments)
+        self.midi = style.midi(self.wishes, None if part.channels is None else set(part.channels))
+        self.wishes.write("/playing/phrasing", part.phrasing)
+        for address, value in style.start:
+            self.wishes.jump(address, value)
+        gain = () if part.gain_db is None else (("/output/gain", part.gain_db),)
+        for address, value in (*gain, *style.settings):
+            self.wishes.start_with(address, value)
+        self._sound = self.midi.sound()  # what settings of the score are put back to
+        self._lengths_s = {note.begins: note.length_s for note in notes_of(part.score)}
+        self._events = enumerate(part.score.events)
+        self._next = next(self._events, END)
+
+    def play_before(self, end: int) -> None:
+        """Post what happens before a frame, except what was posted already."""
+        number, event = self._next
+        while event is not None:
+            frame = self.instruments[0].frames(event.time_s * 1e3)
+            if frame >= end:
+                break
+            self._receive(number, event, frame)
+            number, event = next(self._events, END)
+        self._next = number, event
+
+    def finish(self, frame: int) -> None:
+        """Post what is left, and end all notes, at the last frame of the score."""
+        number, event = self._next
+        while event is not None:
+            self._receive(number, event, frame)
+            number, event = next(self._events, END)
+        self._next = END
+        self.midi.end_all(frame=frame)
+
+    def _receive(self, number: int, event: ScoreEvent, frame: int) -> None:
+        if number in self._lengths_s:
+            self.wishes.write("/playing/note_length", self._lengths_s[number], frame=frame)
+        if isinstance(event.message, Setting):
+            self._set(event.message, frame)
+        else:
+            self.midi.receive(event.message, frame=frame)
+
+    def _set(self, setting: Setting, frame: int) -> None:
+        """Set a parameter as a mark of the score asks, or put it back."""
+        if not self.midi.plays(setting.channel):
+            return
+        value = setting.value
+        if value is None:
+            default = find(setting.address).default
+            value = self._sound.get(setting.address, default)
+        self.midi.write(setting.address, value, frame=frame)
+
+
+Samples = np.ndarray[Any, np.dtype[np.float32]]
+
+QUIET = 1e-4  # 80 dB below full scale
+QUIET_S = 0.2  # the tail ends after this time of quiet
+LONGEST_TAIL_S = 5.0
+
+
+class Performance:
+    """Plays a score on one instrument, or each part on one of its own; a section has several.
+
+    Parameters
+    ----------
+    played : Score, or sequence of Part
+    has_stems : bool
+        Whether `stems` has what each part gives.
+
+    Raises
+    ------
+    ParameterError
+        Where the players are more than a stage has room for.
+    """
+
+    def __init__(
+        self, played: Score | Sequence[Part], options: Options, *, has_stems: bool = False
+    ) -> None:
+        parts = [options.solo(played)] if isinstance(played, Score) else list(played)
+        self._options, self._has_stems = options, has_stems
+        number_of_instruments([part.style for part in parts])
+        specs: list[InstrumentSpec] = []
+        self._places: list[slice] = []  # of the instruments of each part
+        for part in parts:
+            style, quantities, rate = part.style, part.quantities, float(options.rate)
+            calibration = part.calibration or calibration_for(rate, quantities, a4=style.a4)
+            own = part_specs(style, rate, calibration, quantities, number=len(specs))
+            self._places.append(slice(len(specs), len(specs) + len(own)))
+            specs += own
+        self.ensemble = Ensemble(
+            specs, channels=options.sound_channels, has_room=not options.is_dry
+        )
+        self.players = [
+            PartPlayer(part, self.ensemble.instruments[place])
+            for part, place in zip(parts, self._places, strict=True)
+        ]
+        self.instrument, self.wishes = self.ensemble.first, self.players[0].wishes
+        duration_s = max(part.score.duration_s for part in parts)
+        self.score_frames = self.instrument.frames(duration_s * 1e3)
+        self.stems: list[Samples] = []  # of the last block: of each part, then the room
+
+    def blocks(self) -> Iterator[Samples]:
+        """Yield the samples of score and tail, relative to full scale.
+
+        They have the shape (frames, 2), or (frames,) where `Options.is_mono`.
+        """
+        with shared(min(self._options.cores, len(self.ensemble.instruments))) as share:
+            cores = Cores(self.ensemble, share, has_stems=self._has_stems)
+            position = 0
+            while position < self.score_frames:
+                end = min(position + self._options.block, self.score_frames)
+                for player in self.players:
+                    player.play_before(end)
+                yield self._process(cores, end - position)
+                position = end
+            for player in self.players:
+                player.finish(position)
+            yield from self._tail(cores)
+
+    def _tail(self, cores: Cores) -> Iterator[Samples]:
+        if self._options.tail_s is not None:
+            left = self.instrument.frames(self._options.tail_s * 1e3)
+            while left > 0:
+                yield self._process(cores, min(self._options.block, left))
+                left -= self._options.block
+            return
+        window = self.instrument.frames(10.0)
+        quiet = 0.0
+        for _ in range(round(LONGEST_TAIL_S / 0.01)):
+            samples = self._process(cores, window)
+            yield samples
+            quiet = quiet + 0.01 if np.abs(samples).max() < QUIET else 0.0
+            if quiet >= QUIET_S:
+                return
+
+    def _process(self, cores: Cores, frames: int) -> Samples:
+        channels = self._options.sound_channels
+        out = np.zeros(frames if channels == 1 else (frames, channels), np.float32)
+        if len(self.ensemble.instruments) == 1 and not self._has_stems:
+            self.ensemble.process(out)
+            return out
+        cores.process(out)
+        if self._has_stems:
+            stems = cores.stems.mean(axis=2) if channels == 1 else cores.stems
+            own = [stems[:, place].sum(axis=1) for place in self._places]
+            self.stems = [stem.astype(np.float32) for stem in (*own, stems[:, -1])]
+        return out

@@ -1,0 +1,135 @@
+"""Write sound to standard output, for another program to read as it comes.
+
+The length is not known at the beginning, and a pipe cannot go back: the sizes in the header of a
+WAV stream are the largest there are, by which other programs know that it ends where it ends. Raw
+samples have no header; all channels of a frame follow each other, little endian.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import struct
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.errors import OutputError
+from yehu_server.util.files import write_all
+from yehu_server.util.sound_file import RENDERED, SoundWriter, check_format
+from yehu_server.util.wav import WavStream, check_shape, encoded
+
+PIPE = Path("-")  # known by its identity: a file may have that name too
+FORMATS = ("wav", "raw")
+UNKNOWN = struct.pack("<I", 0xFFFFFFFF)
+SIGPIPE = 13
+
+Samples = np.ndarray[Any, np.dtype[np.float32]]
+
+
+class _PipedWav(WavStream):
+    """Writes a WAV file from beginning to end."""
+
+    def _tell(self) -> None:
+        pass
+
+    def _cut(self) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+    def _header(self) -> bytes:
+        known = super()._header()
+        return known[:4] + UNKNOWN + known[8:-4] + UNKNOWN
+
+
+class _Raw:
+    """Writes samples alone."""
+
+    def __init__(self, file: io.FileIO, subtype: str, channels: int) -> None:
+        self.frames = 0
+        self._file, self._subtype, self._channels = file, subtype, channels
+
+    def write(self, samples: Samples) -> None:
+        check_shape(samples, self._channels)
+        write_all(self._file, encoded(samples, self._subtype))
+        self.frames += len(samples)
+
+
+class PipeWriter(SoundWriter):
+    """Writes sound to a pipe, of any length.
+
+    Raises
+    ------
+    BrokenPipeError
+        Where the reader has gone.
+    OutputError
+        Where writing fails otherwise.
+    """
+
+    def __init__(  # the file's own has a limit, and a header that it writes again
+        self, file: io.FileIO, rate: int, format_name: str, subtype: str, channels: int
+    ) -> None:  # pylint: disable=super-init-not-called
+        if format_name == "wav":
+            check_format(format_name, subtype, channels)
+        self._target = Path("standard output")
+        self._channels, self._limit = channels, None
+        self.frames, self.peak, self._power = 0, 0.0, 0.0
+        with self._telling():
+            self._piped: _PipedWav | _Raw
+            if format_name == "wav":
+                self._piped = _PipedWav(file, rate, subtype, RENDERED, channels=channels)
+            else:
+                self._piped = _Raw(file, subtype, channels)
+            self._stream = self._piped  # type: ignore[assignment]
+
+    def close(self) -> None:
+        """Do nothing: each write was complete."""
+
+    @contextlib.contextmanager
+    def _telling(self) -> Iterator[None]:
+        try:
+            with super()._telling():
+                yield
+        except OutputError as error:
+            if isinstance(error.__cause__, BrokenPipeError):
+                raise error.__cause__ from None
+            raise
+
+
+def check_pipe(format_name: str) -> None:
+    """Check that sound of a format may go to standard output.
+
+    Raises
+    ------
+    OutputError
+        Where it is a terminal, or the format needs a file.
+    """
+    if format_name not in FORMATS:
+        raise OutputError(f"a {format_name} file cannot be piped; use --format wav or raw")
+    if sys.stdout is not None and sys.stdout.isatty():
+        raise OutputError("standard output is a terminal; lead it to a file or a program")
+
+
+@contextlib.contextmanager
+def sound_pipe(rate: int, format_name: str, subtype: str, channels: int) -> Iterator[SoundWriter]:
+    """Open standard output for sound.
+
+    Raises
+    ------
+    OutputError
+        As `check_pipe`, or where it is closed.
+    BrokenPipeError
+        In writing, where the reader has gone.
+    """
+    check_pipe(format_name)
+    try:
+        file = io.FileIO(1, "wb", closefd=False)
+    except OSError as error:
+        raise OutputError("standard output is closed") from error
+    with file:
+        yield PipeWriter(file, rate, format_name, subtype, channels)

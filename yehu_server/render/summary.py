@@ -1,0 +1,117 @@
+"""What a rendering was: its length and level, its notes, and what became of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Protocol
+
+from yehu_server.playing.tuning import RangePolicy
+from yehu_server.render.performance import PartPlayer, Performance
+
+FATE = {
+    RangePolicy.TRANSPOSE: "moved by octaves",
+    RangePolicy.CLAMP: "played as the nearest note",
+    RangePolicy.SKIP: "left out",
+}
+
+
+def counted(number: int, thing: str) -> str:
+    """A number of things, with a plural."""
+    return f"{number} {thing}" + ("" if number == 1 else "s")
+
+
+@dataclass(frozen=True)
+class PartSummary:
+    """What one part played, and from where."""
+
+    name: str
+    people: int  # that play it: several in a section
+    notes_played: int
+    notes_out_of_range: int
+    notes_by_channel: dict[int, int]
+    seed: int
+    gain_db: float  # at last, as the next two
+    pan: float  # -1 left to 1 right
+    distance_m: float
+    mapping: str
+    preset: str | None
+    unconverged_solves: int
+    lost_states: int
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The result of a rendering, of all parts together; levels are relative to full scale."""
+
+    duration_s: float
+    real_time_factor: float
+    peak: float
+    rms: float
+    notes_played: int
+    notes_out_of_range: int
+    policy: RangePolicy
+    unconverged_solves: int
+    lost_states: int
+    friction_bound: float  # the largest
+    notes_by_channel: dict[int, int]
+    percussion_notes: int  # of channel 10, not played
+    unknown_programs: tuple[int, ...]  # 1 to 128
+    parts: tuple[PartSummary, ...] = ()
+
+
+class Written(Protocol):
+    """What was written of a sound: its length in frames, its peak and its root mean square."""
+
+    @property
+    def frames(self) -> int: ...  # noqa: D102
+    @property
+    def peak(self) -> float: ...  # noqa: D102
+    @property
+    def rms(self) -> float: ...  # noqa: D102
+
+
+def summary_of(performance: Performance, sound: Written, rate: int, elapsed_s: float) -> Summary:
+    """Sum up a performance that has been played."""
+    players, instruments = performance.players, performance.ensemble.instruments
+    duration_s = sound.frames / rate
+    channels: Counter[int] = Counter()
+    for player in players:
+        channels.update(player.midi.notes_by_channel)
+    return Summary(
+        duration_s=duration_s,
+        real_time_factor=duration_s / elapsed_s,
+        peak=sound.peak,
+        rms=sound.rms,
+        notes_played=sum(player.wishes.notes_played for player in players),
+        notes_out_of_range=sum(player.wishes.notes_out_of_range for player in players),
+        policy=players[0].part.style.policy,
+        unconverged_solves=sum(each.unconverged_solves for each in instruments),
+        lost_states=performance.ensemble.lost_states,
+        friction_bound=max(each.friction_bound for each in instruments),
+        notes_by_channel=dict(sorted(channels.items())),
+        percussion_notes=sum(player.midi.percussion_notes for player in players),
+        unknown_programs=tuple(
+            sorted({each for player in players for each in player.midi.unknown_programs})
+        ),
+        parts=tuple(map(_part_summary, players)),
+    )
+
+
+def _part_summary(player: PartPlayer) -> PartSummary:
+    part, wishes = player.part, player.wishes
+    return PartSummary(
+        name=part.name,
+        people=len(player.instruments),
+        notes_played=wishes.notes_played,
+        notes_out_of_range=wishes.notes_out_of_range,
+        notes_by_channel=dict(sorted(player.midi.notes_by_channel.items())),
+        seed=part.style.seed,
+        gain_db=wishes.value("/output/gain"),
+        pan=wishes.value("/room/pan"),
+        distance_m=wishes.value("/room/distance"),
+        mapping=part.style.mapping.name,
+        preset=None if part.style.preset is None else str(part.style.preset),
+        unconverged_solves=sum(each.unconverged_solves for each in player.instruments),
+        lost_states=sum(each.lost_states for each in player.instruments),
+    )

@@ -1,0 +1,138 @@
+"""Render a score, or the parts of an ensemble, to sound files: the mix, and its stems."""
+
+from __future__ import annotations
+
+import contextlib
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from yehu_server.errors import OutputError
+from yehu_server.render.options import Options, Part, asked_pitch
+from yehu_server.render.performance import Performance, Samples
+from yehu_server.render.pipe import PIPE, sound_pipe
+from yehu_server.render.summary import Summary, summary_of
+from yehu_server.render.watch import Watch
+from yehu_server.scores.score import Score
+from yehu_server.util.files import anything, why
+from yehu_server.util.sound_file import SoundWriter, check_format, sound_file
+
+NORMALIZED_PEAK = 10.0 ** (-1.0 / 20.0)
+CHUNK = 1 << 18  # bytes that are read again at a time: whole frames
+
+
+def write_normalized(
+    takes: Iterable[Sequence[Samples]], files: Sequence[SoundWriter], folder: Path | None
+) -> None:
+    """Write blocks, scaled so that the first file has a peak of NORMALIZED_PEAK.
+
+    Parameters
+    ----------
+    takes : iterable
+        Of each block, the samples for each of the files; all are scaled alike.
+    folder : Path
+        Where the temporary files are; None: where the system has its own.
+
+    Raises
+    ------
+    OutputError
+        Where the disk is full or cannot be written.
+    """
+    peak, shape = 0.0, (-1,)
+    with contextlib.ExitStack() as stack:
+        try:
+            scratches = [stack.enter_context(tempfile.TemporaryFile(dir=folder)) for _ in files]
+            for take in takes:
+                peak = max(peak, float(np.abs(take[0]).max(initial=0.0)))
+                shape = (-1, *take[0].shape[1:])
+                for scratch, samples in zip(scratches, take, strict=True):
+                    scratch.write(np.ascontiguousarray(samples).tobytes())
+            for scratch in scratches:
+                scratch.seek(0)
+        except OSError as error:
+            raise OutputError(
+                f"{folder or tempfile.gettempdir()}: cannot write: {why(error)}"
+            ) from error
+        factor = np.float32(NORMALIZED_PEAK / peak if peak > 0.0 else 1.0)
+        for scratch, file in zip(scratches, files, strict=True):
+            while data := scratch.read(CHUNK):
+                file.write(np.frombuffer(data, np.float32).reshape(shape) * factor)
+
+
+def render(
+    played: Score | Sequence[Part],
+    target: Path,
+    options: Options,
+    progress: Callable[[float, float], None] | None = None,
+    may_replace: Callable[[Path], bool] = anything,
+    stems: Sequence[Path] = (),
+    watch: Watch | None = None,
+) -> Summary:
+    """Render a score on one instrument, or parts on one each, to a sound file.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Called with the seconds done and those of the score.
+    may_replace : callable
+        Returns whether an older file may be replaced.
+    target : Path
+        `PIPE` for standard output.
+    stems : sequence of Path
+        A file for each part, and one for the room unless it is dry; none: no stems. Their sum is
+        the mix.
+    watch : Watch, optional
+        Gathers what a picture shows.
+
+    Raises
+    ------
+    YehuError
+        Where it fails; no partial file is left.
+    """
+    channels = options.sound_channels
+    if target is not PIPE:
+        check_format(options.format_name, options.subtype, channels)
+    performance = Performance(played, options, has_stems=bool(stems))
+    start = time.perf_counter()
+    form = (options.rate, options.format_name, options.subtype)
+
+    def opened(path: Path) -> contextlib.AbstractContextManager[SoundWriter]:
+        if path is PIPE:
+            return sound_pipe(*form, channels)
+        wav_or_flac = "wav" if options.format_name == "raw" else options.format_name
+        return sound_file(
+            path, form[0], wav_or_flac, options.subtype, may_replace, channels=channels
+        )
+
+    with contextlib.ExitStack() as stack:
+        files = [stack.enter_context(opened(path)) for path in (target, *stems)]
+        takes = _takes(performance, len(files), options.rate, progress, watch)
+        if options.normalize:
+            write_normalized(takes, files, None if target is PIPE else target.parent)
+        else:
+            for take in takes:
+                for file, samples in zip(files, take, strict=True):
+                    file.write(samples)
+    return summary_of(performance, files[0], options.rate, time.perf_counter() - start)
+
+
+def _takes(
+    performance: Performance,
+    files: int,
+    rate: int,
+    progress: Callable[[float, float], None] | None,
+    watch: Watch | None,
+) -> Iterator[list[Samples]]:
+    """Yield what goes to each of the files, block by block."""
+    frames, total = 0, performance.score_frames / rate
+    for samples in performance.blocks():
+        yield [samples, *performance.stems][:files]
+        frames += len(samples)
+        if watch is not None:
+            asked = [asked_pitch(player.instruments[0]) for player in performance.players]
+            watch.take(samples, asked)
+        if progress is not None:
+            progress(frames / rate, total)

@@ -1,0 +1,183 @@
+"""Do jobs on several processes; one that dies takes none of the others with it.
+
+Processes begin anew (spawn). Each ends when its parent does, however that ends, and puts away what
+it was making.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import queue
+import signal
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+from yehu_server.errors import YehuError
+
+Tell = Callable[[float, float], None]  # what is done, and of what
+Perform = Callable[[Any, Tell], Any]
+
+
+@dataclass(frozen=True)
+class Event:
+    """What became of a job: its share done, or its result, or why its processes died.
+
+    Attributes
+    ----------
+    job : int
+        The number of its task, from 0.
+    share : float
+        Of the job; 1 when it is over.
+    total : float
+        What the job does in all, such as seconds of sound; 0 where it has not told.
+    result : object
+        What was returned.
+    died : str
+        How its process ended, such as "killed by signal 9".
+    """
+
+    job: int
+    share: float = 0.0
+    total: float = 0.0
+    result: Any = None
+    died: str = ""
+
+    @property
+    def is_end(self) -> bool:
+        """Whether the job is over."""
+        return self.share >= 1.0
+
+
+MOST_TRIES = 2  # of a job whose process dies
+GOODBYE_S = 10.0
+TOLD_EVERY_S = 0.2
+
+
+class _Worker:
+    """A process, seen from its parent."""
+
+    def __init__(self, context: Any, perform: Perform) -> None:
+        self.job = -1
+        self.connection, theirs = context.Pipe()
+        self.process = context.Process(target=_serve, args=(theirs, perform), daemon=True)
+        try:
+            self.process.start()
+        except OSError as error:
+            raise YehuError(f"a process cannot be started: {error.strerror}") from error
+        finally:
+            theirs.close()
+
+    def begin(self, job: int, task: Any) -> None:
+        self.job = job
+        with contextlib.suppress(OSError):  # it died: that is found when we listen
+            self.connection.send(task)
+
+    def end(self) -> str:
+        """Wait until it has ended; return how it did."""
+        self.process.join(GOODBYE_S)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join()
+        code = self.process.exitcode or 0
+        return f"killed by signal {-code}" if code < 0 else f"ended with code {code}"
+
+
+def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generator[Event]:
+    """Do all tasks; yield what becomes of them, as it does.
+
+    Parameters
+    ----------
+    perform : callable
+        A function of a module, called in another process with a task and a function to tell the
+        progress: what is done, of what. Its result, and tasks, have to be picklable; it must not
+        raise.
+    workers : int
+        Number of processes at most.
+
+    Raises
+    ------
+    YehuError
+        Where no process can be started.
+    """
+    context = multiprocessing.get_context("spawn")
+    waiting = deque((job, 1) for job in range(len(tasks)))
+    tries: dict[int, int] = {}
+    crew: list[_Worker] = []
+    try:
+        while waiting or any(worker.job >= 0 for worker in crew):
+            for worker in crew:
+                if worker.job < 0 and waiting:
+                    job, tries[job] = waiting.popleft()
+                    worker.begin(job, tasks[job])
+            while waiting and len(crew) < workers:
+                crew.append(_Worker(context, perform))
+                job, tries[job] = waiting.popleft()
+                crew[-1].begin(job, tasks[job])
+            heard = wait([worker.connection for worker in crew])
+            for worker in [each for each in crew if each.connection in heard]:
+                job = worker.job
+                try:
+                    share, total, result = worker.connection.recv()
+                except (EOFError, OSError):
+                    crew.remove(worker)
+                    worker.connection.close()
+                    how = worker.end()
+                    if job < 0:
+                        continue
+                    if tries[job] < MOST_TRIES:
+                        waiting.appendleft((job, tries[job] + 1))
+                    else:
+                        yield Event(job, 1.0, died=how)
+                    continue
+                if share >= 1.0:
+                    worker.job = -1
+                yield Event(job, share, total, result)
+    finally:
+        for worker in crew:
+            worker.connection.close()
+        for worker in crew:
+            worker.end()
+
+
+def _serve(connection: Connection, perform: Perform) -> None:
+    """Do tasks as they come, until the parent hangs up."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), _interrupt)
+    tasks: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(connection, tasks), daemon=True).start()
+    told = [time.monotonic()]
+
+    def tell(done: float, total: float) -> None:
+        now = time.monotonic()
+        if now - told[0] >= TOLD_EVERY_S and total > 0.0:
+            told[0] = now
+            connection.send((min(done / total, 0.99), total, None))
+
+    try:
+        while (task := tasks.get()) is not None:
+            connection.send((1.0, 0.0, perform(task[0], tell)))
+    except (KeyboardInterrupt, OSError):  # what was being made has been put away
+        os._exit(0)
+
+
+def _listen(connection: Connection, tasks: queue.SimpleQueue[Any]) -> None:
+    try:
+        while True:
+            tasks.put((connection.recv(),))
+    except (EOFError, OSError):
+        tasks.put(None)
+        if hasattr(signal, "pthread_kill"):
+            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGTERM)
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt

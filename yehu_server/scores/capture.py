@@ -1,0 +1,170 @@
+"""Read captures of sessions; docs/capture.md describes the format.
+
+Version 1 held what moved bow and fingers, not what was wished of the player. Versions 1 and 2 have
+one player.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from yehu_server.core.player.wishes import WISH
+from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.scores.capture_beginning import Beginning, read_header
+from yehu_server.scores.capture_format import (
+    FORMAT,
+    VERSION,
+    Fields,
+    build,
+    frames_of,
+    from_line,
+    player_of,
+    ramp_of,
+)
+from yehu_server.util.files import read_lines
+
+MOST_BYTES = 1 << 30
+MOST_WISHES = 20_000_000  # each takes 40 bytes
+MOST_RESTS = 1000
+CHUNK = 1 << 16  # wishes
+
+
+@dataclass
+class Capture:
+    """A captured session."""
+
+    beginning: Beginning
+    build: dict[str, str]
+    version: int = VERSION
+    wishes: Any = field(default_factory=lambda: np.zeros(0, WISH))  # by frame
+    players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # whose they are, from 0
+    rests: dict[int, int] = field(
+        default_factory=dict
+    )  # frame of each rest, and since when it was silent
+    end: int | None = None  # number of frames
+    lost: int = 0  # wishes that were not captured
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def rate(self) -> float:
+        """Sample rate (Hz)."""
+        return self.beginning.rate
+
+    @property
+    def frames(self) -> int:
+        """Number of frames; where the end is missing, until a second after the last wish."""
+        last = int(self.wishes["frame"][-1]) + 1 if len(self.wishes) else 0
+        last = max([last, *self.rests])
+        return max(last, last + round(self.rate) if self.end is None else self.end)
+
+
+def read_capture(path: Path) -> Capture:
+    """Read a capture, also one that a crash has cut short.
+
+    Raises
+    ------
+    ScoreError
+        Where it cannot be read or is no capture.
+    """
+    lines = read_lines(path, MOST_BYTES)
+    try:
+        capture = _header(path, next(lines, ""))
+        chunks: list[tuple[Any, Any]] = []
+        wishes: list[Fields] = []
+        players: list[int] = []
+        for number, line in enumerate(lines, start=2):
+            try:
+                if line.strip():
+                    _take(json.loads(line), capture, wishes, players)
+            except _WRONG as error:
+                if not line.endswith("\n"):  # cut short by a crash
+                    break
+                raise ScoreError(
+                    f"{path}: line {number}: not a line of a capture ({error})"
+                ) from error
+            if len(wishes) == CHUNK:
+                chunks.append((np.array(wishes, WISH), np.array(players, np.int64)))
+                wishes.clear()
+                players.clear()
+                if len(chunks) * CHUNK >= MOST_WISHES:
+                    raise ScoreError(f"{path}: has more than {MOST_WISHES} events")
+        chunks.append((np.array(wishes, WISH), np.array(players, np.int64)))
+    except OSError as error:
+        raise ScoreError(f"{path}: {error.strerror}") from error
+    except ValueError as error:  # no UTF-8, or a NUL in the name
+        raise ScoreError(f"{path}: not a capture ({error})") from error
+    _put_in_order(path, capture, chunks)
+    _warn(capture)
+    return capture
+
+
+def _put_in_order(path: Path, capture: Capture, chunks: list[tuple[Any, Any]]) -> None:
+    """Put all wishes in the order of frames; those of each player are in it already."""
+    wishes = np.concatenate([chunk for chunk, _ in chunks])
+    players = np.concatenate([chunk for _, chunk in chunks])
+    for player in range(len(capture.beginning.players)):
+        if np.any(np.diff(wishes["frame"][players == player]) < 0):
+            raise ScoreError(f"{path}: events are not in order of frames")
+    order = np.argsort(wishes["frame"], kind="stable")
+    capture.wishes, capture.players = wishes[order], players[order]
+
+
+_WRONG = (
+    ValueError, TypeError, KeyError, IndexError, AttributeError, OverflowError, RecursionError,
+)  # fmt: skip
+
+
+def _header(path: Path, line: str) -> Capture:
+    try:
+        header = json.loads(line)
+        if header["format"] != FORMAT:
+            raise ScoreError(f"{path}: not a capture")
+        version = header["version"]
+        if version not in range(1, VERSION + 1) or type(version) is not int:
+            raise ScoreError(f"{path}: version {version!r} of the format is not known")
+        beginning = read_header(header, version)
+        return Capture(beginning, dict(header["build"]), version)
+    except ParameterError as error:
+        raise ScoreError(f"{path}: {error}") from error
+    except _WRONG as error:
+        raise ScoreError(f"{path}: not a capture") from error
+
+
+def _take(entry: Any, capture: Capture, wishes: list[Fields], players: list[int]) -> None:
+    if isinstance(entry, list):
+        player = 0
+        if capture.version == 1:
+            frame, *ramp = entry
+            wish = frames_of(frame), *ramp_of(*ramp)
+        elif capture.version == 2:
+            wish = from_line(entry)
+        else:
+            player = player_of(entry[1], len(capture.beginning.players))
+            wish = from_line([entry[0], *entry[2:]])
+        wishes.append(wish)
+        players.append(player)
+    elif "end" in entry:
+        capture.end = frames_of(entry["end"])
+    elif "rest" in entry:
+        rest, since = frames_of(entry["rest"]), frames_of(entry["since"])
+        capture.rests[rest] = since
+        if since > rest or len(capture.rests) > MOST_RESTS:
+            raise ValueError("a rest before its beginning, or too many of them")
+    elif "lost" in entry:
+        capture.lost += frames_of(entry["events"])
+
+
+def _warn(capture: Capture) -> None:
+    if capture.end is None:
+        capture.warnings.append("the session did not end properly; a second is added")
+    if capture.lost:
+        capture.warnings.append(f"{capture.lost} events were not captured: the sound differs")
+    differing = [name for name, value in build().items() if capture.build.get(name) != value]
+    if differing:
+        names = ", ".join(differing)
+        capture.warnings.append(f"captured by another build ({names}): the sound may differ")

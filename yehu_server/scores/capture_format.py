@@ -1,0 +1,143 @@
+"""The lines of a capture: wishes as JSON values, and back; docs/capture.md describes them."""
+
+from __future__ import annotations
+
+import platform
+from typing import Any
+
+import llvmlite
+import numpy as np
+from llvmlite import binding
+
+from yehu_server.compile.jit import source_hash
+from yehu_server.core.controls.slots import SILENCE
+from yehu_server.core.player.wishes import (
+    BEGIN,
+    DRAW,
+    END,
+    EXPRESS,
+    HOLD,
+    KINDS,
+    RAMP,
+    SLIDE,
+    STOP,
+    WRITE,
+)
+from yehu_server.params.table import ENGINE, SLOT, TABLE
+from yehu_server.util import __version__
+
+FORMAT, VERSION = "yehu-server capture", 3
+MOST_FRAMES = 1 << 53
+MOST_MS = 3.6e6
+MOST_CHANNELS = 1 << 20
+HIGHEST_KEY = 127.0
+SILENCED = "silence"
+ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: SILENCED}
+INDICES = {address: slot for slot, address in ADDRESSES.items()}
+ROWS = {param.address: row for row, param in enumerate(TABLE)}
+NUMBERS = {name: kind for kind, name in enumerate(KINDS)}
+
+Fields = tuple[int, int, int, float, float]  # of a wish
+
+
+def build() -> dict[str, str]:
+    """Versions and machine on which the samples depend: the same build gives the same bits."""
+    return {
+        "yehu-server": __version__,
+        "sources": source_hash(),
+        "numpy": np.__version__,
+        "llvm": llvmlite.__version__,
+        "machine": platform.machine(),
+        "processor": str(binding.get_host_cpu_name()),
+    }
+
+
+def as_line(wish: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for each kind
+    """The JSON value of a wish, a record of dtype WISH, of a player, counted from 0."""
+    frame, kind, index, value, other = wish.item()
+    line: list[Any] = [frame, player + 1, KINDS[kind]]
+    if kind == RAMP:
+        return [*line, ADDRESSES[index], value, int(other)]
+    if kind in (WRITE, HOLD):
+        return [*line, TABLE[index].address, value, other]
+    if kind == EXPRESS:
+        return [*line, TABLE[index].address, value]
+    if kind == BEGIN:
+        return [*line, index, value, other]
+    if kind == END:
+        return [*line, index, value, int(other)]
+    if kind in (SLIDE, STOP):
+        return [*line, value]
+    return [*line, value, other] if kind == DRAW else line
+
+
+def from_line(line: list[Any]) -> Fields:
+    """The fields of a wish, from its JSON value without the player.
+
+    Raises
+    ------
+    ValueError, TypeError, KeyError
+        Where it is none, or a value is out of range.
+    """
+    frame, kind, values = frames_of(line[0]), NUMBERS[line[1]], line[2:]
+    index, value, other = 0, 0.0, 0.0
+    if kind == RAMP:
+        return (frame, *ramp_of(*values))
+    if kind in (WRITE, HOLD):
+        address, number, glide_ms = values
+        index, value = _setting(address, number)
+        other = _within(glide_ms, 0.0, MOST_MS)
+    elif kind == EXPRESS:
+        index, value = _setting(*values)
+    elif kind in (BEGIN, END):
+        channel, key, last = values
+        index = _whole(channel, -MOST_CHANNELS, MOST_CHANNELS)  # below 0: no MIDI channel
+        value = _within(key, 0.0, HIGHEST_KEY)
+        other = _within(last, 0.0, HIGHEST_KEY) if kind == BEGIN else float(_whole(last, 0, 1))
+    elif kind == STOP:
+        (panic,) = values
+        value = _within(panic, 0.0, 1.0)
+    elif kind == SLIDE:
+        (pitch,) = values
+        value = _within(pitch, 0.0, HIGHEST_KEY)
+    elif kind == DRAW:
+        speed, force = values
+        value, other = _setting("/bow/speed", speed)[1], _setting("/bow/force", force)[1]
+    elif values:
+        raise ValueError("more values than it takes")
+    return frame, kind, index, value, other
+
+
+def ramp_of(address: str, target: Any, ramp: Any) -> tuple[int, int, float, float]:
+    """The fields of a ramp after its frame: also the events of version 1."""
+    index = INDICES[address]
+    lo, hi = (0.0, 0.0) if index == SILENCE else (ENGINE[index].lo, ENGINE[index].hi)
+    return RAMP, index, _within(target, lo, hi), float(frames_of(ramp))
+
+
+def player_of(number: Any, players: int) -> int:
+    """The player of a line, counted from 0; raises ValueError."""
+    return _whole(number, 1, players) - 1
+
+
+def frames_of(value: Any) -> int:
+    """A number of frames, or another count; raises ValueError."""
+    return _whole(value, 0, MOST_FRAMES)
+
+
+def _whole(value: Any, lo: int, hi: int) -> int:
+    if type(value) is not int or not lo <= value <= hi:
+        raise ValueError(f"expected a whole number from {lo} to {hi}")
+    return value
+
+
+def _setting(address: str, value: Any) -> tuple[int, float]:
+    row = ROWS[address]
+    return row, _within(value, TABLE[row].lo, TABLE[row].hi)
+
+
+def _within(value: Any, lo: float, hi: float) -> float:
+    number = float(value)
+    if not lo <= number <= hi:  # also refuses NaN
+        raise ValueError(f"{number} is not within {lo:g} to {hi:g}")
+    return number

@@ -1,0 +1,165 @@
+"""Write captures of sessions: every wish that the player fulfilled, with its frame.
+
+docs/capture.md describes the format: one JSON value a line, so that a capture that was cut short
+by a crash can be read.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.errors import OutputError
+from yehu_server.scores.capture_beginning import Beginning, beginning_of, header_of
+from yehu_server.scores.capture_format import as_line
+from yehu_server.util.files import create, discard, why, write_all
+
+ROOM_BYTES = 1 << 16  # free space needed to begin a capture
+
+
+class CaptureWriter:
+    """Writes a capture; each line of the file is complete, however writing ends.
+
+    Parameters
+    ----------
+    beginning : Beginning
+        What the session starts from.
+    overwrite : bool
+        Whether to replace an older file.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written.
+    """
+
+    def __init__(
+        self,
+        target: Path,
+        *,
+        beginning: Beginning,
+        overwrite: bool = False,
+    ) -> None:
+        self._target = target
+        self._file = create(target, overwrite=overwrite, room_bytes=ROOM_BYTES)
+        self._whole_bytes = 0
+        self._write([header_of(beginning)])
+
+    def wishes(self, wishes: Any, player: int = 0) -> None:
+        """Add wishes [shape=(wishes,), dtype=WISH] that a player, counted from 0, fulfilled."""
+        self._write(as_line(wish, player) for wish in wishes)
+
+    def note(self, what: str, frame: int, **details: int) -> None:
+        """Add a ``rest`` (after a gap `since` a frame), or ``lost`` `events`."""
+        self._write([{what: frame, **details}])
+
+    def close(self, frame: int) -> None:
+        """End the capture at the frame after the last one played."""
+        self._write([{"end": frame}])
+        self._file.close()
+
+    def discard(self) -> None:
+        """End the capture and remove its file."""
+        discard(self._file, self._target)
+        self._file.close()
+
+    def _write(self, lines: Iterable[Any]) -> None:
+        data = "".join(json.dumps(line) + "\n" for line in lines).encode()
+        try:
+            write_all(self._file, data)
+            self._whole_bytes += len(data)
+        except OSError as error:
+            with contextlib.suppress(OSError):  # remove an incomplete line
+                written = self._file.seek(0, io.SEEK_END) - self._whole_bytes
+                self._file.truncate(self._whole_bytes + data.rfind(b"\n", 0, written) + 1)
+            self._file.close()
+            raise OutputError(f"{self._target}: cannot write: {why(error)}") from error
+
+
+class LiveCapture:
+    """Writes the wishes that players fulfil to a file; a full disk ends only the capture.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        Its instruments must report their wishes (``Instrument.report_wishes``) from the first
+        frame on.
+    has_room : bool
+        Whether it plays in a room.
+    said : callable
+        Called with a line when the capture ends by itself.
+    overwrite : bool
+        Whether to replace an older file.
+
+    Raises
+    ------
+    OutputError
+        Where the file cannot be written, or is there.
+    """
+
+    def __init__(
+        self,
+        ensemble: Ensemble,
+        target: Path,
+        said: Callable[[str], None],
+        *,
+        has_room: bool,
+        overwrite: bool = False,
+    ) -> None:
+        self._ensemble = ensemble
+        self._said = said
+        self._writer: CaptureWriter | None = CaptureWriter(
+            target,
+            beginning=beginning_of(ensemble.instruments, has_room=has_room),
+            overwrite=overwrite,
+        )
+        self._rests = 0  # number of those written
+        self._unreported = 0
+        self.is_whole = True
+
+    def keep_up(self) -> None:
+        """Write the wishes that were fulfilled since the last call."""
+        if self._writer is not None:
+            try:
+                self._write(self._writer)
+            except OutputError as error:
+                self._end(error)
+
+    def close(self) -> None:
+        """Write the last wishes, and end the capture after the last frame played."""
+        self.keep_up()
+        writer, self._writer = self._writer, None
+        if writer is not None:
+            try:
+                writer.close(self._ensemble.frame)
+            except OutputError as error:
+                self._end(error)
+
+    def discard(self) -> None:
+        """End the capture and remove its file."""
+        if self._writer is not None:
+            self._writer.discard()
+        self._writer = None
+
+    def _write(self, writer: CaptureWriter) -> None:
+        for since, frame in self._ensemble.rests[self._rests :]:
+            writer.note("rest", frame, since=since)
+            self._rests += 1
+        unreported = 0
+        for player, instrument in enumerate(self._ensemble.instruments):
+            writer.wishes(instrument.applied_wishes(), player)
+            unreported += int(instrument.meters()["unreported"])
+        if unreported > self._unreported:
+            frame = int(self._ensemble.meters()["frame"])
+            writer.note("lost", frame, events=unreported - self._unreported)
+            self._unreported = unreported
+
+    def _end(self, error: OutputError) -> None:
+        self._writer = None
+        self.is_whole = False
+        self._said(f"capture ended: {error}; what was written is kept")

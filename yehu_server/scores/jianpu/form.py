@@ -1,0 +1,197 @@
+"""Repeats and endings of a jianpu text, da capo and dal segno: read, and unfolded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from fractions import Fraction
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.jianpu.bars import Bars
+from yehu_server.scores.jianpu.text import Word, failure
+
+
+@dataclass
+class _Open:
+    """A repeat, or the endings of one, that has not ended yet."""
+
+    elements: list[object]
+    word: Word
+    repeat: Repeat
+    begin: Fraction  # within the bar, of the repeat or of its first ending
+    endings: bool = False
+
+
+class Braces:
+    """Collects elements, in the order of the page."""
+
+    def __init__(self, bars: Bars) -> None:
+        self._all: list[object] = []
+        self._stack: list[_Open] = []
+        self._bars = bars
+
+    def add(self, element: object) -> None:
+        """Put an element where the page is."""
+        self._elements().append(element)
+
+    def _elements(self) -> list[object]:
+        return self._stack[-1].elements if self._stack else self._all
+
+    def open_repeat(self, times: str, word: Word) -> None:
+        """A repeat begins. Raises ScoreError beyond its bounds."""
+        if len(times) > 4 or int(times) > MOST_TIMES:
+            raise failure(word, f"more than {MOST_TIMES} times")
+        if len(self._stack) >= MOST_DEPTH:
+            raise failure(word, f"more than {MOST_DEPTH} repeats within each other")
+        repeat = Repeat(int(times))
+        self.add(repeat)
+        self._stack.append(_Open(repeat.body, word, repeat, self._bars.place))
+
+    def open_endings(self, word: Word) -> None:
+        """The endings of the repeat before begin. Raises ScoreError where there is none."""
+        elements = self._elements()
+        before = elements[-1] if elements else None
+        if not isinstance(before, Repeat) or before.endings:
+            raise failure(word, "A{ belongs after the } of a repeat")
+        if len(self._stack) >= MOST_DEPTH:
+            raise failure(word, f"more than {MOST_DEPTH} repeats within each other")
+        before.endings.append([])
+        self._bars.undo_repeat()
+        opened = _Open(before.endings[0], word, before, self._bars.place, endings=True)
+        self._stack.append(opened)
+
+    def bar_line(self, word: Word) -> None:
+        """A bar line, or the end of one ending where endings are open."""
+        opened = self._stack[-1] if self._stack else None
+        if opened is None or not opened.endings:
+            self._bars.line(word)
+            return
+        if len(opened.repeat.endings) == MOST_TIMES:
+            raise failure(word, f"more than {MOST_TIMES} endings")
+        opened.elements = []
+        opened.repeat.endings.append(opened.elements)
+        self._bars.return_to(opened.begin)
+
+    def close(self, word: Word) -> None:
+        """A repeat or its endings end. Raises ScoreError where none is open."""
+        if not self._stack:
+            raise failure(word, "} without a { before it")
+        closed = self._stack.pop()
+        if not closed.endings:
+            self._bars.repeat(closed.begin, closed.repeat.times)
+
+    def all_closed(self) -> list[object]:
+        """Return all elements. Raises ScoreError where a repeat has no end."""
+        if self._stack:
+            raise failure(self._stack[-1].word, "has no } that ends it")
+        return self._all
+
+
+MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
+MOST_DEPTH = 8  # repeats within repeats
+MOST_TIMES = 100
+
+
+class Jump(Enum):
+    """A sign of the form; its value is its word."""
+
+    FINE = "Fine"
+    SEGNO = "Segno"
+    TO_CODA = "ToCoda"
+    DA_CAPO = "DC"
+    DAL_SEGNO = "DS"
+
+
+BACK = (Jump.DA_CAPO, Jump.DAL_SEGNO)
+
+
+@dataclass
+class Repeat:
+    """What is played several times, and the endings, of which each time takes one."""
+
+    times: int
+    body: list[object] = field(default_factory=list)
+    endings: list[list[object]] = field(default_factory=list)
+
+
+def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
+    """Elements in the order of playing, and warnings.
+
+    After a da capo or dal segno, repeats are not taken again, and of endings the last is played.
+    Only the first of several is taken.
+
+    Parameters
+    ----------
+    written : sequence
+        Elements, Repeats and Jumps as written.
+
+    Raises
+    ------
+    ScoreError
+        Where there are more than MOST_UNFOLDED.
+    """
+    once = _flat(written, repeated=True)
+    back = next((at for at, each in enumerate(once) if each in BACK), None)
+    if back is None:
+        return _without_jumps(once), []
+    warnings = []
+    if sum(each in BACK for each in _flat(written, repeated=False)) > 1:
+        warnings.append("of several DC and DS, only the first is played")
+    again = _flat(written, repeated=False)
+    turn = next(at for at, each in enumerate(again) if each in BACK)
+    start = 0
+    if once[back] is Jump.DAL_SEGNO:
+        signs = [at for at, each in enumerate(again[:turn]) if each is Jump.SEGNO]
+        if not signs:
+            warnings.append("a DS without a Segno: played from the beginning")
+        start = signs[-1] if signs else 0
+    played = once[:back] + _to_the_end(again, start, turn)
+    _check(played)
+    return _without_jumps(played), warnings
+
+
+def _to_the_end(again: list[object], start: int, turn: int) -> list[object]:
+    """From a place to Fine, or by the coda, or to the end."""
+    for at in range(start, len(again)):
+        if again[at] is Jump.FINE:
+            return again[start:at]
+        if again[at] is Jump.TO_CODA and at < turn:
+            return again[start:at] + again[turn + 1 :]
+    return again[start:]
+
+
+def _without_jumps(elements: list[object]) -> list[object]:
+    return [each for each in elements if not isinstance(each, Jump)]
+
+
+def _flat(written: Sequence[object], *, repeated: bool) -> list[object]:
+    played: list[object] = []
+    for each in written:
+        if not isinstance(each, Repeat):
+            played.append(each)
+            continue
+        body = _flat(each.body, repeated=repeated)
+        endings = [_flat(ending, repeated=repeated) for ending in each.endings]
+        times = max(each.times, len(endings))
+        if not repeated:
+            played += body + (endings[-1] if endings else [])
+            continue
+        length = len(body) + max(map(len, endings), default=0)
+        if length * times > 2 * MOST_UNFOLDED:
+            raise _too_long()
+        for time in range(times):
+            played += body
+            if endings:  # with fewer endings than times, the first one comes more often
+                played += endings[max(0, time - (times - len(endings)))]
+        _check(played)
+    return played
+
+
+def _check(played: list[object]) -> None:
+    if len(played) > MOST_UNFOLDED:
+        raise _too_long()
+
+
+def _too_long() -> ScoreError:
+    return ScoreError(f"with its repeats, has more than {MOST_UNFOLDED} notes")

@@ -1,0 +1,300 @@
+"""From the words of one part to what sounds, in the order of the page."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from fractions import Fraction
+
+from yehu_server.scores.jianpu.bars import Bars
+from yehu_server.scores.jianpu.elements import MetreMark, Sounding, TempoMark
+from yehu_server.scores.jianpu.form import MOST_UNFOLDED, Braces, Jump
+from yehu_server.scores.jianpu.marks import AHEAD, SILENT, Act, Action, action_of
+from yehu_server.scores.jianpu.notes import (
+    Figure,
+    Kind,
+    NoteWord,
+    Octaves,
+    grace_word,
+    note_word,
+    quarters,
+)
+from yehu_server.scores.jianpu.scale import Scale
+from yehu_server.scores.jianpu.text import Word, failure, shown
+from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO, Grace
+
+MOST_TUPLET, MOST_BARS_REST = 64, 1000
+
+_TEMPO = re.compile(r"(?:(1|2|4|8|16|32|64)(\.{0,2})|\u2669)=([1-9]\d{0,3})")
+_METRE = re.compile(r"([1-9]\d?)/(1|2|4|8|16|32|64)(?:,(1|2|4|8|16|32|64)(\.?))?")
+_TUPLET = re.compile(r"([1-9]\d?)\[")
+_BARS_REST = re.compile(r"R\*([1-9]\d*)")
+_REPEAT = re.compile(r"R([1-9]\d*)?\{")
+_LETTER = re.compile(r"letter[A-Z0-9]+")
+_ATTACHED = re.compile(r"(\(*)([^()~|]+)([()~]*)")
+_JUMPS = {jump.value: jump for jump in Jump}
+
+
+class PartParser:
+    """Reads the words of a part, one after another.
+
+    Attributes
+    ----------
+    unknown : Counter
+        Words that were not understood, shared by all parts.
+    notices : Counter
+        Other things to warn of, shared by all parts.
+    scale : Scale
+        What figures sound like; headers change it too.
+    """
+
+    def __init__(self, unknown: Counter[str], notices: Counter[str], scale: Scale) -> None:
+        self.unknown, self.notices = unknown, notices
+        self.scale = scale
+        self._bars = Bars(notices)
+        self._braces = Braces(self._bars)
+        self._octaves = Octaves.UNSAID
+        self._keeps_length, self._last_beams = False, 0
+        self._tuplet = Fraction(1)
+        self._tuplet_word: Word | None = None
+        self._in_harmonics = False
+        self._ahead: list[Action] = []
+        self._graces: tuple[Grace, ...] = ()
+        self._last: Sounding | None = None
+        self._count = 0
+        self._skips = False  # the argument of \bar
+        self._ways: tuple[Callable[[Word], bool], ...] = (
+            self._as_note,
+            self._as_switch,
+            self._as_action,
+            self._as_graces,
+            self._as_form,
+            self._as_key,
+            self._as_tempo,
+            self._as_metre,
+            self._as_rest_of_bars,
+            self._as_attached,
+        )
+
+    def read(self, word: Word) -> None:
+        """Read one word. Raises ScoreError where nothing after it could be in time."""
+        if self._skips:
+            self._skips = False
+            if word.text.startswith('"'):
+                return
+        if not any(read(word) for read in self._ways):
+            self.unknown[shown(word.text)] += 1
+
+    def end(self) -> list[object]:
+        """Return all elements in the order of the page.
+
+        That is Soundings, TempoMarks, MetreMarks, Repeats and Jumps. Raises ScoreError where a
+        repeat or a tuplet has no end.
+        """
+        elements = self._braces.all_closed()
+        if self._tuplet_word is not None:
+            raise failure(self._tuplet_word, "has no ] that ends it")
+        if self._graces:
+            self.notices["grace notes before nothing left out"] += 1
+        return elements
+
+    # ------------------------------------------------------------ notes
+
+    def _as_note(self, word: Word) -> bool:
+        note = note_word(word.text, self._octaves)
+        if note is None:
+            return False
+        self.scale.shift(note.shift, word)
+        if note.kind is Kind.DASH:
+            length = self._length(note)
+            for _ in range(note.dashes):
+                self._add(Sounding(Kind.DASH, length), word)
+            return True
+        if note.unsure:
+            self.notices["octave marks between two figures, read as of the one before"] += 1
+        melody = len(note.figures) > 1 and not note.figures[0].sign.isascii()
+        for group in [(figure,) for figure in note.figures] if melody else [note.figures]:
+            self._sound(note, group, word)
+        for _ in range(note.dashes):
+            self._add(Sounding(Kind.DASH, self._tuplet), word)
+        return True
+
+    def _sound(self, note: NoteWord, figures: tuple[Figure, ...], word: Word) -> None:
+        sounding = Sounding(note.kind, self._length(note))
+        if note.kind is Kind.BEAT:
+            self.notices["beats of percussion (x), played as rests"] += 1
+        if figures:
+            self._give_pitches(sounding, figures, note.tremolo, word)
+        ahead, self._ahead = self._ahead, []
+        if note.kind is Kind.NOTE:
+            sounding.actions += ahead
+            sounding.before, self._graces = self._graces, ()
+            if self._in_harmonics:
+                sounding.actions.append(Action(Act.MARK, "harmonic"))
+        else:
+            self._ahead = ahead
+        self._add(sounding, word)
+
+    def _give_pitches(
+        self, sounding: Sounding, figures: tuple[Figure, ...], tremolo: bool, word: Word
+    ) -> None:
+        single = len(figures) == 1
+        pitches = [self.scale.pitch(figure, word, shifted=single) for figure in figures]
+        sounding.pitch = max(pitches)
+        if tremolo and len(figures) == 2:
+            sounding.pitch, sounding.other = pitches
+        elif tremolo:
+            sounding.actions.append(Action(Act.MARK, "tremolo", 3.0))
+        elif not single:
+            self.notices[
+                "chords, of which the highest note is played (if they are no chords, write a "
+                "space between the notes)"
+            ] += 1
+        sounding.living = self.scale.living(figures[0])
+
+    def _length(self, note: NoteWord) -> Fraction:
+        beams = note.beams
+        if beams is None:
+            beams = self._last_beams if self._keeps_length else 0
+        self._last_beams = beams
+        return quarters(beams, note.dots, self._tuplet)
+
+    def _add(self, sounding: Sounding, word: Word) -> None:
+        self._count += 1
+        if self._count > MOST_UNFOLDED:
+            raise failure(word, f"more than {MOST_UNFOLDED} notes")
+        self._braces.add(sounding)
+        self._last = sounding
+        self._bars.step(sounding.length, word)
+
+    def _as_graces(self, word: Word) -> bool:
+        graces = grace_word(word.text, self._octaves)
+        if graces is None:
+            return False
+        if graces.unsure:
+            self.notices["octave marks between two figures, read as of the one before"] += 1
+        notes = tuple(Grace(self.scale.pitch(each, word), length) for each, length in graces.notes)
+        if not graces.after:
+            self._graces += notes
+        elif self._last is not None and self._last.kind is not Kind.REST:
+            self._last.after += notes
+        else:
+            self.notices["grace notes after nothing left out"] += 1
+        return True
+
+    # ------------------------------------------------------------ marks
+
+    def _as_action(self, word: Word) -> bool:
+        if word.text in AHEAD:
+            self._ahead.append(AHEAD[word.text])
+            return True
+        action = action_of(word.text)
+        if action is None:
+            return False
+        if self._last is None:  # before the first note: a moment without length
+            self._last = Sounding(Kind.REST, Fraction(0))
+            self._braces.add(self._last)
+        self._last.actions.append(action)
+        return True
+
+    def _as_attached(self, word: Word) -> bool:
+        """A note with brackets, ties or bar lines written onto it."""
+        found = _ATTACHED.fullmatch(word.text)
+        if "|" in word.text and '"' not in word.text and word.text != "|":
+            pieces = [piece for piece in re.split(r"(\|+)", word.text) if piece]
+        elif found is not None and (found[1] or found[3]):
+            if note_word(found[2], self._octaves) is None:
+                return False
+            pieces = [found[2], *found[1], *found[3]]
+        else:
+            return False
+        column = word.column
+        for piece in pieces:
+            self.read(Word("|" if piece.startswith("|") else piece, word.line, column))
+            column += len(piece)
+        return True
+
+    def _as_switch(self, word: Word) -> bool:
+        text = word.text
+        if text in ("Harm:", ":Harm"):
+            self._in_harmonics = text == "Harm:"
+        elif text == "KeepLength":
+            self._keeps_length = True
+        elif text in ("OctavesBefore", "OctavesAfter"):
+            self._octaves = Octaves.BEFORE if text == "OctavesBefore" else Octaves.AFTER
+        elif text == "\\bar":
+            self._skips = True
+        else:
+            return text in SILENT or _LETTER.fullmatch(text) is not None
+        return True
+
+    # ------------------------------------------------------------ key, tempo, metre
+
+    def _as_key(self, word: Word) -> bool:
+        return self.scale.read_key(word.text)
+
+    def _as_tempo(self, word: Word) -> bool:
+        found = _TEMPO.fullmatch(word.text)
+        if found is None:
+            return False
+        unit = Fraction(4, int(found[1] or 4)) * (2 - Fraction(1, 2 ** len(found[2] or "")))
+        tempo = float(unit) * int(found[3])
+        if not LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
+            lowest, highest = f"{LOWEST_TEMPO:g}", f"{HIGHEST_TEMPO:g}"
+            raise failure(word, f"a tempo of {tempo:g} is not within {lowest} to {highest}")
+        self._braces.add(TempoMark(tempo))
+        return True
+
+    def _as_metre(self, word: Word) -> bool:
+        found = _METRE.fullmatch(word.text)
+        if found is None:
+            return False
+        bar = first = Fraction(4 * int(found[1]), int(found[2]))
+        if found[3]:
+            first = Fraction(4, int(found[3])) * (Fraction(3, 2) if found[4] else 1)
+            if first > bar:
+                raise failure(word, "the pickup is longer than the bar")
+        self._braces.add(MetreMark(bar, first))
+        self._bars.change(bar, first)
+        return True
+
+    def _as_rest_of_bars(self, word: Word) -> bool:
+        found = _BARS_REST.fullmatch(word.text)
+        if found is None:
+            return False
+        if len(found[1]) > 4 or int(found[1]) > MOST_BARS_REST:
+            raise failure(word, f"a rest of more than {MOST_BARS_REST} bars")
+        self._add(Sounding(Kind.REST, int(found[1]) * self._bars.length), word)
+        return True
+
+    # ------------------------------------------------------------ form
+
+    def _as_form(self, word: Word) -> bool:
+        text = word.text
+        if text in _JUMPS:
+            self._braces.add(_JUMPS[text])
+        elif text == "|":
+            self._braces.bar_line(word)
+        elif text == "}":
+            self._braces.close(word)
+        elif text == "A{":
+            self._braces.open_endings(word)
+        elif text == "]":
+            self._tuplet, self._tuplet_word = Fraction(1), None
+        elif found := _TUPLET.fullmatch(text):
+            self._begin_tuplet(int(found[1]), word)
+        elif found := _REPEAT.fullmatch(text):
+            self._braces.open_repeat(found[1] or "2", word)
+        else:
+            return False
+        return True
+
+    def _begin_tuplet(self, notes: int, word: Word) -> None:
+        if notes > MOST_TUPLET:
+            raise failure(word, f"more than {MOST_TUPLET} notes in a tuplet")
+        power = 2
+        while power < notes:
+            power *= 2
+        room = notes * 3 // 2 if power == notes else power // 2
+        self._tuplet, self._tuplet_word = Fraction(room, notes), word

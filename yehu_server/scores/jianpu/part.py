@@ -1,0 +1,264 @@
+"""From what sounds, in the order of playing, to the notes, spans and signs of a part."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from yehu_server.scores.jianpu.characters import living
+from yehu_server.scores.jianpu.elements import MetreMark, Sounding, TempoMark
+from yehu_server.scores.jianpu.marks import THERE_AND_BACK, Act, Action, mark_of
+from yehu_server.scores.jianpu.notes import Kind
+from yehu_server.scores.score import Metre
+from yehu_server.scores.written.notated import (
+    DYNAMICS,
+    FORCED,
+    SIGNS,
+    USUAL_TEMPO,
+    Grace,
+    Mark,
+    Note,
+    Sign,
+    Span,
+    Tempo,
+)
+
+TREMOLO_NOTE = Fraction(1, 8)  # of a tremolo between two notes: a demisemiquaver
+LONGEST_CHANGE = Fraction(8)  # of tempo, where nothing written ends it
+MOST_TREMOLO_NOTES = 20_000
+
+
+@dataclass(slots=True)
+class _Draft:
+    """A note whose length may still grow."""
+
+    beat: Fraction
+    length: Fraction
+    pitch: float
+    other: float | None
+    living: str
+    marks: list[Mark]
+    before: tuple[Grace, ...]
+    after: tuple[Grace, ...]
+    returns: bool = False  # slides away and back
+
+
+@dataclass
+class Played:
+    """What a part plays, from a beat on.
+
+    Attributes
+    ----------
+    end : Fraction
+        The beat after the last note or rest.
+    has_pickup : bool
+        Whether a metre begins with a short bar.
+    """
+
+    begin: Fraction
+    end: Fraction
+    notes: list[Note] = field(default_factory=list)
+    spans: list[Span] = field(default_factory=list)
+    signs: list[Sign] = field(default_factory=list)
+    tempi: list[Tempo] = field(default_factory=list)
+    metres: list[Metre] = field(default_factory=list)
+    has_pickup: bool = False
+
+
+class PartPlayer:
+    """Walks once through the elements of a part."""
+
+    def __init__(self, begin: Fraction, notices: Counter[str]) -> None:
+        self._played = Played(begin, begin)
+        self._notices = notices
+        self._drafts: list[_Draft] = []
+        self._tied = False
+        self._slurs: list[Fraction] = []
+        self._hairpin: tuple[str, Fraction] | None = None
+        self._change: tuple[str, Fraction] | None = None  # of tempo
+        self._glissando: Fraction | None = None
+        self._tempo = USUAL_TEMPO
+
+    def play(self, elements: Sequence[object]) -> Played:
+        """Return what is played."""
+        played = self._played
+        for element in elements:
+            if isinstance(element, Sounding):
+                self._sound(element)
+            elif isinstance(element, TempoMark):
+                self._change_tempo(element.quarters_per_minute, played.end)
+            elif isinstance(element, MetreMark):
+                self._metre(element)
+        self._untied()
+        self._end_hairpin(played.end)
+        self._end_change(played.end)
+        if self._slurs:
+            self._notices["slurs without an end left out"] += len(self._slurs)
+        for draft in self._drafts:
+            self._finish(draft)
+        return played
+
+    # ------------------------------------------------------------ in time
+
+    def _sound(self, element: Sounding) -> None:
+        begin = self._played.end
+        self._played.end = begin + element.length
+        last = self._drafts[-1] if self._drafts else None
+        goes_on = last is not None and last.beat + last.length == begin
+        if element.kind is Kind.NOTE and element.pitch is not None:
+            self._note(element, element.pitch, begin, last if goes_on else None)
+        elif element.kind is Kind.DASH and last is not None and goes_on:
+            last.length += element.length
+            last.after += element.after
+            last.marks += _marks(element)
+        else:
+            self._rest(element, begin)
+        for action in element.actions:
+            if action.act is not Act.MARK:
+                self._act(action, begin)
+
+    def _rest(self, element: Sounding, begin: Fraction) -> None:
+        if element.length:
+            self._untied()
+        for mark in _marks(element):
+            if mark.name in SIGNS:  # such as a fermata
+                self._played.signs.append(Sign(begin, mark.name, mark.value))
+            else:
+                self._notices["marks on rests left out"] += 1
+
+    def _note(self, element: Sounding, pitch: float, begin: Fraction, last: _Draft | None) -> None:
+        marks = _marks(element)
+        if self._tied and last is not None and last.pitch == pitch and not element.before:
+            last.length += element.length
+            last.marks += [mark for mark in marks if mark not in last.marks]
+            last.after += element.after
+            self._tied = False
+            return
+        self._untied()
+        if self._glissando is not None:
+            self._span("glissando", self._glissando, begin)
+            self._glissando = None
+        self._drafts.append(
+            _Draft(
+                begin,
+                element.length,
+                pitch,
+                element.other,
+                element.living,
+                marks,
+                element.before,
+                element.after,
+            )
+        )
+
+    def _act(self, action: Action, begin: Fraction) -> None:
+        last = self._drafts[-1] if self._drafts else None
+        onset = begin if last is None else last.beat  # of the note that the word is written at
+        if action.act is Act.SIGN:
+            if action.name in DYNAMICS or action.name in FORCED:
+                self._end_hairpin(begin)
+            self._played.signs.append(Sign(begin, action.name, action.value))
+        elif action.act is Act.SLUR:
+            self._slurs.append(onset)
+        elif action.act is Act.SLUR_END:
+            if self._slurs:
+                self._span("slur", self._slurs.pop(), onset)
+            else:
+                self._notices["ends of slurs that did not begin left out"] += 1
+        elif action.act is Act.TIE:
+            self._tied = True
+        elif action.act is Act.HAIRPIN:
+            self._end_hairpin(begin)
+            self._hairpin = (action.name, begin)
+        elif action.act is Act.HAIRPIN_END:
+            self._end_hairpin(begin)
+        elif action.act is Act.GLISSANDO:
+            self._glissando = onset
+        elif action.act is Act.CONTOUR and last is not None:
+            last.returns = True
+        elif action.act is Act.TEMPO and action.value is not None:
+            self._change_tempo(action.value, begin)
+        elif action.act is Act.TEMPO_CHANGE:
+            self._end_change(begin)
+            self._change = (action.name, begin)
+        elif action.act is Act.TEMPO_AGAIN:
+            self._end_change(begin)
+            self._played.tempi.append(Tempo(begin, self._tempo))
+
+    def _untied(self) -> None:
+        if self._tied:
+            self._notices["ties between different notes left out (a slur is written ( ) )"] += 1
+        self._tied = False
+
+    def _span(self, name: str, begin: Fraction, end: Fraction) -> None:
+        if end > begin:
+            self._played.spans.append(Span(name, begin, end))
+
+    def _end_hairpin(self, at: Fraction) -> None:
+        if self._hairpin is not None:
+            self._span(*self._hairpin, at)
+        self._hairpin = None
+
+    def _end_change(self, at: Fraction) -> None:
+        if self._change is not None:
+            name, begin = self._change
+            self._span(name, begin, min(at, begin + LONGEST_CHANGE))
+        self._change = None
+
+    def _change_tempo(self, tempo: float, at: Fraction) -> None:
+        self._end_change(at)
+        self._tempo = tempo
+        self._played.tempi.append(Tempo(at, tempo))
+
+    def _metre(self, mark: MetreMark) -> None:
+        begin = self._played.end
+        if mark.first < mark.bar:
+            self._played.has_pickup = True
+            self._played.metres.append(Metre(float(begin), float(mark.first)))
+        self._played.metres.append(Metre(float(begin + mark.first % mark.bar), float(mark.bar)))
+
+    # ------------------------------------------------------------ notes
+
+    def _finish(self, draft: _Draft) -> None:
+        if draft.other is not None:
+            self._tremolo(draft, draft.other)
+            return
+        contour: tuple[tuple[float, float], ...] = ()
+        if draft.living:
+            contour = living(draft.living, draft.length)
+        elif draft.returns:
+            contour = THERE_AND_BACK
+        self._played.notes.append(
+            Note(
+                draft.beat,
+                draft.length,
+                draft.pitch,
+                tuple(draft.marks),
+                draft.before,
+                draft.after,
+                contour,
+            )
+        )
+
+    def _tremolo(self, draft: _Draft, other: float) -> None:
+        """Two notes in turns, under one bow."""
+        count = max(2, int(draft.length / TREMOLO_NOTE))
+        if len(self._played.notes) + count > MOST_TREMOLO_NOTES:
+            self._notices["tremolos between two notes, of which the first is played"] += 1
+            self._played.notes.append(Note(draft.beat, draft.length, draft.pitch))
+            return
+        length = draft.length / count
+        for number in range(count):
+            pitch = other if number % 2 else draft.pitch
+            marks = tuple(draft.marks) if number == 0 else ()
+            before = draft.before if number == 0 else ()
+            after = draft.after if number == count - 1 else ()
+            beat = draft.beat + number * length
+            self._played.notes.append(Note(beat, length, pitch, marks, before, after))
+        self._span("slur", draft.beat, draft.beat + (count - 1) * length)
+
+
+def _marks(element: Sounding) -> list[Mark]:
+    return [mark_of(action) for action in element.actions if action.act is Act.MARK]

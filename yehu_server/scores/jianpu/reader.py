@@ -1,0 +1,213 @@
+"""Reads jianpu (简谱, numbered notation), written as text in the words of jianpu-ly, and 二四谱.
+
+The format is that of [jianpu-ly], as docs/jianpu.md describes it. 二四谱 and 工尺谱 are read
+with it (`jianpu_characters`).
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.jianpu.characters import NOTATIONS, mode_named
+from yehu_server.scores.jianpu.form import unfolded
+from yehu_server.scores.jianpu.marks import SILENT_HEADERS
+from yehu_server.scores.jianpu.parser import PartParser
+from yehu_server.scores.jianpu.part import PartPlayer, Played
+from yehu_server.scores.jianpu.scale import Scale
+from yehu_server.scores.jianpu.text import Header, Word, decoded, shown, words_of
+from yehu_server.scores.score import COMMON_TIME, Metre
+from yehu_server.scores.written.notated import (
+    MOST_BEATS,
+    MOST_PARTS,
+    Bar,
+    Part,
+    Sign,
+    Span,
+    Tempo,
+    Written,
+)
+from yehu_server.util.files import read_bytes
+
+MOST_BYTES = 1 << 20
+MOST_MOVEMENTS = 64
+MOST_UNKNOWN = 100  # different words that are named
+MOST_NUMBERED = 10_000  # bars
+
+Words = list[Word | Header]  # of a part
+
+
+def read_jianpu(path: str | os.PathLike[str]) -> Written:
+    """Read a file of jianpu.
+
+    Raises
+    ------
+    ScoreError
+        One line that names the file, and the line and column of what cannot be read: where it is
+        missing, larger than 1 MiB or no text; has no notes, or more than
+        `jianpu_form.MOST_UNFOLDED` in a part; where a repeat or tuplet does not end.
+    """
+    name = os.fspath(path)
+    name = name if name.isprintable() else ascii(name)
+    try:
+        return parse_jianpu(_bytes(path))
+    except ScoreError as error:
+        raise ScoreError(f"{name}: {error}") from None
+
+
+def _bytes(path: str | os.PathLike[str]) -> bytes:
+    try:
+        data = read_bytes(Path(path), MOST_BYTES)
+    except OSError as error:
+        if error.errno == errno.EFBIG:
+            raise ScoreError(f"larger than {MOST_BYTES // 2**10} KiB") from None
+        reason = error.strerror or type(error).__name__
+        raise ScoreError(f"cannot be read ({reason.lower()})") from None
+    except ValueError:  # a NUL in the name
+        raise ScoreError("cannot be read (no such file name)") from None
+    if not data.strip():
+        raise ScoreError("is empty")
+    return data
+
+
+def parse_jianpu(data: bytes) -> Written:
+    """Read the bytes of a file; see `read_jianpu`, whose errors these are without the name."""
+    text, guess = decoded(data)
+    unknown: Counter[str] = Counter()
+    notices: Counter[str] = Counter()
+    reader = _Reader(unknown, notices)
+    for movement in _movements(text):
+        reader.read(movement)
+    written = reader.written()
+    told = [guess] if guess else []
+    told += [notice if count == 1 else f"{notice} ({count})" for notice, count in notices.items()]
+    named = dict(unknown.most_common(MOST_UNKNOWN))
+    others = unknown.total() - sum(named.values())
+    if others:
+        named["other words"] = others
+    return replace(written, unknown=named, warnings=tuple(told))
+
+
+def _movements(text: str) -> list[list[Words]]:
+    """The words of each part of each movement."""
+    movements: list[list[Words]] = [[[]]]
+    for word in words_of(text):
+        if isinstance(word, Word) and word.text in ("NextPart", "NextScore"):
+            if word.text == "NextScore":
+                movements.append([])
+            movements[-1].append([])
+            if len(movements[-1]) > MOST_PARTS or len(movements) > MOST_MOVEMENTS:
+                raise ScoreError(f"has more than {MOST_PARTS} parts or movements")
+        else:
+            movements[-1][-1].append(word)
+    return movements
+
+
+class _Reader:
+    """Joins parts and movements to one score."""
+
+    def __init__(self, unknown: Counter[str], notices: Counter[str]) -> None:
+        self._unknown, self._notices = unknown, notices
+        self._title = ""
+        self._characters: dict[str, float] | None = None
+        self._names: dict[int, str] = {}
+        self._parts: dict[int, list[Played]] = {}
+        self._end = Fraction(0)
+
+    def read(self, movement: Sequence[Words]) -> None:
+        """Read the parts of a movement, which begins where the one before ended."""
+        played = []
+        for number, part in enumerate(movement):
+            parser = PartParser(self._unknown, self._notices, Scale(self._characters))
+            for word in part:
+                if isinstance(word, Header):
+                    self._head(word, parser.scale, number)
+                else:
+                    parser.read(word)
+            order, warnings = unfolded(parser.end())
+            self._notices.update(warnings)
+            played.append(PartPlayer(self._end, self._notices).play(order))
+        if len({each.end for each in played}) > 1:
+            self._notices["parts differ in length"] += 1
+        for number, each in enumerate(played):
+            self._parts.setdefault(number, []).append(each)
+        self._end = max(each.end for each in played)
+        if self._end > MOST_BEATS:
+            raise ScoreError(f"lasts more than {MOST_BEATS} quarter notes")
+
+    def _head(self, header: Header, scale: Scale, part: int) -> None:
+        if header.name in ("title", "标题", "曲名"):
+            self._title = self._title or shown(header.value)
+        elif header.name in ("instrument", "乐器"):
+            self._names.setdefault(part, shown(header.value))
+        elif header.name in ("notation", "谱", "谱式") and header.value in NOTATIONS:
+            self._characters = NOTATIONS[header.value]
+            scale.characters = self._characters
+        elif header.name in ("mode", "调", "调式") and mode_named(header.value):
+            scale.mode = mode_named(header.value) or scale.mode
+        elif header.name not in SILENT_HEADERS:
+            value = f"={header.value}" if header.name in ("notation", "mode", "谱", "调") else "="
+            self._unknown[shown(f"{header.name}{value}")] += 1
+
+    def written(self) -> Written:
+        """Return the score. Raises ScoreError where it has no notes."""
+        parts = []
+        for number, movements in sorted(self._parts.items()):
+            notes = tuple(note for each in movements for note in each.notes)
+            spans: list[Span] = [span for each in movements for span in each.spans]
+            signs: list[Sign] = [sign for each in movements for sign in each.signs]
+            name = self._names.get(number, "")
+            ordered = tuple(sorted(spans, key=lambda span: span.begin))
+            parts.append(Part(name, notes, ordered, tuple(signs)))
+        if not any(part.notes for part in parts):
+            raise ScoreError("has no notes of jianpu")
+        metres = self._metres()
+        return Written(tuple(parts), self._tempi(), metres, self._bars(metres), self._title)
+
+    def _tempi(self) -> tuple[Tempo, ...]:
+        """Of all parts; where several change it at once, the first of them."""
+        found: dict[Fraction, Tempo] = {}
+        for movements in self._parts.values():
+            of_part = {tempo.beat: tempo for each in movements for tempo in each.tempi}
+            found = {**of_part, **found}
+        return tuple(found[beat] for beat in sorted(found))
+
+    def _metres(self) -> tuple[Metre, ...]:
+        found = {COMMON_TIME.beat: COMMON_TIME}
+        found.update({metre.beat: metre for each in self._parts[0] for metre in each.metres})
+        return tuple(found[beat] for beat in sorted(found))
+
+    def _bars(self, metres: Sequence[Metre]) -> tuple[Bar, ...]:
+        """Bars numbered from 1 after a pickup; none where no bar is a pickup."""
+        if not any(each.has_pickup for each in self._parts[0]):
+            return ()
+        bars: list[Bar] = []
+        number = 1
+        last = Metre(float(self._end), 0.0)
+        for metre, after in pairwise((*metres, last)):
+            beat, end = Fraction(metre.beat), Fraction(after.beat)
+            if metre.quarters < after.quarters and end - beat == metre.quarters:  # a pickup
+                number -= 1
+            while beat < end and len(bars) < MOST_NUMBERED:
+                bars.append(Bar(beat, str(number)))
+                beat += Fraction(metre.quarters)
+                number += 1
+        return tuple(bars)
+
+
+def read_ersipu(path: str | os.PathLike[str]) -> Written:
+    """Read a file of 二四谱, which is in F where no key is written.
+
+    Raises
+    ------
+    ScoreError
+        As `read_jianpu`.
+    """
+    return read_jianpu(path)

@@ -1,0 +1,90 @@
+"""The pitches of figures and characters: key, mode and base octave of a jianpu text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from yehu_server.scores.jianpu.characters import ERSIPU, USUAL_MODE, lives, semitones_of
+from yehu_server.scores.jianpu.notes import MAJOR, MOST_OCTAVES, Figure
+from yehu_server.scores.jianpu.text import Word, failure, shown
+
+MIDDLE_C = 60.0
+LETTERS = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
+LOWEST_DO = -5.0  # semitones from middle C, without the sharp or flat of the key
+USUAL_CHARACTER_KEY = 65.0  # F, in which Chaozhou music is written
+
+_KEY = re.compile(r"([1-7])=(?:([A-Ga-g])([#b]?)|([#b])([A-Ga-g]))")
+
+
+class Scale:
+    """What figures sound like at a place of the text.
+
+    Attributes
+    ----------
+    mode : Mode
+        Of 二四谱.
+    characters : mapping of str to float
+        Semitones above do of the characters of this notation.
+    """
+
+    def __init__(self, characters: Mapping[str, float] | None) -> None:
+        self.mode = USUAL_MODE
+        self.characters = characters or ERSIPU
+        self._key: float | None = None  # semitones above middle C
+        self._octave = 0
+
+    def read_key(self, text: str) -> bool:
+        """Take a key, such as 1=F or 6=D; False where the word is none."""
+        found = _KEY.fullmatch(text)
+        if found is None:
+            return False
+        letter, sign = found[2] or found[5], found[3] or found[4]
+        do = LETTERS[letter.upper()] - MAJOR[int(found[1]) - 1]
+        self._key = (do - LOWEST_DO) % 12.0 + LOWEST_DO + {"#": 1, "b": -1}.get(sign or "", 0)
+        return True
+
+    def shift(self, octaves: int, word: Word) -> None:
+        """Move the base octave. Raises ScoreError where it is too far from the middle."""
+        self._octave += octaves
+        if abs(self._octave) > MOST_OCTAVES:
+            raise failure(word, "the base octave is too far from the middle")
+
+    def pitch(self, figure: Figure, word: Word, *, shifted: bool = False) -> float:
+        """The MIDI note of a figure.
+
+        Parameters
+        ----------
+        shifted : bool
+            Whether the base octave counts: it does not in chords and grace notes.
+
+        Raises
+        ------
+        ScoreError
+            Beyond MIDI's range, or where the notation has no such character.
+        """
+        key = MIDDLE_C if figure.sign.isascii() else USUAL_CHARACTER_KEY
+        if self._key is not None:
+            key = MIDDLE_C + self._key
+        if figure.sign.isascii():
+            semitones = MAJOR[int(figure.sign) - 1]
+        elif self._is_ersipu(figure):
+            semitones = semitones_of(figure.sign, figure.weight, self.mode)
+        elif figure.sign in self.characters:
+            semitones = self.characters[figure.sign]
+        else:
+            raise failure(word, f"there is no {figure.sign} in this notation")
+        octaves = figure.octave + (self._octave if shifted else 0)
+        found = key + semitones + figure.alter + 12.0 * octaves
+        if not 0.0 <= found <= 127.0:
+            raise failure(word, f"{shown(word.text)} is beyond any instrument")
+        return found
+
+    def living(self, figure: Figure) -> str:
+        """The character of a living note of 二四谱; empty for others."""
+        if self._is_ersipu(figure) and lives(figure.sign, figure.weight, self.mode):
+            return figure.sign
+        return ""
+
+    def _is_ersipu(self, figure: Figure) -> bool:
+        return self.characters is ERSIPU and figure.sign in ERSIPU

@@ -1,0 +1,130 @@
+"""Write what is played of a written score as a MIDI file, with its tempi and bars.
+
+What bow and fingers do becomes the controllers of the mapping `keyboard`, as far as that has them.
+"""
+
+from __future__ import annotations
+
+import io
+from collections import Counter
+from collections.abc import Iterator
+from fractions import Fraction
+
+import mido
+
+from yehu_server.params.table import find
+from yehu_server.playing.binds import Bind
+from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.scores.score import Score, Setting
+from yehu_server.scores.written.clock import WrittenClock
+from yehu_server.scores.written.notated import Written
+
+TICKS = 960  # a quarter note
+BEND = "/playing/bend"
+BEND_RANGE = 24  # semitones
+MOST_NUMERATOR = 255
+SLOWEST = 0xFFFFFF  # microseconds a quarter, the longest that a file can say
+
+
+def midi_file(written: Written, score: Score) -> tuple[bytes, dict[str, int]]:
+    """Return a MIDI file of format 1, and what it cannot say: settings by address, with counts.
+
+    Parameters
+    ----------
+    score : Score
+        What `performed` made of the written one.
+    """
+    clock = WrittenClock(written)
+    file = mido.MidiFile(type=1, ticks_per_beat=TICKS)
+    file.tracks.append(_track(_conductor(written, clock)))
+    lost: Counter[str] = Counter()
+    channels = sorted(
+        {event.message.channel for event in score.events if hasattr(event.message, "channel")}
+    )
+    names = [part.name for part in written.parts if part.notes]
+    translated = _Translation()
+    by_channel: dict[int, list[tuple[int, mido.Message]]] = {each: [] for each in channels}
+    for event in score.events:
+        tick = _tick(clock.beat_at(event.time_s))
+        messages = by_channel[event.message.channel]
+        if isinstance(event.message, Setting):
+            found = list(translated.messages(event.message))
+            messages += [(tick, message) for message in found]
+            lost[event.message.address] += not found and event.message.value is not None
+        else:
+            messages.append((tick, event.message))
+    for number, channel in enumerate(channels):
+        name = names[number] if number < len(names) else ""
+        title = mido.MetaMessage(
+            "track_name", name=name.encode("latin-1", "replace").decode("latin-1")
+        )
+        file.tracks.append(_track([(0, title), *by_channel[channel]]))
+    data = io.BytesIO()
+    file.save(file=data)
+    return data.getvalue(), {address: count for address, count in lost.items() if count}
+
+
+def _tick(beat: float) -> int:
+    return max(round(beat * TICKS), 0)
+
+
+def _track(messages: list[tuple[int, mido.Message]]) -> mido.MidiTrack:
+    """A track of messages at ticks, in their order where ticks are the same."""
+    track = mido.MidiTrack()
+    last = 0
+    for tick, message in sorted(messages, key=lambda each: each[0]):
+        track.append(message.copy(time=tick - last))
+        last = tick
+    track.append(mido.MetaMessage("end_of_track", time=0))
+    return track
+
+
+def _conductor(written: Written, clock: WrittenClock) -> list[tuple[int, mido.MetaMessage]]:
+    """Title, tempi and time signatures."""
+    title = written.title.encode("latin-1", "replace").decode("latin-1")
+    messages = [(0, mido.MetaMessage("track_name", name=title))]
+    last = None
+    for beat, quarter_s in clock.tempi:
+        tempo = min(max(round(quarter_s * 1e6), 1), SLOWEST)
+        if tempo != last:
+            messages.append((_tick(beat), mido.MetaMessage("set_tempo", tempo=tempo)))
+            last = tempo
+    for metre in written.metres:
+        quarters = Fraction(metre.quarters).limit_denominator(16)
+        unit = max(4 * quarters.denominator, 4)
+        count = int(quarters * unit / 4)
+        if unit in (4, 8, 16, 32, 64) and 0 < count <= MOST_NUMERATOR:
+            signature = mido.MetaMessage("time_signature", numerator=count, denominator=unit)
+            messages.append((_tick(metre.beat), signature))
+    return messages
+
+
+class _Translation:
+    """Settings as messages of the mapping `keyboard`."""
+
+    def __init__(self) -> None:
+        self._binds: dict[str, Bind] = {}
+        for bind in load(DEFAULT).binds:
+            if bind.source.startswith("cc "):
+                self._binds.setdefault(bind.target, bind)
+        self._ranged: set[int] = set()  # channels whose bend range is told
+
+    def messages(self, setting: Setting) -> Iterator[mido.Message]:
+        """The messages of a setting; none where MIDI cannot say it."""
+        channel, address = setting.channel, setting.address
+        value = find(address).default if setting.value is None else setting.value
+        if address == BEND:
+            if channel not in self._ranged:
+                self._ranged.add(channel)
+                for control, number in ((101, 0), (100, 0), (6, BEND_RANGE), (38, 0)):
+                    yield _control(channel, control, number)
+            pitch = round(8191 * min(max(value / BEND_RANGE, -1.0), 1.0))
+            yield mido.Message("pitchwheel", channel=channel, pitch=pitch)
+        elif address in self._binds:
+            bind = self._binds[address]
+            position = min(max(bind.to_unit(value), 0.0), 1.0)
+            yield _control(channel, int(bind.source.split()[1]), round(127 * position))
+
+
+def _control(channel: int, control: int, value: int) -> mido.Message:
+    return mido.Message("control_change", channel=channel, control=control, value=value)

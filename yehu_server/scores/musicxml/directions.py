@@ -1,0 +1,150 @@
+"""Directions of MusicXML: dynamics, hairpins, tempi, words, and where to jump."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from fractions import Fraction
+from xml.etree.ElementTree import Element
+
+from yehu_server.scores.musicxml.marks import number, shown
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
+from yehu_server.scores.written.words import Meaning, meaning_of
+
+UNITS = {
+    "breve": 8.0, "whole": 4.0, "half": 2.0, "quarter": 1.0, "eighth": 0.5, "16th": 0.25,
+}  # fmt: skip
+FORTE = 90.0  # the MIDI velocity of which <sound dynamics> is a percentage
+LONGEST_WORDS = 200
+JUMPS = ("dacapo", "dalsegno", "tocoda", "fine", "segno", "coda")
+# These are printed, move pedals that a fiddle has not, or stand for what is read elsewhere.
+PRINTED = {"rehearsal", "bracket", "octave-shift", "principal-voice", "staff-divide", "image"}
+
+
+@dataclass(frozen=True)
+class RawDirection:
+    """What a direction says, at a beat of its bar.
+
+    Attributes
+    ----------
+    kind : str
+        sign, wedge, hairpin (words, until the next dynamic), dashes, change (of tempo), back (to
+        the tempo before) or tempo.
+    name : str
+        Of the sign or span; of a wedge also `stop`.
+    number : str
+        By which a wedge's end finds its beginning.
+    """
+
+    at: Fraction
+    kind: str
+    name: str = ""
+    value: float | None = None
+    number: str = ""
+
+
+class DirectionReader:
+    """Appends what directions say to a bar's."""
+
+    def __init__(self, found: list[RawDirection], jumps: set[str], unknown: Counter[str]) -> None:
+        self._found = found
+        self._jumps = jumps
+        self._unknown = unknown
+
+    def read(self, direction: Element, now: Fraction, at: Fraction) -> None:
+        """Read one <direction>: what it says at a beat, and its <sound> at that or `now`."""
+        sound = direction.find("sound")
+        if direction.find("offset[@sound='yes']") is not None:
+            now = at
+        tempo = None if sound is None else sound.get("tempo")
+        has_dynamics = direction.find("direction-type/dynamics") is not None
+        if sound is not None:
+            self.sound(sound, now, with_dynamics=not has_dynamics)
+        jumps = sound is not None and any(sound.get(name) for name in JUMPS)
+        has_tempo = tempo is not None or direction.find("direction-type/metronome") is not None
+        for kind in direction.iterfind("direction-type"):
+            for child in kind:
+                self._type(child, at, has_tempo=has_tempo, is_told=tempo is not None, jumps=jumps)
+
+    def _type(
+        self, child: Element, at: Fraction, *, has_tempo: bool, is_told: bool, jumps: bool
+    ) -> None:
+        tag = child.tag
+        if tag == "dynamics":
+            self.dynamics(child, at)
+        elif tag == "wedge":
+            self._add(at, "wedge", child.get("type", ""), None, child.get("number", "1")[:8])
+        elif tag == "dashes":
+            self._add(at, "dashes", child.get("type", ""))
+        elif tag == "metronome":
+            if not is_told:
+                self._metronome(child, at)
+        elif tag == "words":
+            self._words(child.text or "", at, has_tempo=has_tempo, jumps=jumps)
+        elif tag in ("segno", "coda"):
+            self._jumps.add(tag)
+        elif tag not in PRINTED:
+            self._unknown[shown(tag)] += 1
+
+    def _add(
+        self, at: Fraction, kind: str, name: str = "", value: float | None = None, which: str = ""
+    ) -> None:
+        self._found.append(RawDirection(at, kind, name, value, which))
+
+    def dynamics(self, dynamics: Element, at: Fraction) -> None:
+        """Read one <dynamics>."""
+        for child in dynamics:
+            name = child.tag
+            if name == "other-dynamics":
+                name = (child.text or "").strip()
+            if name in DYNAMICS or name in FORCED:
+                self._add(at, "sign", name)
+            elif set(name) in ({"p"}, {"f"}):  # five and six of them
+                self._add(at, "sign", name[:4])
+            else:
+                self._unknown[f"dynamics {shown(name)}"] += 1
+
+    def sound(self, sound: Element, at: Fraction, *, with_dynamics: bool = True) -> None:
+        """Read one <sound>."""
+        tempo = number(sound.get("tempo"))
+        if LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
+            self._add(at, "tempo", "", tempo)
+        percent = number(sound.get("dynamics"))
+        if percent > 0.0 and with_dynamics:
+            self._add(at, "sign", "velocity", min(max(FORTE * percent / 100.0, 1.0), 127.0))
+        plucked = sound.get("pizzicato")
+        if plucked in ("yes", "no"):
+            self._add(at, "sign", "pizz" if plucked == "yes" else "arco")
+        self._jumps.update(name for name in JUMPS if sound.get(name))
+
+    def _metronome(self, metronome: Element, at: Fraction) -> None:
+        unit = UNITS.get((metronome.findtext("beat-unit") or "").strip())
+        dots = len(metronome.findall("beat-unit-dot")[:3])
+        minute = (metronome.findtext("per-minute") or "").split()
+        tempo = number(minute[-1].strip("().=")) if minute else 0.0
+        if unit is None or tempo <= 0.0:
+            self._unknown["metronome"] += 1
+            return
+        tempo *= unit * (2.0 - 0.5**dots)
+        if LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
+            self._add(at, "tempo", "", tempo)
+
+    def _words(self, text: str, at: Fraction, *, has_tempo: bool, jumps: bool) -> None:
+        words = text.strip()[:LONGEST_WORDS]
+        if not words:
+            return
+        meaning = meaning_of(words)
+        if meaning is not None:
+            self._mean(meaning, at, has_tempo=has_tempo, jumps=jumps)
+        elif not has_tempo:  # beside a figure, any words are the tempo's name
+            self._unknown[f'words "{shown(words)}"'] += 1
+
+    def _mean(self, meaning: Meaning, at: Fraction, *, has_tempo: bool, jumps: bool) -> None:
+        if meaning.kind == "jump":
+            if not jumps:
+                self._jumps.add(meaning.name)
+        elif meaning.kind == "tempo":
+            if not has_tempo:
+                self._add(at, "tempo", "", meaning.value)
+        else:
+            self._add(at, meaning.kind, meaning.name, meaning.value)

@@ -1,0 +1,160 @@
+"""The XML of a MusicXML file, plain or compressed (.mxl), as a tree of bounded size.
+
+Entities are refused: none of them belongs into a score, and they can make a small file endless.
+Nothing but the file itself is opened: neither its document type nor what an archive names.
+"""
+
+from __future__ import annotations
+
+import errno
+import io
+import zipfile
+import zlib
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+from xml.parsers import expat
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.written.notated import MOST_BYTES
+from yehu_server.util.files import read_bytes, why
+
+MOST_XML_BYTES = 32 << 20
+MOST_ELEMENTS = 1_000_000
+DEEPEST = 100
+MOST_ENTRIES = 1000  # of an archive
+MOST_CONTAINER_BYTES = 1 << 16
+ZIP = b"PK\x03\x04"
+CONTAINER = "META-INF/container.xml"
+COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+ENTRY = b"PK\x01\x02"  # before each entry of an archive's directory
+# What zipfile raises for archives that are damaged or made to harm.
+DAMAGED = (
+    zipfile.BadZipFile, zlib.error, EOFError, KeyError, NotImplementedError, OSError, OverflowError,
+    RuntimeError, ValueError,
+)  # fmt: skip
+
+
+def read_root(path: Path) -> ET.Element:
+    """Read the root element of a file.
+
+    Raises
+    ------
+    ScoreError
+        One line, without the file's name.
+    """
+    try:
+        data = read_bytes(path, MOST_XML_BYTES)
+    except OSError as error:
+        if error.errno == errno.EFBIG:
+            raise ScoreError(f"larger than {MOST_XML_BYTES >> 20} MiB") from None
+        raise ScoreError(f"cannot be read ({why(error).lower()})") from None
+    except ValueError:  # a NUL in the name
+        raise ScoreError("cannot be read (no such file name)") from None
+    if not data:
+        raise ScoreError("is empty")
+    return parse(unpacked(data) if data.startswith(ZIP) else data)
+
+
+def unpacked(data: bytes) -> bytes:
+    """Return the score in a compressed file, as its container names it.
+
+    Raises
+    ------
+    ScoreError
+        Where the archive is damaged, too large or holds no score.
+    """
+    if len(data) > MOST_BYTES:
+        raise ScoreError(f"is an archive larger than {MOST_BYTES >> 20} MiB")
+    if data.count(ENTRY) > MOST_ENTRIES:
+        raise ScoreError(f"is an archive of more than {MOST_ENTRIES} files")
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            name = _score_name(archive)
+            return _member(archive, name, MOST_XML_BYTES)
+    except DAMAGED as error:
+        raise ScoreError(f"is a damaged archive ({type(error).__name__})") from None
+
+
+def _score_name(archive: zipfile.ZipFile) -> str:
+    names = archive.namelist()
+    if CONTAINER in names:
+        container = parse(_member(archive, CONTAINER, MOST_CONTAINER_BYTES))
+        for file in container.iter("rootfile"):
+            kind = file.get("media-type", "application/vnd.recordare.musicxml+xml")
+            if "musicxml" in kind and file.get("full-path") in names:
+                return str(file.get("full-path"))
+    for name in names:  # a container that is missing or wrong
+        if name.lower().endswith((".musicxml", ".xml")) and not name.startswith("META-INF/"):
+            return name
+    raise ScoreError("is an archive without a score")
+
+
+def _member(archive: zipfile.ZipFile, name: str, most_bytes: int) -> bytes:
+    info = archive.getinfo(name)
+    if info.compress_type not in COMPRESSIONS:
+        raise ScoreError("is an archive compressed in a way that MusicXML does not have")
+    with archive.open(info) as file:
+        data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:  # whatever its directory says
+        raise ScoreError(f"is an archive with a file larger than {most_bytes >> 10} KiB")
+    return data
+
+
+def parse(data: bytes) -> ET.Element:
+    """Parse XML of bounded size and depth, without namespaces.
+
+    Raises
+    ------
+    ScoreError
+        With the line, where there is one.
+    """
+    builder = _Builder()
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
+    parser.EntityDeclHandler = _refuse_entity
+    # The document type stays outside: it is not fetched, and no score needs its entities.
+    parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code) if error.code else "not well-formed"
+        raise ScoreError(f"line {error.lineno}: is no XML ({reason})") from None
+    except (ValueError, LookupError) as error:  # an encoding that is unknown, or has many bytes
+        raise ScoreError(f"is no XML ({type(error).__name__})") from None
+    return builder.root()
+
+
+def _refuse_entity(*_: Any) -> None:
+    raise ScoreError("defines XML entities, which no score needs")
+
+
+class _Builder:
+    """Builds the tree, and counts."""
+
+    def __init__(self) -> None:
+        self._tree = ET.TreeBuilder()
+        self._depth = 0
+        self._elements = 0
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._depth += 1
+        self._elements += 1
+        if self._depth > DEEPEST:
+            raise ScoreError(f"has elements deeper than {DEEPEST}")
+        if self._elements > MOST_ELEMENTS:
+            raise ScoreError(f"has more than {MOST_ELEMENTS} elements")
+        self._tree.start(tag.rpartition(":")[2], attributes)
+
+    def end(self, tag: str) -> None:
+        self._depth -= 1
+        self._tree.end(tag.rpartition(":")[2])
+
+    def data(self, text: str) -> None:
+        self._tree.data(text)
+
+    def root(self) -> ET.Element:
+        return self._tree.close()

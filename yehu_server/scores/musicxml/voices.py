@@ -1,0 +1,219 @@
+"""The voices of a MusicXML part as they are played: ties joined, spans closed, repeats unfolded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from yehu_server.scores.musicxml.bars import RawBar, RawNote
+from yehu_server.scores.musicxml.directions import RawDirection
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, Grace, Mark, Note, Part, Sign, Span
+
+SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
+MOST_VOICES = 16  # of a part; no music has more
+WEDGES = ("crescendo", "diminuendo")
+# Words such as "cresc." and "rit." act until the next sign, or so long (quarters).
+LONGEST_HAIRPIN, LONGEST_CHANGE = Fraction(32), Fraction(8)
+
+
+@dataclass
+class Voice:
+    """One voice, bar by bar."""
+
+    notes: list[Note] = field(default_factory=list)
+    spans: list[Span] = field(default_factory=list)
+    _graces: list[Grace] = field(default_factory=list)
+    _tied: dict[float, int] = field(default_factory=dict)  # by pitch, the note that goes on
+    _open: dict[tuple[str, str], tuple[Fraction, float | None]] = field(default_factory=dict)
+
+    def add_bar(self, notes: list[RawNote], begin: Fraction) -> None:
+        """Add the notes of a bar that begins at a beat."""
+        first = len(self.notes)
+        for raw in sorted(notes, key=lambda raw: raw.at):
+            if raw.is_grace:
+                self._grace(raw, begin)
+            else:
+                self._note(raw, begin)
+        if self._graces and len(self.notes) > first:  # small notes before the bar line
+            self._after(self._graces)
+            self._graces = []
+
+    def _grace(self, raw: RawNote, begin: Fraction) -> None:
+        grace = Grace(raw.pitch, raw.length, tuple(raw.marks))
+        self._ends(raw, begin + raw.at)
+        if raw.is_after and self.notes:
+            self._after([grace])
+        else:
+            self._graces.append(grace)
+
+    def _after(self, graces: list[Grace]) -> None:
+        last = self.notes[-1]
+        self.notes[-1] = replace(last, after=(*last.after, *graces))
+
+    def _note(self, raw: RawNote, begin: Fraction) -> None:
+        beat = begin + raw.at
+        self._ends(raw, beat)
+        at = self._tied.pop(raw.pitch, None)  # some writers tell only where a tie begins
+        if at is not None and self.notes[at].end == beat:
+            note = self.notes[at]
+            more = tuple(mark for mark in raw.marks if mark not in note.marks)
+            self.notes[at] = replace(note, length=note.length + raw.length, marks=note.marks + more)
+        else:
+            self._shorten_last(beat)
+            at = len(self.notes)
+            graces, self._graces = tuple(self._graces), []
+            self.notes.append(Note(beat, raw.length, raw.pitch, tuple(raw.marks), graces))
+        if "start" in raw.ties:
+            self._tied[raw.pitch] = at
+        self._two_note_tremolo(raw)
+
+    def _shorten_last(self, beat: Fraction) -> None:
+        """End what still sounds: one note at a time."""
+        while self.notes and self.notes[-1].end > beat:
+            last = self.notes.pop()
+            self._tied = {pitch: at for pitch, at in self._tied.items() if at < len(self.notes)}
+            if last.beat < beat:
+                self.notes.append(replace(last, length=beat - last.beat))
+
+    def _ends(self, raw: RawNote, beat: Fraction) -> None:
+        """Begin and end the spans of a note; those that end, first."""
+        trill = next((mark.value for mark in raw.marks if mark.name == "trill"), None)
+        for kind in ("stop", "start"):
+            for name, which, number in raw.ends:
+                if which != kind or name == "tremolo":
+                    continue
+                if kind == "start":
+                    self._open[name, number] = (beat, trill)
+                    if name == "wavy-line" and trill is None:
+                        raw.marks.append(Mark("vibrato"))
+                elif (name, number) in self._open:
+                    opened, value = self._open.pop((name, number))
+                    if name == "wavy-line" and value is None:
+                        continue
+                    self.spans.append(Span(SPANS.get(name, "trill"), opened, beat, value))
+
+    def _two_note_tremolo(self, raw: RawNote) -> None:
+        """Two notes in quick turns: each trills with the other, on one bow."""
+        if ("tremolo", "stop", "") not in raw.ends or len(self.notes) < 2:
+            return
+        one, other = self.notes[-2:]
+        if one.end != other.beat or one.pitch == other.pitch:
+            return
+        step = other.pitch - one.pitch
+        self.notes[-2] = replace(one, marks=(*one.marks, Mark("trill", step)))
+        self.notes[-1] = replace(other, marks=(*other.marks, Mark("trill", -step)))
+        self.spans.append(Span("slur", one.beat, other.beat))
+
+
+@dataclass
+class Directions:
+    """The directions of one part, bar by bar."""
+
+    signs: list[Sign] = field(default_factory=list)
+    spans: list[Span] = field(default_factory=list)
+    tempi: list[tuple[Fraction, float]] = field(default_factory=list)
+    _wedges: dict[str, tuple[str, Fraction]] = field(default_factory=dict)
+    _hairpin: tuple[str, Fraction] | None = None  # in words
+    _change: tuple[str, Fraction] | None = None
+    _steady: float | None = None  # the tempo before a change
+
+    def add_bar(self, directions: list[RawDirection], begin: Fraction) -> None:
+        """Add the directions of a bar that begins at a beat."""
+        for raw in sorted(directions, key=lambda raw: raw.at):
+            self._add(raw, begin + raw.at)
+
+    def _add(self, raw: RawDirection, beat: Fraction) -> None:
+        if raw.kind == "sign":
+            if raw.name in DYNAMICS or raw.name in FORCED:
+                self._end_hairpin(beat)
+            sign = Sign(beat, raw.name, raw.value)
+            if sign not in self.signs[-8:]:  # two staves may say the same
+                self.signs.append(sign)
+        elif raw.kind == "wedge" and raw.name in WEDGES:
+            self._end_hairpin(beat)
+            self._wedges[raw.number] = (raw.name, beat)
+        elif raw.kind == "wedge":
+            name, opened = self._wedges.pop(raw.number, ("", beat))
+            if opened < beat:
+                self.spans.append(Span(name, opened, beat))
+        elif raw.kind == "hairpin":
+            self._end_hairpin(beat)
+            self._hairpin = (raw.name, beat)
+        elif raw.kind == "dashes" and raw.name == "stop":
+            self._end_hairpin(beat)
+        elif raw.kind == "change":
+            self._end_change(beat)
+            self._change = (raw.name, beat)
+        elif raw.kind == "back":
+            self._end_change(beat)
+            if self._steady is not None:
+                self.tempi.append((beat, self._steady))
+        elif raw.kind == "tempo" and raw.value is not None:
+            self._end_change(beat)
+            self._steady = raw.value
+            self.tempi.append((beat, raw.value))
+
+    def end(self, beat: Fraction) -> None:
+        """End what is still open at the end of the score."""
+        self._end_hairpin(beat)
+        self._end_change(beat)
+
+    def _end_hairpin(self, beat: Fraction) -> None:
+        if self._hairpin is not None:
+            name, opened = self._hairpin
+            if opened < beat:
+                self.spans.append(Span(name, opened, min(beat, opened + LONGEST_HAIRPIN)))
+            self._hairpin = None
+
+    def _end_change(self, beat: Fraction) -> None:
+        if self._change is not None:
+            name, opened = self._change
+            if opened < beat:
+                self.spans.append(Span(name, opened, min(beat, opened + LONGEST_CHANGE)))
+            self._change = None
+
+
+def parts_of(
+    name: str, bars: list[RawBar], played: list[tuple[int, Fraction]], end: Fraction
+) -> tuple[list[Part], list[tuple[Fraction, float]]]:
+    """Return the voices of one part, and its tempi.
+
+    Parameters
+    ----------
+    played : list of (int, Fraction)
+        The numbers of the bars in the order in which they are played, and their beats.
+    """
+    voices: dict[tuple[str, str], Voice] = {}
+    for bar in bars:
+        for note in bar.notes:
+            if len(voices) < MOST_VOICES:
+                voices.setdefault(note.voice, Voice())
+    directions = Directions()
+    for number, begin in played:
+        if number >= len(bars):
+            continue
+        by_voice: dict[tuple[str, str], list[RawNote]] = {}
+        for note in bars[number].notes:
+            by_voice.setdefault(note.voice, []).append(note)
+        for key, notes in by_voice.items():
+            if key in voices:
+                voices[key].add_bar(notes, begin)
+        directions.add_bar(bars[number].directions, begin)
+    directions.end(end)
+    found = list(_named(name, voices, directions))
+    return found, directions.tempi
+
+
+def _named(
+    name: str, voices: dict[tuple[str, str], Voice], directions: Directions
+) -> Iterator[Part]:
+    staves = {staff for staff, _ in voices}
+    for number, ((staff, voice), each) in enumerate(sorted(voices.items())):
+        if not each.notes:
+            continue
+        more = f", staff {staff}" if len(staves) > 1 else ""
+        if sum(other == staff for other, _ in voices) > 1 and number:
+            more += f", voice {voice}"
+        spans = sorted((*each.spans, *directions.spans), key=lambda span: (span.begin, span.end))
+        yield Part(name + more, tuple(each.notes), tuple(spans), tuple(directions.signs))

@@ -1,0 +1,176 @@
+"""Shapes files with bare notes as a player would: phrases, accents, and bows of several notes.
+
+docs/playing.md tells the rules and where they are from. Onsets and pitches stay. What a file marks
+itself is left alone, channel by channel: velocities that differ, controllers of loudness, notes
+that overlap.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import insort
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from yehu_server.scores.score import Score, ScoreNote, notes_of
+
+LOUDNESS = {1, 2, 7, 11}  # controllers: modulation, breath, volume, expression
+PEDALS = {64, 68}  # sustain, legato
+LEFT_HAND = {1, 5, 65, 76, 77, 78, 84}  # modulation, portamento, vibrato
+LEFT_HAND_MESSAGES = {"pitchwheel", "aftertouch", "polytouch"}
+FEW_VELOCITIES = 3  # so many different ones are no marks of a person
+MARKED_SPAN = 12  # between the softest and the loudest
+
+# A phrase ends with a rest, with a note that lasts much longer than those about it, or when it is
+# this long.
+REST_S, LONG_NOTE, LONGEST_PHRASE_BEATS = 0.3, 2.5, 16.0
+# In steps of velocity at full phrasing: from the ends of a phrase to its middle, and on the beats.
+ARCH, DOWNBEAT, HALF_BAR, BEAT = 22.0, 7.0, 4.0, 2.0
+# Notes in one bow: so many, each no longer, in steps no wider (semitones), nothing between them.
+MOST_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
+LEAST_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow
+OVERLAP_S = 0.012
+SAME_BEAT = 1e-3
+
+
+def phrased(score: Score, amount: float) -> Score:
+    """Return a score as shaped by phrasing, 0 to 1; at 0 as it is."""
+    if amount == 0.0:
+        return score
+    by_channel: dict[int, list[ScoreNote]] = defaultdict(list)
+    for note in notes_of(score):
+        by_channel[note.channel].append(note)
+    velocities: dict[int, int] = {}
+    ends_s: dict[int, float] = {}
+    for channel, notes in by_channel.items():
+        controllers = {
+            event.message.control
+            for event in score.events
+            if event.message.type == "control_change" and event.message.channel == channel
+        }
+        phrases = phrases_of(notes)
+        if not is_shaped(notes, controllers):
+            for phrase in phrases:
+                velocities.update(shaped(phrase, score, amount))
+        if amount >= LEAST_FOR_BOWS and not is_bowed(notes, controllers):
+            for phrase in phrases:
+                ends_s.update(slurred(phrase))
+    return _changed(score, velocities, ends_s)
+
+
+def is_shaped(notes: Sequence[ScoreNote], controllers: Iterable[int]) -> bool:
+    """Whether loudness is marked: by controllers, or by velocities that differ."""
+    velocities = {note.velocity for note in notes}
+    differ = len(velocities) > FEW_VELOCITIES or max(velocities) - min(velocities) > MARKED_SPAN
+    return differ or not LOUDNESS.isdisjoint(controllers)
+
+
+def is_bowed(notes: Sequence[ScoreNote], controllers: Iterable[int]) -> bool:
+    """Whether bows are marked: by notes that overlap, or by a pedal."""
+    overlap = any(after.start_s < note.end_s for note, after in pairwise(notes))
+    return overlap or not PEDALS.isdisjoint(controllers)
+
+
+def is_fingered(score: Score) -> bool:
+    """Whether vibrato or slides are marked: by bends, aftertouch, or controllers of these."""
+    return any(
+        event.message.type in LEFT_HAND_MESSAGES
+        or (event.message.type == "control_change" and event.message.control in LEFT_HAND)
+        for event in score.events
+    )
+
+
+def phrases_of(notes: Sequence[ScoreNote]) -> list[list[ScoreNote]]:
+    """Divide the notes of one voice into phrases."""
+    phrases: list[list[ScoreNote]] = []
+    lengths: list[float] = []  # of the last phrase, sorted
+    for note in notes:
+        if not phrases or _ends_before(phrases[-1], lengths, note):
+            phrases.append([])
+            lengths = []
+        phrases[-1].append(note)
+        insort(lengths, note.length_s)
+    return phrases
+
+
+def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote) -> bool:
+    last = phrase[-1]
+    if note.start_s - last.end_s >= REST_S:
+        return True
+    if note.beat - phrase[0].beat >= LONGEST_PHRASE_BEATS:
+        return True
+    usual = lengths[len(lengths) // 2]
+    return len(phrase) > 3 and last.length_s > LONG_NOTE * usual
+
+
+def shaped(phrase: Sequence[ScoreNote], score: Score, amount: float) -> dict[int, int]:
+    """Return the velocities of a phrase's notes, by the numbers of their events.
+
+    An arch whose mean is where the velocities were, and accents of the metre.
+    """
+    begin, end = phrase[0].start_s, phrase[-1].start_s
+    arch = []
+    for note in phrase:
+        at = (note.start_s - begin) / (end - begin) if end > begin else 0.5
+        arch.append(1.0 - (2.0 * at - 1.0) ** 2)  # a parabola, 1 in the middle
+    middle = sum(arch) / len(arch)
+    velocities = {}
+    for note, height in zip(phrase, arch, strict=True):
+        change = amount * (ARCH * (height - middle) + accent(note.beat, score))
+        velocities[note.begins] = min(max(round(note.velocity + change), 1), 127)
+    return velocities
+
+
+def accent(beat: float, score: Score) -> float:
+    """Return the accent (velocity) of a beat in its bar."""
+    if math.isnan(beat):
+        return 0.0
+    start, quarters = score.bar_at(beat)
+    place = (beat - start) % quarters
+    if min(place, quarters - place) < SAME_BEAT:
+        return DOWNBEAT
+    if quarters % 2.0 == 0.0 and abs(place - quarters / 2.0) < SAME_BEAT:
+        return HALF_BAR
+    return BEAT if abs(place - round(place)) < SAME_BEAT else 0.0
+
+
+def slurred(phrase: Sequence[ScoreNote]) -> dict[int, float]:
+    """Return the new ends (s) of notes that share a bow with the next, by their events' numbers."""
+    ends = {}
+    in_bow = 1
+    for note, after in pairwise(phrase):
+        goes_on = (
+            0.0 <= after.start_s - note.end_s <= GAP_S
+            and note.length_s <= SHORT_S
+            and after.length_s <= SHORT_S
+            and 0 < abs(after.key - note.key) <= STEP
+            and _share_a_beat(note, after)
+            and in_bow < MOST_IN_A_BOW
+            and note.ends >= 0
+        )
+        in_bow = in_bow + 1 if goes_on else 1
+        if goes_on:
+            ends[note.ends] = after.start_s + min(OVERLAP_S, 0.5 * after.length_s)
+    return ends
+
+
+def _share_a_beat(note: ScoreNote, after: ScoreNote) -> bool:
+    if math.isnan(note.beat):
+        return False
+    return math.floor(after.beat + SAME_BEAT) == math.floor(note.beat + SAME_BEAT)
+
+
+def _changed(score: Score, velocities: dict[int, int], ends_s: dict[int, float]) -> Score:
+    events = []
+    for number, event in enumerate(score.events):
+        if number in velocities:
+            message = event.message.copy(velocity=velocities[number])
+            events.append(replace(event, message=message))
+        elif number in ends_s:
+            events.append(replace(event, time_s=ends_s[number]))
+        else:
+            events.append(event)
+    events.sort(key=lambda event: event.time_s)
+    return replace(score, events=tuple(events))

@@ -1,0 +1,183 @@
+"""A score to be played: messages at times and settings, whatever file they come from; its notes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import mido
+
+from yehu_server.errors import ScoreError
+
+MAX_DURATION_H = 2.0  # of all that is played, where no other is asked for
+LONGEST_DURATION_H = 1000.0  # that may be asked for
+
+
+def check_duration(seconds: float, max_duration_h: float, what: str = "the score lasts") -> None:
+    """Raise ScoreError where a score lasts longer than so many hours."""
+    hours = seconds / 3600.0
+    if hours > max_duration_h:
+        raise ScoreError(
+            f"{what} {hours:.3g} hours, more than {max_duration_h:g}: see --max-duration"
+        )
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Stands among the messages of a score's events.
+
+    Parameters
+    ----------
+    address : str
+        Of `params/table.py`.
+    value : float or None
+        None: what it was before the score set it.
+    channel : int
+        Of the part, counted from 0; where that is not played, nothing is set.
+    """
+
+    address: str
+    value: float | None
+    channel: int = 0
+    type: ClassVar[str] = "setting"  # as messages have one
+
+
+@dataclass(frozen=True)
+class ScoreEvent:
+    """One channel-voice message at its time (s) from the start of the score.
+
+    `beat` is its time in quarter notes; NaN where the file counts frames of a film. `track` is
+    counted from 1; 0 where there are no tracks.
+    """
+
+    time_s: float
+    message: mido.Message
+    beat: float = math.nan
+    track: int = 0
+
+
+@dataclass(frozen=True)
+class Metre:
+    """A time signature: the beat (quarter notes) from which it holds, and its bars' length."""
+
+    beat: float
+    quarters: float
+
+
+COMMON_TIME = Metre(0.0, 4.0)
+
+
+@dataclass(frozen=True)
+class Score:
+    """A performance: events in order, and warnings about damage in the file.
+
+    Parameters
+    ----------
+    events : tuple of ScoreEvent
+        Sorted by time; at equal times, in the order of the tracks, then of the file.
+    duration_s : float
+        Up to the last event or end-of-track of the longest track, but not more than 30 s
+        beyond the last event.
+    name : str
+        The file's name, without folder and extension.
+    warnings : tuple of str
+        One line for each kind of damage, with its count and the byte where it is first.
+    metres : tuple of Metre
+        The time signatures, in order.
+
+    Raises
+    ------
+    ScoreError
+        If the score lasts longer than 1000 hours.
+    """
+
+    events: tuple[ScoreEvent, ...]
+    duration_s: float
+    name: str = ""
+    warnings: tuple[str, ...] = ()
+    metres: tuple[Metre, ...] = (COMMON_TIME,)
+
+    def bar_at(self, beat: float) -> tuple[float, float]:
+        """Return the beat from which the metre of a beat holds, and the quarters in its bars."""
+        metre = COMMON_TIME
+        for each in self.metres:
+            if each.beat > beat + 1e-9:
+                break
+            metre = each
+        return metre.beat, metre.quarters
+
+    def __post_init__(self) -> None:
+        check_duration(self.duration_s, LONGEST_DURATION_H)
+
+
+def concatenate(scores: Sequence[Score]) -> Score:
+    """Join several scores, each beginning at the end of the one before.
+
+    A system reset between them ends all notes, pedals and bends.
+    """
+    events: list[ScoreEvent] = []
+    start = 0.0
+    for number, score in enumerate(scores, start=1):
+        events += (replace(event, time_s=start + event.time_s) for event in score.events)
+        start += score.duration_s
+        if number < len(scores):
+            events.append(ScoreEvent(start, mido.Message("reset")))
+    names = " + ".join(score.name for score in scores)
+    warnings = (f"{score.name}: {warning}" for score in scores for warning in score.warnings)
+    return Score(tuple(events), start, names, tuple(warnings))
+
+
+@dataclass(frozen=True)
+class ScoreNote:
+    """A note of a score, by the numbers of its events; times in seconds.
+
+    Attributes
+    ----------
+    begins, ends : int
+        Numbers of its note-on and its note-off; `ends` is -1 where nothing ends it.
+    beat : float
+        Quarter notes since the beginning of the score; NaN where it has none.
+    """
+
+    begins: int
+    ends: int
+    channel: int
+    key: int
+    velocity: int
+    start_s: float
+    end_s: float
+    beat: float
+
+    @property
+    def length_s(self) -> float:
+        """How long it lasts (s)."""
+        return self.end_s - self.start_s
+
+
+def notes_of(score: Score) -> list[ScoreNote]:
+    """Pair the note-ons of a score with what ends them, in the order of their beginnings.
+
+    A key that is struck again ends its note, as the instrument has it.
+    """
+    held: dict[tuple[int, int], int] = {}
+    ends: dict[int, int] = {}
+    for number, event in enumerate(score.events):
+        message = event.message
+        if message.type not in ("note_on", "note_off"):
+            continue
+        key = (message.channel, message.note)
+        if key in held:
+            ends[held.pop(key)] = number
+        if message.type == "note_on" and message.velocity > 0:
+            held[key] = number
+    found = []
+    for number, event in enumerate(score.events):
+        message = event.message
+        if message.type == "note_on" and message.velocity > 0:
+            end = ends.get(number, -1)
+            end_s = score.events[end].time_s if end >= 0 else score.duration_s
+            at = (message.channel, message.note, message.velocity)
+            found.append(ScoreNote(number, end, *at, event.time_s, end_s, event.beat))
+    return found

@@ -1,0 +1,239 @@
+"""A tolerant reader of Standard MIDI Files.
+
+Real files are cut short, have wrong lengths and counts, come in wrappers and have velocities above
+127. This reader keeps all valid messages, lists the damage in `Score.warnings`, and refuses only
+files with nothing to play and those that ask for too much. docs/midi_files.md has what becomes of
+each fault.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+from bisect import bisect_right
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+from operator import itemgetter
+from pathlib import Path
+
+import mido
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.score import (
+    COMMON_TIME,
+    MAX_DURATION_H,
+    Metre,
+    Score,
+    ScoreEvent,
+    check_duration,
+    concatenate,
+)
+from yehu_server.scores.smf.chunks import Part, read_parts
+from yehu_server.scores.smf.faults import Faults
+from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
+from yehu_server.scores.smf.wrapper import unwrapped
+from yehu_server.util.files import read_bytes
+
+PERCUSSION = 9  # whose notes end by themselves
+ALL_SOUND_OFF, ALL_NOTES_OFF = 120, 123  # and from there on, changes of mode end notes too
+
+
+def ended(messages: Sequence[Placed], faults: Faults) -> list[Placed]:
+    """Return messages in order, with a note-off for each note that nothing ends.
+
+    Such a note lasts until another note of its channel begins. Where none does, it lasts as long
+    as the score.
+    """
+    held = _held(messages)
+    if not held:
+        return list(messages)
+    onsets: dict[int, list[int]] = defaultdict(list)  # of each channel, ticks
+    for tick, message, _ in messages:
+        if _begins(message):
+            onsets[message.channel].append(tick)
+    added: list[Placed] = []
+    for tick, message, at in held:
+        later = onsets[message.channel]
+        place = bisect_right(later, tick)
+        if place < len(later):
+            faults.add("a note without an end stopped at the next one", at)
+            off = mido.Message("note_off", channel=message.channel, note=message.note)
+            added.append((later[place], off, at))
+    return sorted([*added, *messages], key=itemgetter(0))  # stable: before the next note
+
+
+def _begins(message: mido.Message) -> bool:
+    return bool(message.type == "note_on" and message.velocity > 0)
+
+
+def _held(messages: Sequence[Placed]) -> list[Placed]:
+    """The note-ons that still hold at the end, in the order of the channels."""
+    held: dict[int, dict[int, Placed]] = defaultdict(dict)  # by channel and key
+    for placed in messages:
+        message = placed[1]
+        kind = message.type
+        if kind == "note_on" and message.velocity > 0:
+            held[message.channel][message.note] = placed
+        elif kind in ("note_on", "note_off"):
+            held[message.channel].pop(message.note, None)
+        elif kind == "control_change" and _ends_all(message.control):
+            held[message.channel].clear()
+    held.pop(PERCUSSION, None)
+    return [placed for notes in held.values() for placed in notes.values()]
+
+
+def _ends_all(control: int) -> bool:
+    return control == ALL_SOUND_OFF or control >= ALL_NOTES_OFF
+
+
+MAX_BYTES = 64 * 2**20
+MAX_REST_S = 30  # between the last message and the end of a track
+
+
+def read_score(
+    path: str | os.PathLike[str],
+    *,
+    song: int | None = None,
+    strict: bool = False,
+    max_duration_h: float = MAX_DURATION_H,
+) -> Score:
+    """Read a Standard MIDI File, bare or in a wrapper.
+
+    Formats 0 and 1 play all tracks together under the tempo changes of all of them.
+    Format 2 plays its tracks one after another, as `concatenate` would, each starting
+    at 120 bpm with tempo changes of its own. Files that were joined play in turn too. Sysex,
+    escapes and metas other than tempo and time signature are dropped. A channel message with a
+    data byte above 127 is dropped as a whole.
+
+    Parameters
+    ----------
+    song : int, optional
+        The only one to play, from 1, of those that play one after another.
+    strict : bool
+        Whether to refuse a file with any damage.
+    max_duration_h : float
+        How long the score may last (hours).
+
+    Raises
+    ------
+    DamagedError
+        With `strict`: one line naming the file, its first damage and the byte of that.
+    ScoreError
+        One line naming the file, whatever its bytes: missing, unreadable, too large or
+        too long, not a MIDI file, or without one channel message to play.
+    """
+    shown = os.fspath(path)
+    if not shown.isprintable():  # a line break or a stray byte in a name
+        shown = ascii(shown)
+    faults = Faults()
+    try:
+        score = _parse(_load(path), song, max_duration_h, faults)
+        if strict:
+            faults.refuse()
+    except ScoreError as error:
+        raise type(error)(f"{shown}: {error}") from None
+    return replace(score, name=Path(path).stem, warnings=faults.warnings)
+
+
+# ---------------------------------------------------------------- the file
+
+
+def _load(path: str | os.PathLike[str]) -> bytes:
+    try:
+        data = read_bytes(Path(path), MAX_BYTES)
+    except OSError as error:
+        if error.errno == errno.EFBIG:
+            raise ScoreError(f"larger than {MAX_BYTES // 2**20} MiB") from None
+        reason = error.strerror or type(error).__name__
+        raise ScoreError(f"cannot be read ({reason.lower()})") from None
+    except ValueError:  # a NUL in the name
+        raise ScoreError("cannot be read (no such file name)") from None
+    if not data:
+        raise ScoreError("is empty")
+    return data
+
+
+def _parse(data: bytes, song: int | None, max_duration_h: float, faults: Faults) -> Score:
+    start, end = unwrapped(data, faults)
+    parts = read_parts(data, start, end, faults)
+    playable = [part for part in parts if any(track.messages for track in part.tracks)]
+    if not playable:
+        raise ScoreError("has no playable track")
+    for part in playable[1:]:
+        faults.add("another file within the file, played after the one before", part.at)
+    songs = [each for part in playable for each in _songs(part, faults)]
+    if song is not None:
+        songs = [_chosen(songs, song)]
+    scores = [_play_together(*each, max_duration_h, faults) for each in songs]
+    if len(scores) == 1:
+        return scores[0]
+    score = concatenate(scores)
+    check_duration(score.duration_s, max_duration_h)
+    return score
+
+
+_Song = tuple[list[Track], int, int]  # what sounds together, number of the first, the division
+
+
+def _songs(part: Part, faults: Faults) -> list[_Song]:
+    """The songs of a file, which play one after another: the tracks of format 2, or one."""
+    tracks, form = part.tracks, part.file_format
+    if len(tracks) != part.announced:
+        announced = "1 track" if part.announced == 1 else f"{part.announced} tracks"
+        faults.add(f"{announced} announced, {len(tracks)} found", part.at + 10)
+    if form > 2:
+        faults.add(f"unknown format {form}, read as format 1", part.at + 8)
+    elif form == 0 and len(tracks) > 1:
+        faults.add(f"format 0 with {len(tracks)} tracks, read as format 1", part.at + 8)
+    division = checked_division(part.division, part.at + 12, faults)
+    if form == 2:
+        return [([track], number, division) for number, track in enumerate(tracks, start=1)]
+    return [(tracks, 1, division)]
+
+
+def _chosen(songs: Sequence[_Song], song: int) -> _Song:
+    if not 0 < song <= len(songs):
+        count = "one song" if len(songs) == 1 else f"{len(songs)} songs"
+        raise ScoreError(f"has {count}: there is no song {song}")
+    if not any(track.messages for track in songs[song - 1][0]):
+        raise ScoreError(f"song {song} has nothing to play")
+    return songs[song - 1]
+
+
+def _play_together(
+    tracks: Sequence[Track], first: int, division: int, max_duration_h: float, faults: Faults
+) -> Score:
+    # Sorting is stable: at one tick, the order of the tracks and within them stays.
+    tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
+    messages = sorted((placed for track in tracks for placed in track.messages), key=itemgetter(0))
+    messages = ended(messages, faults)
+    clock = Clock(division, tempos)
+    last = max(tracks, key=lambda track: track.end)
+    end_s = clock.seconds(last.end)
+    latest_s = (clock.seconds(messages[-1][0]) if messages else 0.0) + MAX_REST_S
+    if end_s > latest_s:
+        faults.add(f"silence at the end cut to {MAX_REST_S} s", last.end_at)
+        end_s = latest_s
+    try:
+        check_duration(end_s, max_duration_h)
+    except ScoreError as error:
+        raise ScoreError(f"{error}{_longest_rest(tracks, clock, end_s)}") from None
+    starts = [track.start_at for track in tracks]  # a message's byte tells its track
+    events = tuple(
+        ScoreEvent(
+            clock.seconds(tick), message, clock.beat(tick), first - 1 + bisect_right(starts, at)
+        )
+        for tick, message, at in messages
+    )
+    signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
+    metres = (Metre(clock.beat(tick), quarters) for tick, quarters in signatures)
+    return Score(events, end_s, metres=(COMMON_TIME, *metres))
+
+
+def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:
+    """Where most of the time is one rest, words that tell its place."""
+    rests = (track.longest for track in tracks)
+    longest = ((clock.seconds(tick) - clock.seconds(tick - delta), at) for delta, tick, at in rests)
+    seconds, at = max(longest)
+    return f" (most of it is the rest before byte {at})" if 2.0 * seconds > duration_s else ""

@@ -1,0 +1,221 @@
+"""One track of a MIDI file: bytes to messages at ticks, and ticks to seconds."""
+
+from __future__ import annotations
+
+import math
+import re
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import mido
+
+from yehu_server.scores.smf.faults import Faults
+
+DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
+USUAL_TICKS = 480  # a quarter note, where a file has 0
+USUAL_FRAME_TICKS = 40  # with 25 frames a second, milliseconds
+TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop-frame video
+FILM_FRAMES = (24, 25, 29, 30)
+SMPTE = 0x8000
+
+
+def checked_division(division: int, at: int, faults: Faults) -> int:
+    """Return the division of a header, at a byte; where it is impossible, the one assumed."""
+    if division == 0:
+        faults.add(f"a division of 0: {USUAL_TICKS} ticks a quarter note assumed", at)
+        return USUAL_TICKS
+    if division < SMPTE:
+        return division
+    frames = 256 - (division >> 8)
+    if frames not in FILM_FRAMES:
+        faults.add(f"{frames} frames a second, as no film has, believed", at)
+    if division & 0xFF == 0:
+        faults.add(f"a division of 0: {USUAL_FRAME_TICKS} ticks a frame assumed", at)
+        return division | USUAL_FRAME_TICKS
+    return division
+
+
+class Clock:
+    """Converts ticks to seconds, in integers so that long files do not drift.
+
+    Parameters
+    ----------
+    division : int
+        As in a header, not 0: ticks a quarter note, or frames a second and ticks a frame.
+    tempos : sequence of (int, int)
+        Ticks, in order, and the microseconds of a quarter note from there on.
+    """
+
+    def __init__(self, division: int, tempos: Sequence[tuple[int, int]]) -> None:
+        if division >= SMPTE:  # no tempo
+            frames, seconds = TRUE_FRAMES.get(256 - (division >> 8), (256 - (division >> 8), 1))
+            self._units_per_second = frames * (division & 0xFF)
+            changes = [(0, seconds)]
+        else:
+            self._units_per_second = division * 1_000_000
+            changes = [(0, DEFAULT_TEMPO), *tempos]
+        self._per_beat = math.nan if division >= SMPTE else division
+        self._ticks: list[int] = []
+        self._spans: list[tuple[int, int]] = []  # units so far, units a tick from here on
+        for tick, rate in changes:
+            so_far = self._units(tick) if self._ticks else 0
+            self._ticks.append(tick)
+            self._spans.append((so_far, rate))
+
+    def _units(self, tick: int) -> int:
+        at = bisect_right(self._ticks, tick) - 1
+        so_far, rate = self._spans[at]
+        return so_far + (tick - self._ticks[at]) * rate
+
+    def seconds(self, tick: int) -> float:
+        """The time (s) of a tick."""
+        return self._units(tick) / self._units_per_second
+
+    def beat(self, tick: int) -> float:
+        """The time of a tick in quarter notes; NaN where frames are counted."""
+        return tick / self._per_beat
+
+
+META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
+END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE = 0x2F, 0x51, 0x58
+STATUS = re.compile(rb"[\x80-\xff]")
+SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
+
+NUMBER_BYTES = 4  # of a variable-length number, as the format has it
+LONGEST_NUMBER_BYTES = 8  # as some writers have it, padded
+LARGEST_NUMBER = 0x0FFF_FFFF
+
+Placed = tuple[int, mido.Message, int]  # tick, message, byte in the file
+
+
+@dataclass
+class Track:
+    """What a track holds, at ticks."""
+
+    messages: list[Placed] = field(default_factory=list)
+    tempos: list[tuple[int, int]] = field(default_factory=list)  # in us a quarter
+    metres: list[tuple[int, float]] = field(default_factory=list)  # quarters a bar
+    end: int = 0  # ticks
+    end_at: int = 0  # byte of the last event
+    events: int = 0  # of any kind, dropped ones too
+    longest: tuple[int, int, int] = (0, 0, 0)  # rest before an event: ticks, its end, its byte
+    start_at: int = 0  # its first byte in the file
+    is_whole: bool = True  # not cut in the middle of an event
+    after_end: int | None = None  # byte after the end-of-track event
+
+
+@dataclass
+class _Cursor:
+    """A position in a track; a step past the end raises EOFError."""
+
+    data: bytes
+    pos: int
+    end: int
+
+    def take(self, length: int) -> bytes:
+        if self.pos + length > self.end:
+            raise EOFError
+        self.pos += length
+        return self.data[self.pos - length : self.pos]
+
+    def byte(self) -> int:
+        if self.pos >= self.end:
+            raise EOFError
+        self.pos += 1
+        return self.data[self.pos - 1]
+
+    def at_status(self) -> bool:
+        if self.pos >= self.end:
+            raise EOFError
+        return self.data[self.pos] >= 0x80
+
+    def skip_to_status(self) -> None:
+        found = STATUS.search(self.data, self.pos, self.end)
+        if found is None:
+            raise EOFError
+        self.pos = found.start()
+
+    def number(self, faults: Faults) -> int:
+        """A variable-length number; one that is padded is read to its end."""
+        value = 0
+        for place in range(LONGEST_NUMBER_BYTES):
+            byte = self.byte()
+            if place == NUMBER_BYTES:
+                faults.add(f"a number of more than {NUMBER_BYTES} bytes", self.pos - place - 1)
+            value = value << 7 | byte & 0x7F
+            if byte < 0x80:
+                break
+        return min(value, LARGEST_NUMBER)
+
+
+@lru_cache(maxsize=1 << 16)
+def _message(status: int, body: bytes) -> mido.Message:
+    """A message, cached and never changed: making one takes longer than the rest of reading."""
+    return mido.Message.from_bytes([status, *body])
+
+
+def decode(data: bytes, start: int, stop: int, room: int, faults: Faults) -> Track:
+    """Read the events from one byte to another, as far as possible.
+
+    Reading ends with the first event beyond `room`, so that `events` is larger then.
+    """
+    track = Track(start_at=start)
+    cursor = _Cursor(data, start, stop)
+    tick = 0
+    at = start
+    running = 0  # kept across metas and sysex, as some writers rely on it
+    try:
+        while cursor.pos < stop and track.events <= room:
+            at = cursor.pos
+            delta = cursor.number(faults)
+            tick += delta
+            if not running and not cursor.at_status():
+                faults.add("data without a status byte skipped", cursor.pos)
+                cursor.skip_to_status()
+            status = cursor.byte() if cursor.at_status() else running
+            if status == META:
+                kind = cursor.byte()
+                body = cursor.take(cursor.number(faults))
+                if kind == END_OF_TRACK:
+                    track.end, track.end_at, track.after_end = tick, at, cursor.pos
+                    break
+                _keep(track, tick, kind, body, at, faults)
+            elif status in (SYSEX, ESCAPE):
+                cursor.take(cursor.number(faults))
+            elif status > SYSEX:
+                faults.add("a system message, which no file should hold, skipped", at)
+                cursor.take(SYSTEM_DATA_BYTES.get(status, 0))
+            else:
+                running = status
+                body = cursor.take(1 if status & 0xE0 == 0xC0 else 2)
+                if max(body) < 0x80:
+                    track.messages.append((tick, _message(status, body), at))
+                else:
+                    # Dropped at its full length: mostly this is a velocity above 127, and the
+                    # next message is intact.
+                    faults.add("a damaged message dropped", at)
+            track.end, track.end_at = tick, at
+            if delta > track.longest[0]:
+                track.longest = delta, tick, at
+            track.events += 1
+    except EOFError:
+        track.is_whole = False
+        faults.add("a track ends in the middle of an event", at)
+    return track
+
+
+def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: Faults) -> None:
+    """Keep a tempo or a time signature; other metas are dropped."""
+    if kind == SET_TEMPO:
+        tempo = int.from_bytes(body[:3], "big")
+        if len(body) >= 3 and tempo > 0:
+            track.tempos.append((tick, tempo))
+        else:
+            faults.add("a tempo of zero or cut short ignored", at)
+    elif kind == TIME_SIGNATURE:
+        if len(body) >= 2 and body[0] > 0 and body[1] < 8:
+            track.metres.append((tick, 4.0 * body[0] / 2.0 ** body[1]))
+        else:
+            faults.add("an impossible time signature ignored", at)

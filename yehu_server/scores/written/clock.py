@@ -1,0 +1,150 @@
+"""When the beats of a written score come: tempi, changes of tempo, fermatas, caesuras.
+
+A fermata or caesura slows the beats under it, so that all parts wait together.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+from yehu_server.scores.written.notated import (
+    HIGHEST_TEMPO,
+    LOWEST_TEMPO,
+    USUAL_TEMPO,
+    Note,
+    Span,
+    Tempo,
+    Written,
+)
+
+# By ear.
+HELD, LONGEST_HELD = 1.8, 10.0  # times as long under a fermata, and at most
+WAIT = Fraction(1)  # quarters of a rest that its fermata stretches
+CAESURA_S = 0.4
+BRIEF = Fraction(1, 4)  # quarters before a caesura, which take so much longer
+SLOWER, FASTER = 0.7, 1.25  # at the end of ritardando and accelerando
+STEPS = 64  # at most, in a change of tempo
+SHORTEST_STEP = Fraction(1, 4)
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Beats that take `factor` times as long, and `more_s` on top."""
+
+    begin: Fraction
+    end: Fraction
+    factor: float = 1.0
+    more_s: float = 0.0
+
+
+class WrittenClock:
+    """Converts beats to seconds from the start of the score, and back."""
+
+    def __init__(self, written: Written) -> None:
+        stretches = list(_stretches(written))
+        tempi = _with_changes(written)
+        beats = {tempo.beat for tempo in tempi} | {Fraction(0)}
+        beats |= {beat for each in stretches for beat in (each.begin, each.end)}
+        self._beats = sorted({float(beat) for beat in beats if beat >= 0})
+        starts = [float(tempo.beat) for tempo in tempi]
+        rates = []  # seconds a quarter
+        for beat in self._beats:
+            at = bisect_right(starts, beat) - 1
+            quarters = tempi[at].quarters_per_minute if at >= 0 else USUAL_TEMPO
+            rates.append(60.0 / min(max(quarters, LOWEST_TEMPO), HIGHEST_TEMPO))
+        self._rates = self._stretched(rates, stretches)
+        self._seconds = [0.0]
+        for (beat, after), rate in zip(pairwise(self._beats), self._rates, strict=False):
+            self._seconds.append(self._seconds[-1] + (after - beat) * rate)
+
+    def _stretched(self, rates: list[float], stretches: list[Stretch]) -> list[float]:
+        changed = list(rates)
+        for each in stretches:
+            first = bisect_right(self._beats, float(each.begin)) - 1
+            last = bisect_right(self._beats, float(each.end)) - 1
+            for at in range(first, last):
+                more = each.more_s / float(each.end - each.begin)
+                # Where several parts have the same fermata, it counts once.
+                changed[at] = max(changed[at], rates[at] * each.factor + more)
+        return changed
+
+    def seconds(self, beat: Fraction | float) -> float:
+        """Seconds at a beat."""
+        exact = float(beat)
+        at = self._at(exact)
+        return self._seconds[at] + (exact - self._beats[at]) * self._rates[at]
+
+    def beat_at(self, seconds: float) -> float:
+        """The beat at so many seconds."""
+        at = max(bisect_right(self._seconds, seconds) - 1, 0)
+        return self._beats[at] + (seconds - self._seconds[at]) / self._rates[at]
+
+    def quarter_s(self, beat: Fraction | float) -> float:
+        """How long a quarter note lasts (s) at a beat."""
+        return self._rates[self._at(float(beat))]
+
+    def _at(self, beat: float) -> int:
+        return max(bisect_right(self._beats, beat) - 1, 0)
+
+    @property
+    def tempi(self) -> list[tuple[float, float]]:
+        """Each change of tempo as played: its beat, and the seconds that a quarter lasts."""
+        return list(zip(self._beats, self._rates, strict=True))
+
+
+def _stretches(written: Written) -> Iterator[Stretch]:
+    for part in written.parts:
+        for note in part.notes:
+            yield from _of_note(note)
+        for sign in part.signs:
+            if sign.name == "fermata":
+                yield Stretch(sign.beat, sign.beat + WAIT, _held(sign.value))
+            elif sign.name == "caesura" and sign.beat > 0:
+                yield Stretch(max(sign.beat - BRIEF, Fraction(0)), sign.beat, 1.0, CAESURA_S)
+
+
+def _of_note(note: Note) -> Iterator[Stretch]:
+    fermata, caesura = note.marked("fermata"), note.marked("caesura")
+    if fermata or caesura:
+        factor = 1.0 if fermata is None else _held(fermata.value)
+        more_s = 0.0 if caesura is None else CAESURA_S
+        yield Stretch(note.beat, note.end, factor, more_s)
+
+
+def _held(factor: float | None) -> float:
+    return min(max(factor or HELD, 1.0), LONGEST_HELD)
+
+
+def _with_changes(written: Written) -> list[Tempo]:
+    """The tempi in order, with ritardandos and accelerandos as steps."""
+    tempi = sorted(written.tempi, key=lambda tempo: tempo.beat)
+    starts = [tempo.beat for tempo in tempi]
+    spans = {
+        (span.name, span.begin, span.end): span
+        for part in written.parts
+        for span in part.spans
+        if span.name in ("ritardando", "accelerando") and span.end > span.begin
+    }
+    steps: dict[Fraction, float] = {}
+    for span in sorted(spans.values(), key=lambda span: span.begin):
+        at = bisect_right(starts, span.begin) - 1
+        before = tempi[at].quarters_per_minute if at >= 0 else USUAL_TEMPO
+        steps |= _steps(span, before)
+    # At the end of the change the next tempo holds, where one is written there.
+    steps |= {tempo.beat: tempo.quarters_per_minute for tempo in tempi}
+    return [Tempo(beat, quarters) for beat, quarters in sorted(steps.items())]
+
+
+def _steps(span: Span, before: float) -> dict[Fraction, float]:
+    length = span.end - span.begin
+    count = min(max(int(length / SHORTEST_STEP), 1), STEPS)
+    last = span.value or (SLOWER if span.name == "ritardando" else FASTER)
+    last = min(max(last, 1.0 / LONGEST_HELD), LONGEST_HELD)
+    return {
+        span.begin + length * step / count: before * (1.0 + (last - 1.0) * step / count)
+        for step in range(count + 1)
+    }

@@ -1,0 +1,137 @@
+"""How loud the notes of a written part are: dynamics, hairpins, accents, as MIDI velocities."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
+from fractions import Fraction
+
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, Note, Part, Sign, Span
+
+USUAL = float(DYNAMICS["mf"])
+# In steps of velocity, by ear.
+ACCENTS = {"accent": 14.0, "marcato": 20.0, "soft-accent": 8.0, "stress": 8.0, "unstress": -8.0}
+HAIRPIN = 20.0  # of one that leads to no dynamic
+FORCED_BY = 16.0  # a forced note is at least so much louder
+HAIRPINS = ("crescendo", "diminuendo")
+REACH = Fraction(1)  # quarters after a hairpin, in which a dynamic is its aim
+SOFTEST, LOUDEST = 1.0, 127.0
+DB_PER_STEP = 18.0 / 126.0  # of velocity, over the whole range (core/player/velocity.py)
+LEAST_SWELL = 1.0
+LEVELS = {**DYNAMICS, **{name: DYNAMICS[then] for name, (_, then) in FORCED.items() if then}}
+
+
+class Loudness:
+    """The loudness of a part at each beat.
+
+    Attributes
+    ----------
+    is_marked : bool
+        Whether the part says anything of it.
+    """
+
+    def __init__(self, part: Part) -> None:
+        signs = [s for s in part.signs if s.name in LEVELS or s.name == "velocity"]
+        hairpins = [s for s in part.spans if s.name in HAIRPINS and s.end > s.begin]
+        forced = [sign.beat for sign in part.signs if sign.name in FORCED]
+        accents = any(note.marked(name) for note in part.notes for name in ACCENTS)
+        self.is_marked = bool(signs or hairpins or forced or accents)
+        self._forced = _first_notes(part, [sign for sign in part.signs if sign.name in FORCED])
+        # Loudness at breakpoints, joined by straight lines; at a jump the same beat stands twice.
+        # Beats are floats here: swells ask for many.
+        self._beats: list[float] = []
+        self._levels: list[float] = []
+        self._build(sorted(signs, key=lambda s: s.beat), sorted(hairpins, key=lambda s: s.begin))
+
+    def _build(self, signs: list[Sign], hairpins: list[Span]) -> None:
+        changes = sorted(
+            [(sign.beat, 0, sign) for sign in signs] + [(span.begin, 1, span) for span in hairpins],
+            key=lambda change: change[:2],
+        )
+        starts = [sign.beat for sign in signs]
+        for exact, _, change in changes:
+            beat = float(exact)
+            level = self.at(beat)
+            while self._beats and self._beats[-1] > beat:  # a hairpin that another sign cuts short
+                self._beats.pop()
+                self._levels.pop()
+            self._add(beat, level)
+            if isinstance(change, Sign):
+                self._add(beat, _level_of(change))
+                continue
+            after = bisect_left(starts, change.end)
+            aim = level + (HAIRPIN if change.name == "crescendo" else -HAIRPIN)
+            if after < len(signs) and signs[after].beat <= change.end + REACH:
+                aim = _aim(change.name, level, _level_of(signs[after]), aim)
+            self._add(float(change.end), min(max(aim, SOFTEST), LOUDEST))
+
+    def _add(self, beat: float, level: float) -> None:
+        self._beats.append(beat)
+        self._levels.append(level)
+
+    def at(self, beat: float) -> float:
+        """Loudness (velocity) at a beat, after what is written there."""
+        return self._between(bisect_right(self._beats, beat), beat)
+
+    def _before(self, beat: float) -> float:
+        """Loudness just before what is written at a beat."""
+        return self._between(bisect_left(self._beats, beat), beat)
+
+    def _between(self, after: int, beat: float) -> float:
+        """Loudness at a beat that lies before the breakpoint of a number."""
+        if after == 0:
+            return USUAL
+        begin, level = self._beats[after - 1], self._levels[after - 1]
+        if after == len(self._beats):
+            return level
+        end, aim = self._beats[after], self._levels[after]
+        return level + (aim - level) * (beat - begin) / (end - begin)
+
+    def _range(self, note: Note) -> tuple[float, float]:
+        """The least and the largest loudness while a note sounds."""
+        begin, end = float(note.beat), float(note.end)
+        first, last = bisect_right(self._beats, begin), bisect_left(self._beats, end)
+        levels = [self.at(begin), *self._levels[first:last], self._before(end)]
+        return min(levels), max(levels)
+
+    def velocity(self, note: Note) -> int:
+        """The velocity of a note: its loudest moment."""
+        loudest = self._range(note)[1]
+        name = self._forced.get(note.beat)
+        if name is not None:
+            loudest = max(float(DYNAMICS[FORCED[name][0]]), loudest + FORCED_BY)
+        loudest += sum(by for mark, by in ACCENTS.items() if note.marked(mark))
+        return round(min(max(loudest, SOFTEST), LOUDEST))
+
+    def below_db(self, note: Note, beats: Sequence[float]) -> list[float]:
+        """How far below its loudest moment (dB, 0 or more) a note is at some of its beats.
+
+        One value, 0, where loudness stays the same.
+        """
+        least, largest = self._range(note)
+        if largest - least < LEAST_SWELL:
+            return [0.0]
+        return [max(largest - self.at(beat), 0.0) * DB_PER_STEP for beat in beats]
+
+
+def _level_of(sign: Sign) -> float:
+    if sign.name == "velocity":
+        return min(max(sign.value or USUAL, SOFTEST), LOUDEST)
+    return float(LEVELS[sign.name])
+
+
+def _aim(name: str, level: float, written: float, usual: float) -> float:
+    """Where a hairpin leads: to the dynamic after it, unless that lies the other way."""
+    leads = written > level if name == "crescendo" else written < level
+    return written if leads else usual
+
+
+def _first_notes(part: Part, forced: list[Sign]) -> dict[Fraction, str]:
+    """The forced signs, by the beats of the notes that they are for."""
+    beats = [note.beat for note in part.notes]
+    found = {}
+    for sign in forced:
+        at = bisect_left(beats, sign.beat)
+        if at < len(beats):
+            found[beats[at]] = sign.name
+    return found

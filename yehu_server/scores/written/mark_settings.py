@@ -1,0 +1,171 @@
+"""What the marks of a note ask of bow and fingers, as values of parameters.
+
+docs/scores.md has the table. Values are by ear, where nothing else is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from yehu_server.params.table import find
+from yehu_server.scores.written.notated import Note, Sign
+
+Values = dict[str, float]
+
+BEND, PHRASING = "/playing/bend", "/playing/phrasing"
+DIRECTION, STRING, TREMOLO = "/playing/direction", "/playing/string", "/playing/tremolo"
+PIZZICATO, PRESSURE, VIBRATO = "/playing/pizzicato", "/playing/pressure", "/playing/vibrato"
+BOW_POSITION, SPEED = "/playing/bow_position", "/playing/speed"
+ATTACK, RELEASE, LISTENING = "/playing/attack", "/playing/release", "/playing/listening"
+GAIN = "/body/gain"
+FINGER_POSITION, FINGER_PRESS = "/finger/4/position", "/finger/4/press"
+
+DOWN, UP, INNER, OUTER = 1.0, -1.0, 1.0, 2.0
+INNER_OPEN, OUTER_OPEN = 65.0, 72.0  # F4 and C5
+SAME_PITCH = 0.3  # semitones
+QUICK_TREMOLO = 11.0  # strokes a second, unmeasured
+MEASURED = 2  # so many strokes through a stem are counted; more are as quick as hands go
+VIBRATO_CENTS = 30.0
+SNAP = 0.8  # pressure: a pluck twice as hard as usual
+# The bow's places are those of the presets.
+PLACES: Mapping[str, Values] = {
+    "sul-ponticello": {BOW_POSITION: 0.09, SPEED: 0.16},
+    "sul-tasto": {BOW_POSITION: 0.18, SPEED: 0.14},
+    "flautando": {PRESSURE: 0.2, SPEED: 0.24},
+}
+CRISP: Mapping[str, Values] = {
+    "spiccato": {ATTACK: 15.0, RELEASE: 25.0},
+    "staccatissimo": {ATTACK: 25.0, RELEASE: 25.0},
+    "staccato": {ATTACK: 25.0, RELEASE: 40.0},
+    "marcato": {ATTACK: 25.0},
+}
+
+
+class Node(NamedTuple):
+    """A harmonic: the open string under it (MIDI note), and where the finger touches (m)."""
+
+    open_note: float
+    string: float
+    place: float
+
+
+# Those that speak: a finger of 20 mN at a node of the open string, the bow near the bridge. Of the
+# third and fourth of the F string and the fourth of the C string others come. Measured
+# (tests/score/test_harmonics.py); G6 is above the range of stopped notes.
+SOUNDING_LENGTH = 0.2986  # m
+HARMONICS: Mapping[float, Node] = {
+    77.0: Node(INNER_OPEN, INNER, SOUNDING_LENGTH / 2.0),
+    84.0: Node(OUTER_OPEN, OUTER, SOUNDING_LENGTH / 2.0),
+    91.0: Node(OUTER_OPEN, OUTER, SOUNDING_LENGTH / 3.0),
+}
+TOUCH_N = 0.02
+HARMONIC_BOW: Values = {BOW_POSITION: 0.05, SPEED: 0.2, PRESSURE: 0.3, LISTENING: 0.0}
+OUTER_DB = 10.0  # its harmonics are some 14 dB softer than the open string
+PLUCKED_DB = -5.0  # beside bowed notes: the peaks of plucked ones are some 15 dB higher
+
+
+@dataclass
+class Active:
+    """The signs that hold at a beat of a part: `take` each as it comes."""
+
+    plucked: bool = False
+    slurred: bool = False
+    short: bool = False
+    tremolo: bool = False
+    place: str = ""
+    string: float = 0.0
+    vibrato: float | None = None
+
+    def take(self, sign: Sign) -> None:
+        """Let a sign hold from here on."""
+        name = sign.name
+        if name in ("pizz", "arco"):
+            self.plucked = name == "pizz"
+            self.tremolo = self.tremolo and self.plucked
+        elif name in ("legato", "non-legato"):
+            self.slurred = name == "legato"
+        elif name in ("staccato", "non-staccato"):
+            self.short = name == "staccato"
+        elif name == "tremolo":
+            self.tremolo = True
+        elif name in PLACES:
+            self.place = name
+        elif name == "ordinary":
+            self.place, self.tremolo = "", False
+        elif name in ("inner-string", "outer-string", "either-string"):
+            self.string = {"i": INNER, "o": OUTER, "e": 0.0}[name[0]]
+        elif name == "vibrato":
+            self.vibrato = VIBRATO_CENTS if sign.value is None else sign.value
+
+
+def harmonic_of(note: Note) -> Node | None:
+    """Where a note's harmonic is touched; None where it is none, or none that speaks."""
+    if note.marked("harmonic") is None:
+        return None
+    near = min(HARMONICS, key=lambda pitch: abs(pitch - note.pitch))
+    return HARMONICS[near] if abs(near - note.pitch) <= SAME_PITCH else None
+
+
+def is_plucked(note: Note, active: Active) -> bool:
+    """Whether a note is plucked."""
+    return active.plucked or bool(note.marked("pizzicato") or note.marked("snap-pizzicato"))
+
+
+def values_of(note: Note, active: Active, quarter_s: float) -> Values:
+    """Return the parameters that a note's marks and the signs before it set, by address."""
+    values: Values = dict(PLACES.get(active.place, {}))
+    if active.string:
+        values[STRING] = active.string
+    if active.tremolo:
+        values[TREMOLO] = QUICK_TREMOLO
+    values |= _vibrato(active.vibrato)
+    if active.short:
+        values |= CRISP["staccato"]
+    for mark in note.marks:
+        name, value = mark.name, mark.value
+        values |= CRISP.get(name, {})
+        if name in ("up-bow", "down-bow"):
+            values[DIRECTION] = UP if name == "up-bow" else DOWN
+        elif name in ("inner-string", "outer-string"):
+            values[STRING] = INNER if name == "inner-string" else OUTER
+        elif name in ("open-string", "finger"):
+            values |= _fingered(note, 0.0 if name == "open-string" else value)
+        elif name == "tremolo":
+            values[TREMOLO] = _strokes(value, quarter_s)
+        elif name == "vibrato":
+            values |= _vibrato(VIBRATO_CENTS if value is None else value)
+        elif name == "snap-pizzicato":
+            values[PRESSURE] = SNAP
+    if is_plucked(note, active):
+        values |= {PIZZICATO: 1.0, GAIN: PLUCKED_DB}
+        values.pop(TREMOLO, None)
+    node = harmonic_of(note)
+    if node is not None:
+        values |= {**HARMONIC_BOW, STRING: node.string}
+        if node.string == OUTER:
+            values[GAIN] = OUTER_DB
+    elif note.marked("harmonic"):
+        values |= PLACES["flautando"]
+    return {address: find(address).accept(value) for address, value in values.items()}
+
+
+def _strokes(strokes: float | None, quarter_s: float) -> float:
+    if strokes is None or strokes > MEASURED:
+        return QUICK_TREMOLO
+    return float(min(2.0 ** max(strokes, 1.0) / quarter_s, QUICK_TREMOLO))
+
+
+def _vibrato(cents: float | None) -> Values:
+    if cents is None:
+        return {}
+    # At 0 the player would shake long notes by itself.
+    return {VIBRATO: cents} if cents > 0.0 else {VIBRATO: 0.0, PHRASING: 0.0}
+
+
+def _fingered(note: Note, finger: float | None) -> Values:
+    """The string that a finger number implies, at the pitch of the open C string."""
+    if finger is None or abs(note.pitch - OUTER_OPEN) > SAME_PITCH:
+        return {}
+    return {STRING: OUTER if finger == 0.0 else INNER}

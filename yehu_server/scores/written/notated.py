@@ -1,0 +1,267 @@
+"""A written score: notes and the marks on them, before anybody has played it.
+
+Readers of notation make a `Written`; `performed` decides what bow and fingers do. Beats are quarter
+notes since the beginning, exact, with all repeats unfolded. Pitches are MIDI notes as they sound
+(60 is C4), fractional for quarter tones.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from yehu_server.scores.score import COMMON_TIME, Metre
+
+# Bounds for readers: what a file may ask for, repeats unfolded.
+MOST_BYTES = 16 << 20  # of a file
+MOST_NOTES = 100_000
+MOST_BEATS = 400_000  # quarter notes; a day at 278 a minute
+MOST_PARTS = 64
+LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0  # quarter notes a minute
+USUAL_TEMPO = 100.0  # where none is written
+
+# Marks on notes, and what their values are; None stands for the usual value.
+MARKS: Mapping[str, str] = {
+    "staccato": "short",
+    "staccatissimo": "very short",
+    "spiccato": "short, off the string",
+    "tenuto": "held for its full length",
+    "portato": "on one bow with its neighbours, but apart",
+    "accent": "louder",
+    "marcato": "much louder, and shorter",
+    "soft-accent": "swells and fades",
+    "stress": "a little louder",
+    "unstress": "a little softer",
+    "up-bow": "an up-bow",
+    "down-bow": "a down-bow",
+    "open-string": "no finger",
+    "finger": "which finger, 0 (none) to 4",
+    "inner-string": "on the inner string (F4)",
+    "outer-string": "on the outer string (C5)",
+    "pizzicato": "plucked, this note alone",
+    "snap-pizzicato": "plucked hard",
+    "tremolo": "value: number of strokes through the stem, 1 to 8; None: as quick as hands go",
+    "trill": "value: semitones up to the other note",
+    "mordent": "with the note below; value: semitones down",
+    "inverted-mordent": "with the note above; value: semitones up",
+    "turn": "above, note, below, note; value: semitones up",
+    "inverted-turn": "below, note, above, note; value: semitones up",
+    "vibrato": "value: depth in cents; 0: none",
+    "harmonic": "value: pitch that the finger touches, where it is written",
+    "fermata": "value: how many times as long",
+    "breath": "a short gap after it",
+    "caesura": "time stops for a moment after it",
+    "slide-in-up": "begins lower; value: by how many semitones",
+    "slide-in-down": "begins higher; value: by how many semitones",
+    "slide-out-up": "slides away upwards at its end; value: by how many semitones",
+    "slide-out-down": "slides away downwards at its end; value: by how many semitones",
+    "arpeggio": "no meaning for one note at a time",
+}
+
+# Names of spans. The notes of a span are those that begin from `begin` on and up to `end`,
+# both included; a hairpin or a change of tempo is complete at `end`.
+SPANS: Mapping[str, str] = {
+    "slur": "its notes are on one bow",
+    "glissando": "the finger slides from the first note to the last, all the way",
+    "portamento": "the finger slides into the last note, late",
+    "crescendo": "louder",
+    "diminuendo": "softer",
+    "trill": "the trill goes on (a wavy line); value: semitones up",
+    "ritardando": "value: the tempo at the end, as a share of that at the beginning",
+    "accelerando": "value: the tempo at the end, as a multiple of that at the beginning",
+}
+
+# Signs at a beat, which hold from there on.
+DYNAMICS: Mapping[str, int] = {
+    "pppp": 16,
+    "ppp": 24,
+    "pp": 36,
+    "p": 50,
+    "mp": 64,
+    "mf": 80,
+    "f": 96,
+    "ff": 112,
+    "fff": 122,
+    "ffff": 127,
+    "n": 10,
+}  # MIDI velocities, by ear; mf is the keyboard's 80 at which parameters hold as they are
+# One note of the first loudness, and then the second; None: as before.
+FORCED: Mapping[str, tuple[str, str | None]] = {
+    "sf": ("f", None),
+    "sfz": ("ff", None),
+    "sffz": ("fff", None),
+    "fz": ("ff", None),
+    "rf": ("f", None),
+    "rfz": ("f", None),
+    "fp": ("f", "p"),
+    "sfp": ("f", "p"),
+    "sfpp": ("f", "pp"),
+    "sfzp": ("ff", "p"),
+    "pf": ("p", "f"),
+}
+SIGNS: Mapping[str, str] = {
+    **{name: f"velocity {velocity}" for name, velocity in DYNAMICS.items()},
+    **{name: f"{first}, then {then or 'as before'}" for name, (first, then) in FORCED.items()},
+    "velocity": "value: loudness as MIDI has it, 1 to 127",
+    "pizz": "plucked from here on",
+    "arco": "bowed again",
+    "tremolo": "tremolo from here on, until `arco` or `ordinary`",
+    "sul-ponticello": "near the bridge",
+    "sul-tasto": "far from the bridge",
+    "flautando": "a light, quick bow",
+    "ordinary": "takes back place, lightness and tremolo of the bow",
+    "legato": "all notes slurred until `non-legato`",
+    "non-legato": "takes `legato` back",
+    "staccato": "all notes short until `non-staccato`",
+    "non-staccato": "takes `staccato` back",
+    "vibrato": "value: depth in cents, 0 for none; from here on",
+    "inner-string": "on the inner string from here on",
+    "outer-string": "on the outer string from here on",
+    "either-string": "takes the strings back",
+    "fermata": "on a rest: time stops for a moment",
+    "caesura": "time stops for a moment before it",
+    "breath": "the note before ends a little early",
+}
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A mark on a note: a name of MARKS, and its value where it has one."""
+
+    name: str
+    value: float | None = None
+
+
+@dataclass(frozen=True)
+class Grace:
+    """A small note before or after another. It takes its time from that one."""
+
+    pitch: float
+    length: Fraction = Fraction(1, 2)  # as written, in quarters: only for showing
+    marks: tuple[Mark, ...] = ()
+
+
+@dataclass(frozen=True)
+class Note:
+    """A note as written, with tied ones joined to one.
+
+    Parameters
+    ----------
+    beat, length : Fraction
+        Where it begins and how long it is written, in quarters; the length is above 0.
+    pitch : float
+        As it sounds; of a harmonic, what is heard.
+    before, after : tuple of Grace
+        Grace notes, in their order.
+    contour : tuple of (float, float)
+        How the pitch moves within the note: points of a share of its length, 0 to 1 and
+        ascending, and of semitones from `pitch`, joined by straight lines. Empty: it stays.
+    """
+
+    beat: Fraction
+    length: Fraction
+    pitch: float
+    marks: tuple[Mark, ...] = ()
+    before: tuple[Grace, ...] = ()
+    after: tuple[Grace, ...] = ()
+    contour: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def end(self) -> Fraction:
+        """The beat at which it ends."""
+        return self.beat + self.length
+
+    def marked(self, name: str) -> Mark | None:
+        """The mark of a name, if it has one."""
+        return next((mark for mark in self.marks if mark.name == name), None)
+
+
+@dataclass(frozen=True)
+class Span:
+    """What is written over several notes: a name of SPANS, and its first and last beat."""
+
+    name: str
+    begin: Fraction
+    end: Fraction
+    value: float | None = None
+
+
+@dataclass(frozen=True)
+class Sign:
+    """What is written at a beat and holds from there on: a name of SIGNS."""
+
+    beat: Fraction
+    name: str
+    value: float | None = None
+
+
+@dataclass(frozen=True)
+class Part:
+    """What one player plays: one note at a time, in order of beats."""
+
+    name: str
+    notes: tuple[Note, ...]
+    spans: tuple[Span, ...] = ()
+    signs: tuple[Sign, ...] = ()
+
+
+@dataclass(frozen=True)
+class Tempo:
+    """A tempo, in quarter notes a minute, from a beat on."""
+
+    beat: Fraction
+    quarters_per_minute: float
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A bar line: the beat after it, and the bar's number as written."""
+
+    beat: Fraction
+    number: str
+
+
+@dataclass(frozen=True)
+class Written:
+    """A score as written.
+
+    Parameters
+    ----------
+    tempi, metres, bars : tuple
+        In order of beats. Without bars they are counted by the metres.
+    unknown : mapping of str to int
+        Marks that were not understood: each as written (one printable line), and how often.
+    warnings : tuple of str
+        One line each, about anything else that is not as it should be.
+    """
+
+    parts: tuple[Part, ...]
+    tempi: tuple[Tempo, ...] = ()
+    metres: tuple[Metre, ...] = (COMMON_TIME,)
+    bars: tuple[Bar, ...] = ()
+    title: str = ""
+    unknown: Mapping[str, int] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def end(self) -> Fraction:
+        """The beat at which the last note ends."""
+        return max((note.end for part in self.parts for note in part.notes), default=Fraction(0))
+
+    def place(self, beat: Fraction) -> tuple[str, Fraction]:
+        """The bar of a beat, by its number, and the quarters since that bar began, from 0."""
+        if self.bars:
+            at = max(bisect_right(self.bars, beat, key=lambda bar: bar.beat) - 1, 0)
+            return self.bars[at].number, beat - self.bars[at].beat
+        number, begun = 1, Fraction(0)
+        quarters = Fraction(4)
+        for metre in self.metres:
+            start = Fraction(metre.beat)
+            if start > beat:
+                break
+            number += -((begun - start) // quarters)  # a bar that is cut short counts as one
+            begun, quarters = start, Fraction(metre.quarters)
+        whole = (beat - begun) // quarters
+        return str(number + whole), beat - begun - whole * quarters

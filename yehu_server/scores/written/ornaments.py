@@ -1,0 +1,116 @@
+"""Ornaments and grace notes as touches of the fingers, all on the bow of their note.
+
+docs/scores.md has the table. Times are by ear, for the tempo of hands and not of the music.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from yehu_server.scores.written.notated import Grace, Note
+
+OVERLAP_S = 0.012  # of slurred notes: as `scores.phrasing` has it
+GRACE_S = 0.085
+GRACE_SHARE = 0.5  # of a note, at most, for all its grace notes
+TAP_S = 0.075  # of a mordent's other note, and of each note of a turn
+TURN_SHARE = 0.2  # of a note, at most, for each note of a turn
+TRILL_S = 0.145  # from one tap to the next: some seven a second
+TRILL_LAST_S = 0.07  # of the plain note that ends it
+MOST_TAPS = 1000
+WHOLE, HALF = 2.0, 1.0  # usual intervals: of trills and mordents above, and below
+WIDEST = 12.0  # semitones, that a hand reaches
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A finger on a string: seconds from the start of the score, and a pitch (MIDI note)."""
+
+    begin_s: float
+    end_s: float
+    pitch: float
+
+
+def touches_of(note: Note, begin_s: float, end_s: float, trill: float | None) -> list[Touch]:
+    """Return the touches of a note, its own among them, in the order of their beginnings.
+
+    Parameters
+    ----------
+    trill : float or None
+        Semitones to the other note of a trill that goes on from before, if one does.
+    """
+    length_s = end_s - begin_s
+    before = _graces(note.before, begin_s, length_s)
+    after = _graces(note.after, end_s, length_s, backwards=True)
+    first = before[-1].end_s if before else begin_s
+    last = after[0].begin_s if after else end_s
+    main = _ornamented(note, first, last, trill)
+    if after:  # the note sounds until the first of the small ones holds
+        main[0] = replace(main[0], end_s=last + min(OVERLAP_S, 0.5 * (after[0].end_s - last)))
+    before = [replace(each, end_s=each.end_s + _overlap(each)) for each in before]
+    after = [replace(each, end_s=each.end_s + _overlap(each)) for each in after[:-1]] + after[-1:]
+    return [*before, *main, *after]
+
+
+def _overlap(touch: Touch) -> float:
+    return min(OVERLAP_S, 0.5 * (touch.end_s - touch.begin_s))
+
+
+def _graces(
+    graces: Sequence[Grace], at_s: float, length_s: float, *, backwards: bool = False
+) -> list[Touch]:
+    """Grace notes one after another from a time on, or up to it."""
+    if not graces:
+        return []
+    each_s = min(GRACE_S, GRACE_SHARE * length_s / len(graces))
+    begin = at_s - each_s * len(graces) if backwards else at_s
+    return [
+        Touch(begin + each_s * number, begin + each_s * (number + 1), grace.pitch)
+        for number, grace in enumerate(graces)
+    ]
+
+
+def _ornamented(note: Note, begin_s: float, end_s: float, trill: float | None) -> list[Touch]:
+    """The note itself, held all along, and what other fingers touch meanwhile."""
+    held = Touch(begin_s, end_s, note.pitch)
+    for mark in note.marks:
+        if mark.name == "trill":
+            trill = _step(mark.value, WHOLE)
+        elif mark.name in ("mordent", "inverted-mordent"):
+            is_up = mark.name == "inverted-mordent"
+            step = abs(_step(mark.value, WHOLE if is_up else HALF)) * (1.0 if is_up else -1.0)
+            tap_s = min(TAP_S, (end_s - begin_s) / 4.0)
+            return [held, Touch(begin_s + tap_s, begin_s + 2.0 * tap_s, note.pitch + step)]
+        elif mark.name in ("turn", "inverted-turn"):
+            return _turn(held, _step(mark.value, WHOLE), from_above=mark.name == "turn")
+    return [held, *_trill(held, _step(trill, WHOLE))] if trill else [held]
+
+
+def _step(semitones: float | None, usual: float) -> float:
+    return usual if semitones is None else min(max(semitones, -WIDEST), WIDEST)
+
+
+def _turn(held: Touch, above: float, *, from_above: bool) -> list[Touch]:
+    """Other, own, opposite, own: the own note is held under the other two."""
+    tap_s = min(TAP_S, TURN_SHARE * (held.end_s - held.begin_s))
+    steps = (above, -HALF) if from_above else (-HALF, above)
+    at = held.begin_s
+    first = Touch(at, at + tap_s, held.pitch + steps[0])
+    second = Touch(at + 2.0 * tap_s, at + 3.0 * tap_s, held.pitch + steps[1])
+    return [held, first, second]
+
+
+def _trill(held: Touch, step: float) -> list[Touch]:
+    """Taps at a steady pace from the own note, with a plain end where there is time for one."""
+    length_s = held.end_s - held.begin_s
+    room_s = length_s - TRILL_LAST_S
+    count = min(max(int(room_s / TRILL_S), 1), MOST_TAPS)
+    each_s = min(room_s / count if room_s >= TRILL_S else 0.6 * length_s, 1.5 * TRILL_S)
+    return [
+        Touch(
+            held.begin_s + each_s * (number + 0.5),
+            held.begin_s + each_s * (number + 1.0),
+            held.pitch + step,
+        )
+        for number in range(count)
+    ]

@@ -1,0 +1,182 @@
+"""The strokes of a written part: when each note begins and ends, and which notes share a bow."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+
+from yehu_server.scores.written.clock import CAESURA_S, WrittenClock
+from yehu_server.scores.written.mark_settings import DOWN, UP, Active, is_plucked
+from yehu_server.scores.written.notated import Note, Part, Span
+from yehu_server.scores.written.ornaments import OVERLAP_S
+
+# Sounding shares of the written length, by ear. The shortest that is marked counts.
+SHARES = {
+    "staccatissimo": 0.3, "spiccato": 0.35, "staccato": 0.5, "portato": 0.85, "marcato": 0.85,
+    "tenuto": 1.0,
+}  # fmt: skip
+LOURE = 0.75  # tenuto and staccato together
+BREATH_S, BREATH_SHARE = 0.18, 0.3
+# A glissando fills this share of the note that it leaves; a portamento takes so long, and most of
+# it comes before the beat.
+GLISSANDO_SHARE, LONGEST_SLIDE_S = 0.7, 2.0
+PORTAMENTO_S, PORTAMENTO_SHARE, BEFORE_BEAT = 0.14, 0.5, 0.7
+SLIDES = ("glissando", "portamento")
+BOWING_MARKS = {
+    "staccato", "staccatissimo", "spiccato", "portato", "up-bow", "down-bow", "tremolo",
+    "pizzicato",
+}  # fmt: skip
+BOWING_SIGNS = {"pizz", "legato", "non-legato", "staccato", "tremolo"}
+
+
+@dataclass(frozen=True)
+class Played:
+    """A note as the hands play it.
+
+    Parameters
+    ----------
+    direction : float
+        Of its bow, as `/playing/direction` has it; 0: the next one.
+    slide_s : float
+        How long the finger slides to it from the note before; 0: it does not.
+    trill : float or None
+        Semitones to the other note of a trill that goes on over it.
+    """
+
+    note: Note
+    begin_s: float
+    end_s: float
+    direction: float = 0.0
+    slide_s: float = 0.0
+    trill: float | None = None
+
+
+def has_bowing(part: Part) -> bool:
+    """Whether a part says which notes share a bow, or how they are bowed."""
+    marks = {mark.name for note in part.notes for mark in note.marks}
+    return (
+        any(span.name == "slur" for span in part.spans)
+        or not BOWING_MARKS.isdisjoint(marks)
+        or any(sign.name in BOWING_SIGNS for sign in part.signs)
+    )
+
+
+def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Played]:
+    """Return each note of a part as it is played; `actives` are the signs that hold at each."""
+    notes = part.notes
+    slurs = _Over(part.spans, ("slur",))
+    slides = {name: _Over(part.spans, (name,)) for name in SLIDES}
+    trills = _Over(part.spans, ("trill",))
+    breaths = sorted(sign.beat for sign in part.signs if sign.name == "breath")
+    silences = {sign.beat for sign in part.signs if sign.name == "caesura"}
+    played = []
+    for note, active in zip(notes, actives, strict=True):
+        end_s = _sounding_end(note, active, clock, slurs.holds(note))
+        if any(note.beat < beat <= note.end for beat in _near(breaths, note)):
+            end_s = _breathe(clock.seconds(note.beat), end_s)
+        if note.end in silences:
+            end_s -= min(CAESURA_S, 0.9 * (end_s - clock.seconds(note.beat)))
+        over = trills.over(note)
+        trill = None if over is None else 2.0 if over.value is None else over.value
+        played.append(Played(note, clock.seconds(note.beat), end_s, trill=trill))
+    for at, (one, other) in enumerate(pairwise(notes)):
+        if one.end != other.beat or is_plucked(other, actives[at + 1]):
+            continue
+        slide = next((name for name in SLIDES if slides[name].joins(one, other)), "")
+        if slide and not other.before:
+            played[at + 1] = _slid_to(played[at], played[at + 1], slide)
+            played[at] = replace(played[at], end_s=played[at + 1].begin_s)
+        is_slurred = slurs.joins(one, other) or actives[at].slurred
+        if (slide or is_slurred) and _can_slur(one, other):
+            length_s = played[at + 1].end_s - played[at + 1].begin_s
+            end_s = played[at + 1].begin_s + min(OVERLAP_S, 0.5 * length_s)
+            played[at] = replace(played[at], end_s=end_s)
+        elif is_slurred:
+            _go_on(played, at)
+    return played
+
+
+def _can_slur(one: Note, other: Note) -> bool:
+    """Whether the second note can follow without a new stroke."""
+    is_short = any(
+        one.marked(name) for name in ("staccato", "staccatissimo", "spiccato", "portato", "breath")
+    )
+    return not is_short and round(one.pitch) != round(other.pitch)
+
+
+def _go_on(played: list[Played], at: int) -> None:
+    """Let a note go on in the direction of the one before: apart, but on one bow."""
+    direction = played[at].direction
+    if not direction:
+        before = played[at - 1].direction if at else 0.0
+        direction = -before or (UP if played[at].note.marked("up-bow") else DOWN)
+        played[at] = replace(played[at], direction=direction)
+    played[at + 1] = replace(played[at + 1], direction=direction)
+
+
+def _sounding_end(note: Note, active: Active, clock: WrittenClock, is_slurred: bool) -> float:
+    begin_s, end_s = clock.seconds(note.beat), clock.seconds(note.end)
+    if note.marked("caesura"):
+        end_s -= CAESURA_S
+    shares = [share for name, share in SHARES.items() if note.marked(name)]
+    if active.short and not shares and not is_slurred:
+        shares = [SHARES["staccato"]]
+    share = min(shares, default=1.0)
+    if note.marked("tenuto") and share < 1.0:
+        share = max(share, LOURE)
+    if note.marked("fermata"):
+        share = 1.0
+    end_s = begin_s + share * (end_s - begin_s)
+    return _breathe(begin_s, end_s) if note.marked("breath") else end_s
+
+
+def _breathe(begin_s: float, end_s: float) -> float:
+    return end_s - min(BREATH_S, BREATH_SHARE * (end_s - begin_s))
+
+
+def _near(beats: Sequence[Fraction], note: Note) -> Iterator[Fraction]:
+    first = bisect_right(beats, note.beat)
+    return iter(beats[first : first + 1])
+
+
+def _slid_to(one: Played, other: Played, slide: str) -> Played:
+    """The second of two notes, begun early so that the finger is there on the beat."""
+    length_s = other.begin_s - one.begin_s
+    if slide == "glissando":
+        slide_s = min(GLISSANDO_SHARE * length_s, LONGEST_SLIDE_S)
+        return replace(other, begin_s=other.begin_s - slide_s, slide_s=slide_s)
+    slide_s = min(PORTAMENTO_S, PORTAMENTO_SHARE * length_s)
+    return replace(other, begin_s=other.begin_s - BEFORE_BEAT * slide_s, slide_s=slide_s)
+
+
+class _Over:
+    """Spans of one kind, found by the notes under them."""
+
+    def __init__(self, spans: Sequence[Span], names: tuple[str, ...]) -> None:
+        self._spans = sorted(
+            (span for span in spans if span.name in names), key=lambda span: span.begin
+        )
+        # The span that reaches farthest, of those up to each: enough to answer for any note.
+        self._begins = [span.begin for span in self._spans]
+        self._farthest: list[Span] = []
+        for span in self._spans:
+            before = self._farthest[-1] if self._farthest else span
+            self._farthest.append(span if span.end >= before.end else before)
+
+    def joins(self, one: Note, other: Note) -> bool:
+        """Whether a span is over both of two notes that follow each other."""
+        at = bisect_left(self._begins, one.end) - 1
+        return at >= 0 and self._farthest[at].end >= other.beat
+
+    def over(self, note: Note) -> Span | None:
+        """A span over a note, if there is one."""
+        at = bisect_left(self._begins, note.end) - 1
+        found = self._farthest[at] if at >= 0 else None
+        return found if found is not None and found.end >= note.beat else None
+
+    def holds(self, note: Note) -> bool:
+        """Whether a span is over a note."""
+        return self.over(note) is not None

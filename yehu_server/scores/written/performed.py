@@ -1,0 +1,244 @@
+"""How a written score is played: its marks become notes, bends, loudness and settings.
+
+docs/scores.md tells what each mark does. Each part gets a MIDI channel of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from functools import lru_cache
+
+import mido
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.score import Score, ScoreEvent, Setting
+from yehu_server.scores.written.clock import WrittenClock
+from yehu_server.scores.written.loudness import Loudness
+from yehu_server.scores.written.mark_settings import (
+    BEND,
+    DIRECTION,
+    FINGER_POSITION,
+    FINGER_PRESS,
+    OUTER_OPEN,
+    SAME_PITCH,
+    TOUCH_N,
+    Active,
+    harmonic_of,
+    values_of,
+)
+from yehu_server.scores.written.notated import Note, Part, Written
+from yehu_server.scores.written.ornaments import touches_of
+from yehu_server.scores.written.part_bowing import Played, bowed, has_bowing
+from yehu_server.scores.written.pitch_curve import curve_of
+
+CHANNELS = tuple(channel for channel in range(16) if channel != 9)
+NOTE_OFF, NOTE_ON, CONTROL = 0x80, 0x90, 0xB0
+EXPRESSION, LEGATO_PEDAL = 11, 68
+PORTAMENTO, PORTAMENTO_TIME = "/playing/portamento", "/playing/portamento_time"
+SWELL_S = 0.02  # between steps of a swell
+MOST_STEPS = 2000  # of a swell within a note
+AFTER_S = 0.005  # after a note's beginning, when its finger is on the way
+LAST_S = 0.3  # after the last note, when all is put back
+HIGHEST_KEY = 127
+MOST_EVENTS = 300_000
+# Order at one time.
+OFF, SET, ON, AFTER = range(4)
+
+Timed = tuple[float, int, int, ScoreEvent]  # time, order, number, event
+
+
+def performed(written: Written) -> Score:
+    """Return a written score as it is played.
+
+    Raises
+    ------
+    ScoreError
+        Where there is no note, or it lasts longer than a day.
+    """
+    if not any(part.notes for part in written.parts):
+        raise ScoreError("has no note to play")
+    clock = WrittenClock(written)
+    warnings = [*_of_unknown(written), *written.warnings]
+    parts = [part for part in written.parts if part.notes]
+    if len(parts) > len(CHANNELS):
+        warnings.append(f"{len(parts)} parts; the first {len(CHANNELS)} are played")
+    elif len(parts) > 1:
+        warnings.append(
+            f"{len(parts)} parts are all played on the one instrument; --channel 1 plays the first"
+        )
+    timed: list[Timed] = []
+    left: Counter[str] = Counter()
+    for channel, part in zip(CHANNELS, parts, strict=False):
+        timed += _Performer(part, channel, clock, left, len(timed)).events()
+    warnings += [f"{mark} ({count} times)" if count > 1 else mark for mark, count in left.items()]
+    timed.sort(key=lambda each: each[:3])
+    end_s = max(clock.seconds(written.end), timed[-1][0])
+    events = tuple(event for *_, event in timed)
+    return Score(events, end_s, written.title, tuple(warnings), written.metres)
+
+
+def _of_unknown(written: Written) -> Iterator[str]:
+    for mark, count in written.unknown.items():
+        yield f"not understood: {mark}" + (f" ({count} times)" if count > 1 else "")
+
+
+class _Performer:
+    """Plays one part."""
+
+    def __init__(
+        self, part: Part, channel: int, clock: WrittenClock, left: Counter[str], number: int
+    ) -> None:
+        self._part = part
+        self._channel = channel
+        self._clock = clock
+        self._left = left  # marks that are left out, and how often
+        self._loudness = Loudness(part)
+        self._timed: list[Timed] = []
+        self._number = number
+        self._set: dict[str, float] = {}  # by address, what marks have set
+        self._ends: dict[int, int] = {}  # of sounding keys: places in `_timed`
+        self._expression = 127
+        self._freed: set[str] = set()  # owned parameters to put back before the next note
+
+    def events(self) -> list[Timed]:
+        """All its events; not in order."""
+        beats = sorted(self._part.signs, key=lambda sign: sign.beat)
+        active, taken = Active(), 0
+        if self._loudness.is_marked:  # so that no phrasing is laid over it
+            self._control(0.0, 0.0, EXPRESSION, 127)
+        if has_bowing(self._part):
+            self._control(0.0, 0.0, LEGATO_PEDAL, 0)
+        actives = []
+        for note in self._part.notes:
+            while taken < len(beats) and beats[taken].beat <= note.beat:
+                active.take(beats[taken])
+                taken += 1
+            actives.append(replace(active))
+        played = bowed(self._part, actives, self._clock)
+        for each, state in zip(played, actives, strict=True):
+            self._play(each, state)
+        last_s = max(each.end_s for each in played) + LAST_S
+        self._put_back(last_s, self._part.notes[-1].end, {})
+        return self._timed
+
+    # -- one note ----------------------------------------------------------------------------
+
+    def _play(self, played: Played, active: Active) -> None:
+        note, begin_s = played.note, played.begin_s
+        self._count_left(note)
+        values = values_of(note, active, self._clock.quarter_s(note.beat))
+        if played.direction:
+            values[DIRECTION] = played.direction
+        if played.slide_s > 0.0:
+            values |= {PORTAMENTO: 1.0, PORTAMENTO_TIME: 1e3 * played.slide_s}
+        node = harmonic_of(note)
+        pitch = note.pitch if node is None else node.open_note
+        key = _key_of(pitch)
+        curve = curve_of(note, begin_s, played.end_s) if node is None else []
+        if abs(pitch - key) > 1e-6 or curve:
+            values[BEND] = pitch - key + (curve[0][1] if curve else 0.0)
+        self._put_back(begin_s, note.beat, values)
+        velocity = self._loudness.velocity(note)
+        if self._loudness.is_marked:
+            self._swell(played)
+        touches = touches_of(replace(note, pitch=pitch), begin_s, played.end_s, played.trill)
+        for touch in touches:
+            # Small notes bend with the great one: each is a key, and a share of a semitone.
+            own = key if touch.pitch == pitch else _key_of(touch.pitch - (pitch - key))
+            if own != key or touch.pitch == pitch:
+                self._touch(touch.begin_s, touch.end_s, own, velocity, note)
+        for at_s, semitones in curve[1:]:
+            self._setting(at_s, AFTER, note.beat, BEND, pitch - key + semitones)
+            self._set[BEND] = math.nan  # whatever it was, it is put back
+        if played.slide_s > 0.0:
+            for address in (PORTAMENTO, PORTAMENTO_TIME):
+                self._setting(begin_s + AFTER_S, AFTER, note.beat, address, None)
+                del self._set[address]
+        if node is not None:
+            self._setting(begin_s, AFTER, note.beat, FINGER_POSITION, node.place)
+            self._setting(begin_s, AFTER, note.beat, FINGER_PRESS, TOUCH_N)
+            self._freed.add(FINGER_PRESS)
+
+    def _touch(self, begin_s: float, end_s: float, key: int, velocity: int, note: Note) -> None:
+        before = self._ends.get(key)
+        if before is not None and self._timed[before][0] > begin_s:  # struck again
+            _, order, number, event = self._timed[before]
+            self._timed[before] = (begin_s, order, number, replace(event, time_s=begin_s))
+        on = _message(NOTE_ON | self._channel, key, velocity)
+        self._add(begin_s, ON, self._beat(begin_s, note), on)
+        self._ends[key] = len(self._timed)
+        off = _message(NOTE_OFF | self._channel, key, 64)
+        self._add(end_s, OFF, self._beat(end_s, note), off)
+
+    def _beat(self, time_s: float, note: Note) -> float:
+        at_s = self._clock.seconds(note.beat)
+        return float(note.beat) if abs(time_s - at_s) < 1e-9 else self._clock.beat_at(time_s)
+
+    def _swell(self, played: Played) -> None:
+        """Controller 11 as a hairpin has it, below the loudest moment of the note."""
+        note = played.note
+        begin, length = float(note.beat), float(note.length)
+        length_s = self._clock.seconds(note.end) - self._clock.seconds(note.beat)
+        count = min(max(int(length_s / SWELL_S), 2), MOST_STEPS)
+        beats = [begin + length * step / count for step in range(count)]
+        for step, below_db in enumerate(self._loudness.below_db(note, beats)):
+            time_s = self._clock.seconds(beats[step]) if step else played.begin_s
+            # The amplitude is the square of expression.
+            value = round(127.0 * 10.0 ** (-below_db / 40.0))
+            if value != self._expression and (step == 0 or played.begin_s < time_s < played.end_s):
+                self._expression = value
+                self._control(time_s, beats[step], EXPRESSION, value)
+
+    # -- settings ----------------------------------------------------------------------------
+
+    def _put_back(self, time_s: float, beat: Fraction, values: dict[str, float]) -> None:
+        """Set what the next note wants, and put back what only the last one wanted."""
+        for address in sorted(self._freed):
+            self._setting(time_s, SET, beat, address, None)
+        self._freed.clear()
+        for address in [address for address in self._set if address not in values]:
+            self._setting(time_s, SET, beat, address, None)
+            del self._set[address]
+        for address, value in values.items():
+            if self._set.get(address) != value:
+                self._setting(time_s, SET, beat, address, value)
+                self._set[address] = value
+
+    def _setting(
+        self, time_s: float, order: int, beat: Fraction, address: str, value: float | None
+    ) -> None:
+        self._add(time_s, order, float(beat), Setting(address, value, self._channel))
+
+    def _control(self, time_s: float, beat: float, control: int, value: int) -> None:
+        self._add(time_s, SET, beat, _message(CONTROL | self._channel, control, value))
+
+    def _add(self, time_s: float, order: int, beat: float, message: mido.Message | Setting) -> None:
+        self._number += 1
+        if self._number > MOST_EVENTS:
+            raise ScoreError(f"asks for more than {MOST_EVENTS} moves of bow and fingers")
+        event = ScoreEvent(time_s, message, beat, track=self._channel + 1)
+        self._timed.append((time_s, order, self._number, event))
+
+    def _count_left(self, note: Note) -> None:
+        """Count marks that cannot be played as written."""
+        if note.marked("harmonic") and harmonic_of(note) is None:
+            self._left["a harmonic that does not speak is played as a light stopped note"] += 1
+        is_open = note.pitch < OUTER_OPEN - 6.5 or abs(note.pitch - OUTER_OPEN) <= SAME_PITCH
+        if note.marked("open-string") and not is_open:
+            self._left["an open string is marked on a note that no open string has"] += 1
+        if note.marked("arpeggio"):
+            self._left["an arpeggio has no meaning for one note at a time"] += 1
+
+
+@lru_cache(maxsize=1 << 14)
+def _message(status: int, first: int, second: int) -> mido.Message:
+    """A message, cached and never changed: making one takes long."""
+    return mido.Message.from_bytes([status, first, second])
+
+
+def _key_of(pitch: float) -> int:
+    return min(max(math.floor(pitch + 0.5), 0), HIGHEST_KEY)

@@ -1,0 +1,346 @@
+"""Read files of bounded size; write results atomically, and replace only what may be replaced."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import io
+import itertools
+import os
+import re
+import secrets
+import stat
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import BinaryIO
+
+from yehu_server.errors import OutputError
+from yehu_server.util import PACKAGE
+
+MAX_TEXT_BYTES = 64 * 2**20
+PIECE_BYTES = 2**20
+MAX_LINE_BYTES = 64 * 1024
+MAX_SETTINGS_BYTES = 2**20  # for files that are read while the instrument plays
+# Names that come over the network: no path, no hidden file.
+PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
+MOST_SHOWN = 40  # characters of other names in errors
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    """Open without blocking: opening a pipe would wait for its writer."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _open_regular(path: Path, most_bytes: int) -> BinaryIO:
+    """Open a regular file up to a size; devices and pipes, which may never end, raise OSError."""
+    file = open(path, "rb", opener=_open_at_once)  # noqa: SIM115 - the caller closes it
+    status = os.fstat(file.fileno())
+    if stat.S_ISREG(status.st_mode) and status.st_size <= most_bytes:
+        return file
+    file.close()
+    if stat.S_ISREG(status.st_mode):
+        raise _too_large(most_bytes)
+    raise OSError(errno.EINVAL, "Not a regular file")
+
+
+def _too_large(most_bytes: int) -> OSError:
+    return OSError(errno.EFBIG, f"File too large, above {most_bytes >> 10} KiB")
+
+
+def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
+    """Read a regular file.
+
+    Raises
+    ------
+    OSError
+        Also where it is larger than `most_bytes`, or no regular file.
+    """
+    pieces, left = [], most_bytes + 1
+    with _open_regular(path, most_bytes) as file:
+        # In pieces: a read sets aside all the memory that it may need.
+        while piece := file.read(min(left, PIECE_BYTES)):
+            pieces.append(piece)
+            left -= len(piece)
+    if left <= 0:  # it has grown, or its file system reports no sizes
+        raise _too_large(most_bytes)
+    return b"".join(pieces)
+
+
+def read_lines(path: Path, most_bytes: int) -> Iterator[str]:
+    """Read a text file line by line, each with its line end.
+
+    Raises
+    ------
+    OSError
+        As `read_bytes`, or where a line is too long.
+    UnicodeDecodeError
+        Where it is not UTF-8.
+    """
+    with _open_regular(path, most_bytes) as file:
+        while line := file.readline(MAX_LINE_BYTES + 1):
+            if len(line) > MAX_LINE_BYTES:
+                raise OSError(errno.EFBIG, f"A line is longer than {MAX_LINE_BYTES // 1024} KiB")
+            yield line.decode("utf-8")
+
+
+def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
+    """Read a text file.
+
+    Raises
+    ------
+    OSError
+        As `read_bytes`.
+    UnicodeDecodeError
+        Where it is not UTF-8.
+    """
+    return read_bytes(path, most_bytes).decode("utf-8")
+
+
+def why(error: OSError) -> str:
+    """The reason of an error, for a message."""
+    return error.strerror or str(error)
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those it is in.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be made: {why(error)}") from error
+
+
+def inside(folder: Path, name: str, ending: str = "") -> Path:
+    """The path in a folder for a name that came over the network.
+
+    Raises
+    ------
+    OutputError
+        Where it is no plain name, or a symbolic link that leads out of the folder.
+    """
+    if not PLAIN_NAME.fullmatch(name):
+        shown = name if len(name) <= MOST_SHOWN else f"{name[:MOST_SHOWN]}..."
+        raise OutputError(f"{shown!r} is not a plain name of letters, digits, . _ - and spaces")
+    path = folder / f"{name}{ending}"
+    # A dangling link too: writing through it would create the file it names.
+    if os.path.islink(path) and not _is_within(path, folder):  # noqa: PTH114 - Path's raises
+        raise OutputError(f"{path.name} is a link that leads out of {folder}")
+    return path
+
+
+def _is_within(path: Path, folder: Path) -> bool:
+    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
+
+
+def check_target(target: Path) -> None:
+    """Check that a target can be written.
+
+    Raises
+    ------
+    OutputError
+        Where the folder is missing or not writable, or the target is not a regular file.
+    """
+    folder = target.parent
+    try:
+        if not folder.exists():
+            raise OutputError(f"{target}: the folder {folder} does not exist")
+        if not folder.is_dir():
+            raise OutputError(f"{target}: {folder} is not a folder")
+        if target.is_dir():
+            raise OutputError(f"{target}: is a folder; name a file")
+        if target.exists() and not stat.S_ISREG(target.stat().st_mode):
+            raise OutputError(f"{target}: is not a regular file")
+    except OSError as error:
+        raise OutputError(f"{target}: cannot write: {error.strerror}") from error
+    if not os.access(folder, os.W_OK):
+        raise OutputError(f"{target}: the folder {folder} is not writable")
+
+
+def check_apart(outputs: Mapping[str, Path], inputs: Iterable[Path] = ()) -> None:
+    """Check that outputs are different files from each other and from the inputs.
+
+    Parameters
+    ----------
+    outputs : dict
+        The files to be written, by the options that name them.
+    inputs : iterable of Path
+        The files to be read.
+
+    Raises
+    ------
+    OutputError
+        Where two are the same file, also by links.
+    """
+    read = list(inputs)
+    for (name, target), (other, another) in itertools.combinations(outputs.items(), 2):
+        if is_same(target, another):
+            raise OutputError(f"{target}: {name} and {other} would write to the same file")
+    for name, target in outputs.items():
+        if any(is_same(target, path) for path in read):
+            raise OutputError(f"{target}: {name} would overwrite an input")
+
+
+def is_same(one: Path, other: Path) -> bool:
+    """Whether two paths are the same file, or will be once created."""
+    try:
+        return one.samefile(other)
+    except OSError:  # one of them is not there yet
+        return os.path.realpath(one) == os.path.realpath(other)
+
+
+def anything(_target: Path) -> bool:
+    """Allow to replace any file; see `replacing`."""
+    return True
+
+
+def nothing(_target: Path) -> bool:
+    """Allow to replace no file; see `replacing`."""
+    return False
+
+
+def check_free(target: Path, may_replace: Callable[[Path], bool] = nothing) -> None:
+    """Check that a target does not exist, or may be replaced.
+
+    Raises
+    ------
+    OutputError
+        Where it exists and may not be replaced.
+    """
+    if os.path.lexists(target) and not may_replace(target):
+        raise OutputError(f"{target}: exists; --overwrite replaces it")
+
+
+def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.FileIO:
+    """Open a new file that is written bit by bit.
+
+    Parameters
+    ----------
+    overwrite : bool
+        Whether the new file replaces an older one, at once. Other hard links to that keep its
+        contents.
+    room_bytes : int
+        Free space that the disk must have.
+
+    Raises
+    ------
+    OutputError
+        As `check_target`, where there is an older file, or on a full disk; an older file is not
+        changed then.
+    """
+    check_target(target)
+    path = _beside(target.resolve()) if overwrite else target
+    try:
+        file = io.FileIO(path, "x")
+        try:
+            write_all(file, bytes(room_bytes))
+            file.seek(0)
+            file.truncate()
+            if overwrite:
+                path.replace(target.resolve())
+        except OSError:
+            discard(file, path)
+            file.close()
+            raise
+    except FileExistsError:
+        raise OutputError(f"{target}: exists") from None
+    except OSError as error:
+        raise OutputError(f"{target}: cannot write: {why(error)}") from error
+    return file
+
+
+def discard(file: io.FileIO, path: Path) -> None:
+    """Remove an open file, unless another file has replaced it."""
+    with contextlib.suppress(OSError):
+        if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+            path.unlink()
+
+
+def write_all(file: io.FileIO, data: bytes) -> None:
+    """Write all data to an unbuffered file.
+
+    Raises
+    ------
+    OSError
+        Where some of it may have been written.
+    """
+    rest = memoryview(data)
+    while rest:
+        rest = rest[file.write(rest) :]
+
+
+@contextlib.contextmanager
+def replacing(target: Path, may_replace: Callable[[Path], bool] = anything) -> Iterator[Path]:
+    """Yield a path beside `target` to write to; move it there when the block succeeds.
+
+    An error or interrupt within the block removes the partial file and leaves an older `target`
+    unchanged.
+
+    Parameters
+    ----------
+    may_replace : callable
+        Called with an older target, at the beginning and at the end; returns whether it may be
+        replaced.
+
+    Raises
+    ------
+    OutputError
+        As `check_target` and `check_free`, or where writing fails, as on a full disk.
+    """
+    check_target(target)
+    check_free(target, may_replace)
+    partial = _beside(target.resolve())
+    try:
+        partial.touch(exist_ok=False)
+        yield partial
+        _move(partial, target, may_replace)
+    except OSError as error:
+        raise OutputError(f"{target}: cannot write: {why(error)}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
+
+
+def _move(partial: Path, target: Path, may_replace: Callable[[Path], bool]) -> None:
+    """Move a file to its target without a race with other writers."""
+    destination = target.resolve()
+    try:
+        destination.touch(exist_ok=False)
+    except FileExistsError:
+        check_free(target, may_replace)
+        partial.replace(destination)
+        return
+    try:
+        partial.replace(destination)
+    except OSError:
+        destination.unlink(missing_ok=True)
+        raise
+
+
+def _beside(target: Path) -> Path:
+    """A hidden name in the same folder, on the same disk."""
+    return target.parent / f".yehu-server-{secrets.token_hex(8)}.part"
+
+
+def write_text(target: Path, text: str) -> None:
+    """Write a text file atomically: after a power cut it is complete, the new or the old one.
+
+    Raises
+    ------
+    OutputError
+        As `replacing`.
+    """
+    with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def shipped_folder(name: str) -> Path:
+    """The folder of shipped files: in the package, or beside it in a checkout."""
+    inside = PACKAGE / name
+    return inside if inside.is_dir() else PACKAGE.parent / name

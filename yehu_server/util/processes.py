@@ -1,0 +1,266 @@
+"""Helper processes: started, spoken with, and started again when they end.
+
+PortAudio and RtMidi may hang or crash when the sound server under them dies. Each runs in a
+process of its own and exchanges lines of JSON: orders in, events out. The process ends when its
+input does, so none outlives its parent.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import IO, Any
+
+from yehu_server.util.retry import Backoff, keep_on
+
+Message = dict[str, Any]
+
+log = logging.getLogger(__name__)
+
+GOODBYE_S = 1.0
+PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
+F_SETPIPE_SZ = 1031  # of Linux
+
+
+class Child:
+    """A helper process, seen from its parent.
+
+    Parameters
+    ----------
+    module : str
+        The module to run, as ``python -m``.
+    heard : callable
+        Called with each event, in a thread of its own; at the end with ``{"event": "gone"}``,
+        however the process ended.
+    share : sequence of int
+        File descriptors that the process inherits, under the same numbers.
+
+    Raises
+    ------
+    OSError, MemoryError, RuntimeError
+        Where the system cannot start it.
+    """
+
+    def __init__(
+        self, module: str, heard: Callable[[Message], None], share: Sequence[int] = ()
+    ) -> None:
+        self._name = module.rpartition(".")[2]
+        self._heard = heard
+        self._sending = threading.Lock()
+        self._process = subprocess.Popen(  # noqa: S603 - our own module
+            [sys.executable, "-m", module],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            pass_fds=share,
+            start_new_session=True,  # Ctrl-C is for the parent
+        )
+        self._widen()
+        events = threading.Thread(target=self._listen, name=f"{self._name} events", daemon=True)
+        overheard = threading.Thread(target=self._overhear, name=f"{self._name} log", daemon=True)
+        try:
+            overheard.start()
+            events.start()
+        except BaseException:  # nobody would read its output
+            self.kill()
+            for pipe in (self._process.stdout, self._process.stderr):
+                if pipe is not None:
+                    pipe.close()
+            raise
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the process runs."""
+        return self._process.poll() is None
+
+    def send(self, order: str, **details: Any) -> None:
+        """Send an order; without effect where the process has ended."""
+        line = json.dumps({"order": order, **details}) + "\n"
+        pipe = self._process.stdin
+        try:
+            with self._sending:
+                if pipe is not None:
+                    pipe.write(line.encode())
+                    pipe.flush()
+        except (OSError, ValueError):
+            log.debug("%s: gone before it got %s", self._name, order)
+
+    def stop(self) -> None:
+        """Let the process end by itself; kill it if it does not."""
+        self._hang_up()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(GOODBYE_S)
+        self.kill()
+
+    def kill(self) -> None:
+        """Kill the process, and wait until it has ended."""
+        self._process.kill()
+        self._process.wait()
+        self._hang_up()
+
+    def _hang_up(self) -> None:
+        pipe = self._process.stdin
+        if pipe is not None:
+            with self._sending, contextlib.suppress(OSError):
+                pipe.close()
+
+    def _widen(self) -> None:
+        """Enlarge the pipe of events, so that the process does not block while we are stopped."""
+        with contextlib.suppress(ImportError, OSError, AttributeError):
+            from fcntl import fcntl
+
+            if sys.platform == "linux" and self._process.stdout is not None:
+                fcntl(self._process.stdout, F_SETPIPE_SZ, PIPE_BYTES)
+
+    def _listen(self) -> None:
+        try:
+            for line in self._lines(self._process.stdout):
+                self._read(line)
+        except (OSError, MemoryError):  # it could not be heard any more
+            self._process.kill()
+        self._process.wait()
+        self._hang_up()
+        self._tell({"event": "gone"})
+
+    def _read(self, line: str) -> None:
+        try:
+            message = json.loads(line)
+        except ValueError:
+            log.debug("%s: %s", self._name, line.rstrip())
+        else:
+            self._tell(message)
+
+    def _tell(self, message: Message) -> None:
+        try:
+            self._heard(message)
+        except Exception:  # later events still count
+            log.exception("%s: could not act on %s", self._name, message)
+
+    def _overhear(self) -> None:
+        with contextlib.suppress(OSError, MemoryError):
+            for line in self._lines(self._process.stderr):
+                log.debug("%s: %s", self._name, line.rstrip())
+
+    @staticmethod
+    def _lines(pipe: IO[bytes] | None) -> Iterator[str]:
+        if pipe is not None:
+            with pipe:
+                for line in pipe:
+                    yield line.decode(errors="replace")
+
+
+def _claim_stdout() -> int:
+    """Keep what libraries print apart from the events."""
+    channel = os.dup(1)
+    os.dup2(2, 1)
+    return channel
+
+
+class Parent:
+    """The parent, seen from the helper process."""
+
+    def __init__(self) -> None:
+        self._channel = _claim_stdout()
+        self._sending = threading.Lock()
+
+    def tell(self, event: str, **details: Any) -> None:
+        """Send an event; exit where the parent is gone."""
+        line = json.dumps({"event": event, **details}) + "\n"
+        try:
+            with self._sending:
+                os.write(self._channel, line.encode())
+        except OSError:
+            os._exit(0)
+
+    def orders(self) -> Iterator[Message]:
+        """Yield the orders as they come, until the input ends."""
+        for line in sys.stdin.buffer:
+            yield json.loads(line)
+
+
+LIVES_S = 5.0  # a process that ends sooner is started again only after a while
+
+
+class ChildKeeper:
+    """A helper process and its successors.
+
+    Parameters
+    ----------
+    module : str
+        The module to run, as ``python -m``.
+    what : str
+        What the process does, for the thread's name and for messages of errors.
+    heard : callable
+        Called with each event but the last, in a thread of its own.
+    attend : callable
+        Called with each new process and an event that is set when it is gone, until which it
+        should not return.
+    ended : callable
+        Called when the process has ended: True where it did so by itself, not by `stop`.
+    told : callable
+        Called with a line where a process cannot be started; from another thread.
+    share : sequence of int
+        File descriptors that the process inherits, under the same numbers.
+    """
+
+    def __init__(
+        self,
+        module: str,
+        what: str,
+        *,
+        heard: Callable[[Message], None],
+        attend: Callable[[Child, threading.Event], None],
+        ended: Callable[[bool], None],
+        told: Callable[[str], None],
+        share: Sequence[int] = (),
+    ) -> None:
+        self._module = module
+        self._heard = heard
+        self._attend = attend
+        self._ended = ended
+        self._share = share
+        self._ending, self._gone = threading.Event(), threading.Event()
+        self._backoff = Backoff()
+        turns = (self._serve, self._ending, 0.0, what, told)
+        self._thread = threading.Thread(target=keep_on, args=turns, name=what, daemon=True)
+
+    def start(self) -> None:
+        """Start the process."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the process, for good."""
+        self._ending.set()
+        self._gone.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def _serve(self) -> None:
+        """Run a process until it ends."""
+        gone = self._gone = threading.Event()  # of its own: the last process may tell it late
+        if self._ending.is_set():  # `stop` set both before
+            return
+        begun = time.monotonic()
+        child = Child(self._module, partial(self._hear, gone), self._share)
+        try:
+            self._attend(child, gone)
+        finally:
+            child.stop()
+            self._ended(not self._ending.is_set())
+        if time.monotonic() - begun > LIVES_S:
+            self._backoff.worked()
+        self._ending.wait(self._backoff.failed())
+
+    def _hear(self, gone: threading.Event, event: Message) -> None:
+        if event["event"] == "gone":
+            gone.set()
+        else:
+            self._heard(event)

@@ -1,0 +1,67 @@
+"""Files with a checksum, so that damaged and incomplete ones are refused.
+
+They hold what can be computed again, such as compiled code and calibrations.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import secrets
+from pathlib import Path
+
+from yehu_server.util.files import read_bytes
+
+MOST_BYTES = 64 * 2**20
+DIGEST_BYTES = 16
+
+
+class SealError(Exception):
+    """A sealed file that is damaged."""
+
+
+def _digest(path: Path, payload: bytes) -> bytes:
+    # The name is included, so that no file is taken for another.
+    digest = hashlib.blake2b(path.name.encode() + b"\0", digest_size=DIGEST_BYTES)
+    digest.update(payload)
+    return digest.digest()
+
+
+def read_sealed(path: Path) -> bytes | None:
+    """Read the payload of a sealed file; None where there is no file.
+
+    Raises
+    ------
+    SealError
+        Where it is damaged or cannot be read.
+    """
+    try:
+        data = read_bytes(path, MOST_BYTES)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise SealError(error.strerror) from error
+    seal, payload = data[:DIGEST_BYTES], data[DIGEST_BYTES:]
+    if seal != _digest(path, payload):
+        raise SealError("it is damaged")
+    return payload
+
+
+def write_sealed(path: Path, payload: bytes) -> None:
+    """Write or replace a sealed file atomically.
+
+    A power cut may leave it incomplete, which its checksum shows.
+
+    Raises
+    ------
+    OSError
+        Where it cannot be written.
+    """
+    partial = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    try:
+        partial.write_bytes(_digest(path, payload) + payload)
+        partial.replace(path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
+        raise

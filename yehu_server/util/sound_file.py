@@ -1,0 +1,191 @@
+"""Write sound files: renderings that appear when complete, recordings valid at every moment."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import soundfile
+
+from yehu_server.errors import OutputError
+from yehu_server.util import flac, wav
+from yehu_server.util.files import anything, replacing, why
+from yehu_server.util.flac import FlacStream
+from yehu_server.util.wav import WavStream
+
+FORMATS = ("wav", "flac")
+MOST_CHANNELS = {"wav": wav.MOST_CHANNELS, "flac": flac.MOST_CHANNELS}
+SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}
+RENDERED = (
+    "yehu-server render"  # software named in a rendered file, which may therefore be replaced
+)
+
+Samples = np.ndarray[Any, np.dtype[np.float32]]
+
+
+class SoundWriter:
+    """Writes a sound file whose header is valid after each write.
+
+    Parameters
+    ----------
+    file : io.FileIO
+        A new one, unbuffered; it stays open.
+    target : Path
+        Its name in errors.
+    format_name : "wav" or "flac"
+    subtype : "16", "24" or "float"
+    software : str
+        Named in the file as its maker.
+    channels : int
+        1 to `MOST_CHANNELS` of the format.
+
+    Raises
+    ------
+    OutputError
+        Here and from all methods; what was written before stays valid.
+    """
+
+    def __init__(
+        self,
+        file: io.FileIO,
+        target: Path,
+        rate: int,
+        format_name: str,
+        subtype: str,
+        software: str = "",
+        *,
+        channels: int = 1,
+    ) -> None:
+        check_format(format_name, subtype, channels)
+        is_wav = format_name == "wav"
+        self._target = target
+        self._channels = channels
+        self._limit = wav.WAV_LIMIT // (channels * wav.BYTES[subtype]) if is_wav else None
+        self.frames = 0
+        self.peak = 0.0
+        self._power = 0.0
+        with self._telling():
+            make = WavStream if is_wav else FlacStream
+            self._stream: WavStream | FlacStream = make(
+                file, rate, subtype, software, channels=channels
+            )
+
+    @property
+    def kept_frames(self) -> int:
+        """Number of frames in the file; an encoder may hold back more."""
+        return self._stream.frames
+
+    def write(self, samples: Samples) -> None:
+        """Append samples [shape=(frames,) of one channel, or (frames, channels); full scale 1]."""
+        self.frames += len(samples)
+        if self._limit is not None and self.frames > self._limit:
+            instead = "; use FLAC" if self._channels <= flac.MOST_CHANNELS else ""
+            raise OutputError(f"{self._target}: too long for a WAV file (4 GiB){instead}")
+        self.peak = max(self.peak, float(np.abs(samples).max(initial=0.0)))
+        self._power += float(np.square(samples, dtype=np.float64).sum())
+        with self._telling():
+            self._stream.write(samples)
+
+    def close(self) -> None:
+        """Write what the encoder holds back."""
+        with self._telling():
+            self._stream.close()
+
+    @contextlib.contextmanager
+    def _telling(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise OutputError(f"{self._target}: cannot write: {why(error)}") from error
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of all samples of all channels, of full scale."""
+        samples = self.frames * self._channels
+        return float((self._power / samples) ** 0.5) if samples else 0.0
+
+
+def format_of(target: Path) -> str:
+    """The format of a file by its ending; WAV without one.
+
+    Raises
+    ------
+    OutputError
+        Where the ending is another.
+    """
+    ending = target.suffix.lower().lstrip(".")
+    if ending in ("", "wave"):
+        return "wav"
+    if ending not in FORMATS:
+        raise OutputError(f"{target}: .{ending} is not a format to write; use .wav or .flac")
+    return ending
+
+
+def check_format(format_name: str, subtype: str, channels: int = 1) -> None:
+    """Refuse samples of a subtype, or a number of channels, that a format cannot hold.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot.
+    """
+    if not soundfile.check_format(format_name.upper(), SUBTYPES[subtype]):
+        raise OutputError(f"a {format_name} file cannot hold {subtype} samples; use 16 or 24")
+    most = MOST_CHANNELS[format_name]
+    if not 1 <= channels <= most:
+        raise OutputError(f"a {format_name} file holds 1 to {most} channels, not {channels}")
+
+
+@contextlib.contextmanager
+def sound_file(
+    target: Path,
+    rate: int,
+    format_name: str,
+    subtype: str,
+    may_replace: Callable[[Path], bool] = anything,
+    *,
+    channels: int = 1,
+) -> Iterator[SoundWriter]:
+    """Open a sound file that appears at `target` only once it is complete.
+
+    Parameters
+    ----------
+    format_name : "wav" or "flac"
+    subtype : "16", "24" or "float"
+    may_replace : callable
+        Called with the target where a file is there; returns whether to replace it.
+    channels : int
+        1 to `MOST_CHANNELS` of the format.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written, or not replaced.
+    """
+    with replacing(target, may_replace) as partial, io.FileIO(partial, "w") as file:
+        form = (rate, format_name, subtype, RENDERED)
+        writer = SoundWriter(file, target, *form, channels=channels)
+        try:
+            yield writer
+        except BaseException:
+            with contextlib.suppress(OutputError):
+                writer.close()
+            raise
+        writer.close()
+        if writer.frames == 0:
+            raise OutputError(f"{target}: there is nothing to write")
+
+
+def is_rendered(target: Path) -> bool:
+    """Whether a file was made by `sound_file`, or is empty."""
+    try:
+        if target.stat().st_size == 0:
+            return True
+        with target.open("rb") as data, soundfile.SoundFile(data) as file:  # of any name
+            return str(file.software).startswith(RENDERED)
+    except (OSError, soundfile.LibsndfileError):
+        return False

@@ -29,7 +29,7 @@ from yehu_server.core.player.bowing import (
     LEAST_PRESS,
     LIGHT,
     TOP_SPEED,
-    manner,
+    recipe_value,
     share,
 )
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES
@@ -69,14 +69,14 @@ class Player:
         self.impedance = float(np.sqrt(silk.T * silk.rho_A))
         self.grip = bow.mu_S - bow.mu_C
 
-    def manner(self, column: int) -> float:
+    def recipe(self, column: int) -> float:
         """A column of the practice; see player.bowing."""
-        return manner(self.bowing, self.string, USUAL_BETA, float(self.note), column)
+        return recipe_value(self.bowing, self.string, USUAL_BETA, float(self.note), column)
 
     def force(self, speed: Array, beta: float, wish: float) -> Array:
         """The force (N) that the player's assist sets for a value of ``/playing/pressure``."""
         fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
-        flautando, light, firm = map(self.manner, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
+        flautando, light, firm = map(self.recipe, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
         usual = share(flautando, light, firm, wish, self.string)
         highest = speed * upper_limit(self.impedance, self.grip, 1.0, beta)  # it goes as the speed
         return (usual + fast) * highest
@@ -84,7 +84,7 @@ class Player:
 
 def bowed(rate: float, player: Player, vary: dict[str, Any]) -> Result:
     """Bow the note in all combinations."""
-    press = max(find("/playing/press").default, player.manner(LEAST_PRESS))
+    press = max(find("/playing/press").default, player.recipe(LEAST_PRESS))
     stroke = {"string": player.string + 1, "note": player.note, "press": press}
     along = next(name for name in ("position", "speed") if isinstance(vary.get(name), dict))
     return sweep(
@@ -122,16 +122,16 @@ def draw_note(panels: Any, player: Player, rate: float) -> list[Result]:
     for i, speed in enumerate(THREE):
         panels[i].set_title(f"{title}, {speed:g} m/s")
         draw(panels[i], places, "position", {"speed": i})
-        if speed <= player.manner(TOP_SPEED):
-            beta = USUAL_BETA * player.manner(FARTHER)
+        if speed <= player.recipe(TOP_SPEED):
+            beta = USUAL_BETA * player.recipe(FARTHER)
             ends = [float(player.force(speed, beta, wish)) for wish in (LIGHT, FIRM)]
             panels[i].plot([beta, beta], ends, color="k", lw=2.5, marker="_", ms=9, mew=2.5)
     speeds = bowed(rate, player, {"position": [USUAL_BETA], "speed": SPEEDS})
     panels[-1].set_title(f"{title}, β = {USUAL_BETA:g}")
     draw(panels[-1], speeds, "speed", {"position": 0})
-    if player.manner(FARTHER) == 1.0:
+    if player.recipe(FARTHER) == 1.0:
         borne = speeds.axes["speed"]
-        borne = borne[borne <= player.manner(TOP_SPEED)]
+        borne = borne[borne <= player.recipe(TOP_SPEED)]
         for wish in (LIGHT, FIRM):
             panels[-1].plot(borne, player.force(borne, USUAL_BETA, wish), "k:", lw=2.0)
     panels[0].set_ylabel(LABELS["force"])

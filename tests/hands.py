@@ -12,7 +12,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.interpret import interpret
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
-from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import fulfil
@@ -105,7 +105,7 @@ class Watched(Instrument):
         """The meters, as if all that is posted had been applied."""
         meters = super().meters().copy()
         meters["drained"] = meters["next_frame"] = 1 << 62
-        meters["pitch"] = told_pitch(self._player[0])
+        meters["pitch"] = sounding_pitch(self._player[0])
         return meters
 
     @property

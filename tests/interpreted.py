@@ -40,7 +40,7 @@ class Leader:
         prepare_midi(self._midi, self.rate, DEFAULTS, people=people, mpe=is_mpe)
         self.tables[0] = tables[0]
 
-    def furnish(self, tables: Any) -> None:
+    def set_tables(self, tables: Any) -> None:
         self.tables[self.midi["tables"]] = tables[0]
         self.midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
 

@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import new_record
 from yehu_server.core.stage.record import EVERY
-from yehu_server.core.stage.room import ROOM, furnish, prepare_room, reverberate
+from yehu_server.core.stage.room import ROOM, prepare_room, reverberate, set_room
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Asked:
 def _run(room: Any, first: int, asked: Any, level: Any, sound: Any, heard: Any) -> None:
     for n in range(sound.shape[0]):
         if (first + n) % EVERY == 0:
-            furnish(room[0], asked[n, 0], asked[n, 1], asked[n, 2])
+            set_room(room[0], asked[n, 0], asked[n, 1], asked[n, 2])
         reverberate(room[0], first + n, level[n], sound[n, 0], sound[n, 1])
         heard[n, 0], heard[n, 1] = room[0].left, room[0].right
 

@@ -6,30 +6,30 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.controls.slots import PLACED
+from yehu_server.core.controls.slots import STAGE_INPUTS
 from yehu_server.core.engine.instrument import new_memory
 from yehu_server.core.engine.mixing import mix_block
 from yehu_server.core.engine.output import prepare_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES
-from yehu_server.core.engine.sounding import TOLD
+from yehu_server.core.engine.sounding import STAGE_COLUMNS
 from yehu_server.core.stage.record import STAGE, prepare_stage
 from yehu_server.core.stage.seat import prepare_seat
 from yehu_server.params.table import ENGINE
 
 NAMES = ("size", "decay", "damping", "level", "distance", "pan", "width")
-ADDRESSES = tuple(ENGINE[slot].address for slot in PLACED)
-DEFAULTS = {name: ENGINE[slot].default for name, slot in zip(NAMES, PLACED, strict=True)}
+ADDRESSES = tuple(ENGINE[slot].address for slot in STAGE_INPUTS)
+DEFAULTS = {name: ENGINE[slot].default for name, slot in zip(NAMES, STAGE_INPUTS, strict=True)}
 RANGES = {
-    name: (ENGINE[slot].lo, ENGINE[slot].hi) for name, slot in zip(NAMES, PLACED, strict=True)
+    name: (ENGINE[slot].lo, ENGINE[slot].hi) for name, slot in zip(NAMES, STAGE_INPUTS, strict=True)
 }
-FALLEN = TOLD - 1
+FALLEN = STAGE_COLUMNS - 1
 SMALL = 2.0**-10  # far below the limiter
-LIMITER = TOLD - 2
+LIMITER = STAGE_COLUMNS - 2
 
 
 def told(frames: int, **asked: Any) -> Any:
-    """What a stage is told with each frame [shape=(frames, TOLD)]: values, or arrays of them."""
-    rows = np.zeros((frames, TOLD))
+    """What a stage needs with each frame [shape=(frames, STAGE_COLUMNS)]: values or arrays."""
+    rows = np.zeros((frames, STAGE_COLUMNS))
     for column, name in enumerate(NAMES):
         rows[:, column] = asked.get(name, DEFAULTS[name])
     rows[:, LIMITER] = asked.get("limiter", 1.0)
@@ -57,7 +57,7 @@ class Stage:
         Parameters
         ----------
         dry : ndarray [shape=(frames,) or (parts, frames)]
-        rows : ndarray [shape=(frames, TOLD) or (parts, frames, TOLD)]
+        rows : ndarray [shape=(frames, STAGE_COLUMNS) or (parts, frames, STAGE_COLUMNS)]
             As `told`.
 
         Returns
@@ -68,7 +68,7 @@ class Stage:
         """
         dry = np.broadcast_to(dry, (self.parts, np.shape(dry)[-1]))
         frames = dry.shape[1]
-        rows = np.broadcast_to(rows, (self.parts, frames, TOLD))
+        rows = np.broadcast_to(rows, (self.parts, frames, STAGE_COLUMNS))
         out = np.zeros((frames, 2), np.float32)
         stems = np.zeros((frames, self.parts + 1, 2))
         for start in range(0, frames, block or frames):

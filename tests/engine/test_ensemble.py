@@ -40,7 +40,7 @@ def apart(ensemble: Ensemble, frames: int) -> tuple[np.ndarray, np.ndarray, np.n
     """What `process` would give, by computing each instrument apart: mix, stems, dry samples."""
     parts = len(ensemble.instruments)
     dry = np.zeros((parts, frames))
-    told = np.zeros((parts, frames, sounding.TOLD))
+    told = np.zeros((parts, frames, sounding.STAGE_COLUMNS))
     first = ensemble.frame
     assert intake.take_in.call(ensemble.address, first + frames) == first + frames
     for instrument, samples, said in zip(ensemble.instruments, dry, told, strict=True):

@@ -12,7 +12,7 @@ from yehu_server.core.controls.record import prepare_controls
 from yehu_server.core.controls.slots import HIGHEST, LOWEST
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration
-from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import prepare_player
 from yehu_server.core.player.wishes import KINDS, fulfil
 from yehu_server.params.table import SLOT, TABLE
@@ -30,7 +30,7 @@ DEFAULTS = {param.address: param.default for param in TABLE}
 RATE = Leader.rate
 PLAYER = prepare_player(QUANTITIES, RATE, DEFAULTS, calibration=CALIBRATION)
 CONTROLS = prepare_controls(QUANTITIES, RATE, DEFAULTS)
-_ = fulfil.call, told_pitch(PLAYER[0])  # compile now, not within an input's bounds
+_ = fulfil.call, sounding_pitch(PLAYER[0])  # compile now, not within an input's bounds
 # Of the player's record, what may not be a number: where nothing was sent or heard yet.
 MAY_BE_NAN = {"sent", "first_error"}
 
@@ -101,7 +101,7 @@ class Instrument(Leader):
 
     def meters(self) -> dict[str, float]:
         self.play()
-        pitch = told_pitch(self._player[0])
+        pitch = sounding_pitch(self._player[0])
         return {"pitch": pitch, "drained": self.posted, "next_frame": self.frame + 1}
 
     def target(self, address: str) -> float:

@@ -19,12 +19,12 @@ from yehu_server.core.player.bowing import (
     FLAUTANDO,
     LEAST_PRESS,
     LIGHT,
-    MANNER,
     ORDINARY,
     PLACES,
+    RECIPE,
     TOP_SPEED,
-    manner,
     ordinary_table,
+    recipe_value,
     share,
 )
 from yehu_server.playing.practices import shipped_practice
@@ -42,7 +42,7 @@ def usual(string: int, note: int) -> list[float]:
 
 def bowed(string: int, pitch: float, place: float = PLACE) -> list[float]:
     """How a pitch is bowed."""
-    return [manner(SHIPPED, string, place, pitch, column) for column in range(MANNER)]
+    return [recipe_value(SHIPPED, string, place, pitch, column) for column in range(RECIPE)]
 
 
 def pressure(string: int, wish: float, pitch: float) -> float:
@@ -111,7 +111,7 @@ def test_between_two_places_a_note_is_bowed_in_between_and_beyond_them_as_at_the
     table[0, :, :, FARTHER] = np.arange(len(PLACES))[:, None]
 
     def farther(place: float) -> float:
-        return float(manner(table, 0, place, 70.5, FARTHER))
+        return float(recipe_value(table, 0, place, 70.5, FARTHER))
 
     for row, (near, far) in enumerate(itertools.pairwise(PLACES)):
         assert farther(near) == pytest.approx(row, abs=1e-9)

@@ -65,7 +65,7 @@ class Told:
         prepare_midi(self._midi, RATE, defaults, people=people, mpe=is_mpe)
         self.tables[0] = tables[0]
 
-    def furnish(self, tables) -> None:
+    def set_tables(self, tables) -> None:
         self.tables[0] = tables[0]
         self.midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
 

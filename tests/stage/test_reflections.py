@@ -7,7 +7,7 @@ import pytest
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import new_record
-from yehu_server.core.stage.seat import SEAT, fall_silent, prepare_seat, reflect, stand_in
+from yehu_server.core.stage.seat import SEAT, fall_silent, prepare_seat, reflect, set_reflections
 
 SOUND = 343.0
 PLACES = [
@@ -31,7 +31,7 @@ def _run(seat: Any, first: int, sound: Any, heard: Any) -> None:
 def _place(
     seat: Any, size: float, decay: float, damping: float, distance: float, pan: float
 ) -> None:
-    stand_in(seat[0], size, decay, damping, distance, pan)
+    set_reflections(seat[0], size, decay, damping, distance, pan)
 
 
 @compiled_exactly

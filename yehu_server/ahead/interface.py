@@ -35,7 +35,7 @@ from yehu_server.core.midi.packing import BYTE, LENGTH_AT
 from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.physics.layout import STATE
-from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.rows import ROWS, SLOT_OF
 from yehu_server.core.stage.record import STAGE
@@ -92,7 +92,7 @@ def value(rig: Any, parameter: int) -> float:
 @native("float64(voidptr)")
 def pitch(rig: Any) -> float:
     """The pitch that sounds (fractional MIDI note), or NaN in silence."""
-    return told_pitch(carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0])
+    return sounding_pitch(carray(at(rig, memory.PLAYER_AT), (1,), PLAYER)[0])
 
 
 @native("int64(voidptr)")

@@ -65,7 +65,7 @@ class _Setup:
     rate: float
     quantities: Quantities
     a4: float
-    bowing: Array  # ndarray [shape=(STRINGS, NOTES, MANNER)], at DEFAULT_PLACE
+    bowing: Array  # ndarray [shape=(STRINGS, NOTES, RECIPE)], at DEFAULT_PLACE
 
     def manner(self, string: int, pitch: float, column: int) -> float:
         """One value of how a pitch is bowed on a string."""

@@ -62,7 +62,7 @@ class MidiPlayer:
         self._programs = programs
         self.mapping = mapping
         self._slot = 0
-        wishes.instrument.furnish(self._tables())
+        wishes.instrument.set_tables(self._tables())
         wishes.post(events.START, None)
 
     def _tables(self) -> Any:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.player.bowing import FIRST, LAST, MANNER, PLACES, ordinary_table
+from yehu_server.core.player.bowing import FIRST, LAST, PLACES, RECIPE, ordinary_table
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
 from yehu_server.util.documents import parse_json
@@ -90,8 +90,8 @@ def table_of(data: Any) -> Array:
 
 def _manner(note: str, values: Any) -> Array:
     row = np.array(values, np.float64)
-    if row.shape != (MANNER,) or not FIRST <= int(note) <= LAST:
-        raise ParameterError(f"note {note}: expected {MANNER} numbers")
+    if row.shape != (RECIPE,) or not FIRST <= int(note) <= LAST:
+        raise ParameterError(f"note {note}: expected {RECIPE} numbers")
     if not np.all((row >= LOWEST) & (row <= HIGHEST)):  # also refuses NaN
         raise ParameterError(f"note {note}: a value is out of range")
     return row

@@ -16,7 +16,7 @@ import numpy as np
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.intake import take_in
 from yehu_server.core.engine.mixing import mix_block
-from yehu_server.core.engine.sounding import TOLD, sound_block
+from yehu_server.core.engine.sounding import STAGE_COLUMNS, sound_block
 from yehu_server.core.stage.geometry import EARS
 
 Array = Any
@@ -60,15 +60,15 @@ class Cores:
         frames, instruments = len(out), self._ensemble.instruments
         first = self._ensemble.frame
         dry = np.zeros((len(instruments), frames))
-        told = np.zeros((len(instruments), frames, TOLD))
+        inputs = np.zeros((len(instruments), frames, STAGE_COLUMNS))
 
         def sound(part: int) -> None:
-            places = (dry[part].ctypes.data, told[part].ctypes.data)
+            places = (dry[part].ctypes.data, inputs[part].ctypes.data)
             sound_block.call(instruments[part].address, frames, *places)
 
         for _ in self._share(sound, range(len(instruments))):
             pass
-        into = (dry.ctypes.data, told.ctypes.data, out.ctypes.data, stems.ctypes.data)
+        into = (dry.ctypes.data, inputs.ctypes.data, out.ctypes.data, stems.ctypes.data)
         mix_block.call(self._ensemble.address, first, frames, *into, int(self._has_stems))
 
 

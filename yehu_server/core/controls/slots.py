@@ -20,8 +20,8 @@ BODY, LIMITER = SLOT["/body/gain"], SLOT["/output/limiter"]
 TUNING = np.array([SLOT[f"/string/{name}/tuning"] for name in STRING_NAMES])
 LOSS = np.array([SLOT[f"/string/{name}/loss"] for name in STRING_NAMES])
 NOISE = SLOT["/bow/noise"]
-# What the stage is told of a player with each sample, and the columns that it is in.
-PLACED = np.array([
+# What the stage needs of a player with each sample, and the columns that it is in.
+STAGE_INPUTS = np.array([
     SLOT[f"/{name}"]
     for name in (
         "room/size", "room/decay", "room/damping", "room/level", "room/distance", "room/pan",

@@ -141,7 +141,7 @@ class Instrument:
         prepare_midi(self._rig["midi"], self.rate, defaults, people=people, mpe=is_mpe)
         self._rig["tables"][0, 0] = tables[0]
 
-    def furnish(self, tables: Array) -> None:
+    def set_tables(self, tables: Array) -> None:
         """Use other tables from the beginning on, in place of those of `lead`.
 
         Nothing may compute meanwhile.

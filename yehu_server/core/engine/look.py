@@ -36,7 +36,7 @@ from yehu_server.core.engine.rig import (
 from yehu_server.core.engine.telemetry import METERS, SHAPE_POINTS, displacement
 from yehu_server.core.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
 from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
-from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.rows import BOW_LENGTH
 from yehu_server.core.stage.record import STAGE
@@ -96,7 +96,7 @@ def look(rig: Any, into: Any) -> None:
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
     seen = carray(into, (1,), LOOK)[0]
     seen.frame, seen.rate = c.frame, m.rate
-    seen.pitch = told_pitch(p)
+    seen.pitch = sounding_pitch(p)
     seen.frequency = p.a4 * math.exp2((seen.pitch - 69.0) / 12.0)
     seen.certainty, seen.error, seen.slips = p.ear.certainty, p.ear.error, p.ear.slips
     parts = carray(at(rig, PARTS_AT), (1,), np.int64)[0]

@@ -16,18 +16,18 @@ from yehu_server.core.controls.slots import (
     DISTANCE_NOW,
     LEVEL_NOW,
     PAN_NOW,
-    PLACED,
     SIZE_NOW,
+    STAGE_INPUTS,
     WIDTH_NOW,
 )
 from yehu_server.core.engine.atomics import at
 from yehu_server.core.engine.output import OUTPUT, STILL
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
 from yehu_server.core.engine.rig import METERS_AT, OUTPUT_AT, PARTS_AT, RIG_BYTES, SEAT_AT
-from yehu_server.core.engine.sounding import TOLD
+from yehu_server.core.engine.sounding import STAGE_COLUMNS
 from yehu_server.core.engine.telemetry import METERS, WINDOW_S
 from yehu_server.core.stage import room, seat
-from yehu_server.core.stage.directivity import aside
+from yehu_server.core.stage.directivity import side_signal
 from yehu_server.core.stage.geometry import EARS
 from yehu_server.core.stage.record import (
     BUSES,
@@ -40,8 +40,16 @@ from yehu_server.core.stage.record import (
     TAPE,
     TAPE_AT,
 )
-from yehu_server.core.stage.room import furnish, reverberate
-from yehu_server.core.stage.seat import LEFT, RIGHT, SEAT, fall_silent, reflect, sit, stand_in
+from yehu_server.core.stage.room import reverberate, set_room
+from yehu_server.core.stage.seat import (
+    LEFT,
+    RIGHT,
+    SEAT,
+    fall_silent,
+    reflect,
+    set_direct,
+    set_reflections,
+)
 
 
 @compiled
@@ -116,24 +124,24 @@ def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     s = carray(at(rig, SEAT_AT), (1,), SEAT)[0]
     for n in range(frames):
-        told, asked = o.placed[n], shared.placed[n]
+        own, room_inputs = o.stage_inputs[n], shared.stage_inputs[n]
         is_time = (first + n) % EVERY == 0
         if is_time or math.isnan(s.direct[LEFT]):  # or has begun anew, wherever the block begins
-            sit(s, told[DISTANCE_NOW], told[PAN_NOW], EVERY)
+            set_direct(s, own[DISTANCE_NOW], own[PAN_NOW], EVERY)
         if is_time and stage.has_room != 0:
-            stand_in(
+            set_reflections(
                 s,
-                asked[SIZE_NOW],
-                asked[DECAY_NOW],
-                asked[DAMPING_NOW],
-                told[DISTANCE_NOW],
-                told[PAN_NOW],
+                room_inputs[SIZE_NOW],
+                room_inputs[DECAY_NOW],
+                room_inputs[DAMPING_NOW],
+                own[DISTANCE_NOW],
+                own[PAN_NOW],
             )
         x = o.dry[n]
         side = 0.0
         if stage.has_room != 0:
-            side = told[WIDTH_NOW] * aside(s.sides, x)
-            reflect(s, first + n, x if asked[LEVEL_NOW] > 0.0 else 0.0)
+            side = own[WIDTH_NOW] * side_signal(s.sides, x)
+            reflect(s, first + n, x if room_inputs[LEVEL_NOW] > 0.0 else 0.0)
             stage.bus[n, EARLY + LEFT] += s.early[LEFT]
             stage.bus[n, EARLY + RIGHT] += s.early[RIGHT]
         stage.bus[n, SEND + LEFT] += s.send[LEFT] * x
@@ -151,14 +159,14 @@ def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
 def add_room(rigs: Any, stage: Any, frame: int, n: int) -> None:
     """Compute what the room gives to row `n` of the mix (``own``)."""
     shared = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0]
-    asked, bus = shared.placed[n], stage.bus[n]
+    room_inputs, bus = shared.stage_inputs[n], stage.bus[n]
     r = stage.room
     stage.own[n, LEFT], stage.own[n, RIGHT] = 0.0, 0.0
     if stage.has_room == 0:
         return
     if frame % EVERY == 0:
-        furnish(r, asked[SIZE_NOW], asked[DECAY_NOW], asked[DAMPING_NOW])
-    level = asked[LEVEL_NOW]
+        set_room(r, room_inputs[SIZE_NOW], room_inputs[DECAY_NOW], room_inputs[DAMPING_NOW])
+    level = room_inputs[LEVEL_NOW]
     reverberate(r, frame, level, bus[SEND + LEFT], bus[SEND + RIGHT])
     early = level * r.open
     stage.own[n, LEFT] = r.left + early * bus[EARLY + LEFT]
@@ -235,14 +243,14 @@ mix_chunk = mix.symbol
 
 @native("void(voidptr, int64, int64, voidptr, voidptr, voidptr, voidptr, int64)", calls=[mix])
 def mix_block(
-    rigs: Any, first: int, frames: int, dry: Any, told: Any, out: Any, stems: Any, has_stems: int
+    rigs: Any, first: int, frames: int, dry: Any, inputs: Any, out: Any, stems: Any, has_stems: int
 ) -> None:
     """Mix what instruments sounded that were computed apart, by ``sounding.sound_block``.
 
     Parameters
     ----------
     dry : pointer to float64 [shape=(parts, frames)]
-    told : pointer to float64 [shape=(parts, frames, TOLD)]
+    inputs : pointer to float64 [shape=(parts, frames, STAGE_COLUMNS)]
     first, out, stems, has_stems
         As of `mix`.
     """
@@ -250,7 +258,7 @@ def mix_block(
     parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
     channels = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0].channels
     samples = carray(dry, (parts, frames), np.float64)
-    all_told = carray(told, (parts, frames, TOLD), np.float64)
+    all_inputs = carray(inputs, (parts, frames, STAGE_COLUMNS), np.float64)
     done = 0
     while done < frames:
         count = min(frames - done, CHUNK)
@@ -259,10 +267,10 @@ def mix_block(
             o.fallen = STILL
             for n in range(count):
                 o.dry[n] = samples[part, done + n]
-                for k in range(len(PLACED)):
-                    o.placed[n, k] = all_told[part, done + n, k]
-                o.soft[n] = all_told[part, done + n, TOLD - 2]
-                if all_told[part, done + n, TOLD - 1] > 0.0:
+                for k in range(len(STAGE_INPUTS)):
+                    o.stage_inputs[n, k] = all_inputs[part, done + n, k]
+                o.soft[n] = all_inputs[part, done + n, STAGE_COLUMNS - 2]
+                if all_inputs[part, done + n, STAGE_COLUMNS - 1] > 0.0:
                     o.fallen = n
         here = at(out, done * channels * 4)
         stems_here = at(stems, done * (parts + 1) * EARS * 8)

@@ -55,7 +55,7 @@ from yehu_server.core.engine.rig import (
 from yehu_server.core.engine.sounding import sound
 from yehu_server.core.engine.telemetry import METERS, account, tell_time
 from yehu_server.core.physics.layout import STATE
-from yehu_server.core.player.notes import told_pitch
+from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.wishes import WISH
 from yehu_server.core.stage.record import STAGE
@@ -76,7 +76,7 @@ def publish(rig: Any) -> None:
     store_release(rig, VERSION_AT, version + 2)
 
 
-tell = publish.symbol
+publish_meters = publish.symbol
 
 
 @native(
@@ -104,7 +104,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     t.running = 1
     block: Any = np.int64(frames)
     tell_time(t, c.frame, started_ns, block)
-    tell(rigs)  # at once, so that messages that arrive now are stamped by this block
+    publish_meters(rigs)  # at once, so that messages that arrive now are stamped by this block
     done = 0
     while done < block:
         first = c.frame
@@ -121,7 +121,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     t.running, t.ended_ns = 0, monotonic_ns()
     store_release(rigs, TAPED_AT, c.frame)
     for part in range(parts):
-        tell(at(rigs, part * RIG_BYTES))
+        publish_meters(at(rigs, part * RIG_BYTES))
     return 0
 
 
@@ -139,7 +139,7 @@ def tell_of(rig: Any, frame: int, block: int) -> None:
         t.late_events += mail.late[writer]
     t.applied, t.drained = mail.applied, mail.drained[SERVER, 0]
     t.next_frame = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0].frame
-    t.pitch = told_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
+    t.pitch = sounding_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
     t.waiting, t.unreported = mail.coming + mail.waiting, mail.unreported
 
 

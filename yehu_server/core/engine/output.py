@@ -9,7 +9,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled
 from yehu_server.core.controls.ramps import pole_of_cutoff, pole_of_time
 from yehu_server.core.controls.record import CHUNK, FADE_S
-from yehu_server.core.controls.slots import PLACED
+from yehu_server.core.controls.slots import STAGE_INPUTS
 from yehu_server.core.physics.layout import (
     BRIDGE_FORCE,
     ITERATIONS,
@@ -42,7 +42,7 @@ OUTPUT = np.dtype(
         ("body", np.float64, CHUNK),
         ("blend", np.float64, CHUNK),
         ("soft", np.float64, CHUNK),
-        ("placed", np.float64, (CHUNK, len(PLACED))),  # what the stage is told
+        ("stage_inputs", np.float64, (CHUNK, len(STAGE_INPUTS))),
         ("dry", np.float64, CHUNK),  # the samples, for the stage
         ("fallen", np.int64),  # row of `dry` at which the instrument came to rest, or STILL
     ],

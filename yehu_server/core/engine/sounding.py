@@ -18,7 +18,7 @@ from yehu_server.core.controls.ramps import (
     move,
 )
 from yehu_server.core.controls.record import CHUNK, CONTROLS
-from yehu_server.core.controls.slots import BLEND, BODY, LIMITER, LOSS, PLACED, TUNING
+from yehu_server.core.controls.slots import BLEND, BODY, LIMITER, LOSS, STAGE_INPUTS, TUNING
 from yehu_server.core.engine.atomics import at, load_acquire, store_release
 from yehu_server.core.engine.mailbox import (
     APPLIED_AT_ONCE,
@@ -137,8 +137,8 @@ def sound(rig: Any, wanted: int) -> None:
             o.body[done] = amplitude(c, TO_BODY, c.value[BODY])
             o.blend[done] = c.value[BLEND]
             o.soft[done] = amplitude(c, TO_LIMITER, c.value[LIMITER])
-            for k in range(len(PLACED)):
-                o.placed[done, k] = c.value[PLACED[k]]
+            for k in range(len(STAGE_INPUTS)):
+                o.stage_inputs[done, k] = c.value[STAGE_INPUTS[k]]
             retuned = has_new_strings(c)
             c.frame += 1
             done += 1
@@ -174,32 +174,33 @@ sound_chunk = sound.symbol
 
 
 @native("void(voidptr, int64, voidptr, voidptr)", calls=[sound])
-def sound_block(rig: Any, frames: int, dry: Any, told: Any) -> None:
+def sound_block(rig: Any, frames: int, dry: Any, inputs: Any) -> None:
     """Compute the next frames of an instrument apart from the others, to be mixed later.
 
     Parameters
     ----------
     dry : pointer to float64 [shape=(frames,)]
         Written: the samples.
-    told : pointer to float64 [shape=(frames, TOLD)]
-        Written: what the stage is told with each of them.
+    inputs : pointer to float64 [shape=(frames, STAGE_COLUMNS)]
+        Written: what the stage is inputs with each of them.
     """
     mode = flush_denormals()
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     samples = carray(dry, (frames,), np.float64)
-    all_told = carray(told, (frames, TOLD), np.float64)
+    all_inputs = carray(inputs, (frames, STAGE_COLUMNS), np.float64)
     done = 0
     while done < frames:
         count = min(frames - done, CHUNK)
         sound_chunk(rig, count)
         for n in range(count):
             samples[done + n] = o.dry[n]
-            for k in range(len(PLACED)):
-                all_told[done + n, k] = o.placed[n, k]
-            all_told[done + n, TOLD - 2] = o.soft[n]
-            all_told[done + n, TOLD - 1] = 1.0 if n == o.fallen else 0.0
+            for k in range(len(STAGE_INPUTS)):
+                all_inputs[done + n, k] = o.stage_inputs[n, k]
+            all_inputs[done + n, STAGE_COLUMNS - 2] = o.soft[n]
+            all_inputs[done + n, STAGE_COLUMNS - 1] = 1.0 if n == o.fallen else 0.0
         done += count
     restore_denormals(mode)
 
 
-TOLD = len(PLACED) + 2  # of each sample: where it is placed, the limiter, whether it is the last
+# Of each sample: its STAGE_INPUTS, the limiter, whether it is the last.
+STAGE_COLUMNS = len(STAGE_INPUTS) + 2

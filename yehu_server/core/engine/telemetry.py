@@ -48,7 +48,7 @@ METERS = np.dtype(
         ("block", np.int64),  # frames of the last callback
         ("ended_ns", np.int64),  # time at which the last callback returned
         # Requests of the device: a callback, or several in a row.
-        ("asked_from", np.int64),  # first frame of the last request
+        ("requested_from", np.int64),  # first frame of the last request
         ("astray", np.int64),  # frames of successive requests with a large error
         ("ahead_window", np.int64),  # its number
         ("ahead_from", np.int64),  # first frame of this window
@@ -144,25 +144,25 @@ def tell_time(t: Any, frame: int, started_ns: int, frames: int) -> None:
     t.callbacks += 1
     # As if requests took no time, so that the measure does not depend on computing time.
     late = t.loop.error_ns / t.loop.ns_per_frame
-    t.ahead_now = max(t.ahead_now, frame + frames - t.asked_from - late)
+    t.ahead_now = max(t.ahead_now, frame + frames - t.requested_from - late)
 
 
 @compiled
 def begin_request(t: Any, frame: int, due: int, error: int) -> bool:
     """Update the loop at a new request; return whether its error is too large to go on."""
-    asked = min(frame - t.asked_from, int(LONGEST_PERIOD_S * t.rate))
-    t.asked_from = frame
-    t.longest_now = max(t.longest_now, asked)
+    requested = min(frame - t.requested_from, int(LONGEST_PERIOD_S * t.rate))
+    t.requested_from = frame
+    t.longest_now = max(t.longest_now, requested)
     if frame - t.ahead_from >= AHEAD_WINDOW_S * t.rate:
         t.ahead, t.longest = t.ahead_now, t.longest_now
         t.ahead_now, t.longest_now = 0.0, 0
         t.ahead_from = frame
         t.ahead_window += 1
-    late = LATE_BLOCKS * asked * 1e9 / t.rate
+    late = LATE_BLOCKS * requested * 1e9 / t.rate
     if t.callbacks > 0 and error - t.loop.error_ns > late:
         t.late_callbacks += 1
-    follow(t.loop, due, error, asked, t.rate)
-    t.astray = t.astray + asked if abs(error) > late else 0
+    follow(t.loop, due, error, requested, t.rate)
+    t.astray = t.astray + requested if abs(error) > late else 0
     # A device may be late for a moment, but never early.
     return bool(abs(error) > ASTRAY_NS or -error > late or t.astray > ASTRAY_S * t.rate)
 

@@ -32,19 +32,16 @@ from yehu_server.core.midi.values import (
     STEPS,
     find_values,
     find_values_apart,
-    keep_target,
     keep_targets_of,
     receives,
     set_target,
 )
 from yehu_server.core.midi.wishing import write, write_apart
-from yehu_server.core.player.rows import IS_OWNED, ROW, ROWS
-from yehu_server.params.table import TABLE
+from yehu_server.core.player.rows import IS_OWNED, ROW
 
 # "Reset all controllers" leaves volume, as the recommended practice RP-015 asks.
 VOLUME, PAN = ROW["/playing/volume"], ROW["/room/pan"]
 FINE_BITS, FINEST = 7, 16383.0
-DEFAULTS = np.array([param.default for param in TABLE])
 
 
 # -- the sounding notes ---------------------------------------------------------------------------
@@ -351,9 +348,9 @@ def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
     if m.is_active[channel] == 0:
         forget_moves(m, channel)  # velocities
         return
-    has_bend, has_pressure, is_kept = False, False, False
+    has_bend, has_pressure, is_saved = False, False, False
     for bind in range(MOST_BINDS):
-        m.kept_moved[bind] = m.kept_taken[bind] = 0
+        m.saved_moved[bind] = m.saved_taken[bind] = 0
     for bind in range(int(t.binds)):
         first, source = int(t.first[bind]), int(t.source[bind])
         if m.moved[channel, first] == 0 or not moves_all(m, t, channel, t.for_all[bind] != 0.0):
@@ -361,16 +358,16 @@ def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
         has_bend = has_bend or source == BEND
         has_pressure = has_pressure or source == PRESSURE
         if source not in (BEND, PRESSURE):  # faders and pedals stay where they are
-            is_kept = True
-            m.kept_moved[first], m.kept_position[first] = (
+            is_saved = True
+            m.saved_moved[first], m.saved_position[first] = (
                 m.moved[channel, first],
                 m.position[channel, first],
             )
-            m.kept_taken[bind] = m.taken[channel, bind]
-            m.kept_taken_position[bind] = m.taken_position[channel, bind]
+            m.saved_taken[bind] = m.taken[channel, bind]
+            m.saved_taken_position[bind] = m.taken_position[channel, bind]
     forget_moves(m, channel)
-    if is_kept:
-        put_kept(m, channel)
+    if is_saved:
+        restore_moves(m, channel)
     if has_bend:
         follow(m, t, frame, BEND, channel, False)
     if has_pressure:
@@ -378,16 +375,16 @@ def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
 
 
 @compiled_exactly
-def put_kept(m: Any, channel: int) -> None:
-    """Give a channel the moves that were kept aside."""
+def restore_moves(m: Any, channel: int) -> None:
+    """Give a channel the moves that were set aside."""
     add_active(m, channel)
     for bind in range(MOST_BINDS):
         m.moved[channel, bind], m.position[channel, bind] = (
-            m.kept_moved[bind],
-            m.kept_position[bind],
+            m.saved_moved[bind],
+            m.saved_position[bind],
         )
-        m.taken[channel, bind] = m.kept_taken[bind]
-        m.taken_position[channel, bind] = m.kept_taken_position[bind]
+        m.taken[channel, bind] = m.saved_taken[bind]
+        m.taken_position[channel, bind] = m.saved_taken_position[bind]
 
 
 @compiled_exactly
@@ -402,117 +399,3 @@ def forget_all_moves(m: Any, frame: int) -> None:
     for i in range(m.targets):
         row = m.target[i]
         write(m, frame, row, m.set_to[row], False, 0.0, NONE)
-
-
-# -- the tables -----------------------------------------------------------------------------------
-
-
-@compiled_exactly
-def start(m: Any, t: Any, frame: int) -> None:
-    """Set parameters to the start values of the tables."""
-    for i in range(int(t.starts)):
-        set_directly(m, frame, int(t.start_row[i]), t.start_value[i], 0.0)
-
-
-@compiled_exactly
-def start_value(t: Any, row: int) -> float:
-    """The value that a parameter starts with."""
-    for i in range(int(t.starts)):
-        if int(t.start_row[i]) == row:
-            return float(t.start_value[i])
-    return float(DEFAULTS[row])
-
-
-@native("void(voidptr, voidptr, voidptr, int64)", calls=[find_values_apart, write_apart])
-def change_binds_apart(midi_at: Any, before_at: Any, tables_at: Any, frame: int) -> None:
-    """See `change_binds`."""
-    m = carray(midi_at, (1,), MIDI)[0]
-    before = carray(before_at, (1,), TABLES)[0]
-    t = carray(tables_at, (1,), TABLES)[0]
-    for i in range(m.actives):
-        change_moves(m, before, t, m.active[i])
-    change_faders(m, before, t)
-    for bind in range(int(t.binds)):
-        keep_target(m, int(t.target[bind]))
-    for row in range(ROWS):
-        m.found[row] = 0
-    for i in range(int(before.starts)):
-        change_start(m, before, t, frame, int(before.start_row[i]))
-    for i in range(int(t.starts)):
-        change_start(m, before, t, frame, int(t.start_row[i]))
-    if m.has_last != 0:
-        find_values(m, t, m.last_channel, m.last_key)
-        for i in range(m.targets):
-            row = m.target[i]
-            write(m, frame, row, m.found_value[row], False, 0.0, NONE)
-
-
-_change_binds = change_binds_apart.symbol
-
-
-@compiled_exactly
-def change_binds(m: Any, before: Any, t: Any, frame: int) -> None:
-    """Take the binds of other tables; moves stay where their source is still bound.
-
-    A parameter whose start value differs takes the new one, unless it was moved since.
-    """
-    _change_binds(address_of(m), address_of(before), address_of(t), frame)
-
-
-@compiled_exactly
-def change_start(m: Any, before: Any, t: Any, frame: int, row: int) -> None:
-    """Give a parameter its new start value, once, if it still has the old one."""
-    if m.found[row] != 0:
-        return
-    m.found[row] = 1
-    old, new = start_value(before, row), start_value(t, row)
-    now = m.set_to[row] if m.is_target[row] != 0 else m.value[row]
-    if old != new and now == old:
-        keep_target(m, row)
-        m.set[row], m.set_to[row] = 0, new  # moves made before still count
-        if m.has_last == 0:
-            write(m, frame, row, new, False, 0.0, NONE)
-
-
-@compiled_exactly
-def change_moves(m: Any, before: Any, t: Any, channel: int) -> None:
-    """Give the moves of a channel the numbers of other binds."""
-    for bind in range(MOST_BINDS):
-        m.kept_moved[bind] = m.kept_taken[bind] = 0
-    is_pressed = False
-    for bind in range(int(t.binds)):
-        source = int(t.source[bind])
-        is_pressed = is_pressed or source == POLY_PRESSURE
-        for old in range(int(before.binds)):
-            if int(before.source[old]) != source:
-                continue
-            first = int(before.first[old])
-            if int(t.first[bind]) == bind:
-                m.kept_moved[bind] = m.moved[channel, first]
-                m.kept_position[bind] = m.position[channel, first]
-            if t.soft[bind] == 0.0 or int(before.target[old]) != int(t.target[bind]):
-                continue
-            if before.soft[old] != 0.0:
-                number, position = m.taken[channel, old], m.taken_position[channel, old]
-            else:
-                number, position = m.moved[channel, first], m.position[channel, first]
-            if number != 0:
-                m.kept_taken[bind], m.kept_taken_position[bind] = number, position
-    put_kept(m, channel)
-    if not is_pressed:
-        for key in range(KEYS):
-            m.pressed[channel, key] = 0
-
-
-@compiled_exactly
-def change_faders(m: Any, before: Any, t: Any) -> None:
-    """Let named controls stay where their bind is the same."""
-    for bind in range(MOST_BINDS):
-        m.kept_moved[bind], m.kept_position[bind] = m.has_fader[bind], m.fader[bind]
-        m.kept_taken_position[bind] = m.fader_wrote[bind]
-        m.has_fader[bind], m.fader_wrote[bind] = 0, math.nan
-    for bind in range(int(t.binds)):
-        for old in range(int(before.binds)):
-            if before.same[old] == t.same[bind] and m.kept_moved[old] != 0:
-                m.has_fader[bind], m.fader[bind] = 1, m.kept_position[old]
-                m.fader_wrote[bind] = m.kept_taken_position[old]

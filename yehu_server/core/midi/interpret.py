@@ -10,14 +10,11 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.midi.controllers import (
-    change_binds,
-    change_binds_apart,
     follow_apart,
     move_apart,
     move_control,
     reset_controllers_apart,
     set_directly,
-    start,
 )
 from yehu_server.core.midi.events import (
     CONTROL,
@@ -54,6 +51,7 @@ from yehu_server.core.midi.notes import (
     note_on_apart,
 )
 from yehu_server.core.midi.record import CHANNELS, MIDI, NONE, emit
+from yehu_server.core.midi.remapping import change_binds, change_binds_apart, start
 from yehu_server.core.midi.section import slide_players
 from yehu_server.core.midi.tables import CONTROL as CONTROL_SOURCE
 from yehu_server.core.midi.tables import SLOTS, TABLES

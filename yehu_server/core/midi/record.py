@@ -148,10 +148,10 @@ MIDI = np.dtype(
         ("out_other", np.float64, MOST_WISHES),
         ("out_person", np.int64, MOST_WISHES),
         # Where moves go while tables change.
-        ("kept_moved", np.int64, MOST_BINDS),
-        ("kept_position", np.float64, MOST_BINDS),
-        ("kept_taken", np.int64, MOST_BINDS),
-        ("kept_taken_position", np.float64, MOST_BINDS),
+        ("saved_moved", np.int64, MOST_BINDS),
+        ("saved_position", np.float64, MOST_BINDS),
+        ("saved_taken", np.int64, MOST_BINDS),
+        ("saved_taken_position", np.float64, MOST_BINDS),
     ],
     align=True,
 )

@@ -147,7 +147,7 @@ _begin_key = begin_key_apart.symbol
 def begin_key(
     m: Any, frame: int, channel: int, key: float, pitch: float, velocity: float, struck: int
 ) -> None:
-    """Begin a note at a pitch within range; what `express` was told before is for it."""
+    """Begin a note at a pitch within range; what was given to `express` before is for it."""
     _begin_key(address_of(m), frame, channel, key, pitch, velocity, struck)
 
 
@@ -174,7 +174,7 @@ _end_listed = end_listed_apart.symbol
 def end_listed(m: Any, frame: int) -> None:
     """End the keys that are listed, all at once; of those still held the last sounds again.
 
-    What `express` was told before is for that one.
+    What was given to `express` before is for that one.
     """
     _end_listed(address_of(m), frame)
 
@@ -192,7 +192,7 @@ def end_key(m: Any, frame: int, channel: int, key: float, more: bool) -> None:
 
 @compiled_exactly
 def record_wish(m: Any, kind: int, index: int, value: float, other: float) -> None:
-    """Record what a wish does that the only player of the part is told directly."""
+    """Record what a wish does that goes directly to the only player of the part."""
     if kind in (WRITE, HOLD, EXPRESS):
         if kind == HOLD:
             m.kept[index] = 1

@@ -17,18 +17,18 @@ from yehu_server.core.physics.layout import STRINGS
 
 Array = Any
 
-# Values of /playing/pressure: those for which a manner has a share of Schelleng's limit, and where
+# Values of /playing/pressure: those for which a recipe has a share of Schelleng's limit, and where
 # notes begin to scratch.
 FLAUTANDO, LIGHT, FIRM, SCRATCHY = 0.2, 0.3, 0.55, 1.0
 # Fractions of Schelleng's limit at which notes begin to scratch, on each string;
 # measured at 0.12 and 0.2 m/s on eight notes: 1 to 2, and 3 to 6.
 EDGES = np.array((1.3, 4.0))
 
-# A manner is how a note is bowed: the highest bow speed (m/s) at which it speaks; the values of
-# /bow/pressure for FLAUTANDO, LIGHT and FIRM; a factor on the distance of the bow from the bridge;
-# the least finger force (N).
+# A bowing recipe says how a note is bowed: the highest bow speed (m/s) at which it speaks; values
+# of /bow/pressure for FLAUTANDO, LIGHT and FIRM; a factor on the distance of the bow from the
+# bridge; the least finger force (N).
 TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, FARTHER, LEAST_PRESS = range(6)
-MANNER = 6
+RECIPE = 6
 ORDINARY = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
 FIRST, LAST = 64, 91  # the notes of the table; beyond them all are bowed as these
 # The bow positions of the table; beyond them all notes are bowed as at these.
@@ -41,19 +41,19 @@ NEAREST_ON_F = 0.17
 
 
 def ordinary_table() -> Array:
-    """All notes bowed alike: ndarray [shape=(STRINGS, len(PLACES), NOTES, MANNER)]."""
+    """All notes bowed alike: ndarray [shape=(STRINGS, len(PLACES), NOTES, RECIPE)]."""
     table = np.tile(np.array(ORDINARY), (STRINGS, len(PLACES), NOTES, 1))
     table[0, :, :, FARTHER] = np.maximum(NEAREST_ON_F / np.array(PLACES), 1.0)[:, None]
     return table
 
 
 @compiled_exactly
-def manner(table: Array, string: int, place: float, pitch: float, column: int) -> float:
+def recipe_value(table: Array, string: int, place: float, pitch: float, column: int) -> float:
     """One value of how a pitch (fractional MIDI note) is bowed on a string; interpolated.
 
     Parameters
     ----------
-    table : ndarray [shape=(STRINGS, len(PLACES), NOTES, MANNER)]
+    table : ndarray [shape=(STRINGS, len(PLACES), NOTES, RECIPE)]
     string : int
         0 or 1.
     place : float
@@ -72,11 +72,11 @@ def manner(table: Array, string: int, place: float, pitch: float, column: int) -
 
 
 @compiled_exactly
-def at_pitch(manners: Array, pitch: float, column: int) -> float:
-    """The same at one of PLACES; `manners` has shape (NOTES, MANNER)."""
+def at_pitch(recipes: Array, pitch: float, column: int) -> float:
+    """The same at one of PLACES; `recipes` has shape (NOTES, RECIPE)."""
     pitch = min(max(pitch, FIRST), LAST)
     row = min(math.floor(pitch), LAST - 1)
-    low, high = manners[row - FIRST, column], manners[row + 1 - FIRST, column]
+    low, high = recipes[row - FIRST, column], recipes[row + 1 - FIRST, column]
     return float(low + (pitch - row) * (high - low))
 
 

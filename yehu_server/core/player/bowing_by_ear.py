@@ -12,7 +12,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.bowing import FIRM, FLAUTANDO, SCRATCHY
-from yehu_server.core.player.ear import SURE, shelf
+from yehu_server.core.player.ear import SURE, learning_bin
 from yehu_server.core.player.right_hand import lean
 from yehu_server.core.player.rows import LISTENING, PRESSURE, TREMOLO
 
@@ -33,7 +33,7 @@ def begin_leaning(p: Any, pitch: float) -> None:
     p.leaning, p.fault, p.faults = 1.0, SPEAKS, 0
     p.spoken, p.eased_from = 0, 0.0
     if may_lean(p):
-        row, place, pace = shelf(p, pitch)
+        row, place, pace = learning_bin(p, pitch)
         known = p.learnt_leaning[p.string, row, place, pace]
         p.leaning = min(known, heaviest(p)) if known > 0.0 else 1.0
         p.eased_from = p.leaning if known > 0.0 else 0.0
@@ -106,5 +106,5 @@ def ease_or_learn(p: Any, c: Any, pitch: float) -> None:
         p.spoken = 0
         lean(p, c, pitch, True)
         return
-    row, place, pace = shelf(p, pitch)
+    row, place, pace = learning_bin(p, pitch)
     p.learnt_leaning[p.string, row, place, pace] = p.leaning

@@ -21,7 +21,7 @@ from yehu_server.core.player.rows import LISTENING, POSITION, SPEED
 
 
 @compiled_exactly
-def shelf(p: Any, pitch: float) -> tuple[int, int, int]:
+def learning_bin(p: Any, pitch: float) -> tuple[int, int, int]:
     """Where what is learnt of a pitch is kept: numbers of pitch, bow position and bow speed."""
     row = int(np.rint(2.0 * (pitch - OPEN_NOTES[0])))
     place = int(np.rint(4.0 * math.log2(p.value[POSITION] / 0.05)))
@@ -36,7 +36,7 @@ def shelf(p: Any, pitch: float) -> tuple[int, int, int]:
 @compiled_exactly
 def learnt_cents(p: Any, string: int, pitch: float) -> float:
     """What was learnt of a pitch on a string (cents of sharpening)."""
-    row, place, pace = shelf(p, pitch)
+    row, place, pace = learning_bin(p, pitch)
     return float(p.learnt[string, row, place, pace]) if p.value[LISTENING] > 0.0 else 0.0
 
 

@@ -43,16 +43,14 @@ def side_of(p: Any) -> float:
 
 
 @compiled_exactly
-def stop(
-    p: Any, c: Any, string: int, position: float, manner_press: float, slide_ms: float
-) -> None:
+def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide_ms: float) -> None:
     """Stop a string, or leave it open.
 
     Parameters
     ----------
     position : float
         Of the finger (m), or OPEN.
-    manner_press : float
+    least_press : float
         Least finger force (N) that the sounding pitch needs.
     slide_ms : float
         Time in which the finger that is down slides there; `phrasing.STEP_MS` for a step.
@@ -62,26 +60,26 @@ def stop(
     if OPEN in (position, before):
         if position != OPEN:
             land(p, c, position)
-        press(p, c, manner_press)
+        press(p, c, least_press)
         return
     if slide_ms < 0.0 and abs(position - before) < NEAREST_STEP:
         slide_ms = SETTLING_MS
     if slide_ms >= 0.0:
         move(p, c, FINGER_POSITION[p.finger], position, slide_ms)
-        press(p, c, manner_press)
+        press(p, c, least_press)
         return
     lifted = FINGER_PRESS[p.finger]
     land(p, c, position)
-    press(p, c, manner_press)
+    press(p, c, least_press)
     move(p, c, lifted, 0.0, LIFTING_MS)
 
 
 @compiled_exactly
-def press(p: Any, c: Any, manner_press: float) -> None:
+def press(p: Any, c: Any, least_press: float) -> None:
     """Set the wished finger force, or lift the finger where the string is open."""
     force = 0.0
     if p.string >= 0 and p.position != OPEN:
-        force = max(p.value[PRESS], manner_press)
+        force = max(p.value[PRESS], least_press)
     if force != p.pressing or force > 0.0:
         landing_ms = varied_landing(p, LANDING_MS) if p.pressing == 0.0 else LANDING_MS
         move(p, c, FINGER_PRESS[p.finger], force, landing_ms if force > 0.0 else LIFTING_MS)

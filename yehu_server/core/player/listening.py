@@ -14,7 +14,7 @@ from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
 from yehu_server.core.player.bowing_by_ear import help_bow
 from yehu_server.core.player.drift import heard_semitones, sway, sway_vibrato
 from yehu_server.core.player.ear import BEHIND, HEARD, hear
-from yehu_server.core.player.notes import mind_the_bow, told_pitch
+from yehu_server.core.player.notes import mind_the_bow, sounding_pitch
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.rows import LISTENING
 from yehu_server.core.player.tuning_by_ear import tune
@@ -36,7 +36,7 @@ def listen(p: Any, c: Any, heard: Any) -> None:
     if p.value[LISTENING] == 0.0 or not is_bowed or c.frame < p.settled_at:
         p.ear.certainty = 0.0
         return
-    pitch = told_pitch(p)
+    pitch = sounding_pitch(p)
     aim = pitch + vibrato_semitones(p, c) + heard_semitones(p)
     hear(p.ear, heard, c.frame, p.rate / (p.a4 * 2.0 ** ((aim - 69.0) / 12.0)))
     if not by_hand:  # who draws the bow corrects it

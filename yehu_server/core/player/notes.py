@@ -12,7 +12,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import left_hand, right_hand, velocity
-from yehu_server.core.player.bowing import LEAST_PRESS, manner
+from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
 from yehu_server.core.player.bowing_by_ear import begin_leaning
 from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay
 from yehu_server.core.player.held import NOT_HELD, add_key, find_key, remove_key
@@ -132,9 +132,9 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     elif is_on(p, PORTAMENTO):
         slide_ms = p.value[PORTAMENTO_TIME]
     else:
-        slide_ms = slide_of_leap_ms(p, c, sounding_pitch(p) - p.finger_pitch)
+        slide_ms = slide_of_leap_ms(p, c, note_pitch(p) - p.finger_pitch)
     p.note_began = c.frame
-    pitch = p.finger_pitch = sounding_pitch(p)
+    pitch = p.finger_pitch = note_pitch(p)
     string, position = choose(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
@@ -173,7 +173,7 @@ def unsettle(p: Any, c: Any, moving_ms: float) -> None:
 
 
 @compiled_exactly
-def sounding_pitch(p: Any) -> float:
+def note_pitch(p: Any) -> float:
     """Pitch (fractional MIDI note) of the sounding key, with its bend; 0 in silence."""
     if p.sounding < 0:
         return 0.0
@@ -181,10 +181,10 @@ def sounding_pitch(p: Any) -> float:
 
 
 @compiled_exactly
-def told_pitch(p: Any) -> float:
+def sounding_pitch(p: Any) -> float:
     """The pitch while a note sounds or the bow is drawn by hand, else NaN."""
     if p.sounding >= 0:
-        return sounding_pitch(p)
+        return note_pitch(p)
     return float(p.finger_pitch if p.by_hand != 0 else math.nan)
 
 
@@ -263,13 +263,13 @@ def set_level(p: Any, c: Any) -> None:
 def draw(p: Any, c: Any, ramp_ms: float) -> None:
     """Draw the bow at the speed of the sounding note."""
     if p.sounding >= 0 and not is_on(p, PIZZICATO):
-        right_hand.draw(p, c, sounding_pitch(p), side_of(p), ramp_ms)
+        right_hand.draw(p, c, note_pitch(p), side_of(p), ramp_ms)
 
 
 @compiled_exactly
 def lean(p: Any, c: Any) -> None:
     """Set the bow's pressure and position."""
-    right_hand.lean(p, c, sounding_pitch(p), p.sounding >= 0)
+    right_hand.lean(p, c, note_pitch(p), p.sounding >= 0)
 
 
 @compiled_exactly
@@ -277,14 +277,14 @@ def least_press(p: Any, string: int) -> float:
     """The finger force (N) that the sounding note needs on a string."""
     if p.sounding < 0:
         return 0.0
-    return manner(p.bowing, string, p.value[POSITION], sounding_pitch(p), LEAST_PRESS)
+    return recipe_value(p.bowing, string, p.value[POSITION], note_pitch(p), LEAST_PRESS)
 
 
 @compiled_exactly
 def even_out(p: Any, c: Any) -> None:
     """Set the gain that evens out the loudness of notes."""
     if p.sounding >= 0 or p.by_hand != 0:
-        pitch = sounding_pitch(p) if p.sounding >= 0 else p.finger_pitch
+        pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
         speed = p.speed if p.by_hand != 0 else wished_speed(p)
         velocity.even_out(p, c, pitch, speed)
 
@@ -303,7 +303,7 @@ def follow_bend(p: Any, c: Any) -> None:
     """Move the finger to the pitch of the sounding note, and bow it as that pitch wants."""
     if p.sounding < 0 or p.string < 0:
         return
-    pitch, before, was = sounding_pitch(p), p.string, p.finger_pitch
+    pitch, before, was = note_pitch(p), p.string, p.finger_pitch
     p.finger_pitch = pitch
     string, position = stay(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), BEND_RAMP_MS)

@@ -9,8 +9,8 @@ import numpy as np
 
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import MANNER, ORDINARY, PLACES, ordinary_table
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
+from yehu_server.core.player.bowing import ORDINARY, PLACES, RECIPE, ordinary_table
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, wave_speed
 from yehu_server.core.player.drift import UNSTEADY
 from yehu_server.core.player.ear import EAR, begin_hearing, prepare_ear
@@ -78,7 +78,7 @@ PLAYER = np.dtype(
         ("direction", np.float64),  # of the stroke
         ("pace", np.float64),  # factor on the bow's speed, so that its hair lasts
         ("side", np.float64),  # /bow/side; 0 where the bow is lifted
-        ("manner", np.float64, MANNER),  # how the sounding pitch is bowed
+        ("recipe", np.float64, RECIPE),  # how the sounding pitch is bowed
         ("balance", np.float64),  # dB
         # The variation: deviates of this note, and the random numbers drawn so far.
         ("hurry", np.float64),  # factor on the bow's speed
@@ -93,7 +93,7 @@ PLAYER = np.dtype(
         ("wave_speed", np.float64, STRINGS),  # m/s
         ("sharpening", np.float64, (STRINGS, NOTES, len(SPEEDS))),  # cents
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
-        ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, MANNER)),
+        ("bowing", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, RECIPE)),
         ("open_strings", np.int64),  # number of the OpenStrings
     ],
     align=True,
@@ -143,7 +143,7 @@ def prepare_player(
     p["finger"] = FINGER_COUNT - 1  # so that the first finger comes first
     p["string"], p["position"] = -1, OPEN
     p["direction"] = UP
-    p["manner"] = ORDINARY
+    p["recipe"] = ORDINARY
     p["first_error"], p["leaning"], p["helps_bow"] = np.nan, 1.0, 1
     prepare_ear(p["ear"], rate)
     p["hurry"] = p["weight"] = p["pace"] = 1.0

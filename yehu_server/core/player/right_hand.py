@@ -10,9 +10,9 @@ from yehu_server.core.player.bowing import (
     AT_FLAUTANDO,
     AT_LIGHT,
     FARTHER,
-    MANNER,
+    RECIPE,
     TOP_SPEED,
-    manner,
+    recipe_value,
     share,
 )
 from yehu_server.core.player.ownership import USUAL_MS, forget, move
@@ -54,22 +54,22 @@ def wished_speed(p: Any) -> float:
 
 
 @compiled_exactly
-def manner_of(p: Any, pitch: float, column: int) -> float:
-    """One value of how a pitch is bowed on the string of the fingering; see `manner`."""
-    return manner(p.bowing, max(p.string, 0), p.value[POSITION], pitch, column)
+def recipe_of(p: Any, pitch: float, column: int) -> float:
+    """One value of how a pitch is bowed on the string of the fingering; see `recipe_value`."""
+    return recipe_value(p.bowing, max(p.string, 0), p.value[POSITION], pitch, column)
 
 
 @compiled_exactly
 def speed_at(p: Any, pitch: float) -> float:
     """Bow speed (m/s) for a pitch: as wished, up to the highest at which it speaks."""
-    return min(wished_speed(p), manner_of(p, pitch, TOP_SPEED))
+    return min(wished_speed(p), recipe_of(p, pitch, TOP_SPEED))
 
 
 @compiled_exactly
 def bows_alike(p: Any, pitch: float) -> bool:
     """Whether a pitch is bowed as the present one is."""
-    for column in range(MANNER):
-        if manner_of(p, pitch, column) != p.manner[column]:
+    for column in range(RECIPE):
+        if recipe_of(p, pitch, column) != p.recipe[column]:
             return False
     return True
 
@@ -79,13 +79,13 @@ def lean(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     """Set bow pressure and position, as wished and adapted to the sounding pitch, if any."""
     pressure = p.value[PRESSURE] * p.weight
     if is_sounding:
-        for column in range(MANNER):
-            p.manner[column] = manner_of(p, pitch, column)
-        m = p.manner
+        for column in range(RECIPE):
+            p.recipe[column] = recipe_of(p, pitch, column)
+        m = p.recipe
         pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0))
         pressure *= p.leaning
     move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
-    move(p, c, BOW_POSITION, p.value[POSITION] * p.manner[FARTHER], USUAL_MS)
+    move(p, c, BOW_POSITION, p.value[POSITION] * p.recipe[FARTHER], USUAL_MS)
 
 
 @compiled_exactly

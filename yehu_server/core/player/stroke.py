@@ -14,7 +14,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.rows import BOW_LENGTH, BOW_SPEED, DIRECTION, NOTE_LENGTH
 
-USUAL_S = 0.4  # a note lasts, where nobody has told
+USUAL_S = 0.4  # a note lasts, where nothing says so
 SLOWEST = 0.6  # factor on the speed of a bow that has to last
 END = 0.04  # part of the bow at either end that strokes don't begin or end on
 START = 0.15  # part of the bow behind a stroke that begins after a rest: hair to go back on

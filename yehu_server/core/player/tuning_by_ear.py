@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.player.ear import SURE, learnt_cents, shelf
+from yehu_server.core.player.ear import SURE, learning_bin, learnt_cents
 from yehu_server.core.player.intonation import position_of
 from yehu_server.core.player.ownership import move
 from yehu_server.core.player.right_hand import wished_speed
@@ -50,7 +50,7 @@ def tune(p: Any, c: Any, pitch: float) -> None:
         return
     if p.value[PRESS] != p.first_press:  # a finger that presses harder is to be heard
         return
-    row, place, pace = shelf(p, pitch)
+    row, place, pace = learning_bin(p, pitch)
     if math.isnan(p.first_error):
         p.first_error, p.first_sharper = ear.error, p.sharper
     if abs(p.sharper - p.first_sharper) > ASTRAY * abs(p.first_error) + ASTRAY_CENTS:

@@ -68,7 +68,7 @@ def rest_sides(sides: Any) -> None:
 
 
 @compiled_exactly
-def aside(s: Any, x: float) -> float:
+def side_signal(s: Any, x: float) -> float:
     """What the left hears more of a sample than straight ahead, and the right less.
 
     Real time: safe.

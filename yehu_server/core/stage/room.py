@@ -104,7 +104,7 @@ def empty_room(room: Any) -> None:
 
 
 @compiled_exactly
-def furnish(r: Any, size: float, decay: float, damping: float) -> None:
+def set_room(r: Any, size: float, decay: float, damping: float) -> None:
     """Follow what is asked of a room: size (m), decay (s), damping (0 to 1).
 
     Real time: safe; some microseconds where something changed.

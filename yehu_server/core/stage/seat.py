@@ -83,7 +83,7 @@ def pan_to(ear: int, pan: float) -> float:
 
 
 @compiled_exactly
-def sit(s: Any, distance: float, pan: float, frames: int) -> None:
+def set_direct(s: Any, distance: float, pan: float, frames: int) -> None:
     """Move the direct sound to a distance (m) and direction within some frames, from now."""
     for ear in range(EARS):
         wished = pan_to(ear, pan) * REFERENCE / distance
@@ -94,7 +94,7 @@ def sit(s: Any, distance: float, pan: float, frames: int) -> None:
 
 
 @compiled_exactly
-def stand_in(
+def set_reflections(
     s: Any, size: float, decay: float, damping: float, distance: float, pan: float
 ) -> None:
     """Move the reflections to where they are in a room of a size (m) and decay (s).

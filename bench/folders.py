@@ -126,7 +126,7 @@ def cluster(folder: Path, workers: int) -> Iterator[tuple[str, int, tuple[int, .
 
 def overhead(address: str, scheduler: int, jobs: int) -> dict[str, float]:
     """What an empty job costs: by the clock, and CPU time of client and scheduler."""
-    from yehu_server.render.cluster import Cluster
+    from yehu_server.rendering.cluster import Cluster
 
     with Cluster(address) as connected:
         list(connected.perform_all(nothing, range(100)))

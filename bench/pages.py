@@ -80,7 +80,7 @@ def cpu_of_pages() -> float:
             command = (entry / "cmdline").read_text()
         except OSError:
             continue
-        if words[1] == str(os.getpid()) and "page_process" in command:
+        if words[1] == str(os.getpid()) and "live.page.process" in command:
             return sum(map(int, words[11:13])) / os.sysconf("SC_CLK_TCK")
     return 0.0
 

@@ -27,8 +27,8 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.render.options import Options
-from yehu_server.render.performance import Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -23,8 +23,8 @@ from yehu_server.core.physics import kernel
 from yehu_server.core.physics.bridge import advance_bridge
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.lab.simulation import simulate
-from yehu_server.render.options import Options
-from yehu_server.render.performance import Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.scores.gesture import Gesture, gesture_from
 from yehu_server.scores.smf.reader import read_score
 

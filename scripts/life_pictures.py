@@ -22,8 +22,8 @@ from measures.life import HOP_S, WINDOW_S, pitch_track
 
 from yehu_server.core.player.calibration import frequency_hz
 from yehu_server.playing.style import Style
-from yehu_server.render.options import Options
-from yehu_server.render.performance import Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.scores.phrasing import phrased
 from yehu_server.scores.score import Score, ScoreEvent, notes_of
 from yehu_server.scores.smf.reader import read_score

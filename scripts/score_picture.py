@@ -28,8 +28,8 @@ from yehu_server.errors import ScoreError, YehuError
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.pitch_and_level import a_weighted_db, cents, note_name, pitch_hz
 from yehu_server.playing.style import Style
-from yehu_server.render.options import Options
-from yehu_server.render.performance import Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.scores.score import Score
 from yehu_server.scores.smf.reader import read_score
 

@@ -21,7 +21,7 @@ from yehu_server.playing.wishes import Key, Wishes
 
 RATE = 48000.0  # whole milliseconds are whole frames
 # What the player's moves are computed from.
-DECIDED = ("value", "finger_pitch", "position", "manner", "balance", "hurry", "weight", "detuned")
+DECIDED = ("value", "finger_pitch", "position", "recipe", "balance", "hurry", "weight", "detuned")
 # Balance (dB) of notes below C5, and of those from C5 up, which are 6 dB louder.
 LOW_DB, HIGH_DB = 6.0 * 25.0 / 38.0, -6.0 * 13.0 / 38.0
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.compile import jit
+from yehu_server.compile import cache, jit
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of, without_prose
 
@@ -99,9 +99,9 @@ def edited(folder: Path, old: str, new: str) -> str:
 
 
 def test_a_comment_compiles_nothing_anew(tmp_path, monkeypatch):
-    cache = tmp_path / "cache"
-    cache.mkdir()
-    monkeypatch.setattr(jit, "cache_folder", lambda: cache)
+    folder = tmp_path / "cache"
+    folder.mkdir()
+    monkeypatch.setattr(jit, "cache_folder", lambda: folder)
     monkeypatch.setattr(jit, "IS_CACHED", True)
     monkeypatch.setattr(cache, "_troubles", set())
 

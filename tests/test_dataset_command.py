@@ -18,7 +18,7 @@ from commands import COMMAND
 
 from yehu_server.lab.dataset import making
 from yehu_server.lab.dataset.description import read_description
-from yehu_server.render import cluster_worker
+from yehu_server.rendering import cluster_worker
 from yehu_server.util.files import shipped_folder
 
 COUNT = 40

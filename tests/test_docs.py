@@ -228,7 +228,7 @@ def addresses() -> set[str]:
     """Every address there is, and what is above it."""
     found = {EXAMPLE, *(param.address for param in TABLE), *(call.address for call in CALLS)}
     found |= {f"/status/{row.name}" for row in (*STATUS, *PART_STATUS)} | {"/status/NAME"}
-    for file in (PACKAGE / "control").glob("*.py"):  # what is answered
+    for file in (PACKAGE / "live").rglob("*.py"):  # what is answered
         found |= set(re.findall(r'["}](/[a-z/]+)"', file.read_text(encoding="utf-8")))
     groups = {"/" + "/".join(address.split("/")[1:depth]) for address in found for depth in (2, 3)}
     return found | groups

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from yehu_server.render.loudness import loudness_lufs
+from yehu_server.rendering.loudness import loudness_lufs
 
 
 def sine(level_db: float, seconds: float, rate: float, hz: float = 997.0):

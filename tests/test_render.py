@@ -19,9 +19,9 @@ from scores import midi_file, notes
 from sound import rms
 
 from yehu_server.playing.style import Style
-from yehu_server.render.options import Options
-from yehu_server.render.performance import Performance
-from yehu_server.render.to_files import render
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
+from yehu_server.rendering.to_files import render
 from yehu_server.scores.score import Score, concatenate
 from yehu_server.scores.smf.reader import read_score
 

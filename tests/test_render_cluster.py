@@ -13,8 +13,8 @@ from clusters import cluster_in, wait_until
 from commands import COMMAND, is_one_line
 from scores import midi_file, notes
 
-from yehu_server.render import cluster_worker
-from yehu_server.render.workers import Event
+from yehu_server.rendering import cluster_worker
+from yehu_server.rendering.workers import Event
 
 pytest.importorskip("distributed")
 
@@ -157,7 +157,9 @@ def test_scores_and_sounds_travel_where_workers_do_not_see_them(
 ):
     home = tmp_path_factory.mktemp("home") / "songs"
     shutil.copytree(songs / "in", home / "in")
-    monkeypatch.setattr("yehu_server.render.cluster.Cluster", lambda *_: Elsewhere(home, seen=seen))
+    monkeypatch.setattr(
+        "yehu_server.rendering.cluster.Cluster", lambda *_: Elsewhere(home, seen=seen)
+    )
     code, _, err = command("render", home / "in", "-o", home / "out", *DRY, "--dask", "x")
     assert code == 1
     assert err == "yehu-server: broken.mid: has a damaged header at byte 0\n"
@@ -168,7 +170,7 @@ def test_scores_and_sounds_travel_where_workers_do_not_see_them(
 
 def test_a_file_of_the_users_own_is_not_replaced_by_what_has_travelled(songs, command, monkeypatch):
     monkeypatch.setattr(
-        "yehu_server.render.cluster.Cluster", lambda *_: Elsewhere(songs / "in", seen=False)
+        "yehu_server.rendering.cluster.Cluster", lambda *_: Elsewhere(songs / "in", seen=False)
     )
     own = songs / "out" / "0" / "0.wav"
     own.parent.mkdir(parents=True)
@@ -187,7 +189,7 @@ def test_settings_that_a_worker_does_not_have_are_named(songs, refused, monkeypa
             return {"tcp://worker": lost} if isinstance(answers["tcp://worker"], dict) else answers
 
     monkeypatch.setattr(
-        "yehu_server.render.cluster.Cluster", lambda *_: Without(songs / "in", seen=False)
+        "yehu_server.rendering.cluster.Cluster", lambda *_: Without(songs / "in", seen=False)
     )
     (songs / "i.json").write_text(SETTINGS)
     words = ("render", songs / "in", "-o", songs / "out", *DRY, "--dask", "x")

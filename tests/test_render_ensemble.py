@@ -13,9 +13,9 @@ from scores import midi_file, notes
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.playing.style import Style
-from yehu_server.render.cores import Cores
-from yehu_server.render.options import Options, Part
-from yehu_server.render.performance import Performance
+from yehu_server.rendering.cores import Cores
+from yehu_server.rendering.options import Options, Part
+from yehu_server.rendering.performance import Performance
 from yehu_server.scores.reading import part_of
 from yehu_server.scores.smf.reader import read_score
 

@@ -20,7 +20,7 @@ from scores import midi_file, notes
 
 from yehu_server.cli import _parser, folder_records, folder_tasks, render_one
 from yehu_server.errors import OutputError
-from yehu_server.render.workers import Event
+from yehu_server.rendering.workers import Event
 from yehu_server.util.sound_file import is_rendered
 
 DRY = ("--dry", "--mono", "--tail", 0)  # in little time
@@ -197,7 +197,7 @@ def test_a_score_that_failed_is_told_again_and_tried_again_only_where_something_
     tried = []
     perform = folder_tasks.perform
     monkeypatch.setattr(
-        "yehu_server.render.workers.perform_all",
+        "yehu_server.rendering.workers.perform_all",
         lambda _, tasks, __: (
             tried.append(task.entry.name) or Event(job, 1.0, result=perform(task, print))
             for job, task in enumerate(tasks)
@@ -310,7 +310,7 @@ def test_a_full_disk_ends_all_of_it(tmp_path, monkeypatch):
         reason = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         raise OutputError("x: cannot write: No space left on device") from reason
 
-    from yehu_server.render.folder_tree import Entry
+    from yehu_server.rendering.folder_tree import Entry
 
     monkeypatch.setattr(render_one, "rendered", full)
     arguments = argparse.Namespace(overwrite=False, format=None, output=tmp_path / "out")

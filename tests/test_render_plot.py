@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scores import midi_file, notes
 
-from yehu_server.render.options import asked_pitch
-from yehu_server.render.watch import COLUMNS, Watch
+from yehu_server.rendering.options import asked_pitch
+from yehu_server.rendering.watch import COLUMNS, Watch
 
 DRY = ("--dry", "--tail", 0)  # in little time
 RATE = 44100.0
@@ -107,8 +107,8 @@ def test_the_same_rendering_has_the_same_picture_which_it_may_replace(tune, comm
 
 
 def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
-    from yehu_server.render.options import Options
-    from yehu_server.render.performance import Performance
+    from yehu_server.rendering.options import Options
+    from yehu_server.rendering.performance import Performance
     from yehu_server.scores.smf.reader import read_score
 
     options = Options(is_dry=True, is_mono=True, tail_s=0.0, block=512)
@@ -125,8 +125,8 @@ def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
 
 
 def test_each_part_of_an_ensemble_is_asked_for_its_own_pitch(tune):
-    from yehu_server.render.options import Options, Part
-    from yehu_server.render.performance import Performance
+    from yehu_server.rendering.options import Options, Part
+    from yehu_server.rendering.performance import Performance
     from yehu_server.scores.smf.reader import read_score
 
     options = Options(is_dry=True, tail_s=0.0, block=512)

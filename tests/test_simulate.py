@@ -16,7 +16,7 @@ from yehu_server.errors import OutputError, ParameterError, ScoreError
 from yehu_server.lab.simulation import simulate
 from yehu_server.scores.gesture import gesture_from, read_gesture
 
-BODY = Path(__file__).resolve().parents[1] / "yehu_server" / "physics" / "body.json"
+BODY = Path(__file__).resolve().parents[1] / "yehu_server" / "core" / "physics" / "body.json"
 GESTURE = {
     "sample_rate": 44100,
     "duration": 2.0,

@@ -7,7 +7,7 @@ import json
 import pytest
 from clusters import cluster_in
 
-from yehu_server.render import cluster_worker
+from yehu_server.rendering import cluster_worker
 
 pytest.importorskip("distributed")
 

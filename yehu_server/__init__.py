@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.util import __version__
 
 if TYPE_CHECKING:
+    from yehu_server import plot
     from yehu_server.api.instrument import Instrument
     from yehu_server.api.notes import Note
     from yehu_server.api.playback import Player, play
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from yehu_server.api.simulated import Simulation, simulate
     from yehu_server.api.swept import Sweep, sweep
     from yehu_server.errors import YehuError
-    from yehu_server.lab import plot
 
 __all__ = [
     "Instrument",
@@ -54,7 +54,7 @@ _MODULES = {
     "Sweep": "api.swept",
     "YehuError": "errors",
     "play": "api.playback",
-    "plot": "lab.plot",
+    "plot": "plot",
     "render": "api.rendered",
     "simulate": "api.simulated",
     "sweep": "api.swept",

@@ -15,7 +15,7 @@ from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.section_people import SECTION, section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
-from yehu_server.render.cores import Cores, shared
+from yehu_server.rendering.cores import Cores, shared
 
 BLOCK_S = 1.0
 

@@ -14,10 +14,10 @@ import matplotlib as mpl
 import pytest
 
 import yehu_server as yehu
-from yehu_server import api
+from yehu_server import api, plot
 from yehu_server.cli import converters
 from yehu_server.errors import YehuError
-from yehu_server.lab import plot
+from yehu_server.lab import plot as lab_plot
 
 HEAVY = {"numba", "llvmlite", "numpy", "matplotlib", "xarray", "scipy", "sounddevice", "IPython"}
 
@@ -38,7 +38,7 @@ def test_its_error_loads_nothing_heavy():
 
 
 def test_matplotlib_waits_for_a_picture():
-    names = "yehu_server.render, yehu_server.simulate, yehu_server.sweep, yehu_server.lab.plot"
+    names = "yehu_server.render, yehu_server.simulate, yehu_server.sweep, yehu_server.plot"
     assert not loaded(f"import yehu_server; {names}") & {"matplotlib", "xarray", "IPython"}
 
 
@@ -87,7 +87,7 @@ def test_the_reference_pitch_has_the_range_of_the_command():
 
 
 def modules() -> Iterator[str]:
-    for package in (api, plot):
+    for package in (api, lab_plot):
         for found in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             yield found.name
     yield "yehu_server"

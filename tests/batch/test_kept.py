@@ -5,7 +5,7 @@ import os
 import pytest
 
 from yehu_server.errors import OutputError
-from yehu_server.render import build_records
+from yehu_server.rendering import build_records
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ import os
 import pytest
 
 from yehu_server.errors import ScoreError
-from yehu_server.render import folder_tree
-from yehu_server.render.folder_tree import tree_of
+from yehu_server.rendering import folder_tree
+from yehu_server.rendering.folder_tree import tree_of
 
 
 @pytest.fixture

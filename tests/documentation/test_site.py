@@ -15,7 +15,7 @@ from pages import PAGES, ROOT, Page
 from panel.browser import drive, missing
 
 import yehu_server as yehu
-from yehu_server.lab import plot
+from yehu_server import plot
 from yehu_server.live.page.site import server_of, url_of
 
 HERE = Path(__file__).parent
@@ -106,10 +106,10 @@ def test_links_out_of_the_docs_lead_to_pages_of_the_site(site):
     }
     assert ("playing.html", "mappings.html") in links
     assert ("architecture.html", "begin.html#layers") in links
-    assert ("page.html", "source/yehu_server/engine/look.py.html") in links
+    assert ("page.html", "source/yehu_server/core/engine/look.py.html") in links
     assert ("mappings.html", "playing.html#velocity") in links
-    code = elements(site, "source/yehu_server/engine/look.py.html").text_in("pre")
-    source = (ROOT / "yehu_server" / "engine" / "look.py").read_text(encoding="utf-8")
+    code = elements(site, "source/yehu_server/core/engine/look.py.html").text_in("pre")
+    source = (ROOT / "yehu_server" / "core" / "engine" / "look.py").read_text(encoding="utf-8")
     assert code == " ".join(source.split())
 
 

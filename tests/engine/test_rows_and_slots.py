@@ -20,7 +20,7 @@ from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.rows import ROWS
 
 PACKAGE = Path(__file__).parents[2] / "yehu_server"
-SOURCES = [path for folder in (*FOLDERS, "playing") for path in (PACKAGE / folder).glob("*.py")]
+SOURCES = [path for folder in (*FOLDERS, "playing") for path in (PACKAGE / folder).rglob("*.py")]
 ROWS_MODULE, SLOTS_MODULE = "yehu_server.core.player.rows", "yehu_server.core.controls.slots"
 ROW, SLOT = "a row", "a slot"
 OTHER = {ROW: SLOT, SLOT: ROW}
@@ -213,10 +213,8 @@ MOVE = "from yehu_server.core.player.ownership import move"
         "self.post(wishes.RAMP, index=ROW[address])",
         f"{SLOTS_OF} GAIN\nemit(m, 0, frame, WRITE, GAIN, 0.0, 0.0)",
         f"{SLOTS_OF} SILENCE\ninstrument.post(HOLD, index=SILENCE)",
-        ROWS_OF
-        + " SPEED\nfrom yehu_server.core.controls.ramps import take\ntake(c, SPEED, 0.1, 0)",
-        SLOTS_OF
-        + " SPEED\nfrom yehu_server.core.player.ownership import move\nmove(p, c, SPEED, 0, 0)",
+        f"{ROWS_OF} SPEED\n{TAKE}\ntake(c, SPEED, 0.1, 0)",
+        f"{SLOTS_OF} SPEED\n{MOVE}\nmove(p, c, SPEED, 0, 0)",
     ],
 )
 def test_a_mix_up_is_found(text):

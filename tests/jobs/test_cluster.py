@@ -14,9 +14,9 @@ from clusters import Processes, cluster_in, wait_until
 
 import yehu_server
 from yehu_server.errors import YehuError
-from yehu_server.render import cluster as clusters
-from yehu_server.render import cluster_worker
-from yehu_server.render.cluster import Cluster, scheduler_address
+from yehu_server.rendering import cluster as clusters
+from yehu_server.rendering import cluster_worker
+from yehu_server.rendering.cluster import Cluster, scheduler_address
 
 pytest.importorskip("distributed")
 
@@ -229,7 +229,7 @@ def test_a_lock_keeps_processes_apart(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", None)
     program = (
         "import sys; from pathlib import Path\n"
-        "from yehu_server.render.cluster_worker import one_at_a_time\n"
+        "from yehu_server.rendering.cluster_worker import one_at_a_time\n"
         "Path(sys.argv[1], 'wants').touch()\n"
         "with one_at_a_time(): Path(sys.argv[1], 'has').touch()"
     )

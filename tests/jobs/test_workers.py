@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import some_jobs
 
-from yehu_server.render.workers import perform_all
+from yehu_server.rendering.workers import perform_all
 
 TESTS = Path(__file__).resolve().parents[1]
 
@@ -53,7 +53,7 @@ def test_processes_put_away_what_they_make_when_their_parent_is_killed(tmp_path)
     held = tmp_path / "held"
     program = (
         "import sys; sys.path.insert(0, sys.argv[1]); from pathlib import Path; import some_jobs;"
-        "from yehu_server.render.workers import perform_all;"
+        "from yehu_server.rendering.workers import perform_all;"
         "list(perform_all(some_jobs.hold, [Path(sys.argv[2])], 1))"
     )
     parent = subprocess.Popen([sys.executable, "-c", program, str(TESTS), str(held)])

@@ -14,7 +14,7 @@ from sound import alone
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.live.audio.output import Output, OutputOptions
-from yehu_server.render.replay import blocks
+from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
 from yehu_server.scores.capture_beginning import beginning_of
 from yehu_server.scores.capture_writer import CaptureWriter

@@ -27,7 +27,7 @@ from yehu_server.live.server import Server
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes
-from yehu_server.render.replay import blocks
+from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
 from yehu_server.scores.capture_beginning import beginning_of
 from yehu_server.scores.capture_writer import CaptureWriter

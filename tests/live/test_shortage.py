@@ -19,7 +19,8 @@ if not hasattr(resource, "prlimit"):
 
 
 def module_of(pid: int) -> str:
-    return Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")[-2].decode().rpartition(".")[2]
+    module = Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")[-2].decode()
+    return ".".join(module.split(".")[-2:])
 
 
 def helpers(server) -> dict[str, int]:
@@ -46,7 +47,7 @@ def begun(jackd, serve, until):
     server = serve("--midi-api", "jack")
     osc = server.osc()
     server.said(f"playing on {DEVICE}")
-    until(lambda: {"stream", "midi_process"} <= set(helpers(server)), 10.0, "its helpers")
+    until(lambda: {"audio.stream", "midi.process"} <= set(helpers(server)), 10.0, "its helpers")
     return server, osc
 
 
@@ -54,7 +55,7 @@ def test_helpers_that_end_while_there_are_no_files_come_back_when_there_are(jack
     server, osc = begun(jackd, serve, until)
     pid, before, said = server.process.pid, helpers(server), len(server.lines)
     allowed = allow_files(pid, 3)
-    for name in ("stream", "midi_process"):
+    for name in ("audio.stream", "midi.process"):
         os.kill(before[name], signal.SIGKILL)
     server.said("no sound: the audio process cannot be started: Too many open files", 10.0, said)
     server.said("MIDI inputs: Too many open files; trying again", 10.0, said)
@@ -67,7 +68,7 @@ def test_helpers_that_end_while_there_are_no_files_come_back_when_there_are(jack
 
     allow_files(pid, allowed)
     server.said(f"playing on {DEVICE}", 15.0, said)
-    until(lambda: "midi_process" in helpers(server), 15.0, "its MIDI process")
+    until(lambda: "midi.process" in helpers(server), 15.0, "its MIDI process")
     assert not any("Traceback" in line for line in server.lines)
     assert osc.status()["device_losses"] == 1
     assert server.end() == 0
@@ -121,9 +122,9 @@ def test_a_server_that_is_stopped_for_a_while_loses_no_helper(jackd, serve, unti
 def test_a_helper_that_is_stopped_for_longer_than_a_moment_is_replaced(jackd, serve, until):
     server, osc = begun(jackd, serve, until)
     before, said = helpers(server), len(server.lines)
-    os.kill(before["stream"], signal.SIGSTOP)
+    os.kill(before["audio.stream"], signal.SIGSTOP)
     server.said(f"{DEVICE} is gone", 10.0, said)
     server.said(f"playing on {DEVICE}", 20.0, said)
-    assert helpers(server)["stream"] != before["stream"]
+    assert helpers(server)["audio.stream"] != before["audio.stream"]
     assert osc.status()["device_losses"] == 1
     assert server.end() == 0

@@ -18,7 +18,7 @@ import soundfile
 from commands import COMMAND
 
 from yehu_server.cli import main
-from yehu_server.render.replay import blocks
+from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -391,9 +391,12 @@ def process_of_pages() -> int:
     for entry in PROCESSES.glob("[0-9]*"):
         with contextlib.suppress(OSError):
             parent = (entry / "stat").read_text().rpartition(")")[2].split()[1]
-            if parent == str(os.getpid()) and "page_process" in (entry / "cmdline").read_text():
+            if (
+                parent == str(os.getpid())
+                and "live.page.process" in (entry / "cmdline").read_text()
+            ):
                 return int(entry.name)
-    return 0
+    raise LookupError("no process serves pages")  # a kill of 0 would end the tests
 
 
 @pytest.mark.skipif(not PROCESSES.is_dir(), reason="finds the process there")

@@ -27,7 +27,7 @@ from yehu_server.playing.messages import MidiPlayer
 from yehu_server.playing.section_people import section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes
-from yehu_server.render.cores import Cores
+from yehu_server.rendering.cores import Cores
 
 LATEST = round(0.040 * RATE)
 BEAT = 24000  # frames

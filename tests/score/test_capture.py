@@ -41,7 +41,7 @@ from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
-from yehu_server.render.replay import blocks, replay
+from yehu_server.rendering.replay import blocks, replay
 from yehu_server.scores.capture import read_capture
 from yehu_server.scores.capture_beginning import Beginning, beginning_of
 from yehu_server.scores.capture_format import build

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from pitch import cents, pitch_of
 
-from yehu_server.render.options import Options
-from yehu_server.render.performance import Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.scores.written.mark_settings import HARMONICS
 from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Tempo, Written
 from yehu_server.scores.written.performed import performed

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from pitch import frame_pitch
 
-from yehu_server.render.options import Options
-from yehu_server.render.performance import Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import performed

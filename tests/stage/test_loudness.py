@@ -8,8 +8,8 @@ import pytest
 from stages import Stage, told
 
 from yehu_server.playing.pitch_and_level import a_weighting
-from yehu_server.render.options import Options
-from yehu_server.render.performance import Performance
+from yehu_server.rendering.options import Options
+from yehu_server.rendering.performance import Performance
 from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parent.parent.parent

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server import __version__
 from yehu_server.api.checks import setting
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.engine.ensemble import Ensemble
@@ -19,6 +18,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.lab.simulation import MAX_BYTES, Simulation, about, shape_of, signals
 from yehu_server.params.table import SLOT
 from yehu_server.playing.wishes import Wishes
+from yehu_server.util import __version__
 
 Array = Any
 

@@ -17,10 +17,10 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import DEFAULT
-from yehu_server.render.options import Options, asked_pitch
-from yehu_server.render.performance import Performance
-from yehu_server.render.summary import FATE, Summary, counted, summary_of
-from yehu_server.render.to_files import NORMALIZED_PEAK
+from yehu_server.rendering.options import Options, asked_pitch
+from yehu_server.rendering.performance import Performance
+from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
+from yehu_server.rendering.to_files import NORMALIZED_PEAK
 from yehu_server.scores.phrasing import is_fingered, phrased
 from yehu_server.scores.reading import read_any
 from yehu_server.scores.score import Score

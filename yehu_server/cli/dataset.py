@@ -66,8 +66,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return the exit code: 1 where some sounds failed."""
     from yehu_server.lab.dataset import making
     from yehu_server.lab.dataset.description import read_description
-    from yehu_server.render import build_records
-    from yehu_server.render.build_records import check_manifest
+    from yehu_server.rendering import build_records
+    from yehu_server.rendering.build_records import check_manifest
 
     if arguments.dask is not None and arguments.jobs is not None:
         raise ParameterError("--jobs is for this machine: a cluster uses all of its workers")
@@ -108,7 +108,7 @@ def _check_folder(folder: Path) -> None:
     OutputError
         Where there are some.
     """
-    from yehu_server.render.build_records import HIDDEN
+    from yehu_server.rendering.build_records import HIDDEN
 
     try:
         is_other = any(folder.iterdir()) and not (folder / HIDDEN).is_dir()
@@ -144,7 +144,7 @@ def _performing(arguments: argparse.Namespace, rate: float) -> Iterator[Any]:
         set_up(rate)
         yield lambda _folder: partial(_on_cores, arguments.jobs)
         return
-    from yehu_server.render.cluster import Cluster
+    from yehu_server.rendering.cluster import Cluster
 
     with Cluster(arguments.dask, partial(set_up, rate), warn) as cluster:
         yield lambda folder: partial(_on_cluster, cluster, folder)
@@ -152,14 +152,14 @@ def _performing(arguments: argparse.Namespace, rate: float) -> Iterator[Any]:
 
 def _on_cores(jobs: int | None, parts: Sequence[Part]) -> Any:
     from yehu_server.lab.dataset.making import perform
-    from yehu_server.render.workers import perform_all
+    from yehu_server.rendering.workers import perform_all
 
     return perform_all(perform, parts, min(jobs or os.cpu_count() or 1, len(parts)))
 
 
 def _on_cluster(cluster: Any, folder: Path, parts: Sequence[Part]) -> Iterator[Any]:
     from yehu_server.lab.dataset.making import perform
-    from yehu_server.render.build_records import HIDDEN
+    from yehu_server.rendering.build_records import HIDDEN
 
     mark = folder / HIDDEN / f"seen-{secrets.token_hex(8)}"
     mark.touch()

@@ -16,7 +16,7 @@ from yehu_server.errors import EnsembleError, ParameterError, YehuError
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
     from yehu_server.playing.style import Style
-    from yehu_server.render.options import Part
+    from yehu_server.rendering.options import Part
     from yehu_server.scores.ensemble_file import EnsembleFile, PartEntry
     from yehu_server.scores.score import Score
 
@@ -195,7 +195,7 @@ def _part(
     arguments: argparse.Namespace,
 ) -> Part:
     """The part of an entry, before its player has a seat."""
-    from yehu_server.render.options import Part
+    from yehu_server.rendering.options import Part
     from yehu_server.scores.phrasing import is_fingered, phrased
     from yehu_server.scores.reading import part_of
     from yehu_server.scores.score import concatenate

@@ -19,8 +19,8 @@ from yehu_server.cli.folder_tasks import Done, Task, perform, replaceable
 from yehu_server.errors import OutputError, ParameterError
 
 if TYPE_CHECKING:
-    from yehu_server.render.cluster import Cluster
-    from yehu_server.render.workers import Tell
+    from yehu_server.rendering.cluster import Cluster
+    from yehu_server.rendering.workers import Tell
 
 MARK = "seen-{}"  # in the hidden folder: who finds it sees the output
 
@@ -120,7 +120,7 @@ class Far:
     @contextlib.contextmanager
     def marked(self) -> Iterator[None]:
         """Mark the output, so that workers know whether they see it, for the time of a block."""
-        from yehu_server.render.build_records import HIDDEN
+        from yehu_server.rendering.build_records import HIDDEN
 
         mark = self._arguments.output / HIDDEN / MARK.format(secrets.token_hex(8))
         mark.touch()
@@ -136,7 +136,7 @@ class Far:
 
     def _check_settings(self) -> None:
         """Refuse files of settings that the workers do not have: only scores travel."""
-        from yehu_server.render.build_records import hash_of
+        from yehu_server.rendering.build_records import hash_of
 
         files = {path: hash_of(path) for path in _settings(self._arguments)}
         for worker, found in sorted(self._cluster.ask(hashes_of, tuple(files)).items()):
@@ -175,7 +175,7 @@ class Far:
         return done
 
     def _put(self, task: Task, done: Done, made: Sequence[bytes]) -> None:
-        from yehu_server.render import build_records
+        from yehu_server.rendering import build_records
         from yehu_server.util.files import anything, make_folder, replacing
 
         build_records.make_folder_for(task.entry.target)
@@ -209,6 +209,6 @@ def are_there(paths: Sequence[Path]) -> bool:
 
 def hashes_of(paths: Sequence[Path]) -> dict[Path, str]:
     """The hashes of files."""
-    from yehu_server.render.build_records import hash_of
+    from yehu_server.rendering.build_records import hash_of
 
     return {path: hash_of(path) for path in paths}

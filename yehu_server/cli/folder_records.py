@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.folder_tasks import Line, Task
 
 if TYPE_CHECKING:
-    from yehu_server.render.folder_tree import Tree
+    from yehu_server.rendering.folder_tree import Tree
 
 # What does not change the sound of a file. All other options do, also ones yet to be invented.
 NEUTRAL = (
@@ -26,7 +26,7 @@ NEUTRAL = (
     "plot",
     "quiet",
 )
-SOUNDING = ("playing", "scores", "render", "util")  # folders of code, beside what is compiled
+SOUNDING = ("playing", "scores", "rendering", "util")  # folders of code, beside what is compiled
 
 
 def sorted_out(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Task], list[Line]]:
@@ -35,7 +35,7 @@ def sorted_out(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Task], l
     A score that failed is up to date too, as long as nothing has changed; ``--overwrite`` tries
     it again.
     """
-    from yehu_server.render.build_records import hash_of, told_before, up_to_date
+    from yehu_server.rendering.build_records import hash_of, told_before, up_to_date
 
     base = base_key(arguments)
     hashing = cache(hash_of)

@@ -19,8 +19,8 @@ from yehu_server.cli.terminal import tell, warn
 from yehu_server.errors import one_line
 
 if TYPE_CHECKING:
-    from yehu_server.render.cluster import Cluster
-    from yehu_server.render.workers import Event
+    from yehu_server.rendering.cluster import Cluster
+    from yehu_server.rendering.workers import Event
 
 
 class Seconds:
@@ -88,7 +88,7 @@ def cluster_of(arguments: argparse.Namespace) -> Iterator[Cluster | None]:
     if arguments.dask is None:
         yield None
         return
-    from yehu_server.render.cluster import Cluster
+    from yehu_server.rendering.cluster import Cluster
 
     files = absolute(arguments)
     setup = partial(prepare, files.rate, files.instrument, files.a4)
@@ -161,7 +161,7 @@ def render_all(
 
 def _on_cores(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator[Event]:
     """Yield what becomes of tasks on processes of this machine; at the end of each, its `Done`."""
-    from yehu_server.render.workers import perform_all
+    from yehu_server.rendering.workers import perform_all
 
     workers = min(arguments.jobs or os.cpu_count() or 1, len(tasks))
     with contextlib.closing(perform_all(perform, tasks, workers)) as events:
@@ -197,7 +197,7 @@ def _ended(event: Event, job: int, tasks: Sequence[Task]) -> Event:
 
 def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int) -> None:
     """Tell of a file: as JSON, or as a line where there is no progress bar."""
-    from yehu_server.render.build_records import line_of
+    from yehu_server.rendering.build_records import line_of
 
     if arguments.json:
         print(line_of(line), flush=True)

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.errors import OutputError, ScoreError, YehuError
 
 if TYPE_CHECKING:
-    from yehu_server.render.folder_tree import Entry
-    from yehu_server.render.workers import Tell
+    from yehu_server.rendering.folder_tree import Entry
+    from yehu_server.rendering.workers import Tell
 
 log = logging.getLogger(__name__)
 
@@ -92,7 +92,7 @@ def perform(task: Task, tell: Tell) -> Done:
 
 def _keep_failure(task: Task, line: Line) -> None:
     """Keep that a score cannot be played: another try would end alike, unless it is another."""
-    from yehu_server.render.build_records import hash_of, keep_failure, make_folder_for
+    from yehu_server.rendering.build_records import hash_of, keep_failure, make_folder_for
 
     found = hash_of(task.entry.source)
     if not found or not task.key.endswith(found):
@@ -105,7 +105,7 @@ def _keep_failure(task: Task, line: Line) -> None:
 def _made(task: Task, tell: Tell) -> Done:
     from yehu_server.cli.render_one import rendered
     from yehu_server.cli.render_plot import check_plot
-    from yehu_server.render import build_records
+    from yehu_server.rendering import build_records
     from yehu_server.util.files import check_apart, check_free, check_target, make_folder, why
 
     entry, asked = task.entry, task.arguments
@@ -180,7 +180,7 @@ def _programs(arguments: argparse.Namespace) -> list[Path]:
 def _loudness(path: Path) -> float:
     import soundfile
 
-    from yehu_server.render.loudness import loudness_lufs
+    from yehu_server.rendering.loudness import loudness_lufs
 
     try:
         with path.open("rb") as data, soundfile.SoundFile(data) as file:  # of any name

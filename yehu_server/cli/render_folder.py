@@ -34,8 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Render a folder; return the exit code: 1 where some of its scores failed."""
     from yehu_server.cli.folder_records import sorted_out
     from yehu_server.cli.folder_runs import cluster_of, render_all
-    from yehu_server.render import build_records
-    from yehu_server.render.folder_tree import tree_of
+    from yehu_server.rendering import build_records
+    from yehu_server.rendering.folder_tree import tree_of
 
     [folder] = arguments.midi
     form = _check(arguments)

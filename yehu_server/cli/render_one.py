@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from yehu_server.playing.style import Style
-    from yehu_server.render.options import Options, Part
-    from yehu_server.render.summary import PartSummary, Summary
+    from yehu_server.rendering.options import Options, Part
+    from yehu_server.rendering.summary import PartSummary, Summary
     from yehu_server.scores.score import Score
 
 PHRASING = 0.5  # of files, where nothing else is asked for
@@ -57,8 +57,8 @@ def rendered(
     from yehu_server.core.physics.grid import check_rate
     from yehu_server.core.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibration import calibration_key
-    from yehu_server.render.options import Options
-    from yehu_server.render.to_files import render
+    from yehu_server.rendering.options import Options
+    from yehu_server.rendering.to_files import render
     from yehu_server.util.files import check_apart
 
     check_rate(arguments.rate)
@@ -132,7 +132,7 @@ def _format(arguments: argparse.Namespace) -> str:
     OutputError
         Where the output cannot have it.
     """
-    from yehu_server.render.pipe import check_pipe
+    from yehu_server.rendering.pipe import check_pipe
     from yehu_server.util.sound_file import format_of
 
     form = str(arguments.format or "")

@@ -20,7 +20,7 @@ CHUNK = 1 << 20
 
 def sound_target(text: str) -> Path:
     """Convert the argument of -o, which may be ``-``."""
-    from yehu_server.render.pipe import PIPE
+    from yehu_server.rendering.pipe import PIPE
 
     return PIPE if text == "-" else Path(text)
 
@@ -32,7 +32,7 @@ def score_source(text: str) -> Path | str:
 
 def is_piped(target: Path) -> bool:
     """Whether sound goes to standard output."""
-    from yehu_server.render.pipe import PIPE
+    from yehu_server.rendering.pipe import PIPE
 
     return target is PIPE
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from yehu_server.render.options import Options, Part
-    from yehu_server.render.watch import Watch
+    from yehu_server.rendering.options import Options, Part
+    from yehu_server.rendering.watch import Watch
 
 PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for
 
@@ -28,7 +28,7 @@ def check_plot(target: Path, *, overwrite: bool) -> None:
 
 def watch_of(parts: Sequence[Part], options: Options) -> Watch:
     """What gathers the picture of a rendering."""
-    from yehu_server.render.watch import Watch
+    from yehu_server.rendering.watch import Watch
 
     duration_s = max(part.score.duration_s for part in parts)
     return Watch(float(options.rate), duration_s, len(parts), options.style.a4)

@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.live.audio.recorder import SUBTYPES
-    from yehu_server.render.replay import replay
+    from yehu_server.rendering.replay import replay
     from yehu_server.scores.capture import read_capture
     from yehu_server.util.files import check_apart
     from yehu_server.util.sound_file import format_of

@@ -17,8 +17,8 @@ from yehu_server.live.audio.devices import AudioDevice
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.render.replay import Replayed
-from yehu_server.render.summary import FATE, PartSummary, Summary, counted
+from yehu_server.rendering.replay import Replayed
+from yehu_server.rendering.summary import FATE, PartSummary, Summary, counted
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from yehu_server.playing.presets import Presets
-    from yehu_server.render.options import Part
+    from yehu_server.rendering.options import Part
 
 Values = tuple[tuple[str, float], ...]  # addresses and values
 

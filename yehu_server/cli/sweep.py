@@ -154,6 +154,6 @@ def _cluster(arguments: argparse.Namespace) -> Any:
     if arguments.dask is None:
         return contextlib.nullcontext()
     from yehu_server.lab.sweeps.running import warm_up
-    from yehu_server.render.cluster import Cluster
+    from yehu_server.rendering.cluster import Cluster
 
     return Cluster(arguments.dask, warm_up, warn)

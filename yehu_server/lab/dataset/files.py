@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.sound import HOP_S, Sound
-from yehu_server.render.build_records import hash_of
+from yehu_server.rendering.build_records import hash_of
 from yehu_server.scores.gesture import CONTROLS
 
 WIDTH = 8  # digits of a number in a name

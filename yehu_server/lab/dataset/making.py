@@ -11,9 +11,9 @@ from typing import Protocol
 from yehu_server.errors import YehuError
 from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.files import Line, names_of, write_sound
-from yehu_server.render import build_records
-from yehu_server.render.build_records import write_manifest
-from yehu_server.render.workers import Event, Tell
+from yehu_server.rendering import build_records
+from yehu_server.rendering.build_records import write_manifest
+from yehu_server.rendering.workers import Event, Tell
 from yehu_server.util.files import make_folder
 
 TOGETHER = 16  # sounds that are made, and kept in the records, as one
@@ -106,7 +106,7 @@ def set_up(rate: float) -> None:
 
 
 class PerformAll(Protocol):
-    """Does all parts, such as ``render.cluster.Cluster.perform_all``."""
+    """Does all parts, such as ``rendering.cluster.Cluster.perform_all``."""
 
     def __call__(self, parts: Sequence[Part]) -> Iterable[Event]:
         """Yield what becomes of them."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from yehu_server.lab.plot import png
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.render.watch import Watch
+from yehu_server.rendering.watch import Watch
 
 RANGE_DB = 80.0
 LEVELS_DB = (-70.0, 0.0)

@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.errors import ParameterError
 from yehu_server.lab.plot.axes import axes_of
 from yehu_server.lab.plot.panels import draw_level, draw_pitch, draw_spectrogram
-from yehu_server.render.watch import TOP_HZ, Watch
+from yehu_server.rendering.watch import TOP_HZ, Watch
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,8 +14,8 @@ from yehu_server.params.table import find
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.parts import number_of_instruments
 from yehu_server.playing.section_people import part_specs
-from yehu_server.render.cores import Cores, shared
-from yehu_server.render.options import Options, Part
+from yehu_server.rendering.cores import Cores, shared
+from yehu_server.rendering.options import Options, Part
 from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
 
 END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event

@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from yehu_server.render.workers import Perform
+from yehu_server.rendering.workers import Perform
 from yehu_server.util import PACKAGE, __version__
 from yehu_server.util.source_key import key_of
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from yehu_server.playing.tuning import RangePolicy
-from yehu_server.render.performance import PartPlayer, Performance
+from yehu_server.rendering.performance import PartPlayer, Performance
 
 FATE = {
     RangePolicy.TRANSPOSE: "moved by octaves",

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any, Self
 
 from yehu_server.errors import YehuError
-from yehu_server.render import cluster_worker
-from yehu_server.render.workers import Event, Perform
+from yehu_server.rendering import cluster_worker
+from yehu_server.rendering.workers import Event, Perform
 from yehu_server.util.files import read_text, why
 
 PORT = 8786  # Dask's own choice
@@ -136,7 +136,7 @@ class Cluster:
         Parameters
         ----------
         perform : callable
-            A function of a module, as of ``render.workers.perform_all``; no progress is reported.
+            A function of a module, as of ``rendering.workers.perform_all``; its progress is lost.
         tasks : iterable
             They are taken one by one, as workers are free.
 

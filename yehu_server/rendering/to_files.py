@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.errors import OutputError
-from yehu_server.render.options import Options, Part, asked_pitch
-from yehu_server.render.performance import Performance, Samples
-from yehu_server.render.pipe import PIPE, sound_pipe
-from yehu_server.render.summary import Summary, summary_of
-from yehu_server.render.watch import Watch
+from yehu_server.rendering.options import Options, Part, asked_pitch
+from yehu_server.rendering.performance import Performance, Samples
+from yehu_server.rendering.pipe import PIPE, sound_pipe
+from yehu_server.rendering.summary import Summary, summary_of
+from yehu_server.rendering.watch import Watch
 from yehu_server.scores.score import Score
 from yehu_server.util.files import anything, why
 from yehu_server.util.sound_file import SoundWriter, check_format, sound_file

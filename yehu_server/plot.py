@@ -1,0 +1,21 @@
+"""Pictures of sounds, simulations and sweeps, for ``yehu.plot``.
+
+Each function draws into the matplotlib axes `ax`, by default the current ones, and returns them.
+It needs matplotlib: ``pip install yehu-server[plots]``.
+"""
+
+from yehu_server.lab.plot.energies import energy
+from yehu_server.lab.plot.maps import guettler, regimes, schelleng
+from yehu_server.lab.plot.shapes import strings
+from yehu_server.lab.plot.sounds import level, pitch, spectrogram
+
+__all__ = [
+    "energy",
+    "guettler",
+    "level",
+    "pitch",
+    "regimes",
+    "schelleng",
+    "spectrogram",
+    "strings",
+]

@@ -45,7 +45,7 @@ for act in (lambda: yehu.plot.level(tune), swept.to_xarray, lambda: yehu.render(
     except yehu.YehuError as error:
         print("YehuError:", str(error).replace("\\n", "NEWLINE"))
 """
-EXTRAS = ("matplotlib", "xarray", "scipy", "pyuff", "distributed", "zarr")
+EXTRAS = ("matplotlib", "xarray", "scipy", "pyuff", "distributed")
 WITHOUT = f"import sys; sys.modules.update(dict.fromkeys({EXTRAS}))\n"
 WITH = "import matplotlib; matplotlib.use('Agg'); del matplotlib\n"
 

@@ -22,16 +22,6 @@ def test_a_file_holds_all_of_a_result(tmp_path, result):
     same(Result.load(tmp_path / "mine.npz"), result)
 
 
-def test_a_zarr_store_holds_the_same(tmp_path, result):
-    pytest.importorskip("zarr")
-    result.save(tmp_path / "mine.zarr")
-    same(Result.load(tmp_path / "mine.zarr"), result)
-    result.save(tmp_path / "mine.zarr")
-    same(Result.load(tmp_path / "mine.zarr"), result)
-    with pytest.raises(ScoreError):
-        Result.load(tmp_path / "none.zarr")
-
-
 def test_a_grid_has_every_point_where_it_was_computed(result):
     grid = result.grid("pitch_hz")
     assert grid.shape == (9, 5) == result.shape

@@ -55,7 +55,7 @@ def add_to(commands: Any) -> None:
         required=True,
         type=target,
         metavar="FILE",
-        help="the result to write, .npz or .zarr",
+        help="the result to write, .npz",
     )
     parser.add_argument(
         "--vary",

@@ -4,8 +4,9 @@
 come with the extra ``yehu-server[body]``, and are loaded when they are used.
 """
 
+from yehu_server.lab.body.body_file import Fit
 from yehu_server.lab.body.curve import Curve
-from yehu_server.lab.body.fitting import Fit, fit
+from yehu_server.lab.body.fitting import fit
 from yehu_server.lab.body.measurement import Measurement, average, read
 from yehu_server.lab.body.synthetic import made_taps
 from yehu_server.lab.body.tap import Tap

@@ -1,4 +1,4 @@
-"""Body files: write a fitted body with its measurement, and read one again.
+"""A fitted body with its measurement, and body files: write one, and read it again.
 
 A body file is JSON: what `physics.quantities.read_body` reads, and beside it what was measured
 and how the fit went, which `yehu-server body show` draws.
@@ -8,24 +8,105 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from yehu_server.core.physics.quantities import Body, measured_body, read_body
+from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError, OutputError
 from yehu_server.lab.body.curve import Curve
-from yehu_server.lab.body.fitting import Differences, Fit
 from yehu_server.lab.body.measurement import Measurement
+from yehu_server.lab.body.modes import Modes
 from yehu_server.util import __version__
 from yehu_server.util.documents import parse_json, parse_toml
 from yehu_server.util.files import MAX_SETTINGS_BYTES, check_target, read_text, replacing, why
 
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Complexes = np.ndarray[Any, np.dtype[np.complex128]]
+
 FORMAT = "yehu-server body"  # in the files that `save` writes, which it may replace
 GROUP = 1.0 / 250.0  # of the frequency: lines that are kept as one
 DIGITS = 7
+
+
+@dataclass(frozen=True)
+class Differences:
+    """How far a fit is from its measurement (dB), over the band by octaves."""
+
+    rms: float
+    most: float
+    scatter: float  # rms of what the measurement itself is uncertain by
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A body that was fitted to a measurement, and how well.
+
+    Parameters
+    ----------
+    body : Body
+        What the model plays: ``Quantities(body=fit.body)``.
+    measurement : Measurement
+        Over the band of the fit.
+    band_hz : tuple of float
+        The band of the fit.
+    admittance_db, radiation_db : Differences, optional
+        Where that was measured.
+    warnings : tuple of str
+        Of the measurement and of the fit.
+    """
+
+    body: Body
+    measurement: Measurement
+    band_hz: tuple[float, float]
+    admittance_db: Differences | None
+    radiation_db: Differences | None
+    warnings: tuple[str, ...]
+
+    @property
+    def modes(self) -> Modes:
+        """The bridge modes, as arrays."""
+        return modes_of(self.body)
+
+    def admittance(self, frequency_hz: Floats) -> Complexes:
+        """Velocity per force (s/kg) of the fitted modes at frequencies [shape=(lines,)]."""
+        return self.modes.admittance(np.asarray(frequency_hz, np.float64))
+
+    def radiation(self, frequency_hz: Floats) -> Complexes:
+        """Pressure per force (Pa/N) of the fitted sections at frequencies [shape=(lines,)]."""
+        return radiation_of(self.body, np.asarray(frequency_hz, np.float64))
+
+    def save(self, target: Path, *, overwrite: bool = False) -> tuple[Path, ...]:
+        """Write an instrument file (.toml) with its body file, or a body file (.json) alone.
+
+        Returns
+        -------
+        written : tuple of Path
+
+        Raises
+        ------
+        OutputError
+            Where they cannot be written, or other files are in their place.
+        """
+        return save(self, Path(target), overwrite=overwrite)
+
+
+def modes_of(body: Body) -> Modes:
+    """The bridge modes of a body, as arrays."""
+    mass, omega = np.array(body.mass), np.array(body.omega)
+    return Modes(
+        np.array(body.frequency_hz), np.array(body.damping) / (2.0 * mass * omega), 1.0 / mass
+    )
+
+
+def radiation_of(body: Body, frequency_hz: Floats) -> Complexes:
+    """Pressure per force (Pa/N) of a body's sections at frequencies [shape=(lines,)]."""
+    sections = np.array(body.sections).reshape(-1, 4)
+    values = response(sections, np.array([body.direct_gain]), body.radiation_rate, frequency_hz)
+    return np.asarray(values)
 
 
 def save(fit: Fit, target: Path, *, overwrite: bool = False) -> tuple[Path, ...]:

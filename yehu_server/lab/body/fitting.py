@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS
-from yehu_server.core.physics.quantities import Body, check_body, measured_body
-from yehu_server.core.physics.radiation import response
+from yehu_server.core.physics.quantities import check_body, measured_body
 from yehu_server.errors import MeasurementError
+from yehu_server.lab.body.body_file import Differences, Fit
 from yehu_server.lab.body.curve import Curve, as_db
 from yehu_server.lab.body.measurement import HIGHEST_HZ, LOWEST_HZ, Measurement
 from yehu_server.lab.body.modes import Modes, Problem
@@ -19,76 +18,11 @@ from yehu_server.lab.body.search import Search
 from yehu_server.lab.body.sections import Sections, fit_sections
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
-Complexes = np.ndarray[Any, np.dtype[np.complex128]]
 
 RATE = 44100.0  # of the radiation's sections; at others the model moves them
 FLOOR = 0.005  # relative error of an admittance that does not matter: 0.04 dB
 LONGEST_S = 0.8  # for 60 dB: what rings longer is a string
 POOR_DB = 1.0
-
-
-@dataclass(frozen=True)
-class Differences:
-    """How far a fit is from its measurement (dB), over the band by octaves."""
-
-    rms: float
-    most: float
-    scatter: float  # rms of what the measurement itself is uncertain by
-
-
-@dataclass(frozen=True)
-class Fit:
-    """A body that was fitted to a measurement, and how well.
-
-    Parameters
-    ----------
-    body : Body
-        What the model plays: ``Quantities(body=fit.body)``.
-    measurement : Measurement
-        Over the band of the fit.
-    band_hz : tuple of float
-        The band of the fit.
-    admittance_db, radiation_db : Differences, optional
-        Where that was measured.
-    warnings : tuple of str
-        Of the measurement and of the fit.
-    """
-
-    body: Body
-    measurement: Measurement
-    band_hz: tuple[float, float]
-    admittance_db: Differences | None
-    radiation_db: Differences | None
-    warnings: tuple[str, ...]
-
-    @property
-    def modes(self) -> Modes:
-        """The bridge modes, as arrays."""
-        return modes_of(self.body)
-
-    def admittance(self, frequency_hz: Floats) -> Complexes:
-        """Velocity per force (s/kg) of the fitted modes at frequencies [shape=(lines,)]."""
-        return self.modes.admittance(np.asarray(frequency_hz, np.float64))
-
-    def radiation(self, frequency_hz: Floats) -> Complexes:
-        """Pressure per force (Pa/N) of the fitted sections at frequencies [shape=(lines,)]."""
-        return radiation_of(self.body, np.asarray(frequency_hz, np.float64))
-
-    def save(self, target: Path, *, overwrite: bool = False) -> tuple[Path, ...]:
-        """Write an instrument file (.toml) with its body file, or a body file (.json) alone.
-
-        Returns
-        -------
-        written : tuple of Path
-
-        Raises
-        ------
-        OutputError
-            Where they cannot be written, or other files are in their place.
-        """
-        from yehu_server.lab.body.body_file import save
-
-        return save(self, Path(target), overwrite=overwrite)
 
 
 def fit(
@@ -184,21 +118,6 @@ def differences(curve: Curve, response_at: Any) -> Differences:
     )
 
 
-def modes_of(body: Body) -> Modes:
-    """The bridge modes of a body, as arrays."""
-    mass, omega = np.array(body.mass), np.array(body.omega)
-    return Modes(
-        np.array(body.frequency_hz), np.array(body.damping) / (2.0 * mass * omega), 1.0 / mass
-    )
-
-
-def radiation_of(body: Body, frequency_hz: Floats) -> Complexes:
-    """Pressure per force (Pa/N) of a body's sections at frequencies [shape=(lines,)]."""
-    sections = np.array(body.sections).reshape(-1, 4)
-    values = response(sections, np.array([body.direct_gain]), body.radiation_rate, frequency_hz)
-    return np.asarray(values)
-
-
 def _in_band(curve: Curve | None, band: tuple[float, float], what: str) -> Curve | None:
     if curve is None:
         return None
@@ -235,14 +154,13 @@ def _doubts(modes: Modes, off: Differences) -> list[str]:
     if long.any():
         places = ", ".join(f"{hz:.0f}" for hz in modes.frequency_hz[long])
         longest_s = float(ring_s[long].max())
-        told = f"modes at {places} Hz ring for {longest_s:.1f} s"
-        told = f"modes at {places} Hz ring for {ring_s[long].max():.1f} s"
-        found.append(f"{told}, as strings that are not damped do")
+        rings = f"modes at {places} Hz ring for {longest_s:.1f} s"
+        found.append(f"{rings}, as strings that are not damped do")
     return found + _poor(off, "admittance")
 
 
 def _poor(off: Differences, what: str) -> list[str]:
     if off.rms > POOR_DB and off.rms > 2.0 * off.scatter:
-        told = f"{what}: the fit is {off.rms:.1f} dB off the measurement (rms)"
-        return [f"{told}, which itself scatters by {off.scatter:.1f} dB"]
+        is_off = f"{what}: the fit is {off.rms:.1f} dB off the measurement (rms)"
+        return [f"{is_off}, which itself scatters by {off.scatter:.1f} dB"]
     return []

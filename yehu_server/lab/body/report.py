@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from yehu_server.lab.body.fitting import Differences, Fit
+from yehu_server.lab.body.body_file import Differences, Fit
 
 
 def lines_of(fit: Fit) -> list[str]:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.lab.body.body_file import Differences, Fit
 from yehu_server.lab.body.curve import Curve, as_db
-from yehu_server.lab.body.fitting import Differences, Fit
 from yehu_server.lab.plot import png
 
 SIZE = (15.0, 9.5)  # inches

@@ -150,21 +150,14 @@ class Result:
         )
         return dataset
 
-    def save(self, target: Path, *, overwrite: bool = True) -> None:
-        """Write one file: compressed ``.npz``, or ``.zarr`` by its ending.
-
-        The same result makes the same bytes of an ``.npz``.
+    def save(self, target: Path) -> None:
+        """Write one compressed ``.npz`` file; the same result makes the same bytes.
 
         Raises
         ------
         OutputError
             Where it cannot be written.
         """
-        if target.suffix == ".zarr":
-            from yehu_server.lab.sweeps.zarr_store import save_zarr
-
-            save_zarr(self, target, overwrite=overwrite)
-            return
         with replacing(target, anything) as partial, partial.open("wb") as file:
             np.savez_compressed(file, allow_pickle=False, **self.arrays())
 
@@ -184,10 +177,6 @@ class Result:
             Where it cannot be read, or is none.
         """
         try:
-            if path.suffix == ".zarr":
-                from yehu_server.lab.sweeps.zarr_store import load_zarr
-
-                return cls.of(load_zarr(path))
             with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
                 return cls.of({name: file[name] for name in file.files})
         except OSError as error:
@@ -251,7 +240,7 @@ def check_result(target: Path) -> None:
     Raises
     ------
     OutputError
-        Where it is neither ``.npz`` nor ``.zarr``.
+        Where it is not ``.npz``.
     """
-    if target.suffix not in {".npz", ".zarr"}:
-        raise OutputError(f"{target}: name a file that ends in .npz, or in .zarr")
+    if target.suffix != ".npz":
+        raise OutputError(f"{target}: name a file that ends in .npz")

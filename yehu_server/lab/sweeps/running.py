@@ -91,7 +91,7 @@ def sweep_to(
     try:
         run_levels(study, journal.done, journal.add, workers, cluster, progress)
         result = result_of(study, *journal.done())
-        result.save(target, overwrite=overwrite)
+        result.save(target)
         journal.close(remove=True)
     except KeyboardInterrupt:
         kept = f"{journal.count} strokes are in {journal_of(target)}; the same command goes on"
@@ -111,8 +111,7 @@ def check_free_result(target: Path, *, overwrite: bool = False) -> None:
         Where it may not.
     """
     check_result(target)
-    if target.suffix == ".npz":
-        check_target(target)
+    check_target(target)
     if target.exists() and not overwrite:
         raise OutputError(f"{target}: exists; --overwrite replaces it")
 

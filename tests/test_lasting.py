@@ -9,7 +9,7 @@ import threading
 import pytest
 
 from yehu_server.util import retry
-from yehu_server.util.retry import LONGEST_TURN_S, AwakeTime, Backoff, keep_on, why
+from yehu_server.util.retry import LONGEST_TURN_S, AwakeTime, Backoff, run_forever, why
 
 TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE), "/somewhere")
 
@@ -62,14 +62,14 @@ class Work:
 )
 def test_work_outlasts_errors_and_says_so_once(monkeypatch, error):
     work = Work(monkeypatch, None, error, error, error)
-    keep_on(work.turn, work.ending, 0.0, "work", work.tell)
+    run_forever(work.turn, work.ending, 0.0, "work", work.tell)
     assert work.turns == 5
     assert work.said == [f"work: {why(error)}; trying again"]
 
 
 def test_work_says_so_again_when_all_was_well_in_between(monkeypatch):
     work = Work(monkeypatch, TOO_MANY, None, TOO_MANY)
-    keep_on(work.turn, work.ending, 0.0, "work", work.tell)
+    run_forever(work.turn, work.ending, 0.0, "work", work.tell)
     assert len(work.said) == 2
 
 
@@ -78,7 +78,7 @@ def test_work_outlasts_that_nobody_can_be_told(monkeypatch):
         raise MemoryError
 
     work = Work(monkeypatch, TOO_MANY, TOO_MANY)
-    keep_on(work.turn, work.ending, 0.0, "work", fail)
+    run_forever(work.turn, work.ending, 0.0, "work", fail)
     assert work.turns == 3
 
 

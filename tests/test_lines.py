@@ -141,7 +141,7 @@ def test_serve_tells_what_is_no_news_to_a_player_only_where_it_is_asked_to(
         pages=None,
         start=lambda: None,
         stop=lambda: None,
-        kept_all=True,
+        is_whole=True,
     )
     monkeypatch.setattr("yehu_server.live.server.Server", lambda *_: server)
     arguments = _parser().parse_args(["serve", "--duration", "0", *words])

@@ -29,9 +29,9 @@ CAPTURE = """
 import sys
 from pathlib import Path
 from powers import cube
-from yehu_server.bitcode.capture import capturing
-from yehu_server.bitcode.shipped import write_shipped
-from yehu_server.jit import source_hash
+from yehu_server.compile.bitcode.capture import capturing
+from yehu_server.compile.bitcode.shipped import write_shipped
+from yehu_server.compile.jit import source_hash
 with capturing() as capture:
     cube().capture(capture)
 write_shipped(Path(sys.argv[1]), capture.shipped(), source_hash())

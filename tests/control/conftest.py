@@ -84,8 +84,8 @@ def still_time(monkeypatch) -> StillTime:
 # ---------------------------------------------------------------- a stage on the manual clock
 
 
-class Desk:
-    """A desk that records its calls."""
+class Services:
+    """A services that records its calls."""
 
     def __init__(self) -> None:
         self.names: list[str] = []
@@ -99,16 +99,16 @@ class Desk:
     def part_status(self, part: int) -> dict[str, float]:
         return dict.fromkeys((value.name for value in PART_STATUS), float(part))
 
-    def soon(self, action: Callable[[], None]) -> None:
+    def call_soon(self, action: Callable[[], None]) -> None:
         action()
 
-    def aside(self, action: Callable[[], None]) -> None:
+    def run_in_background(self, action: Callable[[], None]) -> None:
         action()
 
     def tree_changed(self, path: str) -> None:
         self.changed.append(path)
 
-    def say(self, line: str) -> None:
+    def log(self, line: str) -> None:
         self.said.append(line)
 
     def start_recording(self, name: str) -> str:
@@ -141,8 +141,8 @@ class Stage:
             self.instrument, style, delay_ms=1e3 * block / self.RATE + 1.0
         )
         self.player.write("/playing/variation", 0.0, frame=0)
-        self.desk = Desk()
-        self.handler = handler.OscHandler([self.player], self.desk)
+        self.services = Services()
+        self.handler = handler.OscHandler([self.player], self.services)
         self.ear = Ear()
         self.events: list[tuple[int, str, float]] = []
 

@@ -16,7 +16,7 @@ from yehu_server.live.osc.clients import (
     SLICE_S,
     Clients,
 )
-from yehu_server.live.osc.subscriptions import MOST_TOLD
+from yehu_server.live.osc.subscriptions import MOST_SENT
 
 
 class Values:
@@ -59,10 +59,10 @@ def told(ear) -> list[tuple[str, list[float]]]:
 def test_another_server_that_tells_us_its_values_is_not_answered_for_as_long(
     clients, values, play, ear
 ):
-    clients.hush(ear, 0.5)
+    clients.mute(ear, 0.5)
     for _ in range(4):
         clients.echo(ear, ["/a"])
-        clients.complain(ear, "/x", "unknown")
+        clients.send_error(ear, "/x", "unknown")
         play(100)
     assert told(ear) == []
     clients.subscribe(ear, 10.0)  # it still gets what it asks for
@@ -116,14 +116,14 @@ def test_many_who_set_something_at_once_are_all_told(clients, play):
     for ear in ears:
         clients.echo(ear, ["/a"])
     play(17)
-    assert sum(len(ear.packets) for ear in ears) in (MOST_TOLD, 2 * MOST_TOLD)
+    assert sum(len(ear.packets) for ear in ears) in (MOST_SENT, 2 * MOST_SENT)
     play(60)
     assert {len(ear.packets) for ear in ears} == {1}
 
 
 def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, values, play):
     ears = [Ear(port) for port in range(40)]
-    values.now = {f"/{number}": 0.0 for number in range(MOST_TOLD // 10)}
+    values.now = {f"/{number}": 0.0 for number in range(MOST_SENT // 10)}
     for ear in ears:
         assert clients.subscribe(ear, 60.0)
     play(1000)
@@ -135,7 +135,7 @@ def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, val
 
     play(1000, turn)
     counts = [len(ear.packets) for ear in ears]
-    assert sum(counts) <= 61 * MOST_TOLD
+    assert sum(counts) <= 61 * MOST_SENT
     assert min(counts) > 0.8 * max(counts)
 
 
@@ -164,7 +164,7 @@ def test_who_takes_no_more_for_long_is_not_forgotten(clients, play, ear):
 
 def test_only_so_many_are_remembered(clients):
     for port in range(5 * MOST_KNOWN):
-        clients.complain(Ear(port), "/x", "no")
+        clients.send_error(Ear(port), "/x", "no")
         assert len(clients._clients) <= MOST_KNOWN
 
 
@@ -276,7 +276,7 @@ def test_subscribers_are_not_forgotten_for_the_many_who_pass_by(clients, values,
     play(20)
     ear.heard()
     for port in range(2, 3 * MOST_KNOWN):
-        clients.complain(Ear(port), "/x", "no")
+        clients.send_error(Ear(port), "/x", "no")
     values.now["/a"] = 1.0
     play(20)
     assert told(ear) == [("/yehu/a", [1.0])]
@@ -302,21 +302,21 @@ def test_a_peer_that_is_gone_when_it_is_told_leaves_the_others_in_peace(
 
 
 def test_errors_are_told_with_address_and_reason(clients, ear):
-    clients.complain(ear, "/yehu/nothing", "it is not there")
+    clients.send_error(ear, "/yehu/nothing", "it is not there")
     assert told(ear) == [("/yehu/error", ["/yehu/nothing", "it is not there"])]
 
 
 def test_errors_are_told_rarely_to_who_makes_many(clients, play, ear):
     patient = Ear(2)
-    play(10_000, lambda: clients.complain(ear, "/x", "no"))
+    play(10_000, lambda: clients.send_error(ear, "/x", "no"))
     assert 100 <= len(ear.packets) <= 125
     assert clients.errors_sent == len(ear.packets)
     assert clients.errors_sent + clients.errors_withheld == 10_000
-    clients.complain(patient, "/x", "no")
+    clients.send_error(patient, "/x", "no")
     assert len(patient.packets) == 1  # others need not wait
     ear.heard()
     play(5000)
-    clients.complain(ear, "/x", "no")
+    clients.send_error(ear, "/x", "no")
     assert len(ear.packets) == 1
 
 
@@ -471,7 +471,7 @@ def test_who_has_nothing_to_hear_is_forgotten(clients, play, ear):
     clients.subscribe(Ear(2), 1.0)
     clients.listen(Ear(3), "/a")
     clients.echo(ear, ["/a"])
-    clients.complain(Ear(4), "/x", "why")
+    clients.send_error(Ear(4), "/x", "why")
     play(20)
     assert len(clients._clients) == 4
     play(4000)

@@ -37,8 +37,8 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(stage, address):
     (learned,) = told(stage.ear.heard(), "/learned")
     assert learned[:2] == ["/yehu/playing/vibrato", "cc 20"]
     assert learned[2].endswith("keyboard.toml")
-    assert stage.desk.changed == ["/"]
-    assert "cc 20 moves /playing/vibrato" in stage.desk.said[0]
+    assert stage.services.changed == ["/"]
+    assert "cc 20 moves /playing/vibrato" in stage.services.said[0]
     turn(stage, 20, 127)
     assert stage.value("/playing/vibrato") == 100.0
     turn(stage, 21, 0, 127)  # only one thing is learned
@@ -48,7 +48,7 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(stage, address):
 
 def test_the_file_is_written_aside_so_that_a_slow_disk_holds_up_nothing(stage, monkeypatch):
     waiting = []
-    monkeypatch.setattr(stage.desk, "aside", waiting.append)
+    monkeypatch.setattr(stage.services, "run_in_background", waiting.append)
     stage.ask("/learn", "/playing/vibrato")
     turn(stage, 20, 10, 20, 64)
     assert told(stage.ear.heard(), "/learned") == []

@@ -13,8 +13,8 @@ from yehu_server.live.osc import handler
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.status import STATUS
-from yehu_server.live.part_addresses import OF_PARTS
-from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Told, find, is_listenable, tree
+from yehu_server.live.part_addresses import OF_PARTS, group
+from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_listenable, node_at
 from yehu_server.params.preset import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learn as learned
@@ -38,7 +38,7 @@ def players(stage) -> list[LivePlayer]:
         instrument.frame_at = stage.instrument.frame_at
         stage.others.append(instrument)
         more.append(LivePlayer(instrument, Style(), delay_ms=3.0, part=part))
-    stage.handler = handler.OscHandler([stage.player, *more], stage.desk)
+    stage.handler = handler.OscHandler([stage.player, *more], stage.services)
     return [stage.player, *more]
 
 
@@ -180,7 +180,7 @@ def test_a_part_has_a_status(stage):
     heard = stage.ask("/part/3/status")
     assert [one.address for one in heard] == [f"/yehu/part/3/status/{name}" for name in names]
     heard = stage.ask("/get", "/yehu/part/2/status/keys")
-    assert [one.arguments for one in heard] == [[1.0]]  # the desk of the tests tells the part
+    assert [one.arguments for one in heard] == [[1.0]]  # the services of the tests tells the part
     stage.ask("/part/2/subscribe/status", 60.0)
     (error,) = errors(stage.ask("/part/2/status/keys", 1.0))
     assert "cannot be set" in error
@@ -317,8 +317,9 @@ def test_a_panic_drops_what_waits_for_its_part(stage, players, wire, panic, kept
 def test_the_tree_has_each_part_with_all_that_is_its_own(stage, players):
     states = {row.name: 0.0 for row in STATUS}
     own = {row.name: 0.0 for row in PART_STATUS}
-    told = [Told(player.values(), own) for player in players]
-    root = tree(Told(players[0].values(), states), parts=told)
+    told = {group(n): Snapshot(player.values(), own) for n, player in enumerate(players)}
+    told[""] = Snapshot(players[0].values(), states)
+    root = node_at("/", told.__getitem__, len(players))
     part = find(root, "/yehu/part/2")
     assert part["DESCRIPTION"].startswith("Part 2")
     with_value = {path for path, node in walk(part) if "VALUE" in node}

@@ -9,7 +9,7 @@ import pytest
 from wire import Ear
 
 from yehu_server.live.osc import preset_calls
-from yehu_server.live.osc.preset_calls import SAVES_A_SECOND, SAVES_AT_ONCE
+from yehu_server.live.osc.context import SAVES_A_SECOND, SAVES_AT_ONCE
 from yehu_server.params.preset import POSSIBLE
 from yehu_server.playing.presets import Presets
 

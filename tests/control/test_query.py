@@ -14,7 +14,7 @@ from web_client import walk
 from yehu_server.live.osc.calls import CALLS, Argument, Call
 from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
-from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Told, find, tree
+from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Snapshot, find, node_at
 from yehu_server.params.table import TABLE
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -28,9 +28,13 @@ PROPOSED = {
 }  # fmt: skip
 
 
+def tree(snapshot, more_calls=()):
+    return node_at("/", lambda _group: snapshot, more_calls=more_calls)
+
+
 @pytest.fixture(scope="module")
 def root():
-    return tree(Told(VALUES, STANDING))
+    return tree(Snapshot(VALUES, STANDING))
 
 
 def test_each_node_is_where_it_says_it_is(root):
@@ -62,7 +66,7 @@ def test_every_parameter_is_described_as_the_table_has_it(root, param):
 
 def test_every_value_that_is_set_over_osc_is_read(stage):
     def read(path):
-        return find(tree(Told(stage.player.values(), STANDING)), path)["VALUE"]
+        return find(tree(Snapshot(stage.player.values(), STANDING)), path)["VALUE"]
 
     for param in TABLE:
         if param.address == "/playing/section":  # which has as many as there are
@@ -130,17 +134,17 @@ def test_an_argument_has_its_own_range(root):
 def test_calls_may_come_from_elsewhere():
     words = Argument("name", "s", choices=("wind", "mpe"))
     more = [Call("/yehu/elsewhere/load", "Loads one.", (words,)), Call("/my/own", "Anything.")]
-    root = tree(Told(VALUES, STANDING), more)
+    root = tree(Snapshot(VALUES, STANDING), more)
     node = find(root, "/yehu/elsewhere/load")
     assert (node["ACCESS"], node["TYPE"]) == (2, "s")
     assert node["RANGE"] == [{"VALS": ["wind", "mpe"]}]
     assert find(root, "/my/own")["TYPE"] == "N"
     assert find(root, "/yehu/elsewhere")["ACCESS"] == 0
-    assert find(tree(Told(VALUES, STANDING)), "/yehu/elsewhere") is None
+    assert find(tree(Snapshot(VALUES, STANDING)), "/yehu/elsewhere") is None
 
 
 def test_a_number_that_json_cannot_say_is_null():
-    root = tree(Told(VALUES, STANDING | {"load": math.nan}))
+    root = tree(Snapshot(VALUES, STANDING | {"load": math.nan}))
     assert find(root, "/yehu/status/load")["VALUE"] == [None]
     json.dumps(root, allow_nan=False)
 
@@ -149,7 +153,7 @@ def test_long_counts_go_as_floats():
     assert as_argument(INT_MAX) == INT_MAX
     long = as_argument(INT_MAX + 1)
     assert isinstance(long, float)
-    root = tree(Told(VALUES, STANDING | {"frame": INT_MAX + 1, "underruns": 3}))
+    root = tree(Snapshot(VALUES, STANDING | {"frame": INT_MAX + 1, "underruns": 3}))
     assert find(root, "/yehu/status/frame")["TYPE"] == "f"
     assert find(root, "/yehu/status/underruns")["TYPE"] == "i"
 
@@ -162,7 +166,7 @@ def test_the_documentation_has_the_status_table():
     assert f"| of a part | what |\n|---|---|\n{rows}\n" in text
 
 
-@pytest.mark.parametrize("module", ["yehu_server.cli", "yehu_server.render"])
+@pytest.mark.parametrize("module", ["yehu_server.cli", "yehu_server.rendering.to_files"])
 def test_only_a_server_loads_what_the_web_needs(module):
     code = f"import sys, {module}; print(*sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

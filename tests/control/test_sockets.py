@@ -32,7 +32,7 @@ SETTLE_S = 0.05
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells")
 
 
-class Keeper:
+class Housekeeper:
     """Keeps the packets that come, unless it is held up."""
 
     def __init__(self) -> None:
@@ -83,7 +83,7 @@ class Keeper:
 
 @pytest.fixture
 def keeper():
-    return Keeper()
+    return Housekeeper()
 
 
 @pytest.fixture

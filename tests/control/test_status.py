@@ -41,7 +41,7 @@ def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(st
     assert set(heard) == {f"/yehu/status/{value.name}" for value in STATUS}
     stage.pass_time(0.5)
     assert stage.ear.heard() == []
-    stage.desk.names.append("take")
+    stage.services.names.append("take")
     stage.tell("/playing/vibrato", 5.0)  # which it did not subscribe to
     stage.pass_time(0.3)
     heard = values(stage.ear.heard())
@@ -49,7 +49,7 @@ def test_who_subscribes_to_the_status_is_told_it_at_once_and_then_each_change(st
     assert heard == {"/yehu/status/recording": "take"}
     assert stage.handler.clients.subscribers == 1
     stage.pass_time(2.0)
-    stage.desk.names.append("another")
+    stage.services.names.append("another")
     stage.pass_time(0.5)
     assert stage.ear.heard() == []
     assert stage.handler.clients.subscribers == 0
@@ -59,13 +59,13 @@ def test_who_subscribes_to_both_is_told_of_both_until_it_unsubscribes(stage):
     stage.ask("/subscribe", 60.0)
     stage.ask("/subscribe/status", 60.0)
     stage.player.write("/playing/attack", 50.0, frame=0)
-    stage.desk.names.append("take")
+    stage.services.names.append("take")
     stage.pass_time(0.3)
     heard = values(stage.ear.heard())
     assert heard == {"/yehu/playing/attack": 50.0, "/yehu/status/recording": "take"}
     stage.ask("/unsubscribe")
     stage.player.write("/playing/attack", 60.0, frame=0)
-    stage.desk.names.append("another")
+    stage.services.names.append("another")
     stage.pass_time(0.5)
     assert stage.ear.heard() == []
 

@@ -43,7 +43,7 @@ def test_no_client_ends_what_the_command_records(make_hall, tmp_path):
     assert len(some) >= 9600
     assert some.any()
     assert some.tobytes() in whole.tobytes()
-    assert hall.server.kept_all
+    assert hall.server.is_whole
 
 
 def test_a_recording_is_not_begun_on_a_full_disk(hall, disk):
@@ -90,7 +90,7 @@ def test_a_full_disk_keeps_take_and_capture_as_far_as_they_got(
     patience(lambda: any("capture ended" in line for line in hall.said), "no room for wishes")
     disk(resource.RLIM_INFINITY)
     hall.end()
-    assert not hall.server.kept_all
+    assert not hall.server.is_whole
     assert soundfile.info(take).frames == (100_000 - 58) // 8
     assert capture.read_bytes().endswith(b"]\n")
     assert len(read_capture(capture).wishes) > 0
@@ -134,7 +134,7 @@ def test_a_server_told_to_stop_again_leaves_what_it_has_kept(make_hall, tmp_path
     kept = take.read_bytes(), capture.read_bytes(), list(hall.said)
     hall.end()
     assert (take.read_bytes(), capture.read_bytes(), hall.said) == kept
-    assert hall.server.kept_all
+    assert hall.server.is_whole
 
 
 def test_who_is_in_a_hurry_does_not_wait_for_what_fades(make_hall, tmp_path):

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from yehu_server.live import housekeeper
-from yehu_server.live.housekeeper import Troubles
+from yehu_server.live.housekeeper import CounterReport
 
 DROPS, LOSSES = "packets were dropped", "the state was lost"
 
@@ -21,7 +21,7 @@ def clock(monkeypatch):
 
 def test_a_flood_of_one_trouble_is_a_line_at_once_and_one_every_ten_seconds(clock):
     said = []
-    seen = Troubles(said.append)
+    seen = CounterReport(said.append)
     for count in range(1, 501):  # 25 seconds
         seen.look({DROPS: count, LOSSES: 0})
         clock.now += 0.05
@@ -31,7 +31,7 @@ def test_a_flood_of_one_trouble_is_a_line_at_once_and_one_every_ten_seconds(cloc
 
 def test_what_came_in_between_is_told_when_the_flood_is_over(clock):
     said = []
-    seen = Troubles(said.append)
+    seen = CounterReport(said.append)
     for count in (1, 7, 7):
         seen.look({DROPS: count})
         clock.now += 6.0
@@ -40,7 +40,7 @@ def test_what_came_in_between_is_told_when_the_flood_is_over(clock):
 
 def test_a_flood_of_one_trouble_hides_no_other(clock):
     said = []
-    seen = Troubles(said.append)
+    seen = CounterReport(said.append)
     for count in range(1, 11):
         seen.look({DROPS: count, LOSSES: count // 10})
         clock.now += 0.05

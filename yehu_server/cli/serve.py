@@ -153,7 +153,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
             _wait(ending.asked, arguments.duration)
     finally:
         server.stop()
-    return 0 if server.kept_all else 2
+    return 0 if server.is_whole else 2
 
 
 def _tell_of_page(

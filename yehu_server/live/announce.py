@@ -57,13 +57,13 @@ class Announcer:
 
     Parameters
     ----------
-    said : callable
+    on_message : callable
         Called with a line that tells the name they are announced by, or why they are not.
     """
 
-    def __init__(self, services: Sequence[Service], said: Callable[[str], None]) -> None:
+    def __init__(self, services: Sequence[Service], on_message: Callable[[str], None]) -> None:
         self._services = services
-        self._said = said
+        self._on_message = on_message
         patience = Backoff(AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S)
         self._thread = LoopThread(self._announce, "zeroconf", self._not_announced, patience)
 
@@ -81,7 +81,7 @@ class Announcer:
 
         hosts = sorted({service.host for service in self._services})
         if any(ipaddress.ip_address(host).is_unspecified for host in hosts):
-            self._said("not announced: this machine has no network")
+            self._on_message("not announced: this machine has no network")
             return
         found = AsyncZeroconf(interfaces=hosts)
         host = socket.gethostname().partition(".")[0]
@@ -103,7 +103,7 @@ class Announcer:
             for info in infos:
                 await (await found.async_register_service(info, allow_name_change=True))
             names = {info.name.removesuffix(f".{info.type}") for info in infos}
-            self._said(f"announced as {' and '.join(sorted(names))}")
+            self._on_message(f"announced as {' and '.join(sorted(names))}")
             await asyncio.Event().wait()
         finally:
             with contextlib.suppress(zeroconf.Error):
@@ -111,4 +111,4 @@ class Announcer:
             await found.async_close()
 
     def _not_announced(self, error: BaseException) -> None:
-        self._said(f"not announced: {str(error) or type(error).__name__}")
+        self._on_message(f"not announced: {str(error) or type(error).__name__}")

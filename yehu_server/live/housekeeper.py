@@ -1,7 +1,7 @@
 """What a server does beside playing, some times a second, in a thread of its own.
 
 The delay follows the device's period, the capture is written, mappings are read again, and what
-goes wrong is told.
+goes wrong is reported.
 """
 
 from __future__ import annotations
@@ -14,31 +14,31 @@ from functools import partial
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import MappingError
-from yehu_server.live.osc.limits import Allowance
+from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.playing.delay import Delay
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.mapping_watch import MappingWatch
 from yehu_server.scores.capture_writer import LiveCapture
-from yehu_server.util.retry import keep_on
+from yehu_server.util.retry import run_forever
 
-LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each trouble
+LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each count
 
 
-class Troubles:
+class CounterReport:
     """Reports counts that grow: at once, and then at most every ten seconds.
 
     Parameters
     ----------
-    said : callable
+    on_message : callable
         Called with each line.
     """
 
-    def __init__(self, said: Callable[[str], None]) -> None:
-        self._said = said
-        self._told: dict[str, int] = {}
-        self._allowances: dict[str, Allowance] = defaultdict(
-            partial(Allowance, LINES_PER_S, LINES_AT_ONCE)
+    def __init__(self, on_message: Callable[[str], None]) -> None:
+        self._on_message = on_message
+        self._reported: dict[str, int] = {}
+        self._buckets: dict[str, TokenBucket] = defaultdict(
+            partial(TokenBucket, LINES_PER_S, LINES_AT_ONCE)
         )
 
     def look(self, counts: Mapping[str, int]) -> None:
@@ -51,9 +51,9 @@ class Troubles:
         """
         now = time.monotonic()
         for what, count in counts.items():
-            if count > self._told.get(what, 0) and self._allowances[what].takes(now):
-                self._told[what] = count
-                self._said(f"{what} ({count} so far)")
+            if count > self._reported.get(what, 0) and self._buckets[what].takes(now):
+                self._reported[what] = count
+                self._on_message(f"{what} ({count} so far)")
 
 
 LOOK_EVERY_S = 0.5
@@ -66,9 +66,9 @@ class MappingFollower:
     ----------
     reread : callable
         Reads the files. Raises MappingError.
-    changed : callable
+    on_change : callable
         Called when the player has got a new mapping.
-    said : callable
+    on_message : callable
         Called with a line about each change, and about what is wrong with the files.
     """
 
@@ -76,13 +76,13 @@ class MappingFollower:
         self,
         player: LivePlayer,
         reread: Callable[[], ControllerMapping],
-        changed: Callable[[], None],
-        said: Callable[[str], None],
+        on_change: Callable[[], None],
+        on_message: Callable[[str], None],
     ) -> None:
         self._player = player
         self._watch = MappingWatch(player.mapping, reread)
-        self._changed = changed
-        self._said = said
+        self._on_change = on_change
+        self._on_message = on_message
         self._next_look = 0.0  # monotonic s
 
     def look(self) -> None:
@@ -93,26 +93,26 @@ class MappingFollower:
         try:
             mapping = self._watch.look()
         except MappingError as error:
-            self._said(f"{error}; the mapping stays as it was")
+            self._on_message(f"{error}; the mapping stays as it was")
             return
         if mapping is not None:
             self._player.remap(mapping, frame=self._player.frame_of())
-            self._changed()
-            self._said(f"the mapping {mapping.name} has changed; it is used from now on")
+            self._on_change()
+            self._on_message(f"the mapping {mapping.name} has changed; it is used from now on")
 
 
-KEEP_EVERY_S = 0.05
+TURN_EVERY_S = 0.05
 PROGRAMS_EVERY_S = 1.0  # between looks whether files of presets changed
 
 
-class Keeper:
+class Housekeeper:
     """Keeps a server's delay, capture, mappings and programs up to date, from `start` to `stop`.
 
     Parameters
     ----------
     osc_drops : callable
         Returns the number of OSC packets that the system dropped.
-    said : callable
+    on_message : callable
         Called with a line for the player.
 
     Attributes
@@ -128,7 +128,7 @@ class Keeper:
         delay: Delay,
         followers: Sequence[MappingFollower],
         osc_drops: Callable[[], int],
-        said: Callable[[str], None],
+        on_message: Callable[[str], None],
     ) -> None:
         self.capture: LiveCapture | None = None
         self._ensemble = ensemble
@@ -136,11 +136,13 @@ class Keeper:
         self._delay = delay
         self._followers = followers
         self._osc_drops = osc_drops
-        self._troubles = Troubles(said)
+        self._counters = CounterReport(on_message)
         self._ending = threading.Event()
         self._next_programs = 0.0  # monotonic s
-        keep = (self._keep_up, self._ending, KEEP_EVERY_S, "beside playing", said)
-        self._thread = threading.Thread(target=keep_on, args=keep, name="keeper", daemon=True)
+        turns = (self._turn, self._ending, TURN_EVERY_S, "beside playing", on_message)
+        self._thread = threading.Thread(
+            target=run_forever, args=turns, name="housekeeper", daemon=True
+        )
 
     def start(self) -> None:
         """Start the thread."""
@@ -159,17 +161,17 @@ class Keeper:
             self.capture.close()
 
     @property
-    def kept_all(self) -> bool:
+    def is_whole(self) -> bool:
         """Whether nothing is missing in the capture."""
         return self.capture is None or self.capture.is_whole
 
-    def _keep_up(self) -> None:
+    def _turn(self) -> None:
         self._delay.look()
         for player in self._players:
             player.delay = self._delay.frames  # as the device's period requires
         if self.capture is not None:
             self.capture.keep_up()
-        self._troubles.look(
+        self._counters.look(
             {
                 "the model lost its state and was put back to rest": self._ensemble.lost_states,
                 "events were dropped, as the ring was full": sum(

@@ -19,14 +19,14 @@ from yehu_server.errors import YehuError
 from yehu_server.live.announce import Announcer, announced
 from yehu_server.live.audio.output import Output
 from yehu_server.live.audio.takes import Takes
-from yehu_server.live.housekeeper import Keeper, MappingFollower
+from yehu_server.live.housekeeper import Housekeeper, MappingFollower
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.calls import more_calls
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.sockets import OscPorts
 from yehu_server.live.page.pages import Pages
-from yehu_server.live.services import ServerDesk
+from yehu_server.live.services import Services
 from yehu_server.live.web.server import Sources, WebServer
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.calibrations import calibration_for
@@ -47,7 +47,7 @@ class Server:
 
     Parameters
     ----------
-    said : callable
+    on_message : callable
         Called with a line for the player: about devices that appear or disappear, and troubles.
     progress : callable, optional
         Called with the number of notes done and of all, while the instrument is calibrated.
@@ -65,7 +65,7 @@ class Server:
     def __init__(
         self,
         options: ServeOptions,
-        said: Callable[[str], None] = log.info,
+        on_message: Callable[[str], None] = log.info,
         progress: Progress | None = None,
     ) -> None:
         if IS_PLAIN:
@@ -74,12 +74,11 @@ class Server:
             check_target(target)
             check_free(target, anything if options.overwrite else nothing)
         self.options = options
-        self._said = said
-        self.desk = ServerDesk(self, said)
+        self._on_message = on_message
         with contextlib.ExitStack() as undo:
             styles = seated([part.style for part in options.parts])
             number = number_of_instruments(styles)
-            self.output = Output(replace(options.output, parts=number), said)
+            self.output = Output(replace(options.output, parts=number), on_message)
             undo.callback(self.output.end)
             warm_up()  # meanwhile the device is looked for
             rate = self.output.find()
@@ -96,7 +95,15 @@ class Server:
             )
             self.players = tuple(part.player for part in self.parts)
             self.player.presets.all()  # read now, so that listing them is quick later
-            self.handler = OscHandler(self.players, self.desk)
+            self.services = Services(
+                self.parts,
+                self.ensemble,
+                self.delay,
+                self.output,
+                options.output.blocksize,
+                on_message,
+            )
+            self.handler = OscHandler(self.players, self.services)
             self.osc = OscPorts(*options.osc, options.allowed, self.handler)
             undo.callback(self.osc.stop)
             self.pages = self._pages()
@@ -110,16 +117,22 @@ class Server:
                 for address, value in style.settings:
                     player.hold(address, value)
             undo.pop_all()
-        self.takes = Takes(self.ensemble, options.recordings, said)
+        self.takes = Takes(self.ensemble, options.recordings, on_message)
+        self.services.handler, self.services.osc, self.services.takes = (
+            self.handler,
+            self.osc,
+            self.takes,
+        )
         self.is_interruptible = False  # whether `stop` may be interrupted by an exception now
         self.midi = self._midi()
+        self.services.web, self.services.midi = self.web, self.midi
         services = announced(self.osc, self.web, options.announce)
-        self._announcer = Announcer(services, said) if services else None
-        self._ways_in: list[OscPorts | WebServer | Announcer | MidiPorts | Pages] = [self.osc]
+        self._announcer = Announcer(services, on_message) if services else None
+        self._inputs: list[OscPorts | WebServer | Announcer | MidiPorts | Pages] = [self.osc]
         others = (self.web, self._announcer, self.midi, self.pages)
-        self._ways_in += [way for way in others if way is not None]
+        self._inputs += [way for way in others if way is not None]
         self._hurry = threading.Event()
-        self._keeper = self._make_keeper()
+        self._housekeeper = self._make_housekeeper()
 
     @property
     def player(self) -> LivePlayer:
@@ -131,20 +144,20 @@ class Server:
         """The first instrument, whose parameters are those that all share."""
         return self.ensemble.first
 
-    def _make_keeper(self) -> Keeper:
-        changed = partial(self.desk.tree_changed, "/")
+    def _make_housekeeper(self) -> Housekeeper:
+        on_change = partial(self.services.tree_changed, "/")
         followers = [
-            MappingFollower(player, part.reread, changed, self._said)
+            MappingFollower(player, part.reread, on_change, self._on_message)
             for player, part in zip(self.players, self.options.parts, strict=True)
             if part.reread is not None
         ]
-        return Keeper(
+        return Housekeeper(
             self.ensemble,
             self.players,
             self.delay,
             followers,
             lambda: self.osc.traffic.kernel_drops,
-            self._said,
+            self._on_message,
         )
 
     def _pages(self) -> Pages | None:
@@ -152,14 +165,19 @@ class Server:
             return None
         memory = self.output.memory.descriptor
         return Pages(
-            self.players, self.options.page, memory, self.desk.for_pages, self._said, self._rigs
+            self.players,
+            self.options.page,
+            memory,
+            self.services.sound,
+            self._on_message,
+            self._rigs,
         )
 
     def _midi(self) -> MidiPorts | None:
         if not self.options.midi:
             return None
         memory = self.output.memory.descriptor
-        return MidiPorts(self.players, self.options.midi, memory, self._rigs, self._said)
+        return MidiPorts(self.players, self.options.midi, memory, self._rigs, self._on_message)
 
     @property
     def _rigs(self) -> list[int]:
@@ -170,9 +188,8 @@ class Server:
         if self.options.http is None:
             return None
         sources = Sources(
-            self.desk.told,
+            self.services.snapshot,
             shipped_folder("mappings"),
-            self.desk.told_of_parts if len(self.parts) > 1 else tuple,
             len(self.parts),
             lambda: more_calls(self.players),
             lambda: None if self.pages is None else self.pages.port,
@@ -198,39 +215,39 @@ class Server:
         gc.collect()
         gc.freeze()  # later collections skip all objects of now, which stay
         with contextlib.ExitStack() as undo:
-            undo.callback(self._close_ways_in)
+            undo.callback(self._close_inputs)
             undo.callback(self.output.end)
             self.output.begin(self.ensemble)
             if self.options.capture is not None:
-                self._keeper.capture = LiveCapture(
+                self._housekeeper.capture = LiveCapture(
                     self.ensemble,
                     self.options.capture,
-                    self._said,
+                    self._on_message,
                     has_room=self.options.has_room,
                     overwrite=self.options.overwrite,
                 )
-                undo.callback(self._keeper.capture.discard)
+                undo.callback(self._housekeeper.capture.discard)
             if self.options.record is not None:
                 self.takes.record_everything(self.options.record, overwrite=self.options.overwrite)
             undo.pop_all()
-        for way in self._ways_in:
+        for way in self._inputs:
             way.start()
-        self._keeper.start()
+        self._housekeeper.start()
 
     def stop(self) -> None:
         """End all notes, wait until they have faded, and close everything.
 
         Recording and capture are closed whatever else fails. Called again, it does nothing.
         """
-        if self._keeper.is_ended:
+        if self._housekeeper.is_ended:
             return
         try:
             self.is_interruptible = True
             self._end_playing()
         finally:
             self.is_interruptible = False
-            self._keeper.stop()
-            self.desk.close()
+            self._housekeeper.stop()
+            self.services.close()
             self.takes.close()
 
     def hurry(self) -> None:
@@ -238,16 +255,16 @@ class Server:
         self._hurry.set()
 
     @property
-    def kept_all(self) -> bool:
+    def is_whole(self) -> bool:
         """Whether nothing is missing in the command's recording and capture."""
-        return self.takes.is_whole and self._keeper.kept_all
+        return self.takes.is_whole and self._housekeeper.is_whole
 
-    def _close_ways_in(self) -> None:
-        for way in reversed(self._ways_in):
+    def _close_inputs(self) -> None:
+        for way in reversed(self._inputs):
             way.stop()
 
     def _end_playing(self) -> None:
-        self._close_ways_in()
+        self._close_inputs()
         frame = self.player.frame_of()
         for player in self.players:
             player.end_notes(frame=frame)
@@ -264,8 +281,8 @@ class Server:
 
     def status(self) -> dict[str, float | str]:
         """The status values, by name; any thread may call."""
-        return self.desk.status()
+        return self.services.status()
 
     def part_status(self, part: int) -> dict[str, float]:
         """The status values of a part, counted from 0; any thread may call."""
-        return self.desk.part_status(part)
+        return self.services.part_status(part)

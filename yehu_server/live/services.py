@@ -1,100 +1,120 @@
-"""What OSC calls, OSCQuery and the page ask of a server beside its players."""
+"""What OSC calls, OSCQuery and the page need of a server beside its players."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING
 
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.live.audio.output import Output
+from yehu_server.live.audio.takes import Takes
+from yehu_server.live.midi.ports import MidiPorts
+from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.part_status import PartSources, read_part_status
 from yehu_server.live.osc.peers import WebTraffic
+from yehu_server.live.osc.sockets import OscPorts
 from yehu_server.live.osc.status import StatusSources, read_status
-from yehu_server.live.web.query import Told
+from yehu_server.live.part_addresses import part_of
+from yehu_server.live.web.query import Snapshot
+from yehu_server.live.web.server import WebServer
+from yehu_server.playing.delay import Delay
 from yehu_server.playing.parts import Part
 
-if TYPE_CHECKING:
-    from yehu_server.live.server import Server
 
+class Services:
+    """The services of a server: its status, its recordings, its log. See ``osc.context``.
 
-class ServerDesk:
-    """The services of a server: its status, its recordings, its lines. See ``request.Desk``."""
+    Attributes
+    ----------
+    handler, osc, takes, web, midi
+        What it serves with, set as they are made, before the server starts.
+    """
 
-    def __init__(self, server: Server, said: Callable[[str], None]) -> None:
-        self._server = server
-        self._said = said
+    handler: OscHandler
+    osc: OscPorts
+    takes: Takes
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        ensemble: Ensemble,
+        delay: Delay,
+        output: Output,
+        blocksize: int,
+        on_message: Callable[[str], None],
+    ) -> None:
+        self._parts = parts
+        self._ensemble = ensemble
+        self._delay = delay
+        self._output = output
+        self._blocksize = blocksize
+        self.log = on_message
+        self.web: WebServer | None = None
+        self.midi: MidiPorts | None = None
         self._started = time.monotonic()
-        self._aside = ThreadPoolExecutor(1, "files")
+        self._background = ThreadPoolExecutor(1, "files")
 
-    def soon(self, action: Callable[[], None]) -> None:
-        """See `request.Desk`."""
-        self._server.osc.call_soon(action)
+    def call_soon(self, action: Callable[[], None]) -> None:
+        """See `ServerServices`."""
+        self.osc.call_soon(action)
 
-    def aside(self, action: Callable[[], None]) -> None:
-        """See `request.Desk`."""
-        self._aside.submit(action)
+    def run_in_background(self, action: Callable[[], None]) -> None:
+        """See `ServerServices`."""
+        self._background.submit(action)
 
     def close(self) -> None:
-        """Wait until all is done that was to be done aside."""
-        self._aside.shutdown()
-
-    def say(self, line: str) -> None:
-        """See `request.Desk`."""
-        self._said(line)
+        """Wait until all is done that runs in the background."""
+        self._background.shutdown()
 
     def tree_changed(self, path: str) -> None:
-        """See `request.Desk`."""
-        if self._server.web is not None:
-            self._server.web.tree_changed(path)
+        """See `ServerServices`."""
+        if self.web is not None:
+            self.web.tree_changed(path)
 
     def start_recording(self, name: str) -> str:
-        """See `request.Desk`."""
-        return self._server.takes.start(name)
+        """See `ServerServices`."""
+        return self.takes.start(name)
 
     def stop_recording(self) -> str:
-        """See `request.Desk`."""
-        return self._server.takes.stop()
+        """See `ServerServices`."""
+        return self.takes.stop()
 
     def status(self) -> dict[str, float | str]:
-        """See `request.Desk`; any thread may call."""
-        server = self._server
+        """See `ServerServices`; any thread may call."""
         return read_status(
             StatusSources(
-                parts=[_sources(part) for part in server.parts],
-                ensemble=server.ensemble,
-                delay=server.delay,
-                output=server.output.state,
-                blocksize=server.options.output.blocksize,
-                osc=server.osc.traffic,
-                messages=server.handler.counts,
-                scheduled=server.handler.waiting,
-                subscribers=server.handler.clients.subscribers,
-                web=WebTraffic() if server.web is None else server.web.traffic,
-                midi=server.midi,
-                recording=server.takes.names,
+                parts=[_sources(part) for part in self._parts],
+                ensemble=self._ensemble,
+                delay=self._delay,
+                output=self._output.state,
+                blocksize=self._blocksize,
+                osc=self.osc.traffic,
+                messages=self.handler.counts,
+                scheduled=self.handler.waiting,
+                subscribers=self.handler.clients.subscribers,
+                web=WebTraffic() if self.web is None else self.web.traffic,
+                midi=self.midi,
+                recording=self.takes.names,
                 uptime_s=time.monotonic() - self._started,
             )
         )
 
     def part_status(self, part: int) -> dict[str, float]:
-        """See `request.Desk`; any thread may call."""
-        return read_part_status(_sources(self._server.parts[part]))
+        """See `ServerServices`; any thread may call."""
+        return read_part_status(_sources(self._parts[part]))
 
-    def told(self) -> Told:
-        """What OSCQuery tells of addresses without a part; any thread may call."""
-        return Told(self._server.player.values(), self.status())
+    def snapshot(self, addressed: str) -> Snapshot:
+        """The values of a group of addresses; any thread may call."""
+        if not addressed:
+            return Snapshot(self._parts[0].player.values(), self.status())
+        part = part_of(addressed)
+        return Snapshot(self._parts[part].player.values(), self.part_status(part))
 
-    def told_of_parts(self) -> list[Told]:
-        """What OSCQuery tells of each part; any thread may call."""
-        return [
-            Told(part.player.values(), self.part_status(number))
-            for number, part in enumerate(self._server.parts)
-        ]
-
-    def for_pages(self) -> dict[str, float | str | None]:
-        """What pages are told of the sound; any thread may call."""
-        state, player = self._server.output.state, self._server.player
-        delay_ms = 1e3 * player.delay / self._server.instrument.rate
+    def sound(self) -> dict[str, float | str | None]:
+        """What pages show of the sound; any thread may call."""
+        state = self._output.state
+        delay_ms = 1e3 * self._parts[0].player.delay / self._ensemble.rate
         return {"device": state.device, "latencyMs": state.latency_ms + delay_ms}
 
 

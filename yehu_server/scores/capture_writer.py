@@ -91,7 +91,7 @@ class LiveCapture:
         frame on.
     has_room : bool
         Whether it plays in a room.
-    said : callable
+    on_message : callable
         Called with a line when the capture ends by itself.
     overwrite : bool
         Whether to replace an older file.
@@ -106,13 +106,13 @@ class LiveCapture:
         self,
         ensemble: Ensemble,
         target: Path,
-        said: Callable[[str], None],
+        on_message: Callable[[str], None],
         *,
         has_room: bool,
         overwrite: bool = False,
     ) -> None:
         self._ensemble = ensemble
-        self._said = said
+        self._on_message = on_message
         self._writer: CaptureWriter | None = CaptureWriter(
             target,
             beginning=beginning_of(ensemble.instruments, has_room=has_room),
@@ -162,4 +162,4 @@ class LiveCapture:
     def _end(self, error: OutputError) -> None:
         self._writer = None
         self.is_whole = False
-        self._said(f"capture ended: {error}; what was written is kept")
+        self._on_message(f"capture ended: {error}; what was written is kept")

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import IO, Any
 
-from yehu_server.util.retry import Backoff, keep_on
+from yehu_server.util.retry import Backoff, run_forever
 
 Message = dict[str, Any]
 
@@ -37,7 +37,7 @@ class Child:
     ----------
     module : str
         The module to run, as ``python -m``.
-    heard : callable
+    on_event : callable
         Called with each event, in a thread of its own; at the end with ``{"event": "gone"}``,
         however the process ended.
     share : sequence of int
@@ -50,10 +50,10 @@ class Child:
     """
 
     def __init__(
-        self, module: str, heard: Callable[[Message], None], share: Sequence[int] = ()
+        self, module: str, on_event: Callable[[Message], None], share: Sequence[int] = ()
     ) -> None:
         self._name = module.rpartition(".")[2]
-        self._heard = heard
+        self._on_event = on_event
         self._sending = threading.Lock()
         self._process = subprocess.Popen(  # noqa: S603 - our own module
             [sys.executable, "-m", module],
@@ -124,7 +124,7 @@ class Child:
         try:
             for line in self._lines(self._process.stdout):
                 self._read(line)
-        except (OSError, MemoryError):  # it could not be heard any more
+        except (OSError, MemoryError):  # it could not be read any more
             self._process.kill()
         self._process.wait()
         self._hang_up()
@@ -140,7 +140,7 @@ class Child:
 
     def _tell(self, message: Message) -> None:
         try:
-            self._heard(message)
+            self._on_event(message)
         except Exception:  # later events still count
             log.exception("%s: could not act on %s", self._name, message)
 
@@ -189,7 +189,7 @@ class Parent:
 LIVES_S = 5.0  # a process that ends sooner is started again only after a while
 
 
-class ChildKeeper:
+class Supervisor:
     """A helper process and its successors.
 
     Parameters
@@ -198,14 +198,14 @@ class ChildKeeper:
         The module to run, as ``python -m``.
     what : str
         What the process does, for the thread's name and for messages of errors.
-    heard : callable
+    on_event : callable
         Called with each event but the last, in a thread of its own.
     attend : callable
         Called with each new process and an event that is set when it is gone, until which it
         should not return.
-    ended : callable
+    on_exit : callable
         Called when the process has ended: True where it did so by itself, not by `stop`.
-    told : callable
+    on_error : callable
         Called with a line where a process cannot be started; from another thread.
     share : sequence of int
         File descriptors that the process inherits, under the same numbers.
@@ -216,21 +216,21 @@ class ChildKeeper:
         module: str,
         what: str,
         *,
-        heard: Callable[[Message], None],
+        on_event: Callable[[Message], None],
         attend: Callable[[Child, threading.Event], None],
-        ended: Callable[[bool], None],
-        told: Callable[[str], None],
+        on_exit: Callable[[bool], None],
+        on_error: Callable[[str], None],
         share: Sequence[int] = (),
     ) -> None:
         self._module = module
-        self._heard = heard
+        self._on_event = on_event
         self._attend = attend
-        self._ended = ended
+        self._on_exit = on_exit
         self._share = share
         self._ending, self._gone = threading.Event(), threading.Event()
         self._backoff = Backoff()
-        turns = (self._serve, self._ending, 0.0, what, told)
-        self._thread = threading.Thread(target=keep_on, args=turns, name=what, daemon=True)
+        turns = (self._serve, self._ending, 0.0, what, on_error)
+        self._thread = threading.Thread(target=run_forever, args=turns, name=what, daemon=True)
 
     def start(self) -> None:
         """Start the process."""
@@ -254,7 +254,7 @@ class ChildKeeper:
             self._attend(child, gone)
         finally:
             child.stop()
-            self._ended(not self._ending.is_set())
+            self._on_exit(not self._ending.is_set())
         if time.monotonic() - begun > LIVES_S:
             self._backoff.worked()
         self._ending.wait(self._backoff.failed())
@@ -263,4 +263,4 @@ class ChildKeeper:
         if event["event"] == "gone":
             gone.set()
         else:
-            self._heard(event)
+            self._on_event(event)

@@ -35,7 +35,7 @@ class Backoff:
     ) -> None:
         self._first_s = self._next_s = first_s
         self._most_s = most_s
-        self._told = ""
+        self._reported = ""
 
     def failed(self) -> float:
         """Record a failure; return the seconds to wait."""
@@ -44,12 +44,12 @@ class Backoff:
 
     def is_news(self, reason: str) -> bool:
         """Whether a reason differs from the last one."""
-        is_news, self._told = reason != self._told, reason
+        is_news, self._reported = reason != self._reported, reason
         return is_news
 
     def worked(self) -> None:
         """Record a success: the wait is short again."""
-        self._next_s, self._told = self._first_s, ""
+        self._next_s, self._reported = self._first_s, ""
 
 
 class AwakeTime:
@@ -71,12 +71,12 @@ class AwakeTime:
         return self._awake_s
 
 
-def keep_on(
+def run_forever(
     turn: Callable[[], None],
     ending: threading.Event,
     every_s: float,
     what: str,
-    told: Callable[[str], None],
+    on_error: Callable[[str], None],
 ) -> None:
     """Call `turn` periodically until an event is set; after an error, try again later.
 
@@ -84,7 +84,7 @@ def keep_on(
     ----------
     what : str
         Name of the work, for error messages.
-    told : callable
+    on_error : callable
         Called with an error message, once for equal reasons in a row.
     """
     backoff = Backoff()
@@ -97,7 +97,7 @@ def keep_on(
             with contextlib.suppress(*SHORTAGES):
                 if backoff.is_news(why(error)):
                     log.debug("%s", what, exc_info=True)
-                    told(f"{what}: {why(error)}; trying again")
+                    on_error(f"{what}: {why(error)}; trying again")
         else:
             backoff.worked()
             wait_s = every_s

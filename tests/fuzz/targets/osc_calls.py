@@ -37,8 +37,8 @@ ADDRESSES = [
 NAMES = ["", "/bow/force", "/playing/dynamics", "/*/*", "/[", "../x", "mine", "vibrato", "é" * 9]
 
 
-class Desk:
-    """The handler's desk: status, recordings, tree changes."""
+class Services:
+    """The handler's services: status, recordings, tree changes."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
@@ -49,16 +49,16 @@ class Desk:
     def part_status(self, part: int) -> dict[str, float]:
         return {"note": -1.0, "keys": float(part)}
 
-    def soon(self, action: Callable[[], None]) -> None:
+    def call_soon(self, action: Callable[[], None]) -> None:
         action()
 
-    def aside(self, action: Callable[[], None]) -> None:
+    def run_in_background(self, action: Callable[[], None]) -> None:
         action()
 
     def tree_changed(self, path: str) -> None:
         assert path.startswith("/")
 
-    def say(self, line: str) -> None:
+    def log(self, line: str) -> None:
         self.lines.append(line)
 
     def start_recording(self, name: str) -> str:
@@ -136,10 +136,10 @@ def osc_calls(data: bytes) -> None:
     The bytes are a program: packets of addresses and arguments, and pauses between them.
     """
     with still_time() as clock:
-        instrument, desk, ear = Instrument(), Desk(), Ear(host="ear")
+        instrument, services, ear = Instrument(), Services(), Ear(host="ear")
         style = Style(mapping=mapping(), presets=Presets(scratch() / "config" / "presets"))
         player = LivePlayer(instrument, style, delay_ms=3.0, wishes=style.wishes([instrument]))
-        handler = OscHandler([player], desk)
+        handler = OscHandler([player], services)
 
         def take(what: bytes) -> None:
             for _ in handler.handle(what, ear, clock.monotonic_ns()):
@@ -168,4 +168,4 @@ def osc_calls(data: bytes) -> None:
             assert all(math.isfinite(value) for value in numbers) or message.address.endswith(
                 "/pong"
             )
-    assert not any("\n" in line for line in desk.lines)
+    assert not any("\n" in line for line in services.lines)

@@ -17,7 +17,7 @@ from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import PacketError, unpack
 from yehu_server.live.osc.status import STATUS, Kind
 from yehu_server.live.web import web_sockets
-from yehu_server.live.web.query import LISTENABLE, Told
+from yehu_server.live.web.query import LISTENABLE, Snapshot
 from yehu_server.live.web.server import Sources, WebOptions, WebServer
 from yehu_server.live.web.web_sockets import CommandError
 from yehu_server.params.table import PREFIX, TABLE
@@ -113,7 +113,7 @@ class House:
         logger.propagate = False
         self.loop.set_exception_handler(lambda _loop, said: self._defect(said))
         clients = Clients(lambda _group: VALUES, PREFIX, lambda _group: STATES)
-        sources = Sources(lambda: Told(VALUES, STATES), ROOT / "mappings")
+        sources = Sources(lambda _group: Snapshot(VALUES, STATES), ROOT / "mappings")
         self.web = WebServer(WebOptions((HOST, 0)), Osc(), clients, sources)
         self._clients = clients
         self._server = self.loop.run_until_complete(self._set_up())

@@ -25,7 +25,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.errors import DeviceError
 from yehu_server.util.processes import Child, Message
-from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, keep_on, why
+from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, run_forever, why
 
 log = logging.getLogger(__name__)
 
@@ -284,7 +284,7 @@ class Output:
             child.stop() if gently else child.kill()
 
     def _supervise(self) -> None:
-        keep_on(self._follow, self._ending, 0.0, "audio", self._changed)
+        run_forever(self._follow, self._ending, 0.0, "audio", self._changed)
 
     def _follow(self) -> None:
         """Handle an event of the device's process, or its silence."""

@@ -49,7 +49,7 @@ class Recorder:
     ----------
     start : int
         The first frame to record.
-    said : callable
+    on_message : callable
         Called with a line when the recording ends by itself, such as on a full disk, or when
         frames are missing.
     overwrite : bool
@@ -66,7 +66,7 @@ class Recorder:
         tape: Tape,
         target: Path,
         start: int,
-        said: Callable[[str], None],
+        on_message: Callable[[str], None],
         *,
         overwrite: bool = False,
     ) -> None:
@@ -78,7 +78,7 @@ class Recorder:
         self.failure = ""  # why it ended by itself
         self._tape = tape
         self._position = start
-        self._said = said
+        self._on_message = on_message
         self._file = create(target, overwrite=overwrite, room_bytes=room_bytes)
         form = (rate, format_name, subtype)
         self._writer = SoundWriter(self._file, target, *form, channels=CHANNELS)
@@ -121,14 +121,14 @@ class Recorder:
         self._close()
         if self.failure:
             kept = f"; {self.seconds:.1f} s are kept" if self.seconds else ""
-            self._said(f"recording ended: {self.failure}{kept}")
+            self._on_message(f"recording ended: {self.failure}{kept}")
 
     def _miss(self, begin: int) -> None:
         """Write silence for missing frames, so that later ones keep their time."""
         rate = self._tape.rate
         lost, at = begin - self._position, self._writer.frames
         self.missed_frames += lost
-        self._said(
+        self._on_message(
             f"{self.target}: {lost / rate:.1f} s are missing from {at / rate:.1f} s on, as "
             "silence: the disk was too slow"
         )

@@ -19,14 +19,14 @@ class Takes:
     ----------
     folder : Path
         Where requested recordings are written; it is made when needed.
-    said : callable
+    on_message : callable
         Called with a line when a recording begins or ends.
     """
 
-    def __init__(self, tape: Tape, folder: Path, said: Callable[[str], None]) -> None:
+    def __init__(self, tape: Tape, folder: Path, on_message: Callable[[str], None]) -> None:
         self._tape = tape
         self._folder = folder
-        self._said = said
+        self._on_message = on_message
         self._everything: Recorder | None = None
         self._requested: Recorder | None = None
 
@@ -38,7 +38,7 @@ class Takes:
         OutputError
             Where the file cannot be written.
         """
-        self._everything = Recorder(self._tape, target, 0, self._said, overwrite=overwrite)
+        self._everything = Recorder(self._tape, target, 0, self._on_message, overwrite=overwrite)
 
     def start(self, name: str) -> str:
         """Record to a file of a plain name in the folder; return its name.
@@ -58,8 +58,8 @@ class Takes:
                 raise OutputError(f"{target.name} exists")
         except OSError as error:
             raise OutputError(f"{self._folder}: {error.strerror}") from error
-        self._requested = Recorder(self._tape, target, self._tape.frame, self._said)
-        self._said(f"recording {target}")
+        self._requested = Recorder(self._tape, target, self._tape.frame, self._on_message)
+        self._on_message(f"recording {target}")
         return target.name
 
     def stop(self) -> str:
@@ -101,4 +101,4 @@ class Takes:
 
     def _tell_of(self, recorder: Recorder) -> None:
         if not recorder.failure:  # or that was reported
-            self._said(f"{recorder.target}: {recorder.seconds:.1f} s")
+            self._on_message(f"{recorder.target}: {recorder.seconds:.1f} s")

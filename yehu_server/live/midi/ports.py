@@ -15,7 +15,7 @@ from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.live.midi.routes import Route, Router
 from yehu_server.playing.live import LivePlayer
-from yehu_server.util.processes import Child, ChildKeeper, Message
+from yehu_server.util.processes import Child, Message, Supervisor
 
 log = logging.getLogger(__name__)
 
@@ -42,7 +42,7 @@ class MidiPorts:
         File descriptor of the memory that has the instruments.
     rigs : sequence of int
         The first instrument of each part.
-    changed : callable
+    on_message : callable
         Called with a line when a port or the MIDI system appears or disappears; from another
         thread.
     """
@@ -53,22 +53,22 @@ class MidiPorts:
         options: MidiOptions,
         memory: int,
         rigs: Sequence[int],
-        changed: Callable[[str], None],
+        on_message: Callable[[str], None],
     ) -> None:
         self._players = players
         self._router = Router(options.routes, len(players))
         self._memory, self._rigs = memory, rigs
         self._options = options
-        self._changed = changed
+        self._on_message = on_message
         self._numbers: dict[str, int] = {}  # a port that comes back gets its old one
         self._connected: dict[str, None] = {}
-        self._keeper = ChildKeeper(  # it ends as JACK's server does
+        self._supervisor = Supervisor(  # it ends as JACK's server does
             "yehu_server.live.midi.process",
             "MIDI inputs",
-            heard=self._heard,
+            on_event=self._heard,
             attend=self._attend,
-            ended=self._ended,
-            told=changed,
+            on_exit=self._ended,
+            on_error=on_message,
             share=[memory],
         )
         self._child: Child | None = None
@@ -84,11 +84,11 @@ class MidiPorts:
 
     def start(self) -> None:
         """Start to receive."""
-        self._keeper.start()
+        self._supervisor.start()
 
     def stop(self) -> None:
         """Stop receiving."""
-        self._keeper.stop()
+        self._supervisor.stop()
 
     def _attend(self, child: Child, gone: threading.Event) -> None:
         options, routed = self._options, self._router.patterns
@@ -126,19 +126,19 @@ class MidiPorts:
         elif kind == "appeared":
             self._connected[event["port"]] = None
             self._number(event["port"], event["number"])
-            self._changed(f"MIDI: {event['port']} is connected{self._whose(event['port'])}")
+            self._on_message(f"MIDI: {event['port']} is connected{self._whose(event['port'])}")
         elif kind == "vanished":
             self._connected.pop(event["port"], None)
-            self._changed(f"MIDI: {event['port']} is gone; its notes are ended")
+            self._on_message(f"MIDI: {event['port']} is gone; its notes are ended")
         elif kind == "silent":
             log.info("MIDI: %s fell silent (active sensing)", event["port"])
         elif kind == "missing":
             self._tell_missing(event["pattern"], event["present"])
         elif kind == "refused":
-            self._changed(f"MIDI: {event['port']} cannot be opened: {event['reason']}")
+            self._on_message(f"MIDI: {event['port']} cannot be opened: {event['reason']}")
         elif kind == "none":
             self.problem = event["reason"]
-            self._changed(f"MIDI: none ({event['reason']}); looking again now and then")
+            self._on_message(f"MIDI: none ({event['reason']}); looking again now and then")
         elif kind == "system":
             self.problem = ""
             log.info("MIDI: through %s", event["api"])
@@ -156,7 +156,7 @@ class MidiPorts:
         if pattern not in self._missing:  # once, however often the process starts
             self._missing.add(pattern)
             there = ", ".join(present) or "none"
-            self._changed(f"MIDI: no input matches {pattern!r} yet (there are: {there})")
+            self._on_message(f"MIDI: no input matches {pattern!r} yet (there are: {there})")
 
     def _number(self, port: str, number: int) -> None:
         """Remember the number of a port; one that is gone may have had it before."""
@@ -177,5 +177,5 @@ class MidiPorts:
                 player = self._players[part]
                 player.let_go_of(self._numbers[port], frame=player.frame_of())
         if self._connected:
-            self._changed(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
+            self._on_message(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
         self._connected.clear()

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
-from yehu_server.live.osc.limits import OVERHEAD_BYTES, Room
+from yehu_server.live.osc.limits import OVERHEAD_BYTES, MemoryQuota
 from yehu_server.live.osc.peers import Peer
 
 MOST_BYTES = 16 << 20  # of all waiting packets
@@ -91,7 +91,7 @@ class Backlog(Generic[T]):
     ) -> None:
         self._handle = handle
         self._end = end
-        self._room = Room(most_bytes)
+        self._quota = MemoryQuota(most_bytes)
         self._count = 0
         self._senders: dict[Peer, Sender[T]] = {}
         self._hosts: dict[str, Host] = {}
@@ -115,8 +115,8 @@ class Backlog(Generic[T]):
         """
         sender = self._sender(peer, time.monotonic_ns())
         size += OVERHEAD_BYTES
-        is_owed = sender.is_known and self._room.of(sender) + size <= OWED_BYTES
-        if not self._room.take(sender, size, is_due=is_due or is_owed or thing is None):
+        is_owed = sender.is_known and self._quota.of(sender) + size <= OWED_BYTES
+        if not self._quota.take(sender, size, is_due=is_due or is_owed or thing is None):
             return False
         self._count += 1
         sender.works.append(Work(thing, when, size))
@@ -127,12 +127,12 @@ class Backlog(Generic[T]):
     @property
     def bytes(self) -> int:
         """The size of all waiting packets."""
-        return self._room.taken_bytes
+        return self._quota.taken_bytes
 
     def bytes_of(self, peer: Peer) -> int:
         """The size of one peer's waiting packets; any thread may call."""
         sender = self._senders.get(peer)
-        return 0 if sender is None else self._room.of(sender)
+        return 0 if sender is None else self._quota.of(sender)
 
     def drop(self, which: Callable[[T], bool]) -> None:
         """Drop some waiting packets."""
@@ -143,14 +143,14 @@ class Backlog(Generic[T]):
             for work in dropped:
                 sender.works.remove(work)
                 self._count -= 1
-                self._room.give_back(sender, work.size)
+                self._quota.give_back(sender, work.size)
 
     def clear(self) -> None:
         """Drop all waiting packets."""
         for sender in self._senders.values():
             sender.works.clear()
         self._count = 0
-        self._room.clear()
+        self._quota.clear()
 
     def work(self) -> None:
         """Handle waiting packets for up to TURN_NS."""
@@ -198,7 +198,7 @@ class Backlog(Generic[T]):
             if is_done and sender.works and sender.works[0] is work:  # not cleared
                 sender.works.popleft()
                 self._count -= 1
-                self._room.give_back(sender, work.size)
+                self._quota.give_back(sender, work.size)
         return is_done and time.monotonic_ns() <= until_ns
 
     def _act(self, work: Work[T], peer: Peer, until_ns: int) -> bool:

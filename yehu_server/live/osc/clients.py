@@ -1,4 +1,4 @@
-"""What OSC clients are told: values they set, changes they subscribed to, and errors.
+"""What OSC clients are sent: values they set, changes they subscribed to, and errors.
 
 All is sent from the listening port, each message by itself: Pure Data does not read bundles.
 """
@@ -15,14 +15,14 @@ from yehu_server.live.osc.status import PLACE
 from yehu_server.live.osc.subscriptions import (
     ERRORS_A_SECOND,
     ERRORS_AT_ONCE,
-    Listener,
+    ChangePublisher,
     Status,
-    Telling,
+    Subscriber,
     Values,
 )
 from yehu_server.live.part_addresses import FIRST, divided
 
-FLUSH_S = 1.0 / 60.0  # between rounds of telling
+FLUSH_S = 1.0 / 60.0  # between rounds of sending
 SLICE_S = 0.0005  # of a round, after which other messages are handled
 SWEEP_S = 1.0
 MOST_SUBSCRIBERS, MOST_OF_A_HOST = 64, 32
@@ -50,8 +50,8 @@ class Clients:
         self._values = values
         self.prefix = prefix
         self._status = status
-        self._clients: dict[Peer, Listener] = {}
-        self._telling = Telling(values, status, prefix)
+        self._clients: dict[Peer, Subscriber] = {}
+        self._publisher = ChangePublisher(values, status, prefix)
         self._round: Iterator[None] | None = None  # what is left of a round
         self._flushed = 0.0  # when it began
         self._swept = 0.0
@@ -66,20 +66,20 @@ class Clients:
         now = time.monotonic()
         return sum(client.subscribes(now) for client in list(self._clients.values()))  # any thread
 
-    def _client(self, peer: Peer) -> Listener:
+    def _client(self, peer: Peer) -> Subscriber:
         client = self._clients.get(peer)
         if client is None:
             if len(self._clients) >= self._crowded:
                 self._forget_idle()
                 self._crowded = max(MOST_KNOWN, 2 * len(self._clients))
-            client = self._clients[peer] = Listener(peer)
+            client = self._clients[peer] = Subscriber(peer)
         return client
 
     def _forget_idle(self, *, forgiven_s: float = 0.0) -> None:
         """Drop clients with nothing to be sent, some time after their last error."""
         now = time.monotonic()
         for peer, client in list(self._clients.items()):
-            until = max(client.until, client.hushed_until, client.complained + forgiven_s)
+            until = max(client.until, client.muted_until, client.last_error + forgiven_s)
             if until <= now and client.is_idle:
                 del self._clients[peer]
 
@@ -90,16 +90,16 @@ class Clients:
         if len(self._clients) >= MOST_CROWDED and peer not in self._clients:
             return
         client = self._client(peer)
-        if client.hushed_until <= time.monotonic():
-            client.to_tell.update((address, divided(address)[0]) for address in addresses)
+        if client.muted_until <= time.monotonic():
+            client.to_send.update((address, divided(address)[0]) for address in addresses)
             self._is_waiting = True
 
-    def hush(self, peer: Peer, seconds: float) -> None:
+    def mute(self, peer: Peer, seconds: float) -> None:
         """Do not answer a peer for some time: another server that sends us its own values.
 
         Two servers that answer each other would go on for ever.
         """
-        self._client(peer).hushed_until = time.monotonic() + seconds
+        self._client(peer).muted_until = time.monotonic() + seconds
 
     def subscribe(self, peer: Peer, seconds: float, form: str = "", addressed: str = FIRST) -> bool:
         """Send a peer every change for some time; return whether there was room for one more.
@@ -114,29 +114,29 @@ class Clients:
                 return False
         self._is_waiting = True
         if form == PLACE:
-            client.asked_status[addressed] = now + seconds
+            client.status_subscribed[addressed] = now + seconds
             names = self._status(addressed)
-            told = (addressed + PLACE + name for name in names)
-            client.to_tell.update(dict.fromkeys(told, addressed))
+            sent = (addressed + PLACE + name for name in names)
+            client.to_send.update(dict.fromkeys(sent, addressed))
             return True
         client.subscribed[addressed] = now + seconds, form
         values = self._values(addressed)
-        told = (addressed + address + form for address in values)
-        client.to_tell.update(dict.fromkeys(told, addressed))
+        sent = (addressed + address + form for address in values)
+        client.to_send.update(dict.fromkeys(sent, addressed))
         return True
 
     def unsubscribe(self, peer: Peer) -> None:
         """End a peer's subscriptions."""
         client = self._client(peer)
         client.subscribed.clear()
-        client.asked_status.clear()
+        client.status_subscribed.clear()
 
     def listen(self, peer: Peer, address: str) -> None:
         """Send a peer the value at an address (without the prefix) now, and whenever it changes."""
         client = self._client(peer)
         addressed, among = client.among(address)
         among.setdefault(addressed, set()).add(address)
-        client.to_tell[address] = addressed
+        client.to_send[address] = addressed
         self._is_waiting = True
 
     def ignore(self, peer: Peer, address: str) -> None:
@@ -154,16 +154,16 @@ class Clients:
         """Drop a peer that has hung up."""
         self._clients.pop(peer, None)
 
-    def complain(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
+    def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         """Send a peer an error, unless it has been sent many of late.
 
         A callable `reason` is called only where the error is sent.
         """
         client = self._client(peer)
         now = time.monotonic()
-        if client.hushed_until > now:
+        if client.muted_until > now:
             return
-        client.complained = now
+        client.last_error = now
         if not client.errors.takes(now):
             self.errors_withheld += 1
             return
@@ -200,10 +200,10 @@ class Clients:
                 return
             self._flushed = now
             self._is_waiting = False
-            self._round = self._telling.round(self._clients, now)
+            self._round = self._publisher.round(self._clients, now)
         steps, self._round = self._round, None  # an error ends a round
         for _ in steps:
             if time.monotonic() > now + SLICE_S:
                 self._round = steps
                 return
-        self._is_waiting |= any(client.telling for client in self._clients.values())
+        self._is_waiting |= any(client.sending for client in self._clients.values())

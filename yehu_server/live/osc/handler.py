@@ -9,19 +9,19 @@ import logging
 import time
 from collections.abc import Callable, Iterator, Sequence
 from collections.abc import Mapping as Values
-from dataclasses import dataclass
 
 from yehu_server.errors import YehuError
 from yehu_server.live.osc.backlog import Backlog
 from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.context import Act, CallContext, ServerServices
 from yehu_server.live.osc.names import fitting, near, parameter_of, readable, value_at
 from yehu_server.live.osc.packets import Message, PacketError, answer, pack, steps, unpack
-from yehu_server.live.osc.part_calls import Act, Backstage, PartCalls, port_of, within_an_hour
+from yehu_server.live.osc.part_calls import PartCalls, port_of, within_an_hour
 from yehu_server.live.osc.patterns import is_pattern
 from yehu_server.live.osc.peers import Peer
-from yehu_server.live.osc.request import Desk, Request
+from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
-from yehu_server.live.osc.status import PLACE
+from yehu_server.live.osc.status import PLACE, Counts
 from yehu_server.live.part_addresses import (
     FIRST,
     OWN,
@@ -46,17 +46,6 @@ class UnknownError(Exception):
     """An unknown address; a near one is looked for only where the error is sent."""
 
 
-@dataclass
-class Counts:
-    """Numbers of messages since the start."""
-
-    messages: int = 0
-    malformed: int = 0
-    errors: int = 0  # wrong types, unknown addresses, refused calls
-    late_bundles: int = 0
-    scheduled: int = 0
-
-
 class OscHandler:
     """Carries out the messages of packets; called by the thread of ``sockets.OscPorts`` only.
 
@@ -66,29 +55,29 @@ class OscHandler:
         Those of all parts. The first has addresses without its part, too.
     """
 
-    def __init__(self, players: Sequence[LivePlayer], desk: Desk) -> None:
+    def __init__(self, players: Sequence[LivePlayer], services: ServerServices) -> None:
         self._players = players
-        self._desk = desk
+        self._services = services
         self.counts = Counts()
         self.clients = Clients(self._values, PREFIX, self._states)
         self._schedule: Schedule[bytes, Peer] = Schedule()
         self._due: Backlog[bytes] = Backlog(self._act_on_due, lambda _peer: None)
         self._tags = TagClock(players[0])
         self._arrivals = Arrivals(players[0].frame_of, players[0].instrument.rate)
-        backstage = Backstage(
+        context = CallContext(
             self.clients,
-            desk,
-            self._complain,
-            forget=self._forget_waiting,
-            changed=self._tree_changed,
-            remap=self._remap,
+            services,
+            self._send_error,
+            self._drop_scheduled,
+            self._tree_changed,
+            self._remap,
         )
         self._groups = {FIRST: players[0]}
         self._groups |= {group(part): player for part, player in enumerate(players)}
         self._calls: dict[str, Act] = {
             addressed + address: action
             for addressed, player in self._groups.items()
-            for address, action in PartCalls(player, addressed, backstage).by_address.items()
+            for address, action in PartCalls(player, addressed, context).by_address.items()
         }
         self._calls |= {
             "/panic": self._panic,
@@ -103,7 +92,7 @@ class OscHandler:
         # Messages of another server that was made to send us its values.
         self._answers: dict[str, Act] = {f"{PREFIX}/error": lambda _call: None}
         for addressed in self._groups:
-            self._answers[f"{PREFIX}{addressed}/subscribed"] = self._hush
+            self._answers[f"{PREFIX}{addressed}/subscribed"] = self._mute
         self._readable = tuple(readable(self._groups))
         self._is_readable = frozenset(self._readable)
 
@@ -114,7 +103,9 @@ class OscHandler:
 
     def _states(self, addressed: str) -> Values[str, float | str]:
         """The status values of a group, by name."""
-        return self._desk.part_status(part_of(addressed)) if addressed else self._desk.status()
+        return (
+            self._services.part_status(part_of(addressed)) if addressed else self._services.status()
+        )
 
     @property
     def waiting(self) -> int:
@@ -137,7 +128,7 @@ class OscHandler:
                 yield
         except PacketError as error:
             self.counts.malformed += 1
-            self.clients.complain(peer, "", f"malformed packet: {error}")
+            self.clients.send_error(peer, "", f"malformed packet: {error}")
 
     def _take(self, message: Message, peer: Peer, now: float, frame: int) -> Iterator[None]:
         """Carry out a message, or schedule it."""
@@ -149,7 +140,7 @@ class OscHandler:
         if self._schedule.add(message.due_s, packet, peer, len(packet)):
             self.counts.scheduled += 1
         else:
-            self._complain(peer, message.address, "too many messages wait for their time")
+            self._send_error(peer, message.address, "too many messages wait for their time")
 
     def _act_on_due(self, packet: bytes, peer: Peer, frame: int) -> Iterator[None]:
         (message,) = unpack(packet)
@@ -186,16 +177,18 @@ class OscHandler:
         try:
             actions = self._actions(message.address)
         except UnknownError:
-            self._complain(peer, message.address, lambda: near(message.address, len(self._players)))
+            self._send_error(
+                peer, message.address, lambda: near(message.address, len(self._players))
+            )
             return
         except YehuError as error:
-            self._complain(peer, message.address, str(error))
+            self._send_error(peer, message.address, str(error))
             return
         for action in actions:  # one refusal does not stop the others that match a pattern
             try:
                 action(call)
             except YehuError as error:
-                self._complain(peer, message.address, str(error))
+                self._send_error(peer, message.address, str(error))
             yield
 
     def _actions(self, address: str) -> list[Act]:
@@ -240,14 +233,14 @@ class OscHandler:
 
         return {address: hear} if hearing else {}
 
-    def _complain(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
+    def _send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         self.counts.errors += 1
-        self.clients.complain(peer, address, reason)
+        self.clients.send_error(peer, address, reason)
 
     def _tree_changed(self, path: str) -> None:
         """Announce that the tree has changed at a path below each group that it has."""
         for addressed in self._groups if len(self._players) > 1 else (FIRST,):
-            self._desk.tree_changed(PREFIX + addressed + path)
+            self._services.tree_changed(PREFIX + addressed + path)
 
     def _remap(self, player: LivePlayer, mapping: Mapping) -> None:
         """Give a mapping to a player, and to all others that had the same."""
@@ -288,11 +281,11 @@ class OscHandler:
     # -- all parts ---------------------------------------------------------------------------
 
     def _panic(self, call: Request) -> None:
-        self._forget_waiting(FIRST)
+        self._drop_scheduled(FIRST)
         for player in self._players:
             player.panic(frame=call.frame)
 
-    def _forget_waiting(self, addressed: str) -> None:
+    def _drop_scheduled(self, addressed: str) -> None:
         """Drop the messages of a part that wait for their time; without a part, all."""
         if not addressed:
             self._schedule.clear()
@@ -308,15 +301,15 @@ class OscHandler:
         self._due.drop(is_of_part)
 
     def _reset(self, call: Request) -> None:
-        self._forget_waiting(FIRST)
+        self._drop_scheduled(FIRST)
         for player in self._players:
             player.reset(frame=call.frame)
         self.clients.echo(call.peer, BY_ADDRESS)
 
     # -- services ----------------------------------------------------------------------------
 
-    def _hush(self, call: Request) -> None:
-        self.clients.hush(call.peer, within_an_hour(call.numbers(1)[0]))
+    def _mute(self, call: Request) -> None:
+        self.clients.mute(call.peer, within_an_hour(call.numbers(1)[0]))
 
     def _unsubscribe(self, call: Request) -> None:
         numbers = call.numbers(0, 1)
@@ -325,11 +318,11 @@ class OscHandler:
         peer.send(pack(f"{PREFIX}/unsubscribed"))
 
     def _record_start(self, call: Request) -> None:
-        name = self._desk.start_recording(call.word())
+        name = self._services.start_recording(call.word())
         call.peer.send(pack(f"{PREFIX}/record/started", name))
 
     def _record_stop(self, call: Request) -> None:
-        name = self._desk.stop_recording()
+        name = self._services.stop_recording()
         call.peer.send(pack(f"{PREFIX}/record/stopped", name))
 
 

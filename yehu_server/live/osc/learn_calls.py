@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from functools import partial
 
 from yehu_server.errors import ParameterError, YehuError
+from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
@@ -15,11 +16,8 @@ from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learn
 from yehu_server.playing.learn import Found
 from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_entries import free
-
-if TYPE_CHECKING:
-    from yehu_server.live.osc.part_calls import Backstage
-    from yehu_server.playing.mapping import Mapping
 
 PATIENCE_S = 60.0  # to wait for something to be moved
 NOT_MOVED = -1.0
@@ -36,13 +34,13 @@ class LearnCalls:
         The function that carries out each call; each raises YehuError where it refuses.
     """
 
-    def __init__(self, player: LivePlayer, addressed: str, backstage: Backstage) -> None:
+    def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
         self._player = player
         self._addressed = addressed
         self._prefix = PREFIX + addressed
-        self._desk = backstage.desk
-        self._complain = backstage.complain
-        self._remap = backstage.remap
+        self._services = context.services
+        self._send_error = context.send_error
+        self._remap = context.remap
         self._wants = 0  # number of requests, so that what is found for an earlier one is ignored
         self.by_address: dict[str, Callable[[Request], None]] = {
             "/learn": self._learn,
@@ -63,31 +61,34 @@ class LearnCalls:
 
         def found(source: Found) -> None:
             if wants == self._wants and time.monotonic() <= until:
-                self._desk.aside(lambda: self._found(call.peer, target, source, soft))
+                learn_it = partial(self._found, call.peer, target, source, soft=soft)
+                self._services.run_in_background(learn_it)
 
         self._player.listen(found)
         call.peer.send(pack(f"{self._prefix}/learning", self._prefix + target))
 
-    def _found(self, peer: Peer, target: str, source: Found, soft: bool) -> None:
+    def _found(self, peer: Peer, target: str, source: Found, *, soft: bool) -> None:
         """Write what was found to the user's file; aside, as a disk may be slow."""
         try:
             mapping, path = learn.learn(self._player.mapping, target, source, soft=soft)
         except YehuError as error:
             reason = str(error)
-            self._desk.soon(lambda: self._complain(peer, f"{self._prefix}/learn", reason))
+            self._services.call_soon(
+                lambda: self._send_error(peer, f"{self._prefix}/learn", reason)
+            )
             return
         learnt = (self._prefix + target, source.source, str(path))
 
         def take() -> None:
             self._take(mapping)
-            self._desk.say(f"{source.source} moves {target} from now on ({path})")
+            self._services.log(f"{source.source} moves {target} from now on ({path})")
             peer.send(pack(f"{self._prefix}/learned", *learnt))
 
-        self._desk.soon(take)
+        self._services.call_soon(take)
 
     def _unlearn(self, call: Request) -> None:
         target = self._target(call.word(), "forget one")
-        self._desk.aside(lambda: self._forget(call.peer, target))
+        self._services.run_in_background(lambda: self._forget(call.peer, target))
 
     def _forget(self, peer: Peer, target: str) -> None:
         """Remove what moves a target from the user's file; aside, as a disk may be slow."""
@@ -95,7 +96,9 @@ class LearnCalls:
             mapping, count = learn.unlearn(self._player.mapping, target)
         except YehuError as error:
             reason = str(error)
-            self._desk.soon(lambda: self._complain(peer, f"{self._prefix}/unlearn", reason))
+            self._services.call_soon(
+                lambda: self._send_error(peer, f"{self._prefix}/unlearn", reason)
+            )
             return
 
         def take() -> None:
@@ -103,11 +106,11 @@ class LearnCalls:
                 self._take(mapping)
             peer.send(pack(f"{self._prefix}/unlearned", self._prefix + target, count))
 
-        self._desk.soon(take)
+        self._services.call_soon(take)
 
     def _take(self, mapping: Mapping) -> None:
         self._remap(self._player, mapping)
-        self._desk.tree_changed("/")
+        self._services.tree_changed("/")
 
     def _bindings(self, call: Request) -> None:
         call.numbers(0)

@@ -8,7 +8,7 @@ from typing import Any
 OVERHEAD_BYTES = 256  # memory for a stored packet beside its own bytes
 
 
-class Room:
+class MemoryQuota:
     """A number of bytes for all owners: each may hold at most as much as is still free.
 
     A single owner gets half of it, two get a third each; there is always some for another one.
@@ -47,7 +47,7 @@ class Room:
         self.taken_bytes = 0
 
 
-class Allowance:
+class TokenBucket:
     """A token bucket, full at first. Times are those of ``time.monotonic()``.
 
     Parameters

@@ -2,41 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
 
 from yehu_server.errors import RefusedError
 from yehu_server.live.osc.calls import LONGEST_SUBSCRIPTION_S
-from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.context import Act, CallContext
 from yehu_server.live.osc.learn_calls import LearnCalls
-from yehu_server.live.osc.limits import Allowance
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
-from yehu_server.live.osc.preset_calls import SAVES_A_SECOND, SAVES_AT_ONCE, PresetCalls
-from yehu_server.live.osc.request import Desk, Request
+from yehu_server.live.osc.preset_calls import PresetCalls
+from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.status import PLACE, as_argument
 from yehu_server.live.part_addresses import OWN, part_of
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE, UNIT
 from yehu_server.playing.live import LivePlayer
-from yehu_server.playing.mapping import Mapping
-
-Act = Callable[[Request], None]
 
 SUBSCRIBED_S = 60.0
-
-
-@dataclass(frozen=True)
-class Backstage:
-    """What the calls of all parts share."""
-
-    clients: Clients
-    desk: Desk
-    complain: Callable[[Peer, str, str], None]  # sends a peer an error, with the address it sent to
-    forget: Callable[[str], None]  # drops the messages of a group that wait for their time
-    changed: Callable[[str], None]  # tells that the tree changed, at a path below each group
-    remap: Callable[[LivePlayer, Mapping], None]  # gives a mapping to a player and its like
-    saves: Allowance = field(default_factory=lambda: Allowance(SAVES_A_SECOND, SAVES_AT_ONCE))
 
 
 class PartCalls:
@@ -53,13 +35,13 @@ class PartCalls:
         What carries out each address after the group; each raises YehuError where it refuses.
     """
 
-    def __init__(self, player: LivePlayer, addressed: str, backstage: Backstage) -> None:
+    def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
         self._player = player
         self._addressed = addressed
         self._prefix = PREFIX + addressed
-        self._clients = backstage.clients
-        self._desk = backstage.desk
-        self._forget = backstage.forget
+        self._clients = context.clients
+        self._services = context.services
+        self._drop_scheduled = context.drop_scheduled
         self._params = OWN if addressed else TABLE
         self.by_address: dict[str, Act] = {
             "/note": self._note,
@@ -77,8 +59,8 @@ class PartCalls:
             "/subscribe/unit": lambda call: self._subscribe(call, UNIT),
             "/subscribe/status": lambda call: self._subscribe(call, PLACE),
         }
-        self.by_address |= PresetCalls(player, addressed, backstage).by_address
-        self.by_address |= LearnCalls(player, addressed, backstage).by_address
+        self.by_address |= PresetCalls(player, addressed, context).by_address
+        self.by_address |= LearnCalls(player, addressed, context).by_address
         for param in self._params:
             self.by_address[param.address] = self._setter(param.address)
             self.by_address[param.address + UNIT] = self._unit_setter(param)
@@ -140,11 +122,11 @@ class PartCalls:
         self._player.release(frame=call.frame)
 
     def _panic(self, call: Request) -> None:
-        self._forget(self._addressed)
+        self._drop_scheduled(self._addressed)
         self._player.panic(frame=call.frame)
 
     def _reset(self, call: Request) -> None:
-        self._forget(self._addressed)
+        self._drop_scheduled(self._addressed)
         self._player.reset(frame=call.frame)
         self.echo(call.peer, [param.address for param in self._params])
 
@@ -156,9 +138,9 @@ class PartCalls:
             call.peer.send(pack(address, as_argument(value)))
 
     def _states(self) -> Iterator[tuple[str, float | str]]:
-        values = self._desk.status()
+        values = self._services.status()
         if self._addressed:
-            values = self._desk.part_status(part_of(self._addressed))
+            values = self._services.part_status(part_of(self._addressed))
         for name, value in values.items():
             yield f"{self._prefix}{PLACE}{name}", value
 

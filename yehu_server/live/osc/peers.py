@@ -16,7 +16,7 @@ from typing import Protocol
 
 from yehu_server.live.addresses import Address
 from yehu_server.live.osc.framing import Framing
-from yehu_server.live.osc.limits import Allowance
+from yehu_server.live.osc.limits import TokenBucket
 
 MOST_UNSENT_BYTES = 1 << 18  # waiting for one peer
 ANSWERED_AT_ONCE_BYTES, ANSWERED_BYTES_A_SECOND = 1 << 17, 1 << 17
@@ -70,9 +70,9 @@ class WebTraffic:
     web_sockets: int = 0  # open now
 
 
-def answers(senders: int = 1) -> Allowance:
+def answers(senders: int = 1) -> TokenBucket:
     """The bytes of answers to as many senders of datagrams, taken together."""
-    return Allowance(senders * ANSWERED_BYTES_A_SECOND, senders * ANSWERED_AT_ONCE_BYTES)
+    return TokenBucket(senders * ANSWERED_BYTES_A_SECOND, senders * ANSWERED_AT_ONCE_BYTES)
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class UdpPeer:
     socket: socket.socket = field(compare=False)
     address: Address
     traffic: Traffic = field(compare=False)
-    allowances: tuple[Allowance, ...] = field(default_factory=lambda: (answers(),), compare=False)
+    allowances: tuple[TokenBucket, ...] = field(default_factory=lambda: (answers(),), compare=False)
 
     @property
     def name(self) -> str:
@@ -125,7 +125,7 @@ class TcpPeer:
     ----------
     watch : callable
         Called with the peer when its `events` may have changed.
-    hear_out : callable
+    drain_and_close : callable
         Called with the peer when its connection is broken.
     """
 
@@ -135,7 +135,7 @@ class TcpPeer:
         address: Address,
         traffic: Traffic,
         watch: Callable[[TcpPeer], None],
-        hear_out: Callable[[TcpPeer], None],
+        drain_and_close: Callable[[TcpPeer], None],
     ) -> None:
         self.socket = connection
         self.name = f"{address[0]}:{address[1]} (TCP)"
@@ -149,7 +149,7 @@ class TcpPeer:
         self._finished = False
         self._traffic = traffic
         self._watch = watch
-        self._hear_out = hear_out
+        self._hear_out = drain_and_close
 
     @property
     def is_finished(self) -> bool:

@@ -5,20 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from yehu_server.errors import PresetError, shortened
+from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import OF_PARTS, PLAIN
 from yehu_server.params.preset import Preset, morph
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.live import LivePlayer
-
-if TYPE_CHECKING:
-    from yehu_server.live.osc.part_calls import Backstage
-
-SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # of all clients together: each writes a file
 
 
 class PresetCalls:
@@ -30,15 +25,15 @@ class PresetCalls:
         The function that carries out each call; each raises YehuError where it refuses.
     """
 
-    def __init__(self, player: LivePlayer, addressed: str, backstage: Backstage) -> None:
+    def __init__(self, player: LivePlayer, addressed: str, context: CallContext) -> None:
         self._player = player
         self._presets = player.presets
         self._addressed = addressed
-        self._clients = backstage.clients
-        self._complain = backstage.complain
-        self._changed = backstage.changed
+        self._clients = context.clients
+        self._send_error = context.send_error
+        self._tree_changed = context.tree_changed
         self._prefix = PREFIX + addressed
-        self._saves = backstage.saves
+        self._saves = context.saves
         self.by_address: dict[str, Callable[[Request], None]] = {
             "/preset/load": self._load,
             "/preset/morph": self._morph,
@@ -52,7 +47,7 @@ class PresetCalls:
         self._set(call, "/preset/load", preset.values)
         call.peer.send(pack(f"{self._prefix}/preset/loaded", preset.name))
         for remark in preset.remarks():
-            self._complain(call.peer, f"{self._prefix}/preset/load", remark)
+            self._send_error(call.peer, f"{self._prefix}/preset/load", remark)
 
     def _set(self, call: Request, address: str, values: Mapping[str, float]) -> None:
         """Set values of presets, but those that all parts share in the first part alone."""
@@ -63,7 +58,7 @@ class PresetCalls:
         self._clients.echo(call.peer, [self._addressed + one for one in own if one in known])
         if shared:
             which = f"{', '.join(shared)}: one for all parts, left out; "
-            self._complain(
+            self._send_error(
                 call.peer, self._prefix + address, f"{which}{PREFIX}{address} sets what all share"
             )
 
@@ -82,18 +77,18 @@ class PresetCalls:
         if not self._saves.takes(time.monotonic()):
             raise PresetError("presets are saved too often; try again in a second")
         self._presets.save(name, self._player.sound())
-        self._know()
+        self._announce()
         call.peer.send(pack(f"{self._prefix}/preset/saved", name))
 
-    def _know(self) -> None:
-        """Tell everybody that there are other presets."""
+    def _announce(self) -> None:
+        """Announce that there are other presets."""
         self._player.know_programs()
-        self._changed("/preset")
+        self._tree_changed("/preset")
 
     def _delete(self, call: Request) -> None:
         name = call.word()
         self._presets.delete(name)
-        self._know()
+        self._announce()
         call.peer.send(pack(f"{self._prefix}/preset/deleted", name))
 
     def _list(self, call: Request) -> None:
@@ -103,4 +98,4 @@ class PresetCalls:
             call.peer.send(pack(f"{self._prefix}/preset", *row))
         call.peer.send(pack(f"{self._prefix}/presets", len(presets)))
         for error in errors:
-            self._complain(call.peer, f"{self._prefix}/preset/list", str(error))
+            self._send_error(call.peer, f"{self._prefix}/preset/list", str(error))

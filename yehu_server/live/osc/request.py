@@ -1,45 +1,14 @@
-"""A received OSC message, and the services that calls need beside the player."""
+"""A received OSC message, and its arguments, checked."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 from yehu_server.errors import RefusedError
 from yehu_server.live.osc.peers import Peer
-
-
-class Desk(Protocol):
-    """The services of the server that OSC calls need beside the player."""
-
-    def status(self) -> Mapping[str, float | str]:
-        """The status values, by name."""
-
-    def part_status(self, part: int) -> Mapping[str, float]:
-        """The status values of a part, counted from 0, by name."""
-
-    def start_recording(self, name: str) -> str:
-        """Record to a file of a plain name; return the file's name. Raises YehuError."""
-
-    def stop_recording(self) -> str:
-        """End the recording; return the file's name. Raises YehuError."""
-
-    def soon(self, action: Callable[[], None]) -> None:
-        """Call a function in the thread that handles packets; any thread may call."""
-
-    def aside(self, action: Callable[[], None]) -> None:
-        """Call a function that may take long, such as one that writes a file, in another thread.
-
-        Those that are given one after another are called in this order.
-        """
-
-    def tree_changed(self, path: str) -> None:
-        """Announce that the tree of addresses has changed at a path or below."""
-
-    def say(self, line: str) -> None:
-        """Print or log a line for whoever runs the server."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from yehu_server.live.osc.limits import OVERHEAD_BYTES, Room
+from yehu_server.live.osc.limits import OVERHEAD_BYTES, MemoryQuota
 from yehu_server.playing.live import LivePlayer
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
@@ -71,7 +71,7 @@ class Schedule(Generic[T, Sender]):
 
     def __init__(self, ahead_s: float = AHEAD_S, most_bytes: int = MOST_BYTES) -> None:
         self.ahead_s = ahead_s
-        self._room = Room(most_bytes)
+        self._quota = MemoryQuota(most_bytes)
         self._order = itertools.count()
         self._waiting: list[tuple[float, int, T, Sender, int]] = []
 
@@ -84,7 +84,7 @@ class Schedule(Generic[T, Sender]):
         Returns whether there was room.
         """
         size += OVERHEAD_BYTES
-        if not self._room.take(sender, size):
+        if not self._quota.take(sender, size):
             return False
         heapq.heappush(self._waiting, (due_s, next(self._order), thing, sender, size))
         return True
@@ -95,7 +95,7 @@ class Schedule(Generic[T, Sender]):
         horizon = time.time() + self.ahead_s
         while self._waiting and self._waiting[0][0] <= horizon and len(ready) < most:
             due_s, _, thing, sender, size = heapq.heappop(self._waiting)
-            self._room.give_back(sender, size)
+            self._quota.give_back(sender, size)
             ready.append((due_s, thing, sender))
         return ready
 
@@ -111,7 +111,7 @@ class Schedule(Generic[T, Sender]):
         for entry in self._waiting:
             _, _, thing, sender, size = entry
             if which(thing):
-                self._room.give_back(sender, size)
+                self._quota.give_back(sender, size)
             else:
                 kept.append(entry)
         self._waiting = kept
@@ -120,4 +120,4 @@ class Schedule(Generic[T, Sender]):
     def clear(self) -> None:
         """Drop everything."""
         self._waiting.clear()
-        self._room.clear()
+        self._quota.clear()

@@ -24,7 +24,7 @@ from yehu_server.live.addresses import Address, Allowed, is_here
 from yehu_server.live.osc.backlog import Backlog
 from yehu_server.live.osc.datagrams import datagrams
 from yehu_server.live.osc.framing import FramingError
-from yehu_server.live.osc.limits import Allowance
+from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.osc.listening import DATAGRAM_BYTES, open_both, widen
 from yehu_server.live.osc.peers import SENDERS_OF_A_HOST, Peer, TcpPeer, Traffic, UdpPeer, answers
 
@@ -82,7 +82,7 @@ class OscPorts:
         self._accept_from = math.inf  # monotonic s
         self._warned = 0.0  # monotonic s
         self._peers: dict[Address, UdpPeer] = {}
-        self._hosts: dict[str, Allowance] = {}
+        self._hosts: dict[str, TokenBucket] = {}
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
         self._udp, self._tcp = open_both(host, port)
@@ -191,7 +191,7 @@ class OscPorts:
         except FramingError as error:
             self.traffic.refused += 1
             self._warn(f"{peer.name}: {error}; connection closed")
-            self.hear_out(peer)
+            self.drain_and_close(peer)
         finally:
             peer.is_being_heard = False
 
@@ -247,13 +247,13 @@ class OscPorts:
         if peer is None:
             if len(self._peers) >= MOST_PEERS:
                 del self._peers[next(iter(self._peers))]
-            allowances: tuple[Allowance, ...] = (answers(),)
+            allowances: tuple[TokenBucket, ...] = (answers(),)
             if not is_here(address[0]):
                 allowances += (self._answers_to(address[0]),)
             peer = self._peers[address] = UdpPeer(self._udp, address, self.traffic, allowances)
         return peer
 
-    def _answers_to(self, host: str) -> Allowance:
+    def _answers_to(self, host: str) -> TokenBucket:
         """The bytes of answers to all ports of another host."""
         if host not in self._hosts:
             if len(self._hosts) >= MOST_PEERS:
@@ -283,7 +283,7 @@ class OscPorts:
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.traffic.connections += 1
-        peer = TcpPeer(connection, address, self.traffic, self.watch, self.hear_out)
+        peer = TcpPeer(connection, address, self.traffic, self.watch, self.drain_and_close)
         self._streams.add(peer)
         self._selector.register(connection, selectors.EVENT_READ, peer)
 
@@ -327,9 +327,9 @@ class OscPorts:
             peer.is_being_heard = True
             self._backlog.add(data, peer, time.monotonic_ns(), len(data), is_due=True)
         else:
-            self.hear_out(peer)
+            self.drain_and_close(peer)
 
-    def hear_out(self, peer: TcpPeer) -> None:
+    def drain_and_close(self, peer: TcpPeer) -> None:
         """Read no more from a peer; its packets are still handled and answered."""
         peer.reads = False
         self.watch(peer)

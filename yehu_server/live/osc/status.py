@@ -14,7 +14,6 @@ from yehu_server.live.osc.part_status import PART_ROWS, Kind, PartSources, decib
 if TYPE_CHECKING:
     from yehu_server.core.engine.ensemble import Ensemble
     from yehu_server.live.midi.ports import MidiPorts
-    from yehu_server.live.osc.handler import Counts
     from yehu_server.live.osc.peers import Traffic, WebTraffic
     from yehu_server.playing.delay import Delay
 
@@ -29,6 +28,17 @@ class OutputState(Protocol):
     latency_ms: float
     losses: int
     problem: str
+
+
+@dataclass
+class Counts:
+    """Numbers of OSC messages since the start."""
+
+    messages: int = 0
+    malformed: int = 0
+    errors: int = 0  # wrong types, unknown addresses, refused calls
+    late_bundles: int = 0
+    scheduled: int = 0
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Subscriptions: who is sent which changes, in small steps between other messages.
 
 Values are looked at once a round, group by group of addresses (``parts``), and then sent. What a
-listener asks for during a round waits for the next one, so that it is told what then holds.
+subscriber asks for during a round waits for the next one, so that it is sent what then holds.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from yehu_server.live.osc.limits import Allowance
+from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import PLACE, as_argument
@@ -21,29 +21,31 @@ ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
 
 
 @dataclass
-class Listener:
-    """A peer and what it is to be told. Addresses come in groups: see ``parts``."""
+class Subscriber:
+    """A peer and what it is to be sent. Addresses come in groups: see ``parts``."""
 
     peer: Peer
     # By group of addresses: the end of its subscription (monotonic s), and the form of the
-    # addresses it is told: plain, or ending in UNIT.
+    # addresses it is sent: plain, or ending in UNIT.
     subscribed: dict[str, tuple[float, str]] = field(default_factory=dict)
-    asked_status: dict[str, float] = field(default_factory=dict)  # the same, of the status
-    # Addresses of which it is told all changes, by group; parameters and status apart.
+    status_subscribed: dict[str, float] = field(default_factory=dict)  # the same, of the status
+    # Addresses of which it is sent all changes, by group; parameters and status apart.
     listens: dict[str, set[str]] = field(default_factory=dict)
     watches: dict[str, set[str]] = field(default_factory=dict)
-    hushed_until: float = 0.0  # until then it is not answered (monotonic s)
-    # Addresses to send, and their groups: in the next round of telling, and in the present one.
-    to_tell: dict[str, str] = field(default_factory=dict)
-    telling: dict[str, str] = field(default_factory=dict)
-    errors: Allowance = field(default_factory=lambda: Allowance(ERRORS_A_SECOND, ERRORS_AT_ONCE))
-    complained: float = field(default_factory=time.monotonic)
+    muted_until: float = 0.0  # until then it is not answered (monotonic s)
+    # Addresses to send, and their groups: in the next round of sending, and in the present one.
+    to_send: dict[str, str] = field(default_factory=dict)
+    sending: dict[str, str] = field(default_factory=dict)
+    errors: TokenBucket = field(
+        default_factory=lambda: TokenBucket(ERRORS_A_SECOND, ERRORS_AT_ONCE)
+    )
+    last_error: float = field(default_factory=time.monotonic)
 
     @property
     def until(self) -> float:
         """When its last subscription ends (monotonic s)."""
         ends = [end for end, _ in self.subscribed.values()]
-        return max([*ends, *self.asked_status.values()], default=0.0)
+        return max([*ends, *self.status_subscribed.values()], default=0.0)
 
     def subscribes(self, now: float) -> bool:
         """Whether it has a subscription."""
@@ -52,7 +54,7 @@ class Listener:
     @property
     def is_idle(self) -> bool:
         """Whether nothing waits to be sent to it, and it listens to no address."""
-        return not (self.to_tell or self.telling or self.listens or self.watches)
+        return not (self.to_send or self.sending or self.listens or self.watches)
 
     def among(self, address: str) -> tuple[str, dict[str, set[str]]]:
         """The group of an address, and among which of its addresses it stands."""
@@ -66,8 +68,8 @@ class Listener:
         addresses.discard(address)
         if not addresses:
             among.pop(addressed, None)
-        self.to_tell.pop(address, None)
-        self.telling.pop(address, None)
+        self.to_send.pop(address, None)
+        self.sending.pop(address, None)
 
     def form(self, addressed: str, now: float) -> str | None:
         """The form of addresses in which it subscribed to a group's values; None if it has not."""
@@ -80,18 +82,18 @@ class Listener:
 
     def states(self, now: float) -> set[str]:
         """The groups whose status it has subscribed to."""
-        return {addressed for addressed, end in self.asked_status.items() if end > now}
+        return {addressed for addressed, end in self.status_subscribed.items() if end > now}
 
 
 Values = Callable[[str], Mapping[str, float]]
 Status = Callable[[str], Mapping[str, float | str]]
 
 STATUS_S = 0.25  # between readings of the status
-MOST_TOLD = 512  # messages of one round
+MOST_SENT = 512  # messages of one round
 
 
-class Telling:
-    """What listeners were told last, and the rounds that tell them more.
+class ChangePublisher:
+    """What subscribers were sent last, and the rounds that send them more.
 
     Parameters
     ----------
@@ -104,119 +106,119 @@ class Telling:
         self._status = status
         self._prefix = prefix
         # By group: what the last round found.
-        self._told: dict[str, Mapping[str, float]] = {}
-        self._told_status: dict[str, dict[str, float | str]] = {}
+        self._last: dict[str, Mapping[str, float]] = {}
+        self._last_status: dict[str, dict[str, float | str]] = {}
         self._looked = 0.0  # when the status was last read
 
-    def round(self, listeners: dict[Peer, Listener], now: float) -> Iterator[None]:
-        """Find what is to be told, and send up to MOST_TOLD messages, each as a step.
+    def round(self, subscribers: dict[Peer, Subscriber], now: float) -> Iterator[None]:
+        """Find what is to be sent, and send up to MOST_SENT messages, each as a step.
 
-        Listeners that were sent some are moved behind those that were left out. Others may come
+        Subscribers that were sent some are moved behind those that were left out. Others may come
         and go between two steps.
         """
-        present = list(listeners.values())
-        for listener in present:
-            listener.telling |= listener.to_tell
-            listener.to_tell.clear()
+        present = list(subscribers.values())
+        for subscriber in present:
+            subscriber.sending |= subscriber.to_send
+            subscriber.to_send.clear()
         yield from self._look(present, now)
         yield from self._look_at_status(present, now)
-        yield from self._send(listeners)
+        yield from self._send(subscribers)
 
-    def _look(self, listeners: Sequence[Listener], now: float) -> Iterator[None]:
+    def _look(self, subscribers: Sequence[Subscriber], now: float) -> Iterator[None]:
         wanted: dict[str, None] = {}
-        for one in listeners:
-            groups = (*one.forms(now), *one.listens, *one.telling.values())
+        for one in subscribers:
+            groups = (*one.forms(now), *one.listens, *one.sending.values())
             wanted.update(dict.fromkeys(groups))
-        self._told = {group: told for group, told in self._told.items() if group in wanted}
+        self._last = {group: sent for group, sent in self._last.items() if group in wanted}
         for group in wanted:
-            before, values = self._told.get(group, {}), self._values(group)
-            self._told[group] = values
+            before, values = self._last.get(group, {}), self._values(group)
+            self._last[group] = values
             changed = [group + one for one, value in values.items() if before.get(one) != value]
             if changed:
-                _mark_values(listeners, group, changed, now)
+                _mark_values(subscribers, group, changed, now)
             yield
 
-    def _look_at_status(self, listeners: Sequence[Listener], now: float) -> Iterator[None]:
+    def _look_at_status(self, subscribers: Sequence[Subscriber], now: float) -> Iterator[None]:
         """Where somebody wants it and it is time."""
         wanted: set[str] = set()
         is_new = False
-        for one in listeners:
+        for one in subscribers:
             wanted.update(one.states(now), one.watches)
-            for address, group in one.telling.items():
+            for address, group in one.sending.items():
                 if address.startswith(PLACE, len(group)):
                     wanted.add(group)
-                    is_new = is_new or address not in self._told_status.get(group, ())
+                    is_new = is_new or address not in self._last_status.get(group, ())
         if not wanted or (now - self._looked < STATUS_S and not is_new):
             return
         self._looked = now
-        before, self._told_status = self._told_status, {}
+        before, self._last_status = self._last_status, {}
         for group in sorted(wanted):
             states = {
                 group + PLACE + name: as_argument(value)
                 for name, value in self._status(group).items()
             }
-            self._told_status[group] = states
-            told = before.get(group, {})
-            changed = [address for address, value in states.items() if told.get(address) != value]
-            _mark_status(listeners, group, changed, now)
+            self._last_status[group] = states
+            sent = before.get(group, {})
+            changed = [address for address, value in states.items() if sent.get(address) != value]
+            _mark_status(subscribers, group, changed, now)
             yield
 
-    def _send(self, listeners: dict[Peer, Listener]) -> Iterator[None]:
+    def _send(self, subscribers: dict[Peer, Subscriber]) -> Iterator[None]:
         packets: dict[str, bytes] = {}
-        left = MOST_TOLD
-        for peer, listener in list(listeners.items()):
-            if not listener.telling:
+        left = MOST_SENT
+        for peer, subscriber in list(subscribers.items()):
+            if not subscriber.sending:
                 continue
             while (
-                listener.telling
+                subscriber.sending
                 and left > 0
                 and peer.takes_more
-                and listeners.get(peer) is listener  # sending may end it
+                and subscribers.get(peer) is subscriber  # sending may end it
             ):
-                address, group = next(iter(listener.telling.items()))
-                del listener.telling[address]
+                address, group = next(iter(subscriber.sending.items()))
+                del subscriber.sending[address]
                 if address not in packets:
                     packets[address] = pack(self._prefix + address, self._value(address, group))
                 peer.send(packets[address])
                 left -= 1
                 yield
-            if listeners.get(peer) is listener:
-                listeners[peer] = listeners.pop(peer)
+            if subscribers.get(peer) is subscriber:
+                subscribers[peer] = subscribers.pop(peer)
             if left <= 0:
                 break
 
     def _value(self, address: str, group: str) -> float | str:
         own = address.removeprefix(group)
         if own.startswith(PLACE):
-            return self._told_status[group][address]
-        return read(self._told[group], own)
+            return self._last_status[group][address]
+        return read(self._last[group], own)
 
 
 def _mark_values(
-    listeners: Sequence[Listener], group: str, changed: Sequence[str], now: float
+    subscribers: Sequence[Subscriber], group: str, changed: Sequence[str], now: float
 ) -> None:
-    """Have those who want a group's values told of the addresses that changed."""
-    heard = {address + form for address in changed for form in ("", UNIT)}
-    for one in listeners:
+    """Have the addresses that changed sent to those who want values of their group."""
+    found = {address + form for address in changed for form in ("", UNIT)}
+    for one in subscribers:
         form = one.form(group, now)
         if form is not None:
-            one.telling.update((address + form, group) for address in changed)
-        _mark_heard(one, one.listens, group, heard)
+            one.sending.update((address + form, group) for address in changed)
+        _mark_listened(one, one.listens, group, found)
 
 
 def _mark_status(
-    listeners: Sequence[Listener], group: str, changed: Collection[str], now: float
+    subscribers: Sequence[Subscriber], group: str, changed: Collection[str], now: float
 ) -> None:
     """The same, of those who want a group's status."""
-    heard = set(changed)
-    for one in listeners:
+    found = set(changed)
+    for one in subscribers:
         if group in one.states(now):
-            one.telling.update(dict.fromkeys(changed, group))
-        _mark_heard(one, one.watches, group, heard)
+            one.sending.update(dict.fromkeys(changed, group))
+        _mark_listened(one, one.watches, group, found)
 
 
-def _mark_heard(
-    listener: Listener, among: Mapping[str, set[str]], group: str, heard: set[str]
+def _mark_listened(
+    subscriber: Subscriber, among: Mapping[str, set[str]], group: str, found: set[str]
 ) -> None:
     if group in among:
-        listener.telling.update(dict.fromkeys(among[group] & heard, group))
+        subscriber.sending.update(dict.fromkeys(among[group] & found, group))

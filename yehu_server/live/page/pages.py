@@ -16,7 +16,7 @@ from yehu_server.live.page.sockets import MOST_PAGES
 from yehu_server.live.web.server import listen
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.section_people import SECTION
-from yehu_server.util.processes import Child, ChildKeeper
+from yehu_server.util.processes import Child, Supervisor
 
 STATUS_S = 0.5
 NAME = "the page"
@@ -41,8 +41,8 @@ class Pages:
     memory : int
         File descriptor of the memory that has the instruments.
     status : callable
-        What pages are told of the server, of JSON's types; any thread may call.
-    changed : callable
+        What pages are sent of the server, of JSON's types; any thread may call.
+    on_message : callable
         Called with a line when the process had to be started again; from another thread.
     rigs : sequence of int
         The instrument that shows each part: by default the first shows the first part, and so on.
@@ -59,7 +59,7 @@ class Pages:
         options: PageOptions,
         memory: int,
         status: Callable[[], Mapping[str, Any]],
-        changed: Callable[[str], None],
+        on_message: Callable[[str], None],
         rigs: Sequence[int] | None = None,
     ) -> None:
         self._players = tuple(players)
@@ -67,7 +67,7 @@ class Pages:
         self._options = options
         self._memory = memory
         self._status = status
-        self._changed = changed
+        self._on_message = on_message
         host, port = options.address
         try:
             self._listening = listen(NAME, host, port)
@@ -76,35 +76,35 @@ class Pages:
                 raise
             self._listening = listen(NAME, host, 0)
         self.host, self.port = self._listening.getsockname()[:2]
-        self._keeper = ChildKeeper(
+        self._supervisor = Supervisor(
             "yehu_server.live.page.process",
             "pages",
-            heard=lambda _event: None,  # it tells nothing
+            on_event=lambda _event: None,  # it sends none
             attend=self._attend,
-            ended=self._ended,
-            told=changed,
+            on_exit=self._ended,
+            on_error=on_message,
             share=[memory, self._listening.fileno()],
         )
 
     def start(self) -> None:
         """Start to serve."""
-        self._keeper.start()
+        self._supervisor.start()
 
     def stop(self) -> None:
         """Stop serving, and end the notes of pages."""
-        self._keeper.stop()
+        self._supervisor.stop()
         self._listening.close()
 
     def _attend(self, child: Child, gone: threading.Event) -> None:
-        """Tell the process what to serve, and the status whenever it is another."""
+        """Send the process what to serve, and the status whenever it is another."""
         allowed = list(self._options.networks)
         listening = self._listening.fileno()
         child.send("serve", memory=self._memory, rigs=self._rigs, socket=listening, allowed=allowed)
-        told: Any = None
+        sent: Any = None
         while not gone.wait(STATUS_S):
-            if (news := (self._status(), self._own())) != told:
+            if (news := (self._status(), self._own())) != sent:
                 child.send("tell", status=news[0], own=news[1])
-                told = news
+                sent = news
 
     def _own(self) -> list[list[tuple[int, float]]]:
         """Of each part that is a section, what each of its players has a value of its own of."""
@@ -120,4 +120,4 @@ class Pages:
         for player in self._players:
             player.let_go_of_channels(FIRST, MOST_PAGES * CHANNELS, frame=player.frame_of())
         if by_itself:
-            self._changed("pages: their process ended; it is started again")
+            self._on_message("pages: their process ended; it is started again")

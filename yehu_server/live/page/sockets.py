@@ -21,7 +21,7 @@ import numpy as np
 from aiohttp import WSMsgType, web
 
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
-from yehu_server.live.osc.limits import Allowance
+from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers
 from yehu_server.live.page.shared_view import Seen
 from yehu_server.params.table import TABLE
@@ -76,7 +76,7 @@ class Page:
         self.part = part
         self.transport = transport
         self.looks = self.sounds = False  # whether it wants looks; whether it sounds itself
-        self.allowance = Allowance(WISHES_PER_S, WISHES_AT_ONCE)
+        self.allowance = TokenBucket(WISHES_PER_S, WISHES_AT_ONCE)
 
 
 class PageSockets:

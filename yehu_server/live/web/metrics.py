@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 
 from prometheus_client import CollectorRegistry
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
@@ -11,7 +11,8 @@ from prometheus_client.registry import Collector
 
 from yehu_server.live.osc.part_status import PART_STATUS, Kind
 from yehu_server.live.osc.status import STATUS
-from yehu_server.live.web.query import Told
+from yehu_server.live.part_addresses import FIRST, group
+from yehu_server.live.web.query import Snapshot
 
 NAMESPACE = "yehu"
 FAMILIES = {Kind.GAUGE: GaugeMetricFamily, Kind.COUNTER: CounterMetricFamily}
@@ -22,16 +23,14 @@ class Metrics(Collector):
 
     Parameters
     ----------
-    told : callable
-        Returns the status values, by name.
-    parts : callable
-        Returns those of each part, where there are several; they have the label ``part``.
+    snapshot : callable
+        Returns the values of a group of addresses.
+    parts : int
+        Number of parts; where there are several, each has metrics with the label ``part``.
     """
 
-    def __init__(
-        self, told: Callable[[], Told], parts: Callable[[], Sequence[Told]] = tuple
-    ) -> None:
-        self._told = told
+    def __init__(self, snapshot: Callable[[str], Snapshot], parts: int = 1) -> None:
+        self._snapshot = snapshot
         self._parts = parts
         self._registry = CollectorRegistry()
         self._registry.register(self)
@@ -42,16 +41,17 @@ class Metrics(Collector):
 
     def collect(self) -> Iterator[Metric]:
         """See `Collector`."""
-        status = self._told().status
+        status = self._snapshot(FIRST).status
         for row in STATUS:
             family = FAMILIES.get(row.kind)
             if family is not None:
                 yield family(f"{NAMESPACE}_{row.name}", row.doc, value=float(status[row.name]))
-        parts = self._parts()
+        several = range(self._parts) if self._parts > 1 else ()
+        parts = [self._snapshot(group(part)).status for part in several]
         for own in PART_STATUS if parts else ():
             metric = FAMILIES[own.kind](f"{NAMESPACE}_part_{own.name}", own.doc, labels=["part"])
             for number, part in enumerate(parts, start=1):
-                metric.add_metric([str(number)], float(part.status[own.name]))
+                metric.add_metric([str(number)], float(part[own.name]))
             yield metric
 
     def text(self, accept: str) -> tuple[bytes, str]:

@@ -6,8 +6,10 @@ Source: the OSCQuery proposal (github.com/Vidvox/OSCQueryProposal), third revisi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache, partial
+from itertools import chain
 from typing import Any
 
 from yehu_server.errors import ParameterError
@@ -46,7 +48,7 @@ PART_DOC = "Part {}: a player of its own, with the instrument that it plays."
 
 
 @dataclass(frozen=True)
-class Told:
+class Snapshot:
     """The values of a group of addresses (``parts``): parameters by address, status by name."""
 
     values: Mapping[str, float]
@@ -63,45 +65,53 @@ def is_listenable(address: str, parts: int) -> bool:
     return own in (LISTENABLE_OF_PARTS if addressed else LISTENABLE)
 
 
-def tree(told: Told, more_calls: Iterable[Call] = (), parts: Sequence[Told] = ()) -> Node:
-    """The whole tree.
+def node_at(
+    path: str,
+    snapshot: Callable[[str], Snapshot],
+    parts: int = 1,
+    more_calls: Iterable[Call] = (),
+) -> Node | None:
+    """The node at a path with all that is below it, or None where there is none.
+
+    Nothing else is built, and only groups of addresses that are needed are read.
 
     Parameters
     ----------
-    told : Told
-        What addresses without a part have.
+    snapshot : callable
+        Returns the values of a group of addresses: of `FIRST`, or of a part.
+    parts : int
+        Number of parts; where there are several, each has addresses of its own, too.
     more_calls : iterable of Call
         Calls added to `CALLS`, or in place of some; their addresses include the prefix.
-    parts : sequence of Told
-        What those of each part have, where there are several.
     """
+    below = path.strip("/")
+    snapshot = cache(snapshot)
     root: Node = {"FULL_PATH": "/", "ACCESS": NO_VALUE, "DESCRIPTION": ROOT_DOC}
-    _put_group(root, FIRST, told)
-    for part, own in enumerate(parts):
-        described = {"DESCRIPTION": PART_DOC.format(part + 1)}
-        _put(root, PREFIX + group(part), described)
-        _put_group(root, group(part), own)
-    for call in more_calls:
-        _put(root, call.address, _of_call(call))
-    return root
+    nodes: list[Iterable[tuple[str, Callable[[], Node]]]] = [_nodes(FIRST, snapshot)]
+    for number in range(parts) if parts > 1 else ():
+        described: Node = {"DESCRIPTION": PART_DOC.format(number + 1)}
+        nodes.append([(PREFIX + group(number), partial(dict, described))])
+        nodes.append(_nodes(group(number), snapshot))
+    nodes.append((call.address, partial(_of_call, call)) for call in more_calls)
+    for address, describe in chain.from_iterable(nodes):
+        if not below or f"{address}/".startswith(f"/{below}/"):
+            _put(root, address, describe())
+    return find(root, path)
 
 
-def _put_group(root: Node, addressed: str, told: Told) -> None:
-    """Add the nodes of a group of addresses."""
+def _nodes(
+    addressed: str, snapshot: Callable[[str], Snapshot]
+) -> Iterable[tuple[str, Callable[[], Node]]]:
+    """The addresses of a group, and what describes each."""
     prefix = PREFIX + addressed
     for param in OWN if addressed else TABLE:
-        number = told.values[param.address]
-        _put(root, prefix + param.address, _of_param(param, number))
-        _put(root, prefix + param.address + AS_UNIT, _of_unit(param, number))
-    rows: Iterable[StatusValue | PartValue] = PART_STATUS if addressed else STATUS
-    for row in rows:
-        value = as_argument(told.status[row.name])
-        described = {"ACCESS": READ, "TYPE": _type(value), "VALUE": [_json(value)]}
-        described |= {"DESCRIPTION": row.doc} | _units([row.unit])
-        _put(root, prefix + PLACE + row.name, described)
+        yield prefix + param.address, partial(_of_param, param, addressed, snapshot)
+        yield prefix + param.address + AS_UNIT, partial(_of_unit, param, addressed, snapshot)
+    for row in PART_STATUS if addressed else STATUS:
+        yield prefix + PLACE + row.name, partial(_of_status, row, addressed, snapshot)
     for call in CALLS:
         if not (addressed and call.is_for_all):
-            _put(root, prefix + call.address, _of_call(call))
+            yield prefix + call.address, partial(_of_call, call)
 
 
 def find(root: Node, path: str) -> Node | None:
@@ -135,26 +145,34 @@ def _put(root: Node, address: str, described: Node) -> None:
     node.update(described)
 
 
-def _of_param(param: Param, value: float) -> Node:
+def _of_param(param: Param, addressed: str, snapshot: Callable[[str], Snapshot]) -> Node:
     return {
         "ACCESS": READ_WRITE,
         "TYPE": "f",
-        "VALUE": [_json(value)],
+        "VALUE": [_json(snapshot(addressed).values[param.address])],
         "RANGE": [{"MIN": param.lo, "MAX": param.hi}],
         "CLIPMODE": ["both"],
         "DESCRIPTION": f"{param.doc} At {AS_UNIT[1:]} below, the same as 0 to 1.",
     } | _units([param.unit])
 
 
-def _of_unit(param: Param, value: float) -> Node:
+def _of_unit(param: Param, addressed: str, snapshot: Callable[[str], Snapshot]) -> Node:
     return {
         "ACCESS": READ_WRITE,
         "TYPE": "f",
-        "VALUE": [_json(param.to_unit(value))],
+        "VALUE": [_json(param.to_unit(snapshot(addressed).values[param.address]))],
         "RANGE": [{"MIN": 0.0, "MAX": 1.0}],
         "CLIPMODE": ["both"],
         "DESCRIPTION": f"{param.doc} As 0 to 1.",
     }
+
+
+def _of_status(
+    row: StatusValue | PartValue, addressed: str, snapshot: Callable[[str], Snapshot]
+) -> Node:
+    value = as_argument(snapshot(addressed).status[row.name])
+    described = {"ACCESS": READ, "TYPE": _type(value), "VALUE": [_json(value)]}
+    return described | {"DESCRIPTION": row.doc} | _units([row.unit])
 
 
 def _of_call(call: Call) -> Node:

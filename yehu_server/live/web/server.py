@@ -66,11 +66,9 @@ class WebOptions:
 class Sources:
     """Where answers come from; all may be called by any thread."""
 
-    told: Callable[[], query.Told]  # of addresses without a part
+    snapshot: Callable[[str], query.Snapshot]  # of a group of addresses
     folder: Path  # that has the page of parameters
-    # Of those of each part, where there are several.
-    parts: Callable[[], Sequence[query.Told]] = tuple
-    number: int = 1  # of parts
+    parts: int = 1
     more_calls: Callable[[], Iterable[Call]] = tuple  # beside calls.CALLS
     page_port: Callable[[], int | None] = lambda: None  # where the page is served, if it is
 
@@ -91,8 +89,8 @@ class WebServer:
         self._allowed = options.allowed
         self._osc = osc
         self._sources = sources
-        self._sockets = WebSockets(osc, clients, self.traffic, sources.number)
-        self._metrics = Metrics(sources.told, sources.parts)
+        self._sockets = WebSockets(osc, clients, self.traffic, sources.parts)
+        self._metrics = Metrics(sources.snapshot, sources.parts)
         self._names = own_names()
         self._listening = listen("OSCQuery", *options.address)
         self.host, self.port = self._listening.getsockname()[:2]
@@ -203,21 +201,20 @@ class WebServer:
             raise web.HTTPRequestEntityTooLarge(BODY_BYTES, request.content_length or 0)
 
     def _query(self, request: web.Request) -> web.Response:
-        """Answer with a node, or with those of its attributes that are asked for."""
-        asked = list(request.query)
-        if asked == ["HOST_INFO"]:
+        """Answer with a node, or with some of its attributes."""
+        wanted = list(request.query)
+        if wanted == ["HOST_INFO"]:
             return _json(self._host_info(request))
-        for name in asked:
+        for name in wanted:
             if name not in query.ATTRIBUTES:
                 raise web.HTTPBadRequest(text=one_line(f"unknown attribute {name!r}") + "\n")
         sources = self._sources
-        root = query.tree(sources.told(), sources.more_calls(), sources.parts())
-        node = query.find(root, request.path)
+        node = query.node_at(request.path, sources.snapshot, sources.parts, sources.more_calls())
         if node is None:
             raise web.HTTPNotFound(text=one_line(f"nothing at {request.path}") + "\n")
-        if not asked:
+        if not wanted:
             return _json(node)
-        found = {name: node[name] for name in asked if name in node}
+        found = {name: node[name] for name in wanted if name in node}
         return _json(found) if found else web.Response(status=204, headers=HEADERS)
 
     def _host_info(self, request: web.Request) -> dict[str, Any]:

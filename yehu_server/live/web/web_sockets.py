@@ -157,12 +157,12 @@ def _command(command: str, data: Any) -> str:
 def _read(text: str, parts: int) -> tuple[str, str]:
     """Read a command and its address (without the prefix); raises CommandError."""
     try:
-        said = json.loads(text)
+        message = json.loads(text)
     except (ValueError, RecursionError):
         raise CommandError("not JSON") from None
-    if not isinstance(said, dict):
+    if not isinstance(message, dict):
         raise CommandError("expected an object with COMMAND and DATA")
-    command, path = said.get("COMMAND"), said.get("DATA")
+    command, path = message.get("COMMAND"), message.get("DATA")
     if command not in ("LISTEN", "IGNORE"):
         raise CommandError(f"unknown command {shortened(repr(command))}; there are LISTEN, IGNORE")
     address = path.removeprefix(PREFIX) if isinstance(path, str) else ""

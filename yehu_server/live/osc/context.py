@@ -1,0 +1,62 @@
+"""What the OSC calls of all parts share: the clients, and the server's services beside playing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.limits import TokenBucket
+from yehu_server.live.osc.peers import Peer
+from yehu_server.live.osc.request import Request
+from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.mapping import Mapping as ControllerMapping
+
+SAVES_A_SECOND, SAVES_AT_ONCE = 1.0, 10.0  # of all clients together: each writes a file
+
+Act = Callable[[Request], None]
+
+
+class ServerServices(Protocol):
+    """The services of the server that OSC calls need beside the player."""
+
+    def status(self) -> Mapping[str, float | str]:
+        """The status values, by name."""
+
+    def part_status(self, part: int) -> Mapping[str, float]:
+        """The status values of a part, counted from 0, by name."""
+
+    def start_recording(self, name: str) -> str:
+        """Record to a file of a plain name; return the file's name. Raises YehuError."""
+
+    def stop_recording(self) -> str:
+        """End the recording; return the file's name. Raises YehuError."""
+
+    def call_soon(self, action: Callable[[], None]) -> None:
+        """Call a function in the thread that handles packets; any thread may call."""
+
+    def run_in_background(self, action: Callable[[], None]) -> None:
+        """Call a function that may take long, such as one that writes a file, in another thread.
+
+        Those that are given one after another are called in this order.
+        """
+
+    def tree_changed(self, path: str) -> None:
+        """Announce that the tree of addresses has changed at a path or below."""
+
+    def log(self, line: str) -> None:
+        """Print or log a line for whoever runs the server."""
+
+
+@dataclass(frozen=True)
+class CallContext:
+    """What the calls of all parts share."""
+
+    clients: Clients
+    services: ServerServices
+    send_error: Callable[[Peer, str, str], None]  # to a peer, with the address it sent to
+    drop_scheduled: Callable[[str], None]  # the messages of a group that wait for their time
+    tree_changed: Callable[[str], None]  # announces a change of the tree, below each group
+    remap: Callable[[LivePlayer, ControllerMapping], None]  # a player and its like
+    saves: TokenBucket = field(default_factory=lambda: TokenBucket(SAVES_A_SECOND, SAVES_AT_ONCE))

@@ -70,7 +70,19 @@ function assemble() {
   gallery.hang(
     new Spectrum(find("spectrum", HTMLCanvasElement), () => instrument.sound?.analyser ?? null),
   );
-  return { instrument, hands, tuned, keys, fingerboard, bow, board, strings, gallery, taught, midi };
+  return {
+    instrument,
+    hands,
+    tuned,
+    keys,
+    fingerboard,
+    bow,
+    board,
+    strings,
+    gallery,
+    taught,
+    midi,
+  };
 }
 
 /** @param {Page} page */

@@ -10,7 +10,11 @@
       // Nothing is kept here.
     }
     const isChosen = theme === "dark" || theme === "light";
-    document.documentElement.dataset.theme = isChosen ? theme : darkSystem.matches ? "dark" : "light";
+    document.documentElement.dataset.theme = isChosen
+      ? theme
+      : darkSystem.matches
+        ? "dark"
+        : "light";
   };
   darkSystem.addEventListener("change", show);
   show();

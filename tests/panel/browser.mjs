@@ -62,7 +62,8 @@ export async function open(browser, url) {
   /** @type {string[]} */
   const errors = [];
   page.on("console", (message) => {
-    const isWaiting = message.location().url.endsWith("yehu.wasm") && message.text().includes("503");
+    const isWaiting =
+      message.location().url.endsWith("yehu.wasm") && message.text().includes("503");
     if (["error", "warning"].includes(message.type()) && !isWaiting) errors.push(message.text());
   });
   page.on("pageerror", (error) => errors.push(String(error)));

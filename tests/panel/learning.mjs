@@ -6,17 +6,17 @@
  * line of the output has the source that each lesson found, the binds at the end, and their file.
  */
 
-import { createInterface } from 'node:readline';
-import { pathToFileURL } from 'node:url';
-import { resolve } from 'node:path';
+import { createInterface } from "node:readline";
+import { pathToFileURL } from "node:url";
+import { resolve } from "node:path";
 
 const web = pathToFileURL(`${resolve(process.argv[2])}/`);
-const { default: facts } = await import(new URL('facts.js', web).href);
-const { Learner } = await import(new URL('playing/learner.js', web).href);
+const { default: facts } = await import(new URL("facts.js", web).href);
+const { Learner } = await import(new URL("playing/learner.js", web).href);
 const { bindOf, fileOf, merged, readLearned, withBind } = await import(
-  new URL('playing/learned.js', web).href
+  new URL("playing/learned.js", web).href
 );
-const { rowOf } = await import(new URL('playing/tables.js', web).href);
+const { rowOf } = await import(new URL("playing/tables.js", web).href);
 
 /** The first source that is meant. */
 function heard(messages) {

@@ -15,7 +15,8 @@ function teach() {
 }
 
 const BOTH = ["light", "dark"];
-const SCHEMES = process.argv[4] === "all" ? { phone: BOTH, desk: BOTH } : { phone: ["light"], desk: ["dark"] };
+const SCHEMES =
+  process.argv[4] === "all" ? { phone: BOTH, desk: BOTH } : { phone: ["light"], desk: ["dark"] };
 
 await run(async (browser, url) => {
   await browser.addInitScript(teach);

@@ -49,7 +49,7 @@ async function isHeardSteadily(page) {
   await heard(page);
   const gaps = async () => /drop-outs (\d+)/.exec(await page.locator("#status").textContent())?.[1];
   let [before, since] = [await gaps(), Date.now()];
-  for (const end = Date.now() + PATIENCE_MS; Date.now() < end; ) {
+  for (const end = Date.now() + PATIENCE_MS; Date.now() < end;) {
     await page.waitForTimeout(100);
     const now = await gaps();
     if (now !== before) [before, since] = [now, Date.now()];
@@ -92,7 +92,9 @@ await run(async (browser, url) => {
 
   await page.click("#tab-connect");
   await page.click("#way-listen");
-  await page.waitForFunction(() => /listen|heard/i.test(document.querySelector("#panel-connect").textContent));
+  await page.waitForFunction(() =>
+    /listen|heard/i.test(document.querySelector("#panel-connect").textContent),
+  );
   await reach("listens");
   found.listensWithoutModule = await listensWithoutModule(browser, url);
   found.isSteady = await isHeardSteadily(page);
@@ -102,7 +104,9 @@ await run(async (browser, url) => {
 
   await page.waitForSelector("#way-here:not([disabled])", { timeout: 120000 });
   await page.click("#way-here");
-  await page.waitForFunction(() => /AudioWorklet/.test(document.querySelector("#panel-connect").textContent));
+  await page.waitForFunction(() =>
+    /AudioWorklet/.test(document.querySelector("#panel-connect").textContent),
+  );
   await touch("touchStart", [finger]);
   await reach("plays here");
   await touch("touchEnd", []);
@@ -111,7 +115,9 @@ await run(async (browser, url) => {
   await page.click("#way-there");
   found.errors = [...errors];
   await reach("stop the server");
-  await page.waitForFunction(() => /does not answer/.test(document.querySelector("#status").textContent));
+  await page.waitForFunction(() =>
+    /does not answer/.test(document.querySelector("#status").textContent),
+  );
   await reach("start the server");
   await page.waitForFunction(() => /load/.test(document.querySelector("#status").textContent));
   await touch("touchStart", [finger]);

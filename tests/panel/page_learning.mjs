@@ -38,7 +38,9 @@ await run(async (browser, url) => {
 
   // A parameter is chosen, the keyboard is asked for, and a knob moves.
   await page.click("#tab-connect");
-  await panel.getByRole("combobox", { name: "Parameter to teach" }).selectOption("/playing/vibrato");
+  await panel
+    .getByRole("combobox", { name: "Parameter to teach" })
+    .selectOption("/playing/vibrato");
   await learn.press("Enter");
   await page.waitForFunction(() => globalThis.pretended.input.onmidimessage);
   found.waiting = await word();
@@ -71,7 +73,10 @@ await run(async (browser, url) => {
   const beside = page.getByRole("button", { name: "Learn: Body to bridge" });
   const told = page.locator("#panel-all .parameter:not([hidden]) .told");
   await beside.press("Space");
-  found.asked = { told: await told.textContent(), pressed: await beside.getAttribute("aria-pressed") };
+  found.asked = {
+    told: await told.textContent(),
+    pressed: await beside.getAttribute("aria-pressed"),
+  };
   await sendMidi(page, TOUCH, 90);
   found.told = await told.textContent();
   found.owned = await page.evaluate(() => {
@@ -120,7 +125,9 @@ await run(async (browser, url) => {
   await page.click("#tab-connect");
   found.reloaded = await list();
   await panel.getByRole("button", { name: "Use MIDI keyboards" }).press("Enter");
-  await page.waitForFunction(() => globalThis.imitation && globalThis.pretended.input.onmidimessage);
+  await page.waitForFunction(
+    () => globalThis.imitation && globalThis.pretended.input.onmidimessage,
+  );
   await wishes(page);
   await sendMidi(page, KNOB, 74, 127);
   found.again = await written(page);

@@ -39,7 +39,9 @@ async function playing(members = {}) {
   player.playBy(await Interpreter.open(module));
   const of = (...kinds) => wishes.filter((wish) => kinds.includes(wish.kind));
   const values = (kind, address) =>
-    of(kind).filter(({ index }) => index === ROW[address]).map(({ value }) => value);
+    of(kind)
+      .filter(({ index }) => index === ROW[address])
+      .map(({ value }) => value);
   return { player, wishes, sink, of, values };
 }
 
@@ -68,7 +70,11 @@ test("a hand that takes another pitch slurs: the old note ends after the new one
   player.fingerOn("hand", 70, 0.5);
   player.fingerOn("hand", 72, 0.5);
   const order = of(BEGIN, END).map(({ kind, value }) => [NAMES[kind], value]);
-  assert.deepEqual(order, [["BEGIN", 70], ["BEGIN", 72], ["END", 70]]);
+  assert.deepEqual(order, [
+    ["BEGIN", 70],
+    ["BEGIN", 72],
+    ["END", 70],
+  ]);
   player.noteOff("hand");
   player.noteOff("hand");
   assert.equal(of(END).length, 2);
@@ -117,7 +123,10 @@ test("a key that is struck twice for now ends once it is released", async () => 
 });
 
 test("a note that is to begin is silent where its end is for now", async () => {
-  for (const [ended, isSilent] of [[() => {}, false], [({ player }) => player.midi([0x80, 70, 0]), true]]) {
+  for (const [ended, isSilent] of [
+    [() => {}, false],
+    [({ player }) => player.midi([0x80, 70, 0]), true],
+  ]) {
     const kernel = new Kernel(new WebAssembly.Module(module), RATE, 4800, facts.lookLength);
     const made = await playing();
     made.player.midi([0x90, 70, 90], 960);
@@ -145,10 +154,16 @@ test("a port that is gone ends what it wished ahead", async () => {
   player.midi([0x90, 70, 90], 4000, 3);
   player.midi([0x90, 72, 90], 5000, 3);
   player.letGoOf(3);
-  assert.deepEqual(of(END).map((wish) => wish.frame), [5000, 5000]);
+  assert.deepEqual(
+    of(END).map((wish) => wish.frame),
+    [5000, 5000],
+  );
   player.midi([0xe0, 0, 127], 6000, 4);
   player.letGoOf(4);
-  assert.deepEqual(values(WRITE, "/playing/bend").map((bend) => bend > 1), [true, false]);
+  assert.deepEqual(
+    values(WRITE, "/playing/bend").map((bend) => bend > 1),
+    [true, false],
+  );
 });
 
 test("panic lets go of what hands hold", async () => {
@@ -241,10 +256,14 @@ test("whatever events come, each comes to an end, and all wishes are finite", as
   const WILD = [NaN, Infinity, -Infinity, 1e308, -1e308, 1e-308, 0, -1];
   const kinds = Object.keys(facts.kinds).length + Object.keys(facts.events).length;
   for (let step = 0; step < 100_000; step += 1) {
-    const [value, other] = [0, 1].map(() => (chance(20) ? chance(1280) / 10 : WILD[chance(WILD.length)]));
+    const [value, other] = [0, 1].map(() =>
+      chance(20) ? chance(1280) / 10 : WILD[chance(WILD.length)],
+    );
     const isMessage = chance(2) === 0;
-    const bytes = 0x80 + chance(0x80) + (chance(130) << 8) + (chance(130) * 2 ** 16);
-    const index = isMessage ? bytes + 3 * 2 ** 24 + chance(17) * 2 ** 32 : chance(chance(9) ? 100 : 2e9) - 5;
+    const bytes = 0x80 + chance(0x80) + (chance(130) << 8) + chance(130) * 2 ** 16;
+    const index = isMessage
+      ? bytes + 3 * 2 ** 24 + chance(17) * 2 ** 32
+      : chance(chance(9) ? 100 : 2e9) - 5;
     const kind = isMessage ? facts.events.MESSAGE : chance(kinds);
     const wishes = interpreter.take(chance(1e6) - 1000, kind, index, value, other);
     if (kind >= Object.keys(facts.kinds).length) assert.ok(wishes.flat().every(Number.isFinite));

@@ -89,7 +89,12 @@ export class Bowing extends Picture {
     context.lineWidth = 3;
     context.beginPath();
     context.moveTo(tip, y);
-    context.quadraticCurveTo(tip + 0.05 * (frog - tip), y - stick, tip + 0.2 * (frog - tip), y - stick);
+    context.quadraticCurveTo(
+      tip + 0.05 * (frog - tip),
+      y - stick,
+      tip + 0.2 * (frog - tip),
+      y - stick,
+    );
     context.lineTo(frog + 10, y - stick);
     context.stroke();
     context.fillStyle = colours.glow;

@@ -1,6 +1,6 @@
 /** Curves, by which 0 to 1 is mapped to a range. */
 
-import { clamp } from './range.js';
+import { clamp } from "./range.js";
 
 /** @typedef {string} Curve Its name: 'lin', 'exp' or 's'. */
 
@@ -13,8 +13,8 @@ import { clamp } from './range.js';
  * @returns {number}
  */
 export function fromUnit(curve, unit, lo, hi) {
-  if (curve === 'exp') return lo * (hi / lo) ** unit;
-  const fraction = curve === 's' ? unit * unit * (3 - 2 * unit) : unit;
+  if (curve === "exp") return lo * (hi / lo) ** unit;
+  const fraction = curve === "s" ? unit * unit * (3 - 2 * unit) : unit;
   return lo + (hi - lo) * fraction;
 }
 
@@ -28,7 +28,7 @@ export function fromUnit(curve, unit, lo, hi) {
  */
 export function toUnit(curve, value, lo, hi) {
   const within = clamp(value, lo, hi);
-  if (curve === 'exp') return Math.log(within / lo) / Math.log(hi / lo);
+  if (curve === "exp") return Math.log(within / lo) / Math.log(hi / lo);
   const unit = (within - lo) / (hi - lo);
-  return curve === 's' ? 0.5 - Math.sin(Math.asin(1 - 2 * unit) / 3) : unit;
+  return curve === "s" ? 0.5 - Math.sin(Math.asin(1 - 2 * unit) / 3) : unit;
 }

@@ -4,8 +4,8 @@
  * Events go in (`facts.events`), and wishes come out (`facts.kinds`).
  */
 
-import facts from '../facts.js';
-import { room, surroundings } from '../sound/kernel.js';
+import facts from "../facts.js";
+import { room, surroundings } from "../sound/kernel.js";
 
 const { record, tablesAt, length, slots } = facts.interpreter;
 const HALVES = 2; // of a whole number, whose lower one holds all that pages read

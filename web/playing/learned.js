@@ -1,8 +1,8 @@
 /** Binds that were learned over a mapping: made, merged with it, kept, and written as a file. */
 
-import facts from '../facts.js';
-import { BEND, controller, isOfOneNote, isSource } from './sources.js';
-import { ParameterError, TABLE, find } from './table.js';
+import facts from "../facts.js";
+import { BEND, controller, isOfOneNote, isSource } from "./sources.js";
+import { ParameterError, TABLE, find } from "./table.js";
 
 /**
  * A bind of a shipped mapping: one source that moves one target.
@@ -33,7 +33,7 @@ import { ParameterError, TABLE, find } from './table.js';
 
 /** The shipped mappings, by name. @type {Readonly<Record<string, Mapping>>} */
 export const MAPPINGS = /** @type {any} */ (facts.mappings);
-const EXPONENTIAL = 'exp';
+const EXPONENTIAL = "exp";
 /** The parameters that may be bound: the player moves the others itself. */
 export const FREE = TABLE.filter(({ owned }) => !owned);
 
@@ -47,7 +47,7 @@ export const FREE = TABLE.filter(({ owned }) => !owned);
 export function bindOf(target, source, isSoft) {
   const { address, owned } = find(target);
   if (owned) throw new ParameterError(`${address} is moved by the player`);
-  const isByRange = source === BEND && address === '/playing/bend';
+  const isByRange = source === BEND && address === "/playing/bend";
   return {
     source,
     target: address,
@@ -66,7 +66,8 @@ export function bindOf(target, source, isSoft) {
  */
 export function spanned(bind, from, to) {
   const { lo, hi } = find(bind.target);
-  if (!isWithin(bind, [from, to])) throw new ParameterError(`${from} to ${to} is not within ${lo} to ${hi}`);
+  if (!isWithin(bind, [from, to]))
+    throw new ParameterError(`${from} to ${to} is not within ${lo} to ${hi}`);
   return { ...bind, span: from === lo && to === hi ? null : [from, to] };
 }
 
@@ -113,8 +114,8 @@ export function merged(mapping, learned) {
  * @param {Bind} bind
  */
 function overrideKey(bind) {
-  const channels = 'row' in bind ? bind.channels : undefined;
-  return `${controller(bind.source)}; ${channels ?? ''}`;
+  const channels = "row" in bind ? bind.channels : undefined;
+  return `${controller(bind.source)}; ${channels ?? ""}`;
 }
 
 /**
@@ -127,7 +128,7 @@ export function fileOf(base, mapping, learned) {
   const about = `${mapping.about} With what you have taught it.`;
   const head = { name: mapping.name, about, base };
   const tables = learned.map((bind) => `\n[[bind]]\n${lines(entriesOf(bind))}`);
-  return lines(head) + tables.join('');
+  return lines(head) + tables.join("");
 }
 
 /**
@@ -152,7 +153,7 @@ function entriesOf({ source, target, span, isSoft, isGlobal }) {
 function lines(entries) {
   return Object.entries(entries)
     .map(([name, value]) => `${name} = ${JSON.stringify(value)}\n`)
-    .join('');
+    .join("");
 }
 
 /**

@@ -1,8 +1,8 @@
 /** MIDI learn: detects which source somebody moves, so that it can be bound. */
 
-import facts from '../facts.js';
-import * as midi from './midi_bytes.js';
-import * as sources from './sources.js';
+import facts from "../facts.js";
+import * as midi from "./midi_bytes.js";
+import * as sources from "./sources.js";
 
 const { DISTANCE, AT_REST } = facts.learner;
 const { RESERVED, NO_NRPN, DATA_ENTRY } = facts.sources;
@@ -65,7 +65,8 @@ export class Learner {
     else if (control === RPN || control === RPN_FINE) state.nrpn = [null, null];
     else if (control === DATA_ENTRY && !state.nrpn.includes(null)) {
       const number = (Number(state.nrpn[0]) << 7) | Number(state.nrpn[1]);
-      if (number < NO_NRPN) return this.#moved(channel, sources.nrpn(number), value / sources.STEPS);
+      if (number < NO_NRPN)
+        return this.#moved(channel, sources.nrpn(number), value / sources.STEPS);
     }
     if (RESERVED.includes(control)) return null;
     const coarse = control - sources.FINE_ABOVE;

@@ -1,13 +1,13 @@
 /** The part that the page plays: events come to wishes for it, and values are known of it. */
 
-import facts from '../facts.js';
-import { TABLE, find } from './table.js';
-import { writeTables, writeTuning } from './tables.js';
+import facts from "../facts.js";
+import { TABLE, find } from "./table.js";
+import { writeTables, writeTuning } from "./tables.js";
 
 const { WRITE, DRAW, STOP } = facts.kinds;
 const { SET, TABLES_TO } = facts.events;
-const { row: SECTION } = find('/playing/section');
-const [BOW_SPEED, BOW_FORCE, BOW_ASSIST] = ['/bow/speed', '/bow/force', '/bow/assist'].map(find);
+const { row: SECTION } = find("/playing/section");
+const [BOW_SPEED, BOW_FORCE, BOW_ASSIST] = ["/bow/speed", "/bow/force", "/bow/assist"].map(find);
 // Within this time the sound has a write, and tells the value that it moves to.
 const TOLD_WITHIN_S = 0.1;
 

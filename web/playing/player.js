@@ -1,10 +1,10 @@
 /** The player: all control of the instrument, by hands, MIDI and presets, goes through it. */
 
-import facts from '../facts.js';
-import { MAPPINGS } from './learned.js';
-import { Part } from './part.js';
-import { clamp } from './range.js';
-import { ParameterError, accept, find } from './table.js';
+import facts from "../facts.js";
+import { MAPPINGS } from "./learned.js";
+import { Part } from "./part.js";
+import { clamp } from "./range.js";
+import { ParameterError, accept, find } from "./table.js";
 
 const { DRAW, LIFT, SLIDE, RELEASE } = facts.kinds;
 const { MESSAGE, FINGER_ON, NOTE_OFF, LOAD, DISCONNECT, RELEASE_ALL } = facts.events;
@@ -16,7 +16,7 @@ const MOST_BYTES = 3; // of a message
 const TUNINGS = facts.tunings;
 /** @type {Readonly<Record<string, {values: Readonly<Record<string, number>>}>>} */
 const PRESETS = facts.presets.shipped;
-const [BOW_SPEED, BOW_FORCE] = ['/bow/speed', '/bow/force'].map(find);
+const [BOW_SPEED, BOW_FORCE] = ["/bow/speed", "/bow/force"].map(find);
 
 /**
  * @typedef {import('./interpreter.js').Interpreter} Interpreter
@@ -188,8 +188,8 @@ export class Player {
   fingerOn(id, at, velocity, frame = null) {
     const before = this.#inHand.get(id);
     // Rounded so that the key is the same in single and double precision.
-    const note = Math.round(within('pitch', at, HIGHEST_KEY) * 1000) / 1000;
-    const strength = within('velocity', velocity, 1);
+    const note = Math.round(within("pitch", at, HIGHEST_KEY) * 1000) / 1000;
+    const strength = within("velocity", velocity, 1);
     const key = { channel: this.#freeChannel(), note };
     this.#inHand.set(id, key);
     this.#part.take(this.#at(frame), FINGER_ON, key.channel, note, strength);
@@ -227,7 +227,7 @@ export class Player {
    * @param {number | null} frame
    */
   slide(at, frame = null) {
-    const pitch = clamp(within('pitch', at, HIGHEST_KEY), LOWEST_NOTE, HIGHEST_NOTE);
+    const pitch = clamp(within("pitch", at, HIGHEST_KEY), LOWEST_NOTE, HIGHEST_NOTE);
     this.#part.take(this.#at(frame), SLIDE, 0, pitch);
   }
 

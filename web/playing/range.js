@@ -1,6 +1,6 @@
 /** Ranges: of any number, and of the instrument. */
 
-import facts from '../facts.js';
+import facts from "../facts.js";
 
 const { LOWEST_NOTE, HIGHEST_NOTE, OPEN_WITHIN } = facts.notes;
 const OCTAVE = 12;

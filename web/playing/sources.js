@@ -1,11 +1,11 @@
 /** The names of sources: MIDI controllers, and properties of a note. */
 
-import facts from '../facts.js';
+import facts from "../facts.js";
 
 /** The code of each, in tables; beside words, where those of pairs and of parameters begin. @type {Record<string, number>} */
 const CODES = facts.codes;
 const { PAIR, NRPN } = facts.codes;
-export const [BEND, PRESSURE, POLY_PRESSURE] = ['bend', 'pressure', 'poly-pressure'];
+export const [BEND, PRESSURE, POLY_PRESSURE] = ["bend", "pressure", "poly-pressure"];
 export const { FINE_ABOVE, STEPS, FINEST, CHANNELS } = facts.sources;
 const [FIRST_COARSE, LAST_COARSE] = facts.sources.COARSE;
 
@@ -57,7 +57,7 @@ function isPair(number) {
  * The controller of a source: the same for a control change in 7 bits and in 14.
  * @param {string} source
  */
-export const controller = (source) => (source.startsWith('cc ') ? source.split('/')[0] : source);
+export const controller = (source) => (source.startsWith("cc ") ? source.split("/")[0] : source);
 
 /**
  * Whether a value is the name of a source that can be learned.
@@ -83,8 +83,8 @@ export const isOfOneNote = (source) => facts.sources.OF_ONE_NOTE.includes(source
  */
 export function codeOf(source) {
   if (Object.hasOwn(CODES, source)) return CODES[source];
-  const [kind, number] = source.split(' ');
-  if (kind === 'nrpn') return NRPN + Number(number);
-  const [coarse, fine] = number.split('/');
+  const [kind, number] = source.split(" ");
+  if (kind === "nrpn") return NRPN + Number(number);
+  const [coarse, fine] = number.split("/");
   return (fine ? PAIR : 0) + Number(coarse);
 }

@@ -1,8 +1,8 @@
 /** The parameter table: ranges, defaults and curves of all that can be set, by address. */
 
-import facts from '../facts.js';
-import * as curves from './curves.js';
-import { clamp } from './range.js';
+import facts from "../facts.js";
+import * as curves from "./curves.js";
+import { clamp } from "./range.js";
 
 /** @typedef {typeof facts.parameters[number]} Param A row of the table. */
 

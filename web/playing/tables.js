@@ -1,8 +1,8 @@
 /** Writes a mapping and a tuning into tables of the interpreter, as the server has them. */
 
-import facts from '../facts.js';
-import { BEND, codeOf } from './sources.js';
-import { TABLE, find } from './table.js';
+import facts from "../facts.js";
+import { BEND, codeOf } from "./sources.js";
+import { TABLE, find } from "./table.js";
 
 /**
  * @typedef {import('./learned.js').Bind} Bind
@@ -43,7 +43,10 @@ export function writeTables(tables, { mpe, start, x, y, binds }, tuning) {
   tables.set(x, AT.x);
   tables.set(y, AT.y);
   tables[AT.mpe] = Number(mpe);
-  tables.set(TABLE.map((param) => param.default), AT.usual);
+  tables.set(
+    TABLE.map((param) => param.default),
+    AT.usual,
+  );
   Object.entries(start).forEach(([address, value], place) => {
     const { row } = find(address);
     tables[AT.usual + row] = tables[AT.start_value + place] = value;
@@ -60,7 +63,11 @@ export function writeTables(tables, { mpe, start, x, y, binds }, tuning) {
  */
 export function writeTuning(tables, { keys }) {
   tables[AT.is_equal] = Number(keys === null);
-  if (keys) tables.set(keys.map((pitch) => pitch ?? NaN), AT.pitch);
+  if (keys)
+    tables.set(
+      keys.map((pitch) => pitch ?? NaN),
+      AT.pitch,
+    );
 }
 
 /**
@@ -69,7 +76,7 @@ export function writeTuning(tables, { keys }) {
  * @returns {{source: number} & Record<string, number>}
  */
 export function rowOf(bind) {
-  if ('row' in bind) return bind.row;
+  if ("row" in bind) return bind.row;
   const { source, target, span, isSoft, isGlobal } = bind;
   const { lo, hi, curve } = find(target);
   return {
@@ -78,7 +85,7 @@ export function rowOf(bind) {
     hi: span ? span[1] : hi,
     curve: CURVES[curve],
     soft: Number(isSoft),
-    by_range: Number(source === BEND && target === '/playing/bend' && span === null),
+    by_range: Number(source === BEND && target === "/playing/bend" && span === null),
     for_all: Number(isGlobal),
   };
 }

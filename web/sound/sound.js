@@ -55,7 +55,10 @@ export class Sound extends EventTarget {
     this.record = { start: () => this.#startRecording(), stop: () => this.#stopRecording() };
     /** @type {((kept: NonNullable<Told["kept"]>) => void) | null} */
     this.kept = null;
-    this.keep = { start: () => this.backend?.take({ keep: true }), stop: () => this.#stopKeeping() };
+    this.keep = {
+      start: () => this.backend?.take({ keep: true }),
+      stop: () => this.#stopKeeping(),
+    };
     this.#watch();
   }
 

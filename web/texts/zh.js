@@ -185,7 +185,8 @@ export default {
   "learn.to": "控制器高端时",
   "learn.forget": "忘记",
   "learn.save": "存为文件",
-  "learn.save.about": "一个映射文件，以“音色”中所选的映射为基础，可用于 yehu-server serve --mapping。",
+  "learn.save.about":
+    "一个映射文件，以“音色”中所选的映射为基础，可用于 yehu-server serve --mapping。",
   "source.bend": "弯音轮",
   "source.pressure": "触后",
   "source.poly-pressure": "单键触后",
@@ -361,13 +362,15 @@ export default {
   "about/playing/volume": "乐器的电平（幅度为其平方）。",
   "about/playing/expression": "音量之内的电平（幅度为其平方）。",
   "about/playing/assist": "1：演奏者的弓力跟随弓速，使弦发音；0：不跟随。",
-  "about/playing/variation": "双手变化的程度：各音之间弓速、弓力、音准和落指的差别；音内的漂移、颤动和不匀的揉弦。",
+  "about/playing/variation":
+    "双手变化的程度：各音之间弓速、弓力、音准和落指的差别；音内的漂移、颤动和不匀的揉弦。",
   "about/playing/listening": "演奏者按弦的实际声音纠正手指和弓的程度：0 只按实测的表演奏。",
   "about/playing/attack": "弓达到新音的速度和力的时间。",
   "about/playing/release": "音结束时弓离弦的时间；不是调用 /yehu/release。",
   "about/playing/bow_length": "弓毛的长度；据此安排弓法，到两端时换弓。0：无限长。",
   "about/playing/note_length": "将要开始的音会持续多久，用于安排弓法；0：未知。",
-  "about/playing/phrasing": "演奏者自行处理朴素音符的程度：长音上迟来的揉弦，大跳时的滑音。在文件中还有乐句、重音和连弓。",
+  "about/playing/phrasing":
+    "演奏者自行处理朴素音符的程度：长音上迟来的揉弦，大跳时的滑音。在文件中还有乐句、重音和连弓。",
   "about/playing/section": "这个声部有几个人齐奏，每人一把琴；不能多于开始时的人数。",
   "about/playing/portamento": "0.5 以上手指从一音滑到另一音；以下则直接移动。",
   "about/playing/portamento_time": "滑音的时间。",

@@ -43,9 +43,13 @@ export function showLearning({ taught, midi }) {
   const select = make("select", { "aria-label": () => say("learn.target") }, groups());
   const button = make("button", { type: "button" });
   teachBy(button, () => select.value, taught, midi);
-  const soft = makeSwitch(() => say("learn.soft"), taught.isSoft, (isOn) => {
-    taught.isSoft = isOn;
-  });
+  const soft = makeSwitch(
+    () => say("learn.soft"),
+    taught.isSoft,
+    (isOn) => {
+      taught.isSoft = isOn;
+    },
+  );
   const about = make("p", { class: "soft" }, [() => say("learn.soft.about")]);
   const word = make("p", { class: "soft", role: "status" });
   const list = make("ul", { class: "binds", "aria-label": () => say("learn.list") });

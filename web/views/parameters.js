@@ -111,7 +111,8 @@ function row({ player }, param, learning) {
       type: "button",
       class: "quiet reset",
       title: () => say("all.back", { value: written(param, param.default) }),
-      "aria-label": () => `${nameFor(address)}: ${say("all.back", { value: written(param, param.default) })}`,
+      "aria-label": () =>
+        `${nameFor(address)}: ${say("all.back", { value: written(param, param.default) })}`,
     },
     ["↺"],
   );

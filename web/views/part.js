@@ -16,7 +16,8 @@ export function showPart(line) {
         ...Array.from({ length: parts }, (_, i) => new Option("", String(i + 1))),
       );
     }
-    for (const option of select.options) option.text = say("part.of", { part: option.value, parts });
+    for (const option of select.options)
+      option.text = say("part.of", { part: option.value, parts });
     select.value = String(part);
     document.title = parts < 2 ? say("title") : `${say("title")} ${part}`;
   };

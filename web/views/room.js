@@ -37,6 +37,10 @@ export function showRoom(player, panel) {
     make("h2", {}, [() => say("room.name")]),
     make("p", { class: "soft" }, [() => say("room.about")]),
     ...(ROOMS.length ? [makeCards(player, ROOMS, () => say("room.name"))] : []),
-    make("div", { class: "sliders" }, sliders.map(({ element }) => element)),
+    make(
+      "div",
+      { class: "sliders" },
+      sliders.map(({ element }) => element),
+    ),
   ]);
 }

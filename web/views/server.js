@@ -25,14 +25,20 @@ export function showServer(instrument) {
   showPart(line);
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
-  const choice = make("div", { class: "choice", role: "group", "aria-label": () => say("server.name") });
+  const choice = make("div", {
+    class: "choice",
+    role: "group",
+    "aria-label": () => say("server.name"),
+  });
   /** @type {Way | null} */
   let chosen = null;
   let rate = 0;
   /** @type {Sharing | null} */
   let sharing = null;
   const buttons = WAYS.map((way) => {
-    const button = make("button", { type: "button", id: `way-${way}` }, [() => say(`server.${way}`)]);
+    const button = make("button", { type: "button", id: `way-${way}` }, [
+      () => say(`server.${way}`),
+    ]);
     button.addEventListener("click", () => {
       remember({ way });
       choose(way);

@@ -16,21 +16,31 @@ const EVERY = 250; // ms
 
 /** @param {Page} page */
 export function showWays({ instrument, hands, fingerboard }) {
-  const assist = makeSwitch(() => say("ways.assist"), settings.isAssisted, (isOn) => {
-    hands.rest();
-    hands.isAssisted = isOn;
-    remember({ isAssisted: isOn });
-  });
-  const landing = makeSwitch(() => say("ways.landing"), settings.isLandingInTune, (isOn) => {
-    fingerboard.isLandingInTune = isOn;
-    remember({ isLandingInTune: isOn });
-  });
+  const assist = makeSwitch(
+    () => say("ways.assist"),
+    settings.isAssisted,
+    (isOn) => {
+      hands.rest();
+      hands.isAssisted = isOn;
+      remember({ isAssisted: isOn });
+    },
+  );
+  const landing = makeSwitch(
+    () => say("ways.landing"),
+    settings.isLandingInTune,
+    (isOn) => {
+      fingerboard.isLandingInTune = isOn;
+      remember({ isLandingInTune: isOn });
+    },
+  );
   inWords(() => {
     assist.title = say("ways.assist.about");
     landing.title = say("ways.landing.about");
   });
   const switches = make("div", { class: "switches" }, [assist, landing, directions(fingerboard)]);
-  const sliders = SLIDERS.map(([address, key]) => makeSlider(instrument.player, address, () => say(key)));
+  const sliders = SLIDERS.map(([address, key]) =>
+    makeSlider(instrument.player, address, () => say(key)),
+  );
   find("ways", HTMLElement).append(switches, ...sliders.map(({ element }) => element));
   setInterval(() => {
     if (!document.hidden) for (const slider of sliders) slider.follow();

@@ -12,7 +12,7 @@ import numpy as np
 from yehu_server.core.physics import layout
 from yehu_server.core.physics.power import TABLES
 
-TARGET = Path(__file__).resolve().parent.parent / "yehu_server" / "physics" / "records.py"
+TARGET = Path(__file__).resolve().parent.parent / "yehu_server" / "core" / "physics" / "records.py"
 RECORDS = {
     "Tables": (TABLES, "Tables of one power, power.py."),
     "Model": (layout.MODEL, "Coefficients of one sample rate."),

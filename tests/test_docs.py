@@ -18,7 +18,7 @@ import pytest
 from pages import PACKAGE, PAGES, ROOT, Page, page
 
 from yehu_server.cli import _parser, main
-from yehu_server.live.osc.calls import CALLS, PREFIX
+from yehu_server.live.osc.call_table import CALLS, PREFIX
 from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.status import STATUS
 from yehu_server.params.table import TABLE, UNIT

@@ -20,21 +20,22 @@ from yehu_server.core.stage.record import TAPE
 from yehu_server.live.audio import recorder
 from yehu_server.live.osc import (
     backlog,
-    calls,
+    call_table,
     clients,
+    context,
     learn_calls,
     listening,
     packets,
     part_calls,
     peers,
-    preset_calls,
     schedule,
     sockets,
     subscriptions,
 )
 from yehu_server.live.web import server, web_sockets
 from yehu_server.params.table import find
-from yehu_server.playing import delay, learn, mapping_entries, presets
+from yehu_server.playing import delay, learn, mapping_entries
+from yehu_server.playing import preset_folders as presets
 from yehu_server.playing.calibrations import SHIPPED
 from yehu_server.scores import capture, capture_format, gesture
 from yehu_server.surfaces import layout as panel
@@ -101,13 +102,13 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
         "listens at {}, by UDP": (SERVED.osc,),
         "every change, at most {:g} times a second": (1.0 / clients.FLUSH_S,),
         "Lasts {:g} s by default": (part_calls.SUBSCRIBED_S,),
-        "by default and {} at most": (TIMES[calls.LONGEST_SUBSCRIPTION_S],),
+        "by default and {} at most": (TIMES[call_table.LONGEST_SUBSCRIPTION_S],),
         "VALUE`, at most {:g} times a second": (1.0 / subscriptions.STATUS_S,),
         "Listens for {}": (TIMES[learn_calls.PATIENCE_S],),
         "REASON`, at most {:g} times": (clients.ERRORS_A_SECOND,),
         "{} presets can be saved at once and then {} a second": (
-            words(preset_calls.SAVES_AT_ONCE).title(),
-            words(preset_calls.SAVES_A_SECOND),
+            words(context.SAVES_AT_ONCE).title(),
+            words(context.SAVES_A_SECOND),
         ),
         "room for {} of your own": (presets.MOST_OWN,),
         "one block and {:g} ms after": (delay.HANDLING_MS,),
@@ -121,7 +122,7 @@ PHRASES: dict[str, dict[str, tuple[Any, ...]]] = {
             peers.ANSWERED_BYTES_A_SECOND // KB,
         ),
         "does not read | {} kB": (peers.MOST_UNSENT_BYTES // KB,),
-        "{} messages at a time, {:g} times": (subscriptions.MOST_TOLD, 1.0 / clients.FLUSH_S),
+        "{} messages at a time, {:g} times": (subscriptions.MOST_SENT, 1.0 / clients.FLUSH_S),
         "| subscribers | {}, {} of one host |": (
             clients.MOST_SUBSCRIBERS,
             clients.MOST_OF_A_HOST,

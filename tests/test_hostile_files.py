@@ -10,7 +10,7 @@ from yehu_server.cli.config import read_config
 from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import FIRST, LAST, YehuError
 from yehu_server.playing.mapping import load
-from yehu_server.playing.presets import read_preset
+from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tuning import read_tuning
 from yehu_server.scores.capture import read_capture
 from yehu_server.scores.gesture import read_gesture

@@ -10,7 +10,7 @@ import mido
 import pytest
 from scores import midi_file, notes
 
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 
 SHIPPED = Presets(Path(os.devnull))
 HEAD = "version = 1\n"

@@ -160,7 +160,7 @@ def test_another_option_or_version_renders_all_again(monkeypatch):
     assert len(set(same)) == 1
     other = [("--dry",), ("--rate", "48000"), ("--seed", "1"), ("--set", "/bow/side=1")]
     keys = {key(*words) for words in other} | {key()}
-    monkeypatch.setattr("yehu_server.__version__", "x")
+    monkeypatch.setattr("yehu_server.util.__version__", "x")
     assert len(keys | {key()}) == len(other) + 2
 
 

@@ -2,15 +2,15 @@
 
 import { find } from "./elements.js";
 import { Bow } from "./hands/bow.js";
-import { Diagram } from "./hands/diagram.js";
+import { Diagram } from "./hands/schelleng.js";
 import { Fingerboard } from "./hands/fingerboard.js";
 import { Hands } from "./hands/hands.js";
 import { Keys } from "./hands/keys.js";
 import { Tuned } from "./hands/tuned.js";
 import { Instrument } from "./instrument.js";
 import { Midi } from "./midi.js";
-import { Board } from "./pictures/board.js";
-import { Bowing } from "./pictures/bowing.js";
+import { Board } from "./pictures/fingerboard.js";
+import { Bowing } from "./pictures/bow.js";
 import { Level } from "./pictures/level.js";
 import { Gallery } from "./pictures/picture.js";
 import { Schelleng } from "./pictures/schelleng.js";

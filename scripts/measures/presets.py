@@ -13,7 +13,7 @@ from measures.take import NOTES, Setup, Take, in_parallel
 from measures.timbre import centroid_hz
 from yehu_server.cli.stage_options import is_of_room
 from yehu_server.playing.pitch_and_level import a_weighted_db
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 
 VELOCITIES = (30, 64, 110)
 BOWED_S, PLUCKED_S = (0.3, 0.8), (0.05, 0.25)  # from and to

@@ -20,7 +20,7 @@ from yehu_server.core.player.calibration import Calibration, wave_speed
 from yehu_server.params.table import FINGERS, find
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import DEFAULT, load
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 

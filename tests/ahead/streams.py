@@ -28,7 +28,7 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import find
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning, read_tuning

@@ -20,7 +20,7 @@ from yehu_server.core.midi.events import START
 from yehu_server.core.midi.tables import TABLES
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.playing.mapping import load
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls
 from yehu_server.playing.tuning import RangePolicy, read_tuning

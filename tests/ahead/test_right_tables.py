@@ -18,7 +18,7 @@ from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import RangePolicy
 

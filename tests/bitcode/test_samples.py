@@ -16,11 +16,11 @@ TESTS = Path(__file__).parents[1]
 PLAY = """
 import hashlib, sys
 import numpy as np
-from yehu_server.bitcode import shipped
-from yehu_server.engine import warming
+from yehu_server.compile.bitcode import shipped
+from yehu_server.core.engine import warming
 if len(sys.argv) > 1:
     shipped.shipped_file = lambda: shipped.Path(sys.argv[1])
-from yehu_server.engine.instrument import Instrument
+from yehu_server.core.engine.instrument import Instrument
 from yehu_server.playing.wishes import Key, Wishes
 warming.warm_up()
 print(all(function.compiled.cache_hits == 1 for function in warming.PLAYED_BY))

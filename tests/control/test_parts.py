@@ -15,7 +15,7 @@ from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.status import STATUS
 from yehu_server.live.part_addresses import OF_PARTS, group
 from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, is_listenable, node_at
-from yehu_server.params.preset import Preset
+from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learn as learned
 from yehu_server.playing.binds import Bind

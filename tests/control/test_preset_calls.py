@@ -10,8 +10,8 @@ from wire import Ear
 
 from yehu_server.live.osc import preset_calls
 from yehu_server.live.osc.context import SAVES_A_SECOND, SAVES_AT_ONCE
-from yehu_server.params.preset import POSSIBLE
-from yehu_server.playing.presets import Presets
+from yehu_server.params.preset_file import POSSIBLE
+from yehu_server.playing.preset_folders import Presets
 
 SHIPPED = Presets(Path(os.devnull))
 HEAD = "version = 1\n"
@@ -91,7 +91,7 @@ def test_a_morph_lies_between(stage, amount, share):
 def test_a_fader_may_morph_sixty_times_a_second_without_reading_files(stage, monkeypatch):
     end = SHIPPED.load("vibrato").values["/playing/vibrato"]
     stage.ask("/preset/morph", "ordinary", "vibrato", 0.0)
-    monkeypatch.setattr("yehu_server.playing.presets.read_text", None)
+    monkeypatch.setattr("yehu_server.playing.preset_folders.read_text", None)
     stage.tell("/note", 74.0, 90.0)
     for step in range(61):
         stage.tell("/preset/morph", "ordinary", "vibrato", step / 60)
@@ -218,6 +218,6 @@ def test_a_list_reads_no_files_while_the_server_plays(make_hall, own, monkeypatc
     (own / "mine.toml").write_text(HEAD)
     (own / "bad.toml").write_text("version = 9\n")
     client = make_hall().client()
-    monkeypatch.setattr("yehu_server.playing.presets.read_text", None)
+    monkeypatch.setattr("yehu_server.playing.preset_folders.read_text", None)
     client.tell("/preset/list")
     assert client.wait_for("/presets") == [len(SHIPPED.names()) + 1]

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from web_client import walk
 
-from yehu_server.live.osc.calls import CALLS, Argument, Call
+from yehu_server.live.osc.call_table import CALLS, Argument, Call
 from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
 from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Snapshot, find, node_at

@@ -13,7 +13,7 @@ from web_client import ask, walk
 
 from yehu_server.errors import DeviceError
 from yehu_server.live.addresses import Allowed
-from yehu_server.live.osc.calls import CALLS
+from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.status import STATUS, Kind
 from yehu_server.live.web.server import IDLE_S, MOST_CONNECTIONS, PARAMETERS, WebOptions
 from yehu_server.params.table import TABLE
@@ -344,7 +344,7 @@ def test_the_server_can_do_without(make_hall):
 def test_a_defect_is_counted_and_ends_one_request_only(web_house, port, monkeypatch):
     before = web_house.server.status()["http_failures"]
     with monkeypatch.context() as patch:
-        patch.setattr("yehu_server.live.web.server.query.tree", lambda *_: 1 / 0)
+        patch.setattr("yehu_server.live.web.server.query.node_at", lambda *_: 1 / 0)
         patch.setattr("yehu_server.live.web.server.log.exception", lambda *_: None)
         assert ask(port, "/yehu").status == 500
     assert ask(port, "/yehu").status == 200

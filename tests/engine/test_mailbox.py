@@ -181,7 +181,7 @@ def test_wishes_come_whole_and_in_order_from_thread_to_thread(make, post, count)
 CALLBACKS = """
 import mmap, sys, threading
 import numpy as np
-from yehu_server.engine import native
+from yehu_server.core.engine import native
 rig = np.frombuffer(mmap.mmap(int(sys.argv[1]), 0), np.uint8)
 out = np.zeros(64, np.float32)
 over = threading.Event()
@@ -192,7 +192,7 @@ while not over.is_set():
 POSTER = """
 import mmap, sys
 import numpy as np
-from yehu_server.engine import native
+from yehu_server.core.engine import native
 rig = np.frombuffer(mmap.mmap(int(sys.argv[1]), 0), np.uint8)
 count, *unheard = map(int, sys.argv[2:])
 for number in range(count):

@@ -53,13 +53,13 @@ def test_the_model_is_compiled_beside_where_there_is_a_second_processor(monkeypa
 
 
 WARM_UP = """
-from yehu_server.engine import warming
+from yehu_server.core.engine import warming
 assert not warming.is_warm()
 warming.warm_up()
 assert warming.is_warm()
 """
 IS_WARM = """
-from yehu_server.engine import warming
+from yehu_server.core.engine import warming
 assert warming.is_warm()
 def refuse(*_, **__):
     raise AssertionError("compiled again")

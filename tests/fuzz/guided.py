@@ -27,8 +27,8 @@ def watched() -> Iterator[None]:
     package = ROOT / "yehu_server"
     compiled = [
         f"yehu_server.{folder}.{file.stem}"
-        for folder in ("physics", "controls", "player", "engine")
-        for file in (package / folder).glob("*.py")
+        for folder in ("core.physics", "core.controls", "core.player", "core.engine")
+        for file in (package / folder.replace(".", "/")).glob("*.py")
         if file.stem != "quantities"  # reads body and instrument files
     ]
     with (

@@ -135,9 +135,12 @@ def copy(tmp_path) -> Path:
     """A folder with another version of the package: what a worker needs of it, and a change."""
     package = Path(yehu_server.__file__).parent
     other = tmp_path / "other" / "yehu_server"
-    shutil.copytree(package / "jobs", other / "jobs")
-    for name in ("__init__", "errors", "files", "code_key"):
-        shutil.copy(package / f"{name}.py", other)
+    shutil.copytree(package / "util", other / "util")
+    (other / "rendering").mkdir()
+    for name in ("__init__", "errors", "rendering/__init__", "rendering/workers"):
+        shutil.copy(package / f"{name}.py", other / f"{name}.py")
+    worker = (package / "rendering" / "cluster_worker.py").read_text("utf-8")
+    (other / "rendering" / "cluster_worker.py").write_text(worker + "CHANGED = True\n", "utf-8")
     return other.parent
 
 

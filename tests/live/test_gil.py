@@ -97,11 +97,11 @@ SECONDS = 4
 # what the callback counted in each.
 SAME_PROCESS = f"""
 import ctypes, json, mmap, os
-from yehu_server.audio.devices import choose, load_portaudio, outputs
-from yehu_server.audio.output import SharedMemory
-from yehu_server.audio.stream import Stream
-from yehu_server.engine.ensemble import Ensemble
-from yehu_server.engine.spec import InstrumentSpec
+from yehu_server.live.audio.devices import choose, load_portaudio, outputs
+from yehu_server.live.audio.output import SharedMemory
+from yehu_server.live.audio.stream import Stream
+from yehu_server.core.engine.ensemble import Ensemble
+from yehu_server.core.engine.spec import InstrumentSpec
 
 memory = SharedMemory()
 stage = Ensemble(

@@ -312,9 +312,9 @@ def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopp
 PLAYS_ON = """
 import mmap, sys
 import numpy as np
-from yehu_server.engine import native
-from yehu_server.engine.warming import warm_up
-from yehu_server.engine.rig import memory_bytes
+from yehu_server.core.engine import native
+from yehu_server.core.engine.warming import warm_up
+from yehu_server.core.engine.rig import memory_bytes
 memory = mmap.mmap(int(sys.argv[1]), memory_bytes(1))
 rig = np.frombuffer(memory, np.uint8).ctypes.data
 out = np.zeros((8192, 2), np.float32)

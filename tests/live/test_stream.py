@@ -315,7 +315,7 @@ def test_without_any_device_it_says_so_and_plays_in_silence(jackd, serve, tmp_pa
 
 COMPILING = """
 import argparse, logging
-from yehu_server.cli.log import set_up_log
+from yehu_server.cli.terminal import set_up_log
 set_up_log(argparse.Namespace(log_level="debug", json_log=False))
 print(logging.getLogger("numba").getEffectiveLevel())
 """

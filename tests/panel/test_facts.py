@@ -24,7 +24,7 @@ from yehu_server.live.page.facts import tunings
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.playing.mapping import load, shipped_mappings
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tuning import read_tuning
 from yehu_server.scores.smf.reader import read_score
 

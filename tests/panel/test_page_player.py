@@ -23,7 +23,7 @@ from yehu_server.params.table import find
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.mapping_writer import as_toml
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning, read_tuning

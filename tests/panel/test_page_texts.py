@@ -12,7 +12,7 @@ import pytest
 
 from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import shipped_mappings
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 
 WEB = Path(__file__).parents[2] / "web"
 NODE = shutil.which("node")

@@ -10,7 +10,7 @@ from panel.browser import drive, missing, served
 
 from yehu_server.live.page.examples import write_beginnings
 from yehu_server.params.table import TABLE
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 
 pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 

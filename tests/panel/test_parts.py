@@ -159,7 +159,7 @@ def test_a_section_tells_the_parts_place_and_not_its_first_players(server) -> No
         await told(socket, PAN, (0.25).__eq__)
 
     visit(server, 2, move)
-    assert part.value(PAN) == 0.25
+    until(lambda: part.value(PAN) == 0.25, "the pan")
     first = server.parts[1].instruments[0]
     assert first.target(PAN) != 0.25
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from yehu_server.errors import PresetError
-from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED, Preset, morph, parse
+from yehu_server.params.preset_file import NOT_SAVED, POSSIBLE, SAVED, Preset, morph, parse
 from yehu_server.params.spec import Curve, Place
 from yehu_server.params.table import TABLE
 

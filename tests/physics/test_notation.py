@@ -36,7 +36,7 @@ def test_the_functions_that_the_derivation_names_exist():
     text = (NOTATION.parent / "derivation.md").read_text(encoding="utf-8")
     source = "".join(
         path.read_text(encoding="utf-8")
-        for path in sorted((NOTATION.parents[1] / "yehu_server" / "physics").glob("*.py"))
+        for path in sorted((NOTATION.parents[1] / "yehu_server" / "core" / "physics").glob("*.py"))
     )
     named = set(re.findall(r"`([a-z]+_\w+|[a-z]+)`", text)) - {"b"}
     defined = set(re.findall(r"^def (\w+)", source, re.MULTILINE))

@@ -8,7 +8,7 @@ from hands import Checked, Watched, ideal
 
 from yehu_server.params.spec import Curve
 from yehu_server.playing.mapping import Bind, Mapping
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 
 
 class Midi:

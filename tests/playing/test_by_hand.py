@@ -12,7 +12,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.pitch_and_level import a_weighted_db
 from yehu_server.playing.wishes import Key, Wishes
 

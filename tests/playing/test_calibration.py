@@ -20,7 +20,7 @@ from yehu_server.playing import calibrations
 from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.calibrations import SHIPPED, calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Wishes
 

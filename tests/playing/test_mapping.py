@@ -12,7 +12,7 @@ from curves import from_unit
 from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
 from yehu_server.playing.mapping import Bind, load, mapping_folder
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 
 ROOT = Path(__file__).resolve().parents[2]
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'

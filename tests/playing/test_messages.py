@@ -6,7 +6,7 @@ import mido
 import pytest
 from hands import Checked
 
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 

@@ -7,7 +7,7 @@ import pytest
 
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 
 
 def cc(house: MidiPlayer, control: int, value: int, channel: int = 1) -> None:

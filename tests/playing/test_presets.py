@@ -17,14 +17,20 @@ from sound import run
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.errors import OutputError, PresetError
-from yehu_server.params.preset import NOT_SAVED, POSSIBLE, SAVED
+from yehu_server.params.preset_file import NOT_SAVED, POSSIBLE, SAVED
 from yehu_server.params.table import TABLE
-from yehu_server.playing import presets as folders
+from yehu_server.playing import preset_folders as folders
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import load
-from yehu_server.playing.messages import MidiPlayer
-from yehu_server.playing.presets import MOST_BYTES, MOST_NAMED, MOST_OWN, Presets, read_preset
+from yehu_server.playing.midi_player import MidiPlayer
+from yehu_server.playing.preset_folders import (
+    MOST_BYTES,
+    MOST_NAMED,
+    MOST_OWN,
+    Presets,
+    read_preset,
+)
 from yehu_server.playing.style import Style
 
 HEAD = "version = 1\n"
@@ -248,7 +254,7 @@ def test_a_changed_file_is_read_again_and_an_unchanged_one_is_not(presets, put, 
     path = put("mine", HEAD + '[values]\n"/playing/vibrato" = 10\n')
     first = presets.load("mine")
     with monkeypatch.context() as patch:
-        patch.setattr("yehu_server.playing.presets.read_text", None)
+        patch.setattr("yehu_server.playing.preset_folders.read_text", None)
         assert presets.load("mine") is first
     path.write_text(HEAD + '[values]\n"/playing/vibrato" = 20\n', encoding="utf-8")
     os.utime(path, ns=(1, 1))  # the clock of a file system may be coarse

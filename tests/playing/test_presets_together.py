@@ -4,7 +4,7 @@ import pytest
 
 from yehu_server.errors import PresetError
 from yehu_server.params.table import find
-from yehu_server.playing.presets import MOST_TOGETHER, Presets, is_name
+from yehu_server.playing.preset_folders import MOST_TOGETHER, Presets, is_name
 
 ROOMS = ("dry", "study", "courtyard", "hall")
 OF_A_ROOM = {"/room/size", "/room/decay", "/room/damping", "/room/level", "/body/width"}

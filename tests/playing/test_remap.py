@@ -11,7 +11,7 @@ from yehu_server.errors import MappingError
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping, load
 from yehu_server.playing.mapping_watch import MappingWatch
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 
 VOLUME, EXPRESSION = "/playing/volume", "/playing/expression"
 

@@ -8,7 +8,7 @@ import pytest
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.live import ELSEWHERE
 from yehu_server.playing.mapping import Mapping, load
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.wishes import Key
 
 VOLUME, PRESS, BEND = "/playing/volume", "/playing/press", "/playing/bend"

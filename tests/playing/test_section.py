@@ -14,7 +14,7 @@ from together import Together
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG_BYTES
-from yehu_server.core.midi.interpret import interpret
+from yehu_server.core.midi.dispatch import interpret
 from yehu_server.core.midi.record import IN_PORT, MIDI, let_go, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player import wishes as kinds
@@ -23,7 +23,7 @@ from yehu_server.core.stage.geometry import EARS
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.section_people import section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key, Wishes

@@ -9,7 +9,7 @@ from curves import from_unit
 from yehu_server.params.spec import Curve
 from yehu_server.playing.binds import Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 
 VOLUME = "/playing/volume"
 SOFT = Bind("cc 1", VOLUME, is_soft=True)

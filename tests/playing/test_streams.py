@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.calibrations import calibration_for
 from yehu_server.playing.mapping import load
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 

@@ -10,7 +10,7 @@ from yehu_server.core.midi.channels import bend_range, configure_zone, master_of
 from yehu_server.core.midi.record import MIDI, NONE, prepare_midi
 from yehu_server.params.table import TABLE
 from yehu_server.playing.mapping import load
-from yehu_server.playing.messages import MidiPlayer
+from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.wishes import Key
 
 # ---------------------------------------------------------------- zones

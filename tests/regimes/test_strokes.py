@@ -135,8 +135,8 @@ def test_schellengs_limits_are_his_formulas():
 
 PRINT = """
 import numpy as np
-from yehu_server.regimes.strokes import find
-from yehu_server.sweeps.study import study_of
+from yehu_server.lab.regimes.strokes import find
+from yehu_server.lab.sweeps.study import study_of
 study = study_of({"duration": 0.04, "vary": {"force": [0.4]},
                   "stroke": {"string": 2, "note": 89, "acceleration": 100.0}})
 found = find(*study.bow.strokes(study.axes, np.zeros((1, 1), int)))

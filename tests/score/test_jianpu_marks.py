@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from yehu_server.scores.jianpu.marks import AHEAD, COMMANDS, FINGERING, TEXTS, Act
+from yehu_server.scores.jianpu.mark_words import AHEAD, COMMANDS, FINGERING, TEXTS, Act
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.written.notated import MARKS, SIGNS, SPANS, Mark, Part, Sign, Span
 

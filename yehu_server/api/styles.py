@@ -21,7 +21,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.practices import read_practice
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
 from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 

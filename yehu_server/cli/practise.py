@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.calibrations import calibration_for
     from yehu_server.playing.practice import Practice
     from yehu_server.playing.practices import shipped_practice, write_practice
-    from yehu_server.playing.presets import Presets
+    from yehu_server.playing.preset_folders import Presets
     from yehu_server.util.files import check_apart, check_target
 
     check_rate(arguments.rate)

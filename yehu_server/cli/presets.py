@@ -43,7 +43,7 @@ def add_to(commands: Any) -> None:
 
 
 def _list(arguments: argparse.Namespace) -> int:
-    from yehu_server.playing.presets import Presets
+    from yehu_server.playing.preset_folders import Presets
 
     presets = Presets(arguments.presets)
     found, errors = presets.all()
@@ -68,7 +68,7 @@ def _list(arguments: argparse.Namespace) -> int:
 
 def _show(arguments: argparse.Namespace) -> int:
     from yehu_server.params.table import find
-    from yehu_server.playing.presets import Presets
+    from yehu_server.playing.preset_folders import Presets
 
     preset = Presets(arguments.presets).find(arguments.preset)
     if arguments.json:
@@ -88,7 +88,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 def _check(arguments: argparse.Namespace) -> int:
     from yehu_server.errors import PresetError
-    from yehu_server.playing.presets import read_preset
+    from yehu_server.playing.preset_folders import read_preset
 
     code = 0
     for file in arguments.files:

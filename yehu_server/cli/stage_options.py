@@ -12,7 +12,7 @@ from yehu_server.errors import ParameterError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from yehu_server.playing.presets import Presets
+    from yehu_server.playing.preset_folders import Presets
     from yehu_server.rendering.options import Part
 
 Values = tuple[tuple[str, float], ...]  # addresses and values

@@ -180,7 +180,7 @@ def interpreted_style_of(arguments: argparse.Namespace, *, is_live: bool = False
     YehuError
         Where a file or value is wrong.
     """
-    from yehu_server.playing.presets import Presets
+    from yehu_server.playing.preset_folders import Presets
     from yehu_server.playing.style import Style
     from yehu_server.playing.tuning import RangePolicy
 

@@ -22,7 +22,7 @@ from yehu_server.live.audio.takes import Takes
 from yehu_server.live.housekeeper import Housekeeper, MappingFollower
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
-from yehu_server.live.osc.calls import more_calls
+from yehu_server.live.osc.call_table import more_calls
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.sockets import OscPorts
 from yehu_server.live.page.pages import Pages

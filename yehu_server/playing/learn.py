@@ -7,9 +7,9 @@ from pathlib import Path
 
 import mido
 
-from yehu_server.core.midi.messages import DATA_ENTRY, NRPN_FINE, RPN_FINE
-from yehu_server.core.midi.messages import NRPN_COARSE as NRPN
-from yehu_server.core.midi.messages import RPN_COARSE as RPN
+from yehu_server.core.midi.registered_parameters import DATA_ENTRY, NRPN_FINE, RPN_FINE
+from yehu_server.core.midi.registered_parameters import NRPN_COARSE as NRPN
+from yehu_server.core.midi.registered_parameters import RPN_COARSE as RPN
 from yehu_server.errors import MappingError
 from yehu_server.params.table import find
 from yehu_server.playing import sources

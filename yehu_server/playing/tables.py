@@ -11,7 +11,7 @@ import numpy as np
 
 from yehu_server.core.midi import tables
 from yehu_server.core.player.rows import ROW
-from yehu_server.params.preset import Preset
+from yehu_server.params.preset_file import Preset
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing import sources

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from html import escape
 
 from yehu_server.live.addresses import Address
-from yehu_server.live.osc.calls import CALLS, Argument
+from yehu_server.live.osc.call_table import CALLS, Argument
 from yehu_server.params.spec import Param
 from yehu_server.params.table import UNIT
 from yehu_server.surfaces import layout

@@ -78,7 +78,7 @@ def measured_sound(data: bytes) -> None:
     ParameterError,
     words=(b'"fit": {', b'"measured": {', b'"warnings": []', b'"admittance": {', b'"real": [',
            b'"frequency_hz": [', b'"band_hz": [100, 8000]', b"1e308", b"null", b"[1, 2]"),
-    also=("yehu_server/physics/body.json",),
+    also=("yehu_server/core/physics/body.json",),
 )  # fmt: skip
 def fitted_body(data: bytes) -> None:
     """A body file gives a fit of finite curves, or is refused."""

@@ -17,14 +17,14 @@ from wire import SINCE_1900_S, Ear, StillTime
 
 from yehu_server.live.osc import clients, schedule
 from yehu_server.live.osc import handler as osc
-from yehu_server.live.osc.calls import CALLS
+from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.packets import pack, unpack
 from yehu_server.params.table import PREFIX, TABLE, UNIT
 from yehu_server.playing import live
 from yehu_server.playing.live import LivePlayer
 from yehu_server.playing.mapping import load
-from yehu_server.playing.presets import Presets
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
 
 MOST_PACKETS = 200

@@ -110,7 +110,7 @@ def instrument(data: bytes) -> None:
         b"NaN",
         b"Infinity",
     ),
-    also=("yehu_server/physics/body.json",),
+    also=("yehu_server/core/physics/body.json",),
 )
 def body(data: bytes) -> None:
     """A body is passive and stable, of finite figures, or a ParameterError."""

@@ -18,7 +18,7 @@ from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.midi.events import CONTROL
 from yehu_server.core.midi.tables import MOST_BINDS
 from yehu_server.errors import EnsembleError, MappingError, ParameterError, PresetError
-from yehu_server.params.preset import SAVED
+from yehu_server.params.preset_file import SAVED
 from yehu_server.params.table import BY_ADDRESS, TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping, with_bases
@@ -31,7 +31,7 @@ from yehu_server.playing.mapping_file import (
     toml_of,
 )
 from yehu_server.playing.mapping_writer import as_toml, canonical, edited
-from yehu_server.playing.presets import Presets, read_preset
+from yehu_server.playing.preset_folders import Presets, read_preset
 from yehu_server.playing.sources import is_address
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, RangePolicy

@@ -28,7 +28,7 @@ from yehu_server.core.engine.native import (
     taped,
 )
 from yehu_server.core.engine.sounding import sound, sound_block
-from yehu_server.core.midi.interpret import APART, interpret
+from yehu_server.core.midi.dispatch import APART, interpret
 from yehu_server.core.player.listening import attend
 from yehu_server.core.player.wishes import fulfil
 

@@ -8,23 +8,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
-from yehu_server.core.midi.channels import (
-    begin_port,
-    bend_range,
-    configure_zone,
-    forget_channel,
-    forget_moves,
-    is_in_zone,
-    master_of,
-    plays,
-)
-from yehu_server.core.midi.controllers import (
+from yehu_server.core.midi.binds import (
     disconnect_channel,
-    follow,
     follow_apart,
     forget_all_moves,
     move,
@@ -35,24 +22,43 @@ from yehu_server.core.midi.controllers import (
     reset_controllers,
     reset_controllers_apart,
     set_directly,
-    step,
+)
+from yehu_server.core.midi.channels import (
+    begin_port,
+    forget_channel,
+    is_in_zone,
+    plays,
 )
 from yehu_server.core.midi.keys import list_key
 from yehu_server.core.midi.notes import (
     end_all,
+    end_channel,
     end_notes,
     end_notes_apart,
     hold_by_pedal,
     lift_pedal,
     lift_pedal_apart,
+    list_channel,
     note_off,
     note_on,
 )
 from yehu_server.core.midi.packing import BYTE, LENGTH_AT, PORT_AT
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, MIDI, NONE, PORTS
-from yehu_server.core.midi.tables import BEND, NRPN, PAIR, PRESSURE, TABLES
-from yehu_server.core.midi.wishing import in_range, stop_sound, write_apart
-from yehu_server.core.player.rows import ROW, ROWS
+from yehu_server.core.midi.registered_parameters import (
+    DATA_ENTRY,
+    DATA_ENTRY_FINE,
+    DECREMENT,
+    INCREMENT,
+    NRPN_COARSE,
+    NRPN_FINE,
+    RPN_COARSE,
+    RPN_FINE,
+    enter_data,
+    select,
+)
+from yehu_server.core.midi.tables import BEND, PAIR, PRESSURE, TABLES
+from yehu_server.core.midi.wishing import stop_sound, write_apart
+from yehu_server.core.player.rows import ROWS
 
 # High halves of status bytes.
 NOTE_OFF, NOTE_ON, POLY_PRESSURE, CONTROL_CHANGE = 0x80, 0x90, 0xA0, 0xB0
@@ -60,14 +66,9 @@ PROGRAM_CHANGE, CHANNEL_PRESSURE, PITCH_BEND, SYSTEM = 0xC0, 0xD0, 0xE0, 0xF0
 SYSTEM_RESET = 0xFF
 # Control changes with a meaning of their own.
 BANK, BANK_FINE = 0, 32
-DATA_ENTRY, DATA_ENTRY_FINE = 6, 38
 SUSTAIN = 64
-INCREMENT, DECREMENT = 96, 97
-NRPN_FINE, NRPN_COARSE, RPN_FINE, RPN_COARSE = 98, 99, 100, 101
 ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
-BEND_RANGE, MPE_CONFIGURATION = 0, 6  # registered parameters
 PAIRS = 32  # controllers with a fine half, as many higher
-BEND_RANGE_ROW = ROW["/playing/bend_range"]
 
 
 @compiled_exactly
@@ -227,14 +228,6 @@ def list_zone(m: Any, channel: int) -> None:
 
 
 @compiled_exactly
-def list_channel(m: Any, channel: int) -> None:
-    """List the keys of a channel."""
-    for n in range(m.held):
-        if m.held_channel[n] == channel:
-            list_key(m, n)
-
-
-@compiled_exactly
 def all_notes_off(m: Any, t: Any, frame: int, channel: int) -> None:
     """End the notes of a channel and of its zone, as if their keys were released."""
     list_zone(m, channel)
@@ -263,92 +256,7 @@ def change_program(m: Any, t: Any, frame: int, channel: int, program: int) -> No
             set_directly(m, frame, row, t.program_value[program, i], 0.0)
 
 
-# -- registered and other parameters --------------------------------------------------------------
-
-
-@compiled_exactly
-def select(m: Any, channel: int, control: int, value: int) -> None:
-    """Select a parameter by one half of its number; RPN and NRPN do not mix."""
-    is_registered = 1 if control in (RPN_COARSE, RPN_FINE) else 0
-    if m.is_registered[channel] != is_registered:
-        m.is_registered[channel] = is_registered
-        m.coarse[channel] = m.fine[channel] = NONE
-    if control in (RPN_COARSE, NRPN_COARSE):
-        m.coarse[channel] = value
-    else:
-        m.fine[channel] = value
-
-
-@compiled_exactly
-def enter_data(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
-    """Set the parameter that is selected."""
-    coarse, fine = m.coarse[channel], m.fine[channel]
-    if min(coarse, fine) == NONE:
-        return
-    number = coarse << 7 | fine
-    if m.is_registered[channel] == 0:
-        source = NRPN + number
-        if control == DATA_ENTRY:
-            move_coarse(m, t, frame, source, channel, value)
-        elif control == DATA_ENTRY_FINE:
-            move_fine(m, t, frame, source, channel, value)
-        else:
-            step(m, t, frame, source, channel, 1.0 if control == INCREMENT else -1.0)
-    elif number == MPE_CONFIGURATION and control == DATA_ENTRY:
-        set_zone(m, t, frame, channel, value)
-    elif number == BEND_RANGE:
-        set_bend_range(m, t, frame, channel, control, value)
-
-
-@compiled_exactly
-def set_bend_range(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
-    """Set a channel's bend range; that of a member of an MPE zone is that of all members."""
-    whole = int(np.rint(bend_range(m, channel) * 100.0))
-    semitones, cents = whole // 100, whole % 100
-    if control == DATA_ENTRY:
-        semitones = value
-    elif control == DATA_ENTRY_FINE:
-        cents = min(value, 99)
-    else:
-        semitones += 1 if control == INCREMENT else -1
-    found = in_range(BEND_RANGE_ROW, semitones + cents / 100.0)
-    m.bend_range[channel] = found
-    master = master_of(m, channel)
-    if master != NONE:
-        for member in range(IN_PORT * (channel // IN_PORT), IN_PORT * (channel // IN_PORT + 1)):
-            if master_of(m, member) == master:
-                m.bend_range[member] = found
-    follow(m, t, frame, BEND, channel, False)
-
-
-@compiled_exactly
-def set_zone(m: Any, t: Any, frame: int, channel: int, members: int) -> None:
-    """Create or end an MPE zone; the notes of its channels end and their state is forgotten."""
-    port = channel // IN_PORT
-    first = IN_PORT * port
-    was_member = 0
-    for own in range(IN_PORT):
-        was_member |= (1 << own) if is_in_zone(m, first + own, channel) else 0
-    if not configure_zone(m, channel, members):
-        return
-    for own in range(IN_PORT):
-        if was_member >> own & 1 != 0 or is_in_zone(m, first + own, channel):
-            end_channel(m, t, frame, first + own)
-            forget_moves(m, first + own)
-    m.is_registered[channel] = 1
-    m.coarse[channel], m.fine[channel] = MPE_CONFIGURATION >> 7, MPE_CONFIGURATION & 0x7F
-
-
 # -- ends -----------------------------------------------------------------------------------------
-
-
-@compiled_exactly
-def end_channel(m: Any, t: Any, frame: int, channel: int) -> None:
-    """End the notes of a channel and those its pedal holds, and forget its state."""
-    list_channel(m, channel)
-    end_notes(m, t, frame)
-    lift_pedal(m, t, frame, channel)
-    forget_channel(m, channel)
 
 
 @compiled_exactly

@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
-from yehu_server.core.midi.channels import is_midi, master_of, moves_all
+from yehu_server.core.midi.channels import forget_channel, is_midi, master_of, moves_all
 from yehu_server.core.midi.keys import find_key, heir, list_key
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, MIDI, NONE
 from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, TABLES, VELOCITY
@@ -248,3 +248,23 @@ _lift_pedal = lift_pedal_apart.symbol
 def lift_pedal(m: Any, t: Any, frame: int, channel: int) -> None:
     """Lift a channel's pedal; the keys that it alone holds end, in the order released."""
     _lift_pedal(address_of(m), address_of(t), frame, channel)
+
+
+# -- of a channel ----------------------------------------------------------------------------------
+
+
+@compiled_exactly
+def list_channel(m: Any, channel: int) -> None:
+    """List the keys of a channel."""
+    for n in range(m.held):
+        if m.held_channel[n] == channel:
+            list_key(m, n)
+
+
+@compiled_exactly
+def end_channel(m: Any, t: Any, frame: int, channel: int) -> None:
+    """End the notes of a channel and those its pedal holds, and forget its state."""
+    list_channel(m, channel)
+    end_notes(m, t, frame)
+    lift_pedal(m, t, frame, channel)
+    forget_channel(m, channel)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from yehu_server.errors import RefusedError
-from yehu_server.live.osc.calls import LONGEST_SUBSCRIPTION_S
+from yehu_server.live.osc.call_table import LONGEST_SUBSCRIPTION_S
 from yehu_server.live.osc.context import Act, CallContext
 from yehu_server.live.osc.learn_calls import LearnCalls
 from yehu_server.live.osc.packets import pack

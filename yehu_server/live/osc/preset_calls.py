@@ -11,7 +11,7 @@ from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import OF_PARTS, PLAIN
-from yehu_server.params.preset import Preset, morph
+from yehu_server.params.preset_file import Preset, morph
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.live import LivePlayer
 

@@ -13,7 +13,7 @@ from typing import Any
 from yehu_server.ahead.build import RATES
 from yehu_server.ahead.interpreter import interpreter_layout, look_layout, look_length
 from yehu_server.ahead.source_hash import sources_hash
-from yehu_server.core.midi import messages, tables
+from yehu_server.core.midi import registered_parameters, tables
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.tables import MOST_BINDS, TABLES
 from yehu_server.core.player import fingering
@@ -22,7 +22,7 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import KINDS
 from yehu_server.errors import ParameterError
 from yehu_server.live.page.examples import examples
-from yehu_server.params.preset import SAVED, Preset
+from yehu_server.params.preset_file import SAVED, Preset
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.playing import learn, sources
@@ -31,7 +31,7 @@ from yehu_server.playing.live import ELSEWHERE
 from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import NOTE_NAMES
-from yehu_server.playing.presets import read_preset
+from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tables import CURVES, WORDS, Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, RangePolicy, Tuning, read_tuning
 from yehu_server.util.files import shipped_folder, write_text
@@ -182,9 +182,9 @@ def facts() -> dict[str, Any]:
             "CHANNELS": sources.CHANNELS,
             "RESERVED": sorted(sources.RESERVED),
             "NO_NRPN": sources.NO_NRPN,
-            "DATA_ENTRY": messages.DATA_ENTRY,
-            "NRPN": [messages.NRPN_COARSE, messages.NRPN_FINE],
-            "RPN": [messages.RPN_COARSE, messages.RPN_FINE],
+            "DATA_ENTRY": registered_parameters.DATA_ENTRY,
+            "NRPN": [registered_parameters.NRPN_COARSE, registered_parameters.NRPN_FINE],
+            "RPN": [registered_parameters.RPN_COARSE, registered_parameters.RPN_FINE],
         },
         "codes": {**WORDS, "PAIR": tables.PAIR, "NRPN": tables.NRPN},
         "curves": {curve.value: code for curve, code in CURVES.items()},

@@ -13,7 +13,7 @@ from itertools import chain
 from typing import Any
 
 from yehu_server.errors import ParameterError
-from yehu_server.live.osc.calls import CALLS, Argument, Call
+from yehu_server.live.osc.call_table import CALLS, Argument, Call
 from yehu_server.live.osc.part_status import PART_STATUS, PartValue
 from yehu_server.live.osc.status import PLACE, STATUS, StatusValue, as_argument
 from yehu_server.live.part_addresses import FIRST, OF_PARTS, OWN, PLAIN, check_part, divided, group

@@ -20,7 +20,7 @@ from aiohttp import web
 
 from yehu_server.errors import DeviceError, one_line
 from yehu_server.live.addresses import Address, Allowed, plain, shown, why
-from yehu_server.live.osc.calls import Call
+from yehu_server.live.osc.call_table import Call
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.osc.sockets import OscPorts

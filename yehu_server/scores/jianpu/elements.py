@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from yehu_server.scores.jianpu.marks import Action
-from yehu_server.scores.jianpu.notes import Kind
+from yehu_server.scores.jianpu.mark_words import Action
+from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.written.notated import Grace
 
 

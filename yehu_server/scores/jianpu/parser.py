@@ -10,8 +10,8 @@ from fractions import Fraction
 from yehu_server.scores.jianpu.bars import Bars
 from yehu_server.scores.jianpu.elements import MetreMark, Sounding, TempoMark
 from yehu_server.scores.jianpu.form import MOST_UNFOLDED, Braces, Jump
-from yehu_server.scores.jianpu.marks import AHEAD, SILENT, Act, Action, action_of
-from yehu_server.scores.jianpu.notes import (
+from yehu_server.scores.jianpu.mark_words import AHEAD, SILENT, Act, Action, action_of
+from yehu_server.scores.jianpu.note_words import (
     Figure,
     Kind,
     NoteWord,

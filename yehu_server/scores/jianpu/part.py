@@ -9,8 +9,8 @@ from fractions import Fraction
 
 from yehu_server.scores.jianpu.characters import living
 from yehu_server.scores.jianpu.elements import MetreMark, Sounding, TempoMark
-from yehu_server.scores.jianpu.marks import THERE_AND_BACK, Act, Action, mark_of
-from yehu_server.scores.jianpu.notes import Kind
+from yehu_server.scores.jianpu.mark_words import THERE_AND_BACK, Act, Action, mark_of
+from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.score import Metre
 from yehu_server.scores.written.notated import (
     DYNAMICS,

@@ -18,7 +18,7 @@ from pathlib import Path
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.characters import NOTATIONS, mode_named
 from yehu_server.scores.jianpu.form import unfolded
-from yehu_server.scores.jianpu.marks import SILENT_HEADERS
+from yehu_server.scores.jianpu.mark_words import SILENT_HEADERS
 from yehu_server.scores.jianpu.parser import PartParser
 from yehu_server.scores.jianpu.part import PartPlayer, Played
 from yehu_server.scores.jianpu.scale import Scale

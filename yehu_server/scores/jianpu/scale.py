@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from yehu_server.scores.jianpu.characters import ERSIPU, USUAL_MODE, lives, semitones_of
-from yehu_server.scores.jianpu.notes import MAJOR, MOST_OCTAVES, Figure
+from yehu_server.scores.jianpu.note_words import MAJOR, MOST_OCTAVES, Figure
 from yehu_server.scores.jianpu.text import Word, failure, shown
 
 MIDDLE_C = 60.0

@@ -150,7 +150,7 @@ class NoteMarks:
             self.add("tremolo", min(max(strokes, 1.0), 8.0))
         elif kind == "unmeasured":
             self.add("tremolo")
-        # `start` and `stop` are over two notes: `musicxml_notes` makes them a trill.
+        # `start` and `stop` are over two notes: `voices` makes them a trill.
 
     def _technical(self, technical: Element) -> None:
         for child in technical:

@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
-from yehu_server.core.midi.controllers import (
+from yehu_server.core.midi.binds import (
     follow_apart,
     move_apart,
     move_control,

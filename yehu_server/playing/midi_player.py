@@ -23,7 +23,7 @@ from yehu_server.core.midi.record import CHANNELS, IN_PORT
 from yehu_server.core.midi.tables import SLOTS
 from yehu_server.core.player.rows import ROW
 from yehu_server.errors import YehuError
-from yehu_server.params.preset import Preset
+from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping

@@ -12,7 +12,7 @@ from platformdirs import user_config_path
 from tomlkit.exceptions import TOMLKitError
 
 from yehu_server.errors import OutputError, PresetError
-from yehu_server.params.preset import SAVED, VERSION, Preset, parse
+from yehu_server.params.preset_file import SAVED, VERSION, Preset, parse
 from yehu_server.util.files import PLAIN_NAME, inside, read_text, shipped_folder, write_text
 
 ENDING = ".toml"

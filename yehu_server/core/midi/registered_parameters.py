@@ -1,0 +1,105 @@
+"""Registered and other parameters (RPN, NRPN): selects one, and enters its value. Compiled.
+
+Registered are the bend range and MPE's configuration; others are sources of a mapping.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.midi.binds import follow, move_coarse, move_fine, step
+from yehu_server.core.midi.channels import (
+    bend_range,
+    configure_zone,
+    forget_moves,
+    is_in_zone,
+    master_of,
+)
+from yehu_server.core.midi.notes import end_channel
+from yehu_server.core.midi.record import IN_PORT, NONE
+from yehu_server.core.midi.tables import BEND, NRPN
+from yehu_server.core.midi.wishing import in_range
+from yehu_server.core.player.rows import ROW
+
+# Control changes that select a parameter, and enter its value.
+DATA_ENTRY, DATA_ENTRY_FINE = 6, 38
+INCREMENT, DECREMENT = 96, 97
+NRPN_FINE, NRPN_COARSE, RPN_FINE, RPN_COARSE = 98, 99, 100, 101
+BEND_RANGE, MPE_CONFIGURATION = 0, 6  # registered parameters
+BEND_RANGE_ROW = ROW["/playing/bend_range"]
+
+
+@compiled_exactly
+def select(m: Any, channel: int, control: int, value: int) -> None:
+    """Select a parameter by one half of its number; RPN and NRPN do not mix."""
+    is_registered = 1 if control in (RPN_COARSE, RPN_FINE) else 0
+    if m.is_registered[channel] != is_registered:
+        m.is_registered[channel] = is_registered
+        m.coarse[channel] = m.fine[channel] = NONE
+    if control in (RPN_COARSE, NRPN_COARSE):
+        m.coarse[channel] = value
+    else:
+        m.fine[channel] = value
+
+
+@compiled_exactly
+def enter_data(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
+    """Set the parameter that is selected."""
+    coarse, fine = m.coarse[channel], m.fine[channel]
+    if min(coarse, fine) == NONE:
+        return
+    number = coarse << 7 | fine
+    if m.is_registered[channel] == 0:
+        source = NRPN + number
+        if control == DATA_ENTRY:
+            move_coarse(m, t, frame, source, channel, value)
+        elif control == DATA_ENTRY_FINE:
+            move_fine(m, t, frame, source, channel, value)
+        else:
+            step(m, t, frame, source, channel, 1.0 if control == INCREMENT else -1.0)
+    elif number == MPE_CONFIGURATION and control == DATA_ENTRY:
+        set_zone(m, t, frame, channel, value)
+    elif number == BEND_RANGE:
+        set_bend_range(m, t, frame, channel, control, value)
+
+
+@compiled_exactly
+def set_bend_range(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
+    """Set a channel's bend range; that of a member of an MPE zone is that of all members."""
+    whole = int(np.rint(bend_range(m, channel) * 100.0))
+    semitones, cents = whole // 100, whole % 100
+    if control == DATA_ENTRY:
+        semitones = value
+    elif control == DATA_ENTRY_FINE:
+        cents = min(value, 99)
+    else:
+        semitones += 1 if control == INCREMENT else -1
+    found = in_range(BEND_RANGE_ROW, semitones + cents / 100.0)
+    m.bend_range[channel] = found
+    master = master_of(m, channel)
+    if master != NONE:
+        for member in range(IN_PORT * (channel // IN_PORT), IN_PORT * (channel // IN_PORT + 1)):
+            if master_of(m, member) == master:
+                m.bend_range[member] = found
+    follow(m, t, frame, BEND, channel, False)
+
+
+@compiled_exactly
+def set_zone(m: Any, t: Any, frame: int, channel: int, members: int) -> None:
+    """Create or end an MPE zone; the notes of its channels end and their state is forgotten."""
+    port = channel // IN_PORT
+    first = IN_PORT * port
+    was_member = 0
+    for own in range(IN_PORT):
+        was_member |= (1 << own) if is_in_zone(m, first + own, channel) else 0
+    if not configure_zone(m, channel, members):
+        return
+    for own in range(IN_PORT):
+        if was_member >> own & 1 != 0 or is_in_zone(m, first + own, channel):
+            end_channel(m, t, frame, first + own)
+            forget_moves(m, first + own)
+    m.is_registered[channel] = 1
+    m.coarse[channel], m.fine[channel] = MPE_CONFIGURATION >> 7, MPE_CONFIGURATION & 0x7F

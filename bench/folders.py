@@ -45,7 +45,7 @@ def write_scores(folder: Path, files: int, seconds: float) -> None:
         midi.save(str(folder / f"{number:06}.mid"))
 
 
-class Watch:
+class PlotData:
     """CPU time and memory of a process and of those that it started."""
 
     def __init__(self, pid: int) -> None:
@@ -80,7 +80,7 @@ def render(scores: Path, out: Path, *words: str, beside: tuple[int, ...] = ()) -
     before = sum(map(cpu_of, beside))
     start = time.perf_counter()
     process = subprocess.Popen([*command, *words])  # noqa: S603 - our own
-    watch = Watch(process.pid)
+    watch = PlotData(process.pid)
     while process.poll() is None:
         watch.look()
         time.sleep(0.2)

@@ -20,7 +20,7 @@ import report
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.midi.events import MESSAGE, START
 from yehu_server.core.midi.packing import packed
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls
 

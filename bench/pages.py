@@ -6,10 +6,10 @@
 A server plays under the load of `load.py`: 2,000 OSC and 600 MIDI messages a second. In turns
 nobody looks or listens, or a page looks and plays, beside so many listeners. The time to the ear
 is from a page's wish being sent until a listener's clock reaches the sample that fulfils it:
-as in `web/sound/listened.js`, that clock runs evenly, so far behind what is received on average as
-the fill that a page aims at. A gap is where sound came after its time. The page's own device is
-added to that. Without --audio-device, or
-with the device `null`, a JACK server with the dummy driver is started, which also carries MIDI.
+as in `web/sound/jitter_buffer.js`, that clock runs evenly, so far behind what is received on
+average as the fill that a page aims at. A gap is where sound came after its time. The page's own
+device is added to that. Without --audio-device, or with the device `null`, a JACK server with the
+dummy driver is started, which also carries MIDI.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ def main() -> None:
                     print(rows[-1], flush=True)
         finally:
             load.kill()
-            server.hurry()
+            server.skip_fade_out()
             server.stop()
     report.save(arguments.save, rows, device=arguments.audio_device or report.NO_CARD)
 

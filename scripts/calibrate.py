@@ -14,7 +14,7 @@ import time
 
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.calibration import calibrate, calibration_key
-from yehu_server.playing.calibrations import SHIPPED, as_data
+from yehu_server.playing.calibration_store import SHIPPED, as_data
 
 RATES = (44100.0, 48000.0, 96000.0)
 

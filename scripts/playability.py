@@ -62,7 +62,7 @@ from measures.tunes import tunes
 from yehu_server.core.physics.quantities import Quantities, read_quantities
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
-from yehu_server.playing.practices import read_practice
+from yehu_server.playing.practice_files import read_practice
 
 MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each

@@ -15,11 +15,11 @@ import json
 import time
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import PLACES, ordinary_table
+from yehu_server.core.player.bowing import PLACES, default_recipes
 from yehu_server.playing.calibration import calibrate
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.practice import DEFAULT, Practice
-from yehu_server.playing.practices import SHIPPED, as_data, as_text, shipped_practice
+from yehu_server.playing.practice_files import SHIPPED, as_data, as_text, shipped_practice
 
 RATES = (44100.0, 48000.0, 96000.0)
 
@@ -34,7 +34,7 @@ def main() -> None:
     for rate in arguments.rates:
         start = time.perf_counter()
         quantities = Quantities()
-        known = ordinary_table() if arguments.anew else shipped_practice(rate)
+        known = default_recipes() if arguments.anew else shipped_practice(rate)
         table = Practice(rate, quantities, calibration_for(rate)).learn(
             table=known, places=(DEFAULT,)
         )

@@ -24,7 +24,7 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
-    FARTHER,
+    DISTANCE_FACTOR,
     FIRM,
     LEAST_PRESS,
     LIGHT,
@@ -42,9 +42,9 @@ from yehu_server.lab.sweeps.result import Result
 from yehu_server.lab.sweeps.running import sweep
 from yehu_server.lab.sweeps.study import study_of
 from yehu_server.params.table import find
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.playing.practices import shipped_practice
+from yehu_server.playing.practice_files import shipped_practice
 
 Array = Any
 
@@ -123,13 +123,13 @@ def draw_note(panels: Any, player: Player, rate: float) -> list[Result]:
         panels[i].set_title(f"{title}, {speed:g} m/s")
         draw(panels[i], places, "position", {"speed": i})
         if speed <= player.recipe(TOP_SPEED):
-            beta = USUAL_BETA * player.recipe(FARTHER)
+            beta = USUAL_BETA * player.recipe(DISTANCE_FACTOR)
             ends = [float(player.force(speed, beta, wish)) for wish in (LIGHT, FIRM)]
             panels[i].plot([beta, beta], ends, color="k", lw=2.5, marker="_", ms=9, mew=2.5)
     speeds = bowed(rate, player, {"position": [USUAL_BETA], "speed": SPEEDS})
     panels[-1].set_title(f"{title}, β = {USUAL_BETA:g}")
     draw(panels[-1], speeds, "speed", {"position": 0})
-    if player.recipe(FARTHER) == 1.0:
+    if player.recipe(DISTANCE_FACTOR) == 1.0:
         borne = speeds.axes["speed"]
         borne = borne[borne <= player.recipe(TOP_SPEED)]
         for wish in (LIGHT, FIRM):

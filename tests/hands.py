@@ -17,11 +17,20 @@ from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import fulfil
 from yehu_server.params.table import ENGINE, FINGERS, SLOT, find
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 
 RATE = 48000.0  # whole milliseconds are whole frames
 # What the player's moves are computed from.
-DECIDED = ("value", "finger_pitch", "position", "recipe", "balance", "hurry", "weight", "detuned")
+DECIDED = (
+    "value",
+    "finger_pitch",
+    "position",
+    "recipe",
+    "balance",
+    "speed_variation",
+    "weight",
+    "detuned",
+)
 # Balance (dB) of notes below C5, and of those from C5 up, which are 6 dB louder.
 LOW_DB, HIGH_DB = 6.0 * 25.0 / 38.0, -6.0 * 13.0 / 38.0
 
@@ -171,7 +180,7 @@ class Watched(Instrument):
         return 69.0 + 12.0 * math.log2(frequency / 440.0)
 
 
-class Checked(Wishes):
+class Checked(WishPoster):
     """Wishes to a `Watched`: what they tell must be what its player holds."""
 
     _instrument: Watched

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 

@@ -27,7 +27,7 @@ class Leader:
     is_live = True
 
     def __init__(self) -> None:
-        self.rests: list[tuple[int, int]] = []
+        self.gaps: list[tuple[int, int]] = []
         self._midi = np.zeros(1, MIDI)
         self.tables = np.zeros(SLOTS, TABLES)
 
@@ -44,7 +44,7 @@ class Leader:
         self.tables[self.midi["tables"]] = tables[0]
         self.midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
 
-    def take_in(self) -> None:
+    def interpret_events(self) -> None:
         """Each event is interpreted as it comes."""
 
     def frames(self, ms: float) -> int:

@@ -22,7 +22,7 @@ DEFAULTS = {name: ENGINE[slot].default for name, slot in zip(NAMES, STAGE_INPUTS
 RANGES = {
     name: (ENGINE[slot].lo, ENGINE[slot].hi) for name, slot in zip(NAMES, STAGE_INPUTS, strict=True)
 }
-FALLEN = STAGE_COLUMNS - 1
+SILENCED = STAGE_COLUMNS - 1
 SMALL = 2.0**-10  # far below the limiter
 LIMITER = STAGE_COLUMNS - 2
 

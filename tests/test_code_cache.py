@@ -24,7 +24,7 @@ class Kept:
         self.folder = folder
         monkeypatch.setattr(jit, "cache_folder", lambda: folder)
         monkeypatch.setattr(jit, "IS_CACHED", True)
-        monkeypatch.setattr(cache, "_troubles", set())
+        monkeypatch.setattr(cache, "_reported", set())
 
     def start(self, function=third_of) -> tuple[int, bool]:
         """Call the function with 12, as after a start; the result, and whether it was cached."""

@@ -103,7 +103,7 @@ def test_a_comment_compiles_nothing_anew(tmp_path, monkeypatch):
     folder.mkdir()
     monkeypatch.setattr(jit, "cache_folder", lambda: folder)
     monkeypatch.setattr(jit, "IS_CACHED", True)
-    monkeypatch.setattr(cache, "_troubles", set())
+    monkeypatch.setattr(cache, "_reported", set())
 
     def was_there(source: str) -> bool:
         """Whether the code of `third` was cached, after a new start."""

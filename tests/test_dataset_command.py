@@ -190,7 +190,7 @@ def test_sounds_travel_where_the_folder_is_not_seen(made, tmp_path):
     assert list(making.received(part, told)) == lines(made / "out")[:2]
     for name, data in files(tmp_path / "out").items():
         assert data == files(made / "out")[name]
-    assert making.sorted_out([part]) == ([], lines(made / "out")[:2])
+    assert making.split_up_to_date([part]) == ([], lines(made / "out")[:2])
 
 
 # ---------------------------------------------------------------- what goes wrong

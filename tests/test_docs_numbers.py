@@ -36,7 +36,7 @@ from yehu_server.live.web import server, web_sockets
 from yehu_server.params.table import find
 from yehu_server.playing import delay, learn, mapping_entries
 from yehu_server.playing import preset_folders as presets
-from yehu_server.playing.calibrations import SHIPPED
+from yehu_server.playing.calibration_store import SHIPPED
 from yehu_server.scores import capture, capture_format, gesture
 from yehu_server.surfaces import layout as panel
 from yehu_server.surfaces import max as max_patch

@@ -147,6 +147,6 @@ def test_serve_tells_what_is_no_news_to_a_player_only_where_it_is_asked_to(
     arguments = _parser().parse_args(["serve", "--duration", "0", *words])
     arguments.quiet = True
     with caplog.at_level(arguments.log_level.upper(), logger="yehu_server"):
-        serve._serve(arguments, SimpleNamespace(asked=threading.Event(), server=None))
+        serve._serve(arguments, SimpleNamespace(requested=threading.Event(), server=None))
     assert ("400 kB" in caplog.text) == bool(words)
     assert "Ctrl-C ends" in caplog.text

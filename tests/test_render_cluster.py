@@ -200,7 +200,7 @@ def test_settings_that_a_worker_does_not_have_are_named(songs, refused, monkeypa
 
 def test_paths_hold_on_other_machines_and_names_stay_names(tmp_path, monkeypatch):
     from yehu_server.cli import _parser
-    from yehu_server.cli.folder_far import absolute
+    from yehu_server.cli.folder_cluster import absolute
 
     monkeypatch.chdir(tmp_path)
     (tmp_path / "m.toml").touch()

@@ -9,7 +9,7 @@ import mido
 import pytest
 from scores import midi_file, notes
 
-from yehu_server.playing.learn import Found, learn
+from yehu_server.playing.learn import LearnedSource, learn
 from yehu_server.playing.mapping import load, mapping_folder
 
 # What a folder of presets may hold.
@@ -47,7 +47,7 @@ def test_what_was_learned_live_changes_no_rendering(rendered, words):
     shipped = mapping_folder() / "keyboard.toml"
     assert told["mapping"] == {"name": "keyboard", "files": [str(shipped)]}
     assert err == ""
-    _, own = learn(load("keyboard"), "/playing/pressure", Found("cc 20"), soft=False)
+    _, own = learn(load("keyboard"), "/playing/pressure", LearnedSource("cc 20"), soft=False)
     after, told, err = rendered(*words)
     assert after == before
     assert told["mapping"]["files"] == [str(shipped)]
@@ -63,7 +63,7 @@ def test_what_was_learned_live_changes_no_file_that_has_a_shipped_base(rendered,
     mine = tmp_path / "pedals.toml"
     mine.write_text('base = "keyboard"\n')
     before, _, _ = rendered("--mapping", mine)
-    learn(load("keyboard"), "/playing/pressure", Found("cc 20"), soft=False)
+    learn(load("keyboard"), "/playing/pressure", LearnedSource("cc 20"), soft=False)
     assert rendered("--mapping", mine)[0] == before
 
 

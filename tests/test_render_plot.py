@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scores import midi_file, notes
 
-from yehu_server.rendering.options import asked_pitch
-from yehu_server.rendering.watch import COLUMNS, Watch
+from yehu_server.rendering.options import target_pitch
+from yehu_server.rendering.plot_data import COLUMNS, PlotData
 
 DRY = ("--dry", "--tail", 0)  # in little time
 RATE = 44100.0
@@ -22,8 +22,8 @@ def tune(tmp_path) -> Path:
     return midi_file(tmp_path / "tune.mid", notes((0.0, 0.3, 67, 90), (0.3, 0.3, 72, 90)))
 
 
-def watched(sound: np.ndarray, duration_s: float, size: int = 1000, voices: int = 1) -> Watch:
-    watch = Watch(RATE, duration_s, voices)
+def watched(sound: np.ndarray, duration_s: float, size: int = 1000, voices: int = 1) -> PlotData:
+    watch = PlotData(RATE, duration_s, voices)
     for at in range(0, len(sound), size):
         watch.take(sound[at : at + size], [69.0] * voices)
     return watch
@@ -71,7 +71,7 @@ def test_the_pieces_do_not_matter(size):
 
 
 def test_a_long_score_has_no_more_columns_than_a_picture():
-    watch = Watch(1000.0, 3600.0, 2)
+    watch = PlotData(1000.0, 3600.0, 2)
     for _ in range(3600):
         watch.take(np.zeros((1000, 2)), (None, 60.0))
     assert 0.9 * COLUMNS < len(watch.times_s) <= COLUMNS
@@ -113,9 +113,9 @@ def test_the_pitches_of_the_picture_are_those_of_the_score(tune):
 
     options = Options(is_dry=True, is_mono=True, tail_s=0.0, block=512)
     performance = Performance(read_score(tune), options)
-    watch = Watch(RATE, 0.6, 1)
+    watch = PlotData(RATE, 0.6, 1)
     for samples in performance.blocks():
-        watch.take(samples, [asked_pitch(player.instruments[0]) for player in performance.players])
+        watch.take(samples, [target_pitch(player.instruments[0]) for player in performance.players])
     times, asked = watch.asked
     for note, first, last in ((67.0, 0.02, 0.28), (72.0, 0.32, 0.58)):
         within = (times > first) & (times < last)
@@ -132,7 +132,7 @@ def test_each_part_of_an_ensemble_is_asked_for_its_own_pitch(tune):
     options = Options(is_dry=True, tail_s=0.0, block=512)
     performance = Performance([Part(read_score(tune)), Part(read_score(tune))], options)
     next(iter(performance.blocks()))
-    assert [asked_pitch(each.instruments[0]) for each in performance.players] == [67.0, 67.0]
+    assert [target_pitch(each.instruments[0]) for each in performance.players] == [67.0, 67.0]
 
 
 def test_what_is_no_picture_of_ours_is_not_replaced(tune, refused, tmp_path):

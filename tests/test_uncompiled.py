@@ -8,7 +8,7 @@ import numpy as np
 from commands import COMMAND, is_one_line
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 

@@ -1,6 +1,6 @@
 /** Finds and makes elements of the page. */
 
-import { inWords } from "./words.js";
+import { onLanguage } from "./i18n.js";
 
 /** @typedef {string | (() => string)} Words A function is asked again in another language. */
 
@@ -29,7 +29,7 @@ export function make(tag, attributes = {}, children = []) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === false) continue;
-    if (typeof value === "function") inWords(() => element.setAttribute(name, value()));
+    if (typeof value === "function") onLanguage(() => element.setAttribute(name, value()));
     else element.setAttribute(name, value === true ? "" : String(value));
   }
   element.append(...children.map((child) => (typeof child === "function" ? words(child) : child)));
@@ -39,7 +39,7 @@ export function make(tag, attributes = {}, children = []) {
 /** @param {() => string} tell */
 function words(tell) {
   const text = new Text();
-  inWords(() => {
+  onLanguage(() => {
     text.data = tell();
   });
   return text;
@@ -73,7 +73,7 @@ export function allow(button, reason) {
  * @param {Blob} blob
  * @param {string} name
  */
-export function offer(blob, name) {
+export function download(blob, name) {
   const link = make("a", { href: URL.createObjectURL(blob), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000); // long after it was read

@@ -68,7 +68,7 @@ export class Instrument extends EventTarget {
     return {
       post: (...wish) => instrument.post(...wish),
       target: (address) => instrument.sound?.target?.(address),
-      told: (address) => instrument.sound?.told?.(address),
+      reported: (address) => instrument.sound?.reported?.(address),
       get frame() {
         return instrument.frame;
       },

@@ -55,15 +55,15 @@
  * @property {Status} status
  * @property {AnalyserNode | null} analyser null: the page hears nothing
  * @property {{start: () => void, stop: () => Blob | Promise<Blob>}} [record] writes WAV
- * @property {{start: () => void, stop: () => Promise<Kept>}} [keep] what is fulfilled
+ * @property {{start: () => void, stop: () => Promise<CapturedWishes>}} [keep] what is fulfilled
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
  *   fingers moves to
- * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
+ * @property {(address: string) => number | undefined} [reported] the value of any other parameter, where
  *   others set them too
  * @property {number} [people] most that may play the part; by default one
  * @property {number} [frame] that sounds now, about; else that of the state
  *
- * @typedef {object} Kept
+ * @typedef {object} CapturedWishes
  * @property {number} from frame
  * @property {number} to frame
  * @property {number[]} wishes five numbers each: frame, kind, index, value, other

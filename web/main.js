@@ -6,7 +6,7 @@ import { Diagram } from "./hands/schelleng.js";
 import { Fingerboard } from "./hands/fingerboard.js";
 import { Hands } from "./hands/hands.js";
 import { Keys } from "./hands/keys.js";
-import { Tuned } from "./hands/tuned.js";
+import { KeyTuning } from "./hands/key_tuning.js";
 import { Instrument } from "./instrument.js";
 import { Midi } from "./midi.js";
 import { Board } from "./pictures/fingerboard.js";
@@ -18,31 +18,31 @@ import { Spectrum } from "./pictures/spectrum.js";
 import { Strings } from "./pictures/strings.js";
 import { Tuner } from "./pictures/tuner.js";
 import { settings } from "./settings.js";
-import { Taught } from "./taught.js";
+import { MidiLearn } from "./midi_learn.js";
 import { showConnections } from "./views/connect.js";
 import { showHeader } from "./views/header.js";
-import { showKeeping } from "./views/keep.js";
+import { showRecording } from "./views/recording.js";
 import { showParameters } from "./views/parameters.js";
 import { showSeeing } from "./views/see.js";
 import { showSounds } from "./views/sounds.js";
 import { showTabs } from "./views/tabs.js";
 import { showTunes } from "./views/tunes.js";
-import { showWays } from "./views/ways.js";
-import { fillWords, loadWords } from "./words.js";
+import { showPlayingOptions } from "./views/playing_options.js";
+import { fillWords, loadWords } from "./i18n.js";
 
 /**
  * All that the views work with.
  * @typedef {object} Page
  * @property {Instrument} instrument
  * @property {Hands} hands
- * @property {Tuned} tuned
+ * @property {KeyTuning} tuned
  * @property {Keys} keys
  * @property {Fingerboard} fingerboard
  * @property {Bow} bow
  * @property {Board} board
  * @property {Strings} strings
  * @property {Gallery} gallery
- * @property {Taught} taught
+ * @property {MidiLearn} taught
  * @property {Midi} midi
  */
 
@@ -50,24 +50,24 @@ import { fillWords, loadWords } from "./words.js";
 function assemble() {
   const instrument = new Instrument();
   const hands = new Hands(instrument.player);
-  const taught = new Taught(instrument);
+  const taught = new MidiLearn(instrument);
   const midi = new Midi(instrument, taught);
-  const tuned = new Tuned();
+  const tuned = new KeyTuning();
   const keys = new Keys(hands, tuned);
   const fingerboard = new Fingerboard(find("fingerboard", HTMLCanvasElement), hands, tuned);
   const bow = new Bow(find("bow", HTMLCanvasElement), hands);
   const board = new Board(fingerboard.element, fingerboard);
   const strings = new Strings(find("strings", HTMLCanvasElement));
   const gallery = new Gallery(() => instrument.state);
-  gallery.hang(board);
-  gallery.hang(new Bowing(bow.element, bow));
-  gallery.hang(strings);
-  gallery.hang(new Tuner(find("tuner", HTMLCanvasElement)));
-  gallery.hang(new Level(find("level", HTMLCanvasElement)));
+  gallery.add(board);
+  gallery.add(new Bowing(bow.element, bow));
+  gallery.add(strings);
+  gallery.add(new Tuner(find("tuner", HTMLCanvasElement)));
+  gallery.add(new Level(find("level", HTMLCanvasElement)));
   const schelleng = new Schelleng(find("schelleng", HTMLCanvasElement));
-  gallery.hang(schelleng);
+  gallery.add(schelleng);
   new Diagram(schelleng, instrument.player);
-  gallery.hang(
+  gallery.add(
     new Spectrum(find("spectrum", HTMLCanvasElement), () => instrument.sound?.analyser ?? null),
   );
   return {
@@ -109,12 +109,12 @@ async function main() {
   const page = assemble();
   connect(page);
   showHeader(page);
-  showWays(page);
+  showPlayingOptions(page);
   showTabs(page);
   showSeeing(page);
   showSounds(page);
   showTunes(page);
-  showKeeping(page);
+  showRecording(page);
   showConnections(page);
   showParameters(page);
 }

@@ -1,7 +1,7 @@
 /** The MIDI keyboards and controllers of this computer, by Web MIDI. */
 
 /** @typedef {import('./instrument.js').Instrument} Instrument */
-/** @typedef {import('./taught.js').Taught} Taught */
+/** @typedef {import('./midi_learn.js').MidiLearn} MidiLearn */
 
 const ALL = "";
 
@@ -14,7 +14,7 @@ export class Midi extends EventTarget {
 
   /**
    * @param {Instrument} instrument
-   * @param {Taught} taught
+   * @param {MidiLearn} taught
    */
   constructor(instrument, taught) {
     super();
@@ -59,7 +59,7 @@ export class Midi extends EventTarget {
     this.chosen = id;
     // Notes of inputs that are no longer listened to would never end.
     this.#ports.forEach((own, port) => {
-      if (!this.#isHeard(own)) this.instrument.player.letGoOf(port);
+      if (!this.#isHeard(own)) this.instrument.player.endPortNotes(port);
     });
   }
 
@@ -73,7 +73,7 @@ export class Midi extends EventTarget {
   #hear(input) {
     if (!this.#ports.includes(input.id)) this.#ports.push(input.id);
     const port = this.#ports.indexOf(input.id);
-    if (input.state === "disconnected") this.instrument.player.letGoOf(port);
+    if (input.state === "disconnected") this.instrument.player.endPortNotes(port);
     input.onmidimessage = ({ data }) => {
       if (!data || !this.#isHeard(input.id)) return;
       this.taught.hear(data, port);

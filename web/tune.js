@@ -75,7 +75,7 @@ export class TunePlayer extends EventTarget {
     this.timer = 0;
     // What the player has already is played; it ends after that.
     const { player, frame } = this.instrument;
-    player.letGoOf(PORT, Math.max(this.latest, frame));
+    player.endPortNotes(PORT, Math.max(this.latest, frame));
     player.remap(this.instrument.mapping, Math.max(this.latest, frame));
     this.dispatchEvent(new Event("end"));
   }

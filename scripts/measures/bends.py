@@ -12,7 +12,7 @@ from itertools import repeat
 import numpy as np
 
 from measures.intonation import FAIR_CENTS, NONE, off_by
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
 from yehu_server.core.player.calibration import OPEN_NOTES
 
@@ -56,8 +56,8 @@ def bends(setup: Setup) -> list[Share]:
         errors, fits = np.abs(found[..., 0]), found[..., 1] > 0.0
         right = errors <= FAIR_CENTS
         name = f"{semitones:+g} semitones, moments"
-        parts.append(told(name, right[fits]))
-        parts.append(told(f"{name} where no finger fits", right[~fits], counts=False))
+        parts.append(share_line(name, right[fits]))
+        parts.append(share_line(f"{name} where no finger fits", right[~fits], counts=False))
         for note, row in zip(notes, np.where(fits, errors, 0.0), strict=True):
             if (row > FAIR_CENTS).any():
                 most = "no pitch" if row.max() == NONE else f"{row.max():.0f} cents at most"

@@ -20,7 +20,7 @@ from measures.intonation import (
     worst,
 )
 from measures.overtones import overtones_off_by
-from measures.shares import Share, share, told
+from measures.shares import Share, share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
 
 VELOCITIES = (20, 50, 80, 110, 127)
@@ -71,7 +71,7 @@ def grid(setup: Setup) -> list[Share]:
 def _told(what: str, notes: list[int], errors: list[float]) -> Share:
     right = [abs(error) <= bound(note) for note, error in zip(notes, errors, strict=True)]
     words = [f"{note} {in_words(error)}" for note, error in zip(notes, errors, strict=True)]
-    return told(what, right, words)
+    return share_line(what, right, words)
 
 
 def _alone(setup: Setup, note: int) -> float:

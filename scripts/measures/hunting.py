@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from measures.intonation import NONE, off_by
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Sound, Take, in_parallel
 
 VELOCITIES = (50, 100)
@@ -98,5 +98,5 @@ def hunting(setup: Setup) -> list[Share]:
             f"{n} wheel {w} velocity {v} {_in_words(swing)}"
             for (n, w, v), swing in zip(cases, found, strict=True)
         ]
-        parts.append(told(name, amplitudes <= STILL_CENTS, words, counts=name == "listening"))
+        parts.append(share_line(name, amplitudes <= STILL_CENTS, words, counts=name == "listening"))
     return parts

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import fftconvolve
 
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
 from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz
 
@@ -102,7 +102,7 @@ def life(setup: Setup) -> list[Share]:
     def part(what: str, values: Array, lo: float, hi: float, of: Array) -> Share:
         said = [f"{word} {value:.2f}" for word, value in zip(words[of], values[of], strict=True)]
         right = (values[of] >= lo) & (values[of] <= hi)
-        return told(f"{what} {lo:g} to {hi:g}", right, said)
+        return share_line(f"{what} {lo:g} to {hi:g}", right, said)
 
     anywhere = np.ones(len(jobs), bool)
     return [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, in_parallel
 from measures.timbre import Timbre, timbre
 from yehu_server.params.table import find
@@ -31,7 +31,7 @@ def evenness(setup: Setup) -> list[Share]:
         )
         offsets = levels - np.median(levels)
         words = [f"{note} {off:+.1f} dB" for note, off in zip(NOTES, offsets, strict=True)]
-        parts.append(told(name, np.abs(offsets) <= EVEN_DB, words))
+        parts.append(share_line(name, np.abs(offsets) <= EVEN_DB, words))
     return parts
 
 
@@ -74,5 +74,5 @@ def velocity(setup: Setup) -> list[Share]:
             f"centroid times {np.median(ratios):.2f}, attack {np.median(sooner):.0f} ms sooner; "
             f"limited in {sum(each.peak > LIMITER for each in found)} of {len(found)} notes"
         )
-        parts.append(told(name, right, [str(note) for note in NOTES]))
+        parts.append(share_line(name, right, [str(note) for note in NOTES]))
     return parts

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from measures.intonation import bound, in_words, off_by
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
 from measures.timbre import centroid_hz
 from yehu_server.cli.stage_options import is_of_room
@@ -48,5 +48,5 @@ def presets(setup: Setup) -> list[Share]:
         )
         right = np.abs(errors) <= np.array([bound(note) for note, _ in cases])
         words = [f"{n}/{v} {in_words(e)}" for (n, v), e in zip(cases, errors, strict=True)]
-        parts.append(told(name, right, words))
+        parts.append(share_line(name, right, words))
     return parts

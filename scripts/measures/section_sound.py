@@ -10,9 +10,9 @@ import numpy as np
 from measures.section_take import SectionTake
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.calibration import OPEN_NOTES
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.pitch_and_level import a_weighted_db, cents, pitch_hz
-from yehu_server.playing.section_people import section_specs
+from yehu_server.playing.section_instruments import section_specs
 from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 

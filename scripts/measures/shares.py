@@ -45,7 +45,7 @@ def share(what: str, right: Iterable[Any]) -> Share:
     return Share(what, sum(cases), len(cases))
 
 
-def told(
+def share_line(
     what: str, right: Iterable[Any], words: Iterable[str] = (), *, counts: bool = True
 ) -> Share:
     """Count the cases that are right; print the share, and the words for those that are not."""

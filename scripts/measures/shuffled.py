@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from measures.overtones import overtones_off_by
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Sound, Take, calibrated, in_parallel
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import frequency_hz, wave_speed
@@ -101,7 +101,7 @@ def _spoken(name: str, rows: list[tuple[int, float, float, float]]) -> Share:
             wrong.append(
                 f"{note} {bad.sum()} of {own.sum()} ({soft.sum()} {off.sum()} {rough.sum()})"
             )
-    found = told(name, speaks)
+    found = share_line(name, speaks)
     if wrong:
         print("   ", ", ".join(wrong), flush=True)
     return found

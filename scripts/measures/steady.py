@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from measures.intonation import CLOSE_CENTS, SETTLED_S, bound, in_words, off_by
-from measures.shares import Share, share, told
+from measures.shares import Share, share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
 
 WHEELS = (None, 0, 32, 64, 96, 127)
@@ -62,7 +62,7 @@ def quarters(setup: Setup) -> list[Share]:
 
     def part(what: str, of: list[int], *, counts: bool) -> Share:
         right = [abs(found[i][0]) <= CLOSE_CENTS for i in of]
-        return told(what, right, [words[i] for i in of], counts=counts)
+        return share_line(what, right, [words[i] for i in of], counts=counts)
 
     return [
         part("reached by a finger", reached, counts=True),

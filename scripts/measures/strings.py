@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from measures.intonation import CLOSE_CENTS, SETTLED_S, in_words, off_by
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
 from yehu_server.core.physics.quantities import Quantities, measured_body
 from yehu_server.core.player.calibration import OPEN_NOTES
@@ -41,5 +41,5 @@ def strings(setup: Setup) -> list[Share]:
     for name, how in OTHERS.items():
         errors = in_parallel(setup, _on_string, [(*case, how) for case in cases])
         words = [f"{n}/{v} {in_words(e)}" for (n, v), e in zip(cases, errors, strict=True)]
-        parts.append(told(name, [abs(error) <= CLOSE_CENTS for error in errors], words))
+        parts.append(share_line(name, [abs(error) <= CLOSE_CENTS for error in errors], words))
     return parts

@@ -18,7 +18,7 @@ from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration, wave_speed
 from yehu_server.params.table import FINGERS, find
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style

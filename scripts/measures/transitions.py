@@ -6,7 +6,7 @@ import numpy as np
 
 from measures.intonation import bound
 from measures.overtones import overtones_off_by
-from measures.shares import Share, share, told
+from measures.shares import Share, share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
 
 SPEED_WHEELS = (26, 84, 122)  # 0.14, 0.2 and 0.25 m/s
@@ -87,5 +87,5 @@ def clicks(setup: Setup) -> list[Share]:
             f"{name}: median {np.median(ratios):.2f}, 95 % below {np.quantile(ratios, 0.95):.2f}, "
             f"largest {ratios.max():.2f} ({words[int(ratios.argmax())]})"
         )
-        parts.append(told(name, ratios < CLICK, words))
+        parts.append(share_line(name, ratios < CLICK, words))
     return parts

@@ -18,7 +18,7 @@ from make_shi_bei_jiu import make_notes
 
 from measures.intonation import bound, in_words
 from measures.overtones import overtones_off_by
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import Setup, Take, in_parallel
 
 SIXTEENTHS_S = (0.125, 0.087)
@@ -98,5 +98,5 @@ def tunes(setup: Setup) -> list[Share]:
             for i, (note, e) in enumerate(zip(notes, errors, strict=True), start=1)
         ]
         how = "slurred" if is_slurred else "separate"
-        parts.append(told(f"{name}, {1e3 * slot_s:.0f} ms, {how}", right, words))
+        parts.append(share_line(f"{name}, {1e3 * slot_s:.0f} ms, {how}", right, words))
     return parts

@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, END, HOLD
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
 
 RATE = 48000.0

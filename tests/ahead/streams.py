@@ -26,7 +26,7 @@ from yehu_server.core.midi.tables import SLOTS
 from yehu_server.core.player import wishes
 from yehu_server.core.player.rows import ROW
 from yehu_server.params.table import find
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
@@ -35,7 +35,7 @@ from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning, read_tuning
 
 RATE, BLOCK = 48000.0, 128
 OWN_CALLS = 0.05  # a chance after each
-APART = 40  # frames from one step to the next
+NATIVE_FUNCTIONS = 40  # frames from one step to the next
 SYSEX, CLOCK = (0xF0, 0x7E, 0x09, 0xF7), (0xF8,)
 TUNINGS = {"equal": EQUAL, "seven": read_tuning(Path("chaozhou-seven-equal"))}
 Event = tuple[int, int, float, float]  # kind, index, value, other
@@ -144,7 +144,7 @@ class Maker:
             self._post(events.START, 0, 1.0, 0.0)
 
     def _step(self, name: str, arguments: tuple[Any, ...], *posted: Event) -> None:
-        self._frame += APART
+        self._frame += NATIVE_FUNCTIONS
         self.stream.steps.append(Step(name, self._frame, arguments, posted))
 
     def _post(self, kind: int, index: int, value: float, other: float) -> None:
@@ -198,7 +198,7 @@ class Maker:
         last = self.stream.steps[-1]
         if chance > 0.6 and last.name == "midi":  # several at a time
             self.stream.steps.pop()
-            self._frame -= APART
+            self._frame -= NATIVE_FUNCTIONS
             data = (*last.arguments, *data)
         posted = [(events.MESSAGE, message, 0.0, 0.0) for message in messages_of(data)]
         self._step("midi", tuple(data), *posted)
@@ -216,7 +216,7 @@ class Maker:
             self._post(wishes.SLIDE, 0, given[0], 0.0)
         elif name == "draw":
             self._post(wishes.DRAW, 0, *given)
-        elif name == "letGoOf":
+        elif name == "endPortNotes":
             self._post(events.DISCONNECT, given[0], 0.0, 0.0)
         elif name in ("lift", "release"):
             self._post(wishes.LIFT if name == "lift" else wishes.RELEASE, 0, 0.0, 0.0)

@@ -16,7 +16,7 @@ import numpy as np
 from interpreted import Leader
 from panel import streams
 
-from yehu_server.ahead.right_tables import CHECKS
+from yehu_server.ahead.table_checks import CHECKS
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
 from yehu_server.core.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, PROGRAMS, SLOTS, TABLES

@@ -8,7 +8,7 @@ import pytest
 from ahead.tables import TUNINGS, are_right, some_tables
 
 from yehu_server.ahead.interface import use_tables
-from yehu_server.ahead.right_tables import FIELDS
+from yehu_server.ahead.table_checks import FIELDS
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi import tables as layout

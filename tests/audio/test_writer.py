@@ -43,11 +43,11 @@ def test_a_file_can_be_opened_after_each_write_and_holds_all_but_a_block_or_two(
             writer.write(samples[end - 5000 : end])
             if end > held_back:
                 read, _ = soundfile.read(target)
-                assert len(read) == writer.kept_frames
+                assert len(read) == writer.written_frames
                 assert end - held_back <= len(read) <= end
                 np.testing.assert_allclose(read, samples[: len(read)], rtol=0, atol=STEP[subtype])
         writer.close()
-    assert soundfile.info(target).frames == writer.kept_frames == 40_000
+    assert soundfile.info(target).frames == writer.written_frames == 40_000
 
 
 @few_and_many
@@ -91,7 +91,7 @@ def test_a_disk_that_fills_amid_a_frame_leaves_whole_frames(
                 writer.write(part)
             writer.close()
     read, _ = soundfile.read(target)
-    assert len(read) == writer.kept_frames == (12_000 if kind == "wav" else 2 * 4096)
+    assert len(read) == writer.written_frames == (12_000 if kind == "wav" else 2 * 4096)
     np.testing.assert_allclose(read, samples[: len(read)], rtol=0, atol=STEP[subtype])
     size = target.stat().st_size
     assert size == header + 12_000 * each if kind == "wav" else size < most_bytes

@@ -78,7 +78,7 @@ def test_a_name_as_long_as_a_name_may_be_has_a_record(tmp_path):
 
 
 def test_what_a_killed_process_left_is_removed_and_records_stay(target):
-    left = build_records.work_of(target).with_name(".yehu-server-0.part")
+    left = build_records.temporary_of(target).with_name(".yehu-server-0.part")
     left.touch()
     build_records.clear_work([target.parent])
     assert not left.exists()

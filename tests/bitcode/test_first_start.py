@@ -63,7 +63,7 @@ class Release:
         monkeypatch.setattr(shipped, "shipped_file", lambda: self.file)
         monkeypatch.setattr(jit, "cache_folder", lambda: self.cache)
         monkeypatch.setattr(jit, "IS_CACHED", True)
-        monkeypatch.setattr(cache, "_troubles", set())
+        monkeypatch.setattr(cache, "_reported", set())
         self.content = captured
         self.write()
 

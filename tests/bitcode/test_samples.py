@@ -21,11 +21,11 @@ from yehu_server.core.engine import warming
 if len(sys.argv) > 1:
     shipped.shipped_file = lambda: shipped.Path(sys.argv[1])
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 warming.warm_up()
-print(all(function.compiled.cache_hits == 1 for function in warming.PLAYED_BY))
+print(all(function.compiled.cache_hits == 1 for function in warming.ALL_FUNCTIONS))
 instrument = Instrument(InstrumentSpec(44100.0))
-wishes = Wishes(instrument)
+wishes = WishPoster(instrument)
 block = np.zeros(441, np.float32)
 for pitch in (67, 69, 72, 74, 65, 77, 79, 84):
     wishes.note_on(Key(0, pitch))

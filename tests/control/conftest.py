@@ -31,8 +31,8 @@ from yehu_server.live.osc.status import STATUS
 from yehu_server.live.server import Server
 from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import SLOT
-from yehu_server.playing import live
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing import live_player
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
 
 HOST = "127.0.0.1"
@@ -76,7 +76,7 @@ def ear() -> Ear:
 @pytest.fixture
 def still_time(monkeypatch) -> StillTime:
     clock = StillTime(time.monotonic() + 100.0)  # later than anything on the true clock
-    for module in (clients, schedule, handler, live):
+    for module in (clients, schedule, handler, live_player):
         monkeypatch.setattr(module, "time", clock)
     return clock
 
@@ -137,7 +137,7 @@ class Stage:
         self.others: list[Instrument] = []  # more instruments, played along
         self.pace = 1.0  # of the device, relative to its nominal rate
         self._began = (clock.now, 0)
-        self.player = live.LivePlayer(
+        self.player = live_player.LivePlayer(
             self.instrument, style, delay_ms=1e3 * block / self.RATE + 1.0
         )
         self.player.write("/playing/variation", 0.0, frame=0)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from yehu_server.errors import ParameterError
 from yehu_server.live import addresses
-from yehu_server.live.addresses import Allowed, lan_interface, parse_address, shown
+from yehu_server.live.addresses import Allowed, format_address, lan_interface, parse_address
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_where_to_listen_is_read(text, address):
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "fe80::1%eth0"])
 def test_an_address_that_is_shown_is_read_as_the_same(host):
-    assert parse_address(shown(host, 9005), "0.0.0.0", 9001) == (host, 9005)  # noqa: S104
+    assert parse_address(format_address(host, 9005), "0.0.0.0", 9001) == (host, 9005)  # noqa: S104
 
 
 @pytest.mark.parametrize(

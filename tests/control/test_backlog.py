@@ -10,16 +10,16 @@ from hypothesis import strategies as st
 
 from yehu_server.live.osc import backlog
 from yehu_server.live.osc.backlog import (
-    FORGIVEN_NS,
+    GUARANTEED_BYTES,
     MOST_BYTES,
     MOST_KNOWN,
     MOST_SENDERS,
-    OWED_BYTES,
+    NEW_SENDER_NS,
     RESCALE_NS,
     SILENT_NS,
     SLICE_NS,
-    STRANGE_NS,
     TURN_NS,
+    USE_HALF_LIFE_NS,
     Backlog,
 )
 
@@ -127,7 +127,7 @@ def test_who_takes_little_goes_before_who_takes_much(done, clock):
         for peer in "12":
             done.add(peer, "a")
         done.work()
-        clock.now_ns += STRANGE_NS + 1
+        clock.now_ns += NEW_SENDER_NS + 1
     for _ in range(20):
         done.add("1", "A")
         done.add("2", "a")
@@ -143,7 +143,7 @@ def test_what_one_took_is_forgiven(done, clock):
     done.add("1", "AAAA")
     done.add("2", "a")
     done.work()
-    clock.now_ns += 30 * FORGIVEN_NS
+    clock.now_ns += 30 * USE_HALF_LIFE_NS
     done.add("2", "AA")
     done.work()
     before = len(done.steps)
@@ -160,7 +160,7 @@ def test_what_is_large_waits_for_what_is_small(done):
 
 def test_who_has_been_here_goes_before_strangers(done, clock):
     done.add("1", "a")
-    clock.now_ns += STRANGE_NS + 1
+    clock.now_ns += NEW_SENDER_NS + 1
     done.add("1", "b")
     done.work()
     for number in range(100):
@@ -175,7 +175,7 @@ def test_many_senders_of_one_host_are_no_better_than_one(done, clock):
         for peer in (*crowd, "player"):
             done.add(peer, "a")
         done.work()
-        clock.now_ns += STRANGE_NS + 1
+        clock.now_ns += NEW_SENDER_NS + 1
     for _ in range(20):
         for peer in crowd:
             done.add(peer, "aaaaa")
@@ -219,19 +219,19 @@ def test_one_gets_no_more_room_than_is_left_for_others_and_some_is_always_left(d
 
 def test_who_has_been_here_finds_room_for_a_little_however_many_strangers_take_it(done, clock):
     done.add("player", "")
-    clock.now_ns += STRANGE_NS + 1
+    clock.now_ns += NEW_SENDER_NS + 1
     done.add("player", "")
     done.work()
     for number in range(4000):
-        done.add(f"stranger {number}", "", OWED_BYTES)
-    assert not done.add("another", "", OWED_BYTES)
+        done.add(f"stranger {number}", "", GUARANTEED_BYTES)
+    assert not done.add("another", "", GUARANTEED_BYTES)
     assert done.add("player", "n")
-    assert done.backlog.bytes <= MOST_BYTES + OWED_BYTES
+    assert done.backlog.bytes <= MOST_BYTES + GUARANTEED_BYTES
 
 
 def test_of_strangers_who_are_done_nothing_is_kept(done, clock):
     done.add("player", "")
-    clock.now_ns += STRANGE_NS + 1
+    clock.now_ns += NEW_SENDER_NS + 1
     done.add("player", "")
     for number in range(5 * MOST_SENDERS):
         done.add(f"stranger {number}", "")
@@ -248,7 +248,7 @@ def test_there_are_places_for_so_many_who_are_known_and_they_are_given_on(done, 
             for number in range(MOST_KNOWN + 1):
                 done.add(f"{crowd}{number}", "")
                 done.work()
-            clock.now_ns += STRANGE_NS + 1
+            clock.now_ns += NEW_SENDER_NS + 1
         crowds.append(len(done.backlog._known))
         clock.now_ns += SILENT_NS
     assert crowds == [MOST_KNOWN, MOST_KNOWN]

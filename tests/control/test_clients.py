@@ -459,7 +459,7 @@ def test_a_flush_takes_no_longer_for_addresses_that_do_not_change(
     ear.heard()
     parsed = []
     for module in (clients_module, listener_module):
-        monkeypatch.setattr(module, "divided", parsed.append)
+        monkeypatch.setattr(module, "split_group", parsed.append)
     play(100)
     values.now["/b"] = 1.0
     play(100)

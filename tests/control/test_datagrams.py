@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from yehu_server.live.osc.datagrams import AT_ONCE, OneByOne, Together, datagrams
+from yehu_server.live.osc.datagrams import AT_ONCE, BatchReader, SingleReader, datagrams
 from yehu_server.live.osc.listening import DATAGRAM_BYTES, widen
 
 HERE = {socket.AF_INET: "127.0.0.1", socket.AF_INET6: "::1"}
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="recvmmsg is Linux's")
-READERS = [OneByOne, pytest.param(datagrams, marks=on_linux)]
+READERS = [SingleReader, pytest.param(datagrams, marks=on_linux)]
 Pair = tuple[socket.socket, socket.socket]
 
 
@@ -38,7 +38,7 @@ def pair(request) -> Iterator[Pair]:
 
 
 def test_linux_reads_bursts_by_one_call(pair):
-    assert isinstance(datagrams(pair[0]), Together if sys.platform == "linux" else OneByOne)
+    assert isinstance(datagrams(pair[0]), BatchReader if sys.platform == "linux" else SingleReader)
 
 
 @pytest.mark.parametrize("reader", READERS)
@@ -157,7 +157,7 @@ def test_a_call_for_each_datagram_lets_others_come_between():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as here:
         here.bind((HERE[socket.AF_INET], 0))
         here.setblocking(False)
-        hears = OneByOne(here)
+        hears = SingleReader(here)
 
         def read_for_long() -> None:
             ending = time.monotonic() + 0.5

@@ -42,7 +42,7 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(stage, address):
     turn(stage, 20, 127)
     assert stage.value("/playing/vibrato") == 100.0
     turn(stage, 21, 0, 127)  # only one thing is learned
-    assert stage.player.mapping == load("keyboard", own_first=True)
+    assert stage.player.mapping == load("keyboard", user_first=True)
     assert not stage.player.mapping.of("cc 21")
 
 

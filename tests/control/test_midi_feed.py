@@ -41,7 +41,7 @@ def test_each_input_plays_its_part_with_channels_of_its_own():
     assert [made.open(name) for name in ("a", "b", "c")] == [0, 1, 2]
     for time_ns, name in enumerate("cba"):
         made.receive(name, NOTE, time_ns)
-    made.let_go_of("c", 3, is_gone=True)
+    made.end_port_notes("c", 3, is_gone=True)
     assert rings[0].got == [(2, MESSAGE, packed(NOTE, 0))]
     assert rings[1].got == [
         (0, MESSAGE, packed(NOTE, 2)),
@@ -66,9 +66,9 @@ def test_an_input_that_comes_back_has_its_number_and_a_new_one_that_of_one_that_
     assert sorted(numbers) == [number for number in range(PORTS) if number != 3]
     assert made.open("before") == 3
     assert made.open("too many") is None
-    made.let_go_of(names[5], 0, is_gone=True)
+    made.end_port_notes(names[5], 0, is_gone=True)
     assert made.open(names[5]) == numbers[5]
-    made.let_go_of(names[5], 0, is_gone=True)
+    made.end_port_notes(names[5], 0, is_gone=True)
     assert made.open("another") == numbers[5]
     assert made.open(names[5]) is None
 

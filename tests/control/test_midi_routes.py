@@ -114,10 +114,10 @@ class Player:
     def frame_of(self) -> int:
         return 0
 
-    def hear_message(self, message, port: int) -> None:
+    def learn_from_message(self, message, port: int) -> None:
         self.heard.append((message.type, port))
 
-    def let_go_of(self, port: int, *, frame: int) -> None:  # noqa: ARG002
+    def end_port_notes(self, port: int, *, frame: int) -> None:  # noqa: ARG002
         self.let_go.append(port)
 
 

@@ -19,8 +19,8 @@ from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learn as learned
 from yehu_server.playing.binds import Bind
-from yehu_server.playing.learn import Found
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.learn import LearnedSource
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.style import Style
 
@@ -236,7 +236,7 @@ def test_what_a_part_learns_all_parts_of_its_mapping_have(stage, players, monkey
         f"/yehu/part/2{VOLUME}",
     )
     assert [player.listens for player in players] == [False, True, False]
-    players[1]._found(Found("cc 20"))
+    players[1]._found(LearnedSource("cc 20"))
     assert [player.mapping for player in players] == [new, new, other]
     heard = stage.ask("/part/2/bindings")
     assert heard[-2].arguments[1] == f"/yehu/part/2{VOLUME}"

@@ -70,7 +70,7 @@ class Housekeeper:
     def wait_s(self) -> float | None:
         return None
 
-    def hears(self, peer) -> bool:
+    def is_subscribed(self, peer) -> bool:
         return peer in self.hearing
 
     def gone(self, peer) -> None:

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.lab.dataset.draws import chance, draw_of
+from yehu_server.lab.dataset.draws import chance, read_distribution
 
 MANY = 4000
 
 
 def drawn(entry) -> np.ndarray:
-    draw = draw_of(entry, "x")
+    draw = read_distribution(entry, "x")
     return np.array([draw.value(chance(1, number, "x")) for number in range(MANY)])
 
 
@@ -101,4 +101,4 @@ def test_normal_draws_stay_within_their_ends():
 )
 def test_what_is_no_draw_is_refused_by_its_name(entry):
     with pytest.raises(ParameterError, match=r"^here"):
-        draw_of(entry, "here")
+        read_distribution(entry, "here")

@@ -42,7 +42,7 @@ def apart(ensemble: Ensemble, frames: int) -> tuple[np.ndarray, np.ndarray, np.n
     dry = np.zeros((parts, frames))
     told = np.zeros((parts, frames, sounding.STAGE_COLUMNS))
     first = ensemble.frame
-    assert intake.take_in.call(ensemble.address, first + frames) == first + frames
+    assert intake.interpret_events.call(ensemble.address, first + frames) == first + frames
     for instrument, samples, said in zip(ensemble.instruments, dry, told, strict=True):
         pointers = samples.ctypes.data, said.ctypes.data
         sounding.sound_block.call(instrument.address, frames, *pointers)
@@ -111,7 +111,7 @@ def test_after_a_process_died_all_go_on_at_one_frame_and_nothing_sounds():
     second._rig["state"]["motion"]["u"] = np.nan
     ensemble.recover()
     assert [instrument.frame for instrument in ensemble.instruments] == [4160] * 3
-    assert ensemble.rests == [(4096, 4160)]
+    assert ensemble.gaps == [(4096, 4160)]
     begin, samples = ensemble.taped(4000)
     assert (begin, len(samples)) == (4000, 160)
     assert samples[:96].any()

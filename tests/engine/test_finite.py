@@ -101,7 +101,7 @@ def test_whatever_a_room_holds_the_mix_is_finite_and_comes_back(duet, field):
 def check_it_comes_back(ensemble: Ensemble, *, is_prepared: bool) -> None:
     """The mix is finite; and sounds again, unless what was lost is only prepared at the start."""
     out = np.full((44100, 2), np.nan, np.float32)
-    before = int(ensemble._stage["unsound"])
+    before = int(ensemble._stage["invalid_samples"])
     for start in range(0, len(out), 4410):
         ensemble.process(out[start : start + 4410])
     assert (np.abs(out) <= 1.0).all()  # also refuses NaN
@@ -110,7 +110,7 @@ def check_it_comes_back(ensemble: Ensemble, *, is_prepared: bool) -> None:
         room = ensemble._stage["room"]
         assert np.isfinite([room["left"], room["right"]]).all()
         # All begins anew at once, wherever a block begins: what was computed ahead is lost too.
-        assert ensemble._stage["unsound"] - before <= 2 * CHUNK
+        assert ensemble._stage["invalid_samples"] - before <= 2 * CHUNK
 
 
 def test_what_was_no_number_is_counted_and_the_sound_comes_back(instrument, playing):

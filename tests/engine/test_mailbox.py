@@ -582,7 +582,7 @@ def test_a_wish_that_came_while_the_process_died_comes_once_and_no_other_is_lost
     number = int(heap["order"][lost])
     heap[lost] = heap[MANY // 2]
     died(ensemble)
-    assert instrument._rig["mail"]["coming"][0] == MANY - 1
+    assert instrument._rig["mail"]["pending_events"][0] == MANY - 1
     run(ensemble, 1000)
     expected.remove(number)
     np.testing.assert_array_equal(numbers(instrument.applied_wishes()), expected)

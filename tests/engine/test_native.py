@@ -21,8 +21,8 @@ from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.engine.warming import PLAYED_BY
-from yehu_server.core.midi.dispatch import APART as PARTS
+from yehu_server.core.engine.warming import ALL_FUNCTIONS
+from yehu_server.core.midi.dispatch import NATIVE_FUNCTIONS as PARTS
 from yehu_server.core.midi.dispatch import interpret
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
 from yehu_server.core.player.record import SILENT
@@ -30,7 +30,7 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, DRAW, END, HOLD, SLIDE, WRITE
 
 RATE = 22050
-CALLS = {call.function.__name__: call for call in PLAYED_BY}
+CALLS = {call.function.__name__: call for call in ALL_FUNCTIONS}
 
 # Everything that the audio thread may call: none of these waits or allocates.
 REAL_TIME_SAFE = {
@@ -41,9 +41,9 @@ REAL_TIME_SAFE = {
 }
 
 # What each may call that is compiled apart, and is itself one of the calls.
-APART = {
-    "callback": {"yehu_take_in", "yehu_sound", "yehu_mix", "yehu_publish"},
-    "take_in": {"yehu_interpret"},
+NATIVE_FUNCTIONS = {
+    "callback": {"yehu_interpret_events", "yehu_sound", "yehu_mix", "yehu_publish"},
+    "interpret_events": {"yehu_interpret"},
     "sound": {"yehu_fulfil", "yehu_attend"},
     "sound_block": {"yehu_sound"},
     "mix_block": {"yehu_mix"},
@@ -57,7 +57,7 @@ def only_safe(found: set[str], name: str) -> bool:
     """Whether foreign names are safe, or those of calls that are compiled apart."""
     if name in INTERPRETING:
         return found - REAL_TIME_SAFE <= {call.name for call in INTERPRETING.values()}
-    return found - REAL_TIME_SAFE == APART.get(name, set())
+    return found - REAL_TIME_SAFE == NATIVE_FUNCTIONS.get(name, set())
 
 
 # Some x86-64 processors, by what LLVM calls them: of 2003, of 2013 and with AVX-512.
@@ -156,8 +156,8 @@ WORDS = ["POSTED", "DRAINED", "REPORTED", "READ", "VERSION", "TAPED"]
 def test_these_are_all_calls_and_those_compiled_apart_are_of_them():
     for name, call in CALLS.items():
         apart = {f"yehu_{other.function.__name__}" for other in call.calls}
-        assert name in INTERPRETING or apart == APART.get(name, set())
-        assert set(call.calls) <= set(PLAYED_BY)
+        assert name in INTERPRETING or apart == NATIVE_FUNCTIONS.get(name, set())
+        assert set(call.calls) <= set(ALL_FUNCTIONS)
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -267,7 +267,9 @@ def test_the_callback_reads_and_writes_the_cursors_atomically_and_in_order():
     assert atomics("callback") == [["store taped release"]]
     assert atomics("sound") == [["load read acquire"], ["store reported release"]]
     # Cursors of several rings have places that are computed.
-    found = [re.search(r"(load|store) atomic i64.* (\w+), align 8", a) for a in lines("take_in")]
+    found = [
+        re.search(r"(load|store) atomic i64.* (\w+), align 8", a) for a in lines("interpret_events")
+    ]
     assert {match.groups() for match in found if match} == {
         ("load", "acquire"),
         ("store", "release"),

@@ -202,7 +202,7 @@ MOVE = "from yehu_server.core.player.ownership import move"
         "from yehu_server.core.controls import slots\np.value[slots.TREMOLO]",
         "from yehu_server.core.player import rows\nc.value[rows.TREMOLO]",
         "VOLUME, PAN = ROW['/playing/volume'], ROW['/room/pan']\nc.target[PAN]",
-        "p.kept[SLOT['/bow/speed']]",
+        "p.is_held[SLOT['/bow/speed']]",
         "def f(c, row):\n    c.slope[row] = 0.0",
         f"{ROWS_OF} SPEED\n{SLOTS_OF} SPEED",
         f"{SLOTS_OF} POSITION, SIDE\n{ROWS_OF} POSITION",

@@ -199,7 +199,7 @@ class Clock:
     def tick(self, late_ns: float = 0.0) -> int:
         """Begin one callback; return when it began."""
         started = round(self.exact_ns + late_ns + self._jitter_ns * self._chance.uniform(-1.0, 1.0))
-        telemetry.tell_time(self.meters[0], self.frame, started, self.block)
+        telemetry.update_clock(self.meters[0], self.frame, started, self.block)
         assert self.meters["frame"] == self.frame
         assert self.meters["block"] == self.block
         self.frame += self.block

@@ -45,7 +45,7 @@ def test_the_model_is_compiled_beside_where_there_is_a_second_processor(monkeypa
     warming.warm_up()
     begun = beginnings(monkeypatch)
     monkeypatch.setattr(warming.os, "cpu_count", lambda: processors)
-    monkeypatch.setattr(Native, "is_kept", property(lambda self: self is not sound))
+    monkeypatch.setattr(Native, "is_cached", property(lambda self: self is not sound))
     assert not warming.is_warm()
     warming.warm_up()
     expected = [[sys.executable, "-m", "yehu_server.core.engine.warming"]]
@@ -65,7 +65,7 @@ def refuse(*_, **__):
     raise AssertionError("compiled again")
 warming.subprocess.Popen = refuse
 warming.warm_up()
-assert all(function.compiled.cache_hits == 1 for function in warming.PLAYED_BY)
+assert all(function.compiled.cache_hits == 1 for function in warming.ALL_FUNCTIONS)
 """
 
 

@@ -16,7 +16,7 @@ from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import prepare_player
 from yehu_server.core.player.wishes import KINDS, fulfil
 from yehu_server.params.table import SLOT, TABLE
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 
 # Near a measured calibration, which takes seconds to make.
 CALIBRATION = Calibration(
@@ -78,7 +78,7 @@ class Instrument(Leader):
             for wish in self.interpret(frame, *event):
                 self.fulfil(wish)
 
-    def take_in(self) -> None:
+    def interpret_events(self) -> None:
         self.play()
 
     def fulfil(self, wish: Wished) -> None:

@@ -232,11 +232,11 @@ def test_a_lock_keeps_processes_apart(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", None)
     program = (
         "import sys; from pathlib import Path\n"
-        "from yehu_server.rendering.cluster_worker import one_at_a_time\n"
+        "from yehu_server.rendering.cluster_worker import machine_lock\n"
         "Path(sys.argv[1], 'wants').touch()\n"
-        "with one_at_a_time(): Path(sys.argv[1], 'has').touch()"
+        "with machine_lock(): Path(sys.argv[1], 'has').touch()"
     )
-    with cluster_worker.one_at_a_time():
+    with cluster_worker.machine_lock():
         other = subprocess.Popen([sys.executable, "-c", program, str(tmp_path)])
         wait_until((tmp_path / "wants").exists)
         time.sleep(0.2)

@@ -11,7 +11,7 @@ import pytest
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.live.audio.output import Output, OutputOptions
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.style import Style
 

@@ -16,7 +16,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.live.audio.output import Output, OutputOptions
 from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
-from yehu_server.scores.capture_beginning import beginning_of
+from yehu_server.scores.capture_header import session_start_of
 from yehu_server.scores.capture_writer import CaptureWriter
 
 RATE, BLOCK = 48000, 128
@@ -58,7 +58,7 @@ def test_the_parents_gil_stops_nothing(jackd, recorder, tmp_path):
         stage = alone(output.find(), memory=output.memory.buffer, channels=2)
         instrument = stage.first
         instrument.report_wishes()
-        beginning = beginning_of([instrument], has_room=False)
+        beginning = session_start_of([instrument], has_room=False)
         capture = CaptureWriter(tmp_path / "take.jsonl", beginning=beginning)
         output.begin(stage)
         listener = recorder(1).connected()

@@ -24,12 +24,12 @@ from yehu_server.live.audio import output
 from yehu_server.live.audio.output import Output, OutputOptions, SharedMemory
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
-from yehu_server.scores.capture_beginning import beginning_of
+from yehu_server.scores.capture_header import session_start_of
 from yehu_server.scores.capture_writer import CaptureWriter
 from yehu_server.util.processes import Child
 
@@ -268,7 +268,7 @@ def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stop
     it = stopped(in_block=True)
     assert it.keys == (1, 1)
     it.kill()
-    (gap,) = it.server.ensemble.rests
+    (gap,) = it.server.ensemble.gaps
     assert it.keys == (0, 0)
     assert it.player.pitch is None
     assert it.player.value("/bow/speed") == it.player.value("/bow/side") == 0.0
@@ -289,7 +289,7 @@ def test_a_note_in_the_middle_of_which_the_audio_process_dies_does_not_hang(stop
 def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped, until):
     it = stopped(in_block=False)
     it.kill()
-    assert it.server.ensemble.rests == []
+    assert it.server.ensemble.gaps == []
     assert it.player.pitch == 67.0
     assert it.keys == (1, 1)
     assert peak(it.server.ensemble.taped(it.instrument.frame - 1000)[1]) > SOUNDS
@@ -325,7 +325,7 @@ while True:
 """
 
 
-def bow(instrument: Instrument, _wishes: Wishes) -> None:
+def bow(instrument: Instrument, _wishes: WishPoster) -> None:
     """Move the parameters of the engine."""
     frame = instrument.frame + 100
     instrument.write("/finger/1/position", 0.1, frame=frame, ramp_ms=0.0)
@@ -334,7 +334,7 @@ def bow(instrument: Instrument, _wishes: Wishes) -> None:
     instrument.write("/bow/speed", 0.2, frame=frame)
 
 
-def finger(instrument: Instrument, wishes: Wishes) -> None:
+def finger(instrument: Instrument, wishes: WishPoster) -> None:
     """Play two notes, each varied in its own way; the second is held until the sound dies."""
     frame = instrument.frame + 100
     wishes.note_on(Key(0, 67), {"/playing/pressure": 0.5}, frame=frame)
@@ -352,7 +352,9 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
     live = stage.first
     wishes = style.wishes(live)
     live.report_wishes()
-    capture = CaptureWriter(tmp_path / "take.jsonl", beginning=beginning_of([live], has_room=True))
+    capture = CaptureWriter(
+        tmp_path / "take.jsonl", beginning=session_start_of([live], has_room=True)
+    )
     recorded = np.zeros((0, 2), np.float32)
     for _ in range(3):
         play(live, wishes)
@@ -373,7 +375,7 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
     play(live, wishes)
     stage.process(np.zeros((9600, 2), np.float32))
     capture.wishes(live.applied_wishes())
-    for since, frame in stage.rests:
+    for since, frame in stage.gaps:
         capture.note("rest", frame, since=since)
     capture.close(live.frame)
     recorded = np.concatenate([recorded, stage.taped(len(recorded))[1]])

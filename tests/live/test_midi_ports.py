@@ -17,7 +17,7 @@ from moves import Moves
 from yehu_server.core.engine.mailbox import MIDI_INPUTS
 from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
-from yehu_server.core.player.bowing import ordinary_table
+from yehu_server.core.player.bowing import default_recipes
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
 from yehu_server.live.midi.ports import MidiOptions, MidiPorts
@@ -113,7 +113,9 @@ class Witness:
             midi=MidiOptions(**{"api": "jack", **midi}),
             osc=("127.0.0.1", 0),
             parts=[
-                PartOptions(Style(settings=(("/playing/variation", 0.0),), bowing=ordinary_table()))
+                PartOptions(
+                    Style(settings=(("/playing/variation", 0.0),), bowing=default_recipes())
+                )
             ],
         )
         self.server = Server(options, lambda line: self.said.append((time.monotonic(), line)))
@@ -416,10 +418,10 @@ def hear_noise(server: Server, data: Callable[[], list[int]]) -> None:
         if sent := data():
             feed.receive(port, sent, time.monotonic_ns())
         if number % 1000 == 999:
-            feed.let_go_of(port, time.monotonic_ns(), is_gone=False)
+            feed.end_port_notes(port, time.monotonic_ns(), is_gone=False)
             time.sleep(0.1)  # the callback takes so many at a time
     for name in names:
-        feed.let_go_of(name, time.monotonic_ns(), is_gone=True)
+        feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
 
 
 def test_whatever_is_played_leaves_no_note(listening):
@@ -578,7 +580,7 @@ def test_a_missing_name_is_said_once_however_often_the_midi_system_begins_anew()
     said = []
     ports = MidiPorts([SimpleNamespace()], MidiOptions(), 0, [0], said.append)
     for _ in range(2):
-        ports._heard({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
+        ports._on_event({"event": "missing", "pattern": "breath", "present": ["keys", "synth"]})
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]
 
 

@@ -3,7 +3,7 @@
 import { pathToFileURL } from "node:url";
 
 const [file, seconds] = process.argv.slice(2);
-const { Listened } = await import(pathToFileURL(file).href);
+const { JitterBuffer } = await import(pathToFileURL(file).href);
 
 const RATE = 48000;
 const BLOCK = 128;
@@ -20,7 +20,7 @@ function randoms() {
  * @param {{ppm: number, seconds: number, lateS: number, ownRate?: number}} options
  */
 function listen({ ppm, seconds, lateS, ownRate = RATE }) {
-  const sound = new Listened(ownRate, RATE);
+  const sound = new JitterBuffer(ownRate, RATE);
   const random = randoms();
   const [out, right] = [new Float32Array(BLOCK), new Float32Array(BLOCK)];
   let unlike = 0; // most that right is not minus half of left

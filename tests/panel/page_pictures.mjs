@@ -2,7 +2,7 @@
 
 const web = new URL("../../web/", import.meta.url);
 const { Stroboscope } = await import(new URL("pictures/stroboscope.js", web));
-const { Rest } = await import(new URL("pictures/rest.js", web));
+const { RestShape } = await import(new URL("pictures/rest.js", web));
 const { Limits } = await import(new URL("pictures/limits.js", web));
 const { regimeOf, soundingPitch } = await import(new URL("pictures/regime.js", web));
 
@@ -44,7 +44,7 @@ function corners(error) {
 
 /** How far from the motion is what is shown of a string that a finger also presses aside. */
 function restError() {
-  const rest = new Rest();
+  const rest = new RestShape();
   const pressed = Float32Array.from({ length: POINTS }, (_, i) => -3 * Math.min(i / 20, 1));
   let error = 0;
   for (let n = 0; n < 400; n++) {

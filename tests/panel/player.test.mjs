@@ -153,13 +153,13 @@ test("a port that is gone ends what it wished ahead", async () => {
   const { player, of, values } = await playing();
   player.midi([0x90, 70, 90], 4000, 3);
   player.midi([0x90, 72, 90], 5000, 3);
-  player.letGoOf(3);
+  player.endPortNotes(3);
   assert.deepEqual(
     of(END).map((wish) => wish.frame),
     [5000, 5000],
   );
   player.midi([0xe0, 0, 127], 6000, 4);
-  player.letGoOf(4);
+  player.endPortNotes(4);
   assert.deepEqual(
     values(WRITE, "/playing/bend").map((bend) => bend > 1),
     [true, false],
@@ -197,7 +197,7 @@ test("a written force of the bow is heard without assist", async () => {
 
 test("with others the value they set counts, but one just written here is told at once", async () => {
   const set = { [LOUDNESS]: 0.8 };
-  const { player, sink } = await playing({ told: (address) => set[address] });
+  const { player, sink } = await playing({ reported: (address) => set[address] });
   assert.equal(player.value(LOUDNESS), 0.8);
   player.write(LOUDNESS, 0.6);
   assert.equal(player.value(LOUDNESS), 0.6);
@@ -207,7 +207,7 @@ test("with others the value they set counts, but one just written here is told a
 
 test("a soft control waits for the value that others set", async () => {
   const set = { [LOUDNESS]: 0.2 };
-  const { player, sink, values } = await playing({ told: (address) => set[address] });
+  const { player, sink, values } = await playing({ reported: (address) => set[address] });
   player.remap(merged(MAPPINGS.keyboard, [bindOf(LOUDNESS, "cc 74", true)]));
   sink.frame += RATE;
   for (const position of [120, 100]) player.midi([0xb0, 74, position]);

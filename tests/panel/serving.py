@@ -47,7 +47,7 @@ def start(port: int, parts: int = 1) -> Server:
 
 def stop(server: Server) -> None:
     """End it."""
-    server.hurry()
+    server.skip_fade_out()
     server.stop()
 
 

@@ -259,5 +259,5 @@ class Streams:
             ["remap", chance.choice(self._mappings), at],
             ["applyTuning", chance.choice(TUNINGS)],
             [chance.choice(["endNotes", "panic"]), at],
-            ["letGoOf", chance.choice(self._ports), at],
+            ["endPortNotes", chance.choice(self._ports), at],
         ][kind]

@@ -62,7 +62,7 @@ def server(said) -> Iterator[Server]:
     server = Server(options, said.append)
     server.start()
     yield server
-    server.hurry()
+    server.skip_fade_out()
     server.stop()
 
 

@@ -43,7 +43,7 @@ def test_a_server_says_that_the_module_comes_or_why_it_does_not() -> None:
     with pytest.raises(web.HTTPServiceUnavailable) as waits:
         site.answer(request)
     assert int(waits.value.headers["Retry-After"]) > 0
-    site.lack_module("there is no wasm-ld")
+    site.set_no_module("there is no wasm-ld")
     with pytest.raises(web.HTTPNotFound) as lacks:
         site.answer(request)
     assert lacks.value.text == "there is no wasm-ld\n"

@@ -20,14 +20,14 @@ from yehu_server.core.midi.tables import TABLES
 from yehu_server.live.page import facts
 from yehu_server.live.page import facts as styles
 from yehu_server.params.table import find
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.mapping_writer import as_toml
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, Tuning, read_tuning
-from yehu_server.playing.wishes import UNMAPPED, Key, Wishes
+from yehu_server.playing.wishes import UNMAPPED, Key, WishPoster
 
 STREAMS, MANY_STREAMS = 200, 4_000
 SOME_MAPPINGS = 20
@@ -70,7 +70,7 @@ class Server(LivePlayer):
     def __init__(self, mappings: dict[str, Mapping], tunings: dict[str, Tuning], presets) -> None:
         recorder = Recorder()
         style = Style(mapping=UNMAPPED, presets=presets)
-        super().__init__(recorder, style, delay_ms=0.0, wishes=Wishes([recorder]))
+        super().__init__(recorder, style, delay_ms=0.0, wishes=WishPoster([recorder]))
         self._mappings, self._tunings = mappings, tunings
         self._key: Key | None = None
         self.remap(mappings[facts.DEFAULT], frame=None)
@@ -104,7 +104,7 @@ class Server(LivePlayer):
             in_use = self._wishes.record["tables"]
             self.instrument.tables[in_use] = self._midi._tables()[0]
         else:
-            name = {"letGoOf": "let_go_of", "endNotes": "end_notes"}.get(method, method)
+            name = {"endPortNotes": "end_port_notes", "endNotes": "end_notes"}.get(method, method)
             getattr(self, name)(*given, frame=frame)
 
 
@@ -177,7 +177,7 @@ def test_the_page_writes_the_tables_that_the_server_writes(page_told, mappings):
     tuning = read_tuning(Path("chaozhou-seven-equal"))
     _, tables, _ = page_told
     for name, mapping in mappings.items():
-        policy = Wishes([Recorder()]).policy
+        policy = WishPoster([Recorder()]).policy
         wanted = make_tables(mapping, Controls(), tuning=tuning, a4=STANDARD_A4, policy=policy)
         found = np.array([math.nan if x is None else x for x in tables[name]]).view(TABLES)
         for field in set(TABLES.names or ()) - UNUSED:

@@ -25,8 +25,8 @@ from yehu_server.core.player.wishes import (
 )
 from yehu_server.live.page.players import PagePlayers
 from yehu_server.params.table import FINGERS
-from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.style import Style
 
 PRESSURE, SPEED, VELOCITY = "/playing/pressure", "/playing/speed", "/playing/velocity"

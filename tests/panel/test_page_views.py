@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from panel.browser import drive, missing, served
 
-from yehu_server.live.page.examples import write_beginnings
+from yehu_server.live.page.examples import write_capture_headers
 from yehu_server.params.table import TABLE
 from yehu_server.playing.preset_folders import Presets
 
@@ -21,7 +21,7 @@ ROW = {param.address: row for row, param in enumerate(TABLE)}
 def found(tmp_path_factory) -> Any:
     """What a visitor found."""
     generated = tmp_path_factory.mktemp("generated")
-    write_beginnings(generated / "captures")
+    write_capture_headers(generated / "captures")
     with served(generated) as url:
         return drive("page_views.mjs", url)
 

@@ -49,7 +49,7 @@ def server() -> Iterator[Server]:
     server = Server(options)
     server.start()
     yield server
-    server.hurry()
+    server.skip_fade_out()
     server.stop()
 
 

@@ -9,7 +9,7 @@ from pitch import cents, hertz
 from yehu_server.core.player.ear import (
     BEHIND,
     EAR,
-    HEARD,
+    EAR_SAMPLES,
     SEARCHED,
     SURE,
     hear,
@@ -21,7 +21,7 @@ RATES = (44100.0, 48000.0, 96000.0)
 NOTES = (65, 67, 69, 72, 76, 81, 85, 89)  # F4 to F6
 OFFSETS = (-50.0, -20.0, 0.0, 5.0, 50.0)  # cents
 SLIP = 0.12  # of a period
-FIRST = 3 * HEARD + 1234  # the frame of the first hearing: what is heard has gone round
+FIRST = 3 * EAR_SAMPLES + 1234  # the frame of the first hearing: what is heard has gone round
 
 
 def pulses(phase: np.ndarray, at: float = 0.0) -> np.ndarray:
@@ -37,7 +37,7 @@ class Ear:
         self.rate = rate
         self.record = np.zeros(1, EAR)[0]
         prepare_ear(self.record, rate)
-        self._kept = np.zeros(2 * HEARD)
+        self._kept = np.zeros(2 * EAR_SAMPLES)
         self._frame = 0
 
     def listen(self, sound: np.ndarray) -> None:
@@ -58,7 +58,7 @@ class Ear:
 
 def phases(rate: float, frequency: float, frames: int = 0) -> np.ndarray:
     """The phase of a tone (periods), whose last frames fill an ear's memory."""
-    return np.arange(frames or HEARD) * frequency / rate
+    return np.arange(frames or EAR_SAMPLES) * frequency / rate
 
 
 @pytest.mark.parametrize("rate", RATES)
@@ -117,7 +117,7 @@ def test_a_pitch_that_moves_slowly_is_followed_and_one_that_jumps_is_found_again
 def test_noise_has_no_certain_pitch(rate, note):
     for seed in range(20):
         ear = Ear(rate)
-        ear.listen(np.random.default_rng(seed).normal(size=HEARD))
+        ear.listen(np.random.default_rng(seed).normal(size=EAR_SAMPLES))
         assert ear.hear(hertz(note))[1] < 0.8
 
 
@@ -132,7 +132,7 @@ def test_a_period_out_of_reach_is_not_certain(rate, beyond):
 
 def test_silence_is_not_certain_and_without_slips():
     ear = Ear(44100.0)
-    ear.listen(np.zeros(HEARD))
+    ear.listen(np.zeros(EAR_SAMPLES))
     assert ear.hear(440.0)[1:] == (0.0, 0.0)
 
 

@@ -10,16 +10,16 @@ from pitch import hertz
 from sound import rms, run_for
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.midi.record import let_go
+from yehu_server.core.midi.record import clear_held
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.record import prepare_player
 from yehu_server.core.player.tuning_by_ear import LASTING, begin_tuning, jumps
 from yehu_server.core.player.wishes import STOP
 from yehu_server.params.table import FINGERS, TABLE
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
 from yehu_server.playing.style import Style
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 
 RATE = 44100
 NOTES = (66, 71, 74, 75, 78, 80, 82, 84)
@@ -32,7 +32,7 @@ class Play:
     def __init__(self, listening: float = 1.0, detuned: float = 0.0, **values: float) -> None:
         style = Style()
         self.instrument = Instrument(style.spec(RATE, calibration_for(float(RATE))))
-        self.wishes: Wishes = style.wishes(self.instrument)
+        self.wishes: WishPoster = style.wishes(self.instrument)
         self.wishes.write("/playing/variation", 0.0)
         self.wishes.write("/playing/listening", listening)
         self.detune(detuned)
@@ -88,7 +88,7 @@ def test_without_listening_it_stays_off_with_the_strings(note, detuned):
         assert error(sound, at, at + 0.1, note) == pytest.approx(detuned, abs=9.9)
     assert play.fingers() == landed
     assert not play.player["learnt"].any()
-    assert not play.player["learnt_leaning"].any()
+    assert not play.player["learnt_pressure_factor"].any()
 
 
 @pytest.mark.parametrize("note", [71, 75, 84])
@@ -153,8 +153,8 @@ def test_the_right_hand_lets_scratching_and_tremolo_be(note, wish):
     play.wishes.note_on(Key(0, note))
     for _ in range(80):
         run_for(play.instrument, 0.01)
-        assert play.player["leaning"] == 1.0
-    assert not play.player["learnt_leaning"].any()
+        assert play.player["pressure_factor"] == 1.0
+    assert not play.player["learnt_pressure_factor"].any()
 
 
 @pytest.mark.parametrize("note", [69, 74])
@@ -164,8 +164,8 @@ def test_a_string_that_has_no_period_is_leant_on_less_by_a_player_who_listens(no
         play = Play(listening, 0.0, pressure=0.99)  # all but scratching
         play.note(note, 1.0)
         pressures.append(play.instrument.target("/bow/pressure"))
-    assert play.player["leaning"] <= 0.8
-    assert pressures[1] == pytest.approx(pressures[0] * play.player["leaning"])
+    assert play.player["pressure_factor"] <= 0.8
+    assert pressures[1] == pytest.approx(pressures[0] * play.player["pressure_factor"])
 
 
 def test_vibrato_is_not_corrected_away():
@@ -189,7 +189,7 @@ def test_an_open_string_is_left_as_it_is_tuned(note, detuned):
 def test_a_panic_ends_what_sounds_even_if_the_part_has_forgotten_it(is_panic):
     play = Play()
     play.note(70, 0.4)
-    let_go(play.instrument.midi)
+    clear_held(play.instrument.midi)
     play.wishes.stop_sound(is_panic=is_panic)
     sound = run_for(play.instrument, 0.5)
     assert (rms(sound[round(0.1 * RATE) :]) == 0.0) == is_panic

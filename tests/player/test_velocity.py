@@ -10,7 +10,7 @@ import pytest
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.params.table import find
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.pitch_and_level import a_weighted_db
 from yehu_server.playing.style import Style
 

@@ -13,21 +13,21 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
-    FARTHER,
+    DEFAULT_RECIPE,
+    DISTANCE_FACTOR,
     FIRM,
     FIRST,
     FLAUTANDO,
     LEAST_PRESS,
     LIGHT,
-    ORDINARY,
     PLACES,
     RECIPE,
     TOP_SPEED,
-    ordinary_table,
+    default_recipes,
     recipe_value,
     share,
 )
-from yehu_server.playing.practices import shipped_practice
+from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.playing.wishes import Key
 
 SHIPPED = shipped_practice(44100.0)
@@ -52,14 +52,16 @@ def pressure(string: int, wish: float, pitch: float) -> float:
 
 
 def test_ordinarily_notes_are_bowed_as_asked_and_on_the_f_string_not_near_the_bridge():
-    table = ordinary_table()
-    assert np.all(table[1] == ORDINARY)
-    assert np.all(np.delete(table[0], FARTHER, axis=-1) == np.delete(ORDINARY, FARTHER))
-    positions = table[0, ..., FARTHER] * np.array(PLACES)[:, None]
+    table = default_recipes()
+    assert np.all(table[1] == DEFAULT_RECIPE)
+    assert np.all(
+        np.delete(table[0], DISTANCE_FACTOR, axis=-1) == np.delete(DEFAULT_RECIPE, DISTANCE_FACTOR)
+    )
+    positions = table[0, ..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
     assert positions.min() == pytest.approx(0.17)
-    assert np.all(table[0, PLACES.index(0.25), :, FARTHER] == 1.0)
+    assert np.all(table[0, PLACES.index(0.25), :, DISTANCE_FACTOR] == 1.0)
     for wish in (0.1, 0.2, 0.25, 0.3, 0.42, 0.55):
-        assert share(*ORDINARY[AT_FLAUTANDO : AT_FIRM + 1], wish, 0) == pytest.approx(wish)
+        assert share(*DEFAULT_RECIPE[AT_FLAUTANDO : AT_FIRM + 1], wish, 0) == pytest.approx(wish)
 
 
 @pytest.mark.parametrize(("string", "note"), STOPS)
@@ -90,7 +92,7 @@ def test_each_of_the_three_shares_counts():
 
 @pytest.mark.parametrize(("string", "edge"), [(0, 1.3), (1, 4.0)])
 def test_pressure_goes_from_flautando_to_scratch_without_a_step(string, edge):
-    shares = ORDINARY[AT_FLAUTANDO : AT_FIRM + 1]
+    shares = DEFAULT_RECIPE[AT_FLAUTANDO : AT_FIRM + 1]
     pressures = [share(*shares, 0.01 * wish, string) for wish in range(201)]
     assert pressures[0] == 0.0
     assert pressures[100] == pytest.approx(edge)
@@ -107,11 +109,11 @@ def test_between_two_notes_a_pitch_is_bowed_in_between(string, note):
 
 
 def test_between_two_places_a_note_is_bowed_in_between_and_beyond_them_as_at_the_last():
-    table = ordinary_table()
-    table[0, :, :, FARTHER] = np.arange(len(PLACES))[:, None]
+    table = default_recipes()
+    table[0, :, :, DISTANCE_FACTOR] = np.arange(len(PLACES))[:, None]
 
     def farther(place: float) -> float:
-        return float(recipe_value(table, 0, place, 70.5, FARTHER))
+        return float(recipe_value(table, 0, place, 70.5, DISTANCE_FACTOR))
 
     for row, (near, far) in enumerate(itertools.pairwise(PLACES)):
         assert farther(near) == pytest.approx(row, abs=1e-9)
@@ -127,9 +129,9 @@ SLOWEST, FARTHEST, HARDEST = 0.1, 1.7, 3.0
 @pytest.fixture
 def listener() -> Watched:
     """A player for whom A4 bears no fast bow; F sharp 4 wants one far away, and a firm finger."""
-    bowing = ordinary_table()
+    bowing = default_recipes()
     bowing[0, :, 69 - FIRST, TOP_SPEED] = SLOWEST
-    bowing[0, :, 66 - FIRST, FARTHER] = FARTHEST
+    bowing[0, :, 66 - FIRST, DISTANCE_FACTOR] = FARTHEST
     bowing[0, :, 66 - FIRST, LEAST_PRESS] = HARDEST
     return Watched(calibration=ideal(), bowing=bowing)
 

@@ -11,10 +11,10 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.fingering import OpenStrings
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.pitch_and_level import a_weighted_db
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 
 
 def test_the_finger_waits_at_a_pitch_for_the_bow(player, listener):
@@ -133,7 +133,7 @@ def drawn_by_hand(pitches, seconds: float, evenness: float) -> np.ndarray:
     """The sound of a bow drawn by hand while the finger goes through pitches."""
     tuned = CALIBRATION.tuned(Quantities())
     instrument = Instrument(InstrumentSpec(RATE, tuned, calibration=CALIBRATION))
-    player = Wishes(instrument)
+    player = WishPoster(instrument)
     player.write("/body/evenness", evenness)
     out = []
     for pitch in pitches:
@@ -193,7 +193,7 @@ def test_a_port_that_is_gone_leaves_no_note_and_no_pedal(ports, player, listener
     ports.receive(mido.Message("control_change", control=64, value=127), port=1)
     ports.receive(mido.Message("note_off", note=67), port=1)
     assert listener["/bow/speed"] != 0.0
-    ports.let_go_of(1)
+    ports.end_port_notes(1)
     assert player.sounding is None
     assert listener["/bow/speed"] == 0.0
 
@@ -201,7 +201,7 @@ def test_a_port_that_is_gone_leaves_no_note_and_no_pedal(ports, player, listener
 def test_a_port_that_is_gone_leaves_the_others_alone(ports, player):
     on(ports, 69, port=0)
     on(ports, 67, port=1)
-    ports.let_go_of(1)
+    ports.end_port_notes(1)
     assert player.sounding == Key(0, 69)
 
 

@@ -16,13 +16,13 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
 from yehu_server.core.player.intonation import position_of
-from yehu_server.playing import calibrations
+from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import calibration_key
-from yehu_server.playing.calibrations import SHIPPED, calibration_for
+from yehu_server.playing.calibration_store import SHIPPED, calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.style import Style
-from yehu_server.playing.wishes import Wishes
+from yehu_server.playing.wishes import WishPoster
 
 RATES = (44100.0, 48000.0, 96000.0)
 
@@ -86,7 +86,7 @@ def heard(note: int, rate: float, velocity: int, wheel: int | None, a4: float = 
     """The pitch (Hz) of a note, from 0.1 s after it began."""
     tuned = calibration_for(rate, a4=a4)
     instrument = Instrument(Style().spec(rate, tuned))
-    midi = MidiPlayer(Wishes(instrument), load("keyboard"))
+    midi = MidiPlayer(WishPoster(instrument), load("keyboard"))
     if wheel is not None:
         midi.receive(mido.Message("control_change", control=1, value=wheel), frame=0)
     midi.receive(mido.Message("note_on", note=note, velocity=velocity), frame=0)
@@ -119,7 +119,7 @@ def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None
     """A-weighted level (dB) of a note once it has settled."""
     tuned = calibration_for(44100.0)
     instrument = Instrument(Style().spec(44100.0, tuned))
-    player = Wishes(instrument)
+    player = WishPoster(instrument)
     if evenness is not None:
         player.write("/body/evenness", evenness)
     midi = MidiPlayer(player, load("keyboard"))
@@ -135,7 +135,7 @@ def loudness(note: int, velocity: int, wheel: int | None, evenness: float | None
 
 
 def test_another_reference_pitch_is_calibrated_for(monkeypatch, tmp_path):
-    monkeypatch.setattr(calibrations, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(calibration_store, "data_folder", lambda: tmp_path)
     told = []
     calibration_for(44100.0, a4=430.0, progress=lambda done, total: told.append((done, total)))
     assert told[-1] == (36, 36)

@@ -10,9 +10,9 @@ import pytest
 
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
-from yehu_server.playing import calibrations
+from yehu_server.playing import calibration_store
 from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
-from yehu_server.playing.calibrations import as_data, calibration_for, read_calibration
+from yehu_server.playing.calibration_store import as_data, calibration_for, read_calibration
 from yehu_server.util import sealed
 from yehu_server.util.sealed import write_sealed
 
@@ -47,8 +47,8 @@ class Kept:
 @pytest.fixture
 def kept(monkeypatch, tmp_path) -> Kept:
     kept = Kept(tmp_path)
-    monkeypatch.setattr(calibrations, "calibrate", kept.measure)
-    monkeypatch.setattr(calibrations, "data_folder", lambda: tmp_path)
+    monkeypatch.setattr(calibration_store, "calibrate", kept.measure)
+    monkeypatch.setattr(calibration_store, "data_folder", lambda: tmp_path)
     return kept
 
 
@@ -98,7 +98,7 @@ def test_on_a_full_disk_it_is_measured_and_told_in_one_line(kept, caplog, monkey
 
 
 def test_without_a_place_to_keep_it_it_is_measured_all_the_same(kept, monkeypatch):
-    monkeypatch.setattr(calibrations, "data_folder", lambda: kept.folder / "none")
+    monkeypatch.setattr(calibration_store, "data_folder", lambda: kept.folder / "none")
     assert kept.ask() == MEASURED
 
 

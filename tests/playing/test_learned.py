@@ -12,10 +12,10 @@ from curves import from_unit
 
 from yehu_server.errors import MappingError, OutputError, ParameterError
 from yehu_server.params.table import TABLE
-from yehu_server.playing.learn import Found, learn, unlearn
+from yehu_server.playing.learn import LearnedSource, learn, unlearn
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 
-KNOB = Found("cc 20")
+KNOB = LearnedSource("cc 20")
 
 
 @pytest.fixture(autouse=True)
@@ -36,7 +36,7 @@ def movers(mapping: Mapping, target: str) -> list[str]:
 def test_what_is_learned_for_a_shipped_mapping_is_there_at_the_next_start(settings, name):
     mapping, path = learn(load(name), "/playing/vibrato_press", KNOB, soft=False)
     assert path == settings / "mappings" / f"{name}.toml"
-    again = load(name, own_first=True)
+    again = load(name, user_first=True)
     assert again == mapping
     assert moved_by(again, "cc 20") == ["/playing/vibrato_press"]
     assert set(again.binds) - {again.of("cc 20")[0]} <= set(load(name).binds)
@@ -58,7 +58,7 @@ def test_every_parameter_that_the_player_does_not_move_can_be_learned(param):
     [("cc 20", True), ("bend", True), ("pressure", True), ("poly-pressure", False), ("/x", False)],
 )
 def test_what_is_learned_moves_the_notes_of_every_box(source, is_global):
-    mapping, _ = learn(load("keyboard"), "/playing/vibrato", Found(source), soft=False)
+    mapping, _ = learn(load("keyboard"), "/playing/vibrato", LearnedSource(source), soft=False)
     (bind,) = mapping.of(source)
     assert bind.is_global is is_global
     assert load("mine/keyboard") == mapping
@@ -74,7 +74,7 @@ def test_nothing_else_moves_what_was_learned():
     assert movers(load("keyboard"), "/playing/pressure") == ["velocity"]
     mapping, _ = learn(load("keyboard"), "/playing/pressure", KNOB, soft=False)
     assert movers(mapping, "/playing/pressure") == ["cc 20"]
-    mapping, _ = learn(mapping, "/playing/pressure", Found("cc 21"), soft=False)
+    mapping, _ = learn(mapping, "/playing/pressure", LearnedSource("cc 21"), soft=False)
     assert movers(mapping, "/playing/pressure") == ["cc 21"]
     mapping, count = unlearn(mapping, "/playing/pressure")
     assert count == 1
@@ -83,8 +83,8 @@ def test_nothing_else_moves_what_was_learned():
 
 
 def test_a_knob_moves_what_it_learned_last():
-    mapping, _ = learn(load("keyboard"), "/playing/vibrato", Found("cc 1/33"), soft=False)
-    mapping, _ = learn(mapping, "/output/gain", Found("cc 1"), soft=False)
+    mapping, _ = learn(load("keyboard"), "/playing/vibrato", LearnedSource("cc 1/33"), soft=False)
+    mapping, _ = learn(mapping, "/output/gain", LearnedSource("cc 1"), soft=False)
     assert moved_by(mapping, "cc 1") == ["/output/gain"]
     assert moved_by(mapping, "cc 1/33") == []
 
@@ -110,7 +110,7 @@ target = "/playing/vibrato"
 """
     file.write_text(text)
     mapping, path = learn(
-        load(str(file)), "/playing/tremolo", Found("/x", (0.0, 127.0)), soft=False
+        load(str(file)), "/playing/tremolo", LearnedSource("/x", (0.0, 127.0)), soft=False
     )
     assert path == file
     assert file.read_text().startswith(text)

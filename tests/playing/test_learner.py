@@ -5,7 +5,7 @@ from __future__ import annotations
 import mido
 import pytest
 
-from yehu_server.playing.learn import Found, Learner
+from yehu_server.playing.learn import LearnedSource, Learner
 
 
 def cc(control: int, *values: int, channel: int = 0) -> list[mido.Message]:
@@ -88,13 +88,13 @@ def test_a_non_registered_parameter_is_found_by_its_number():
 @pytest.mark.parametrize(
     ("sent", "found"),
     [
-        ([0.2, 0.22, 0.3], [Found("/fader1")]),
-        ([0.0, 1.0], [Found("/fader1")]),
-        ([10.0, 12.0, 60.0], [Found("/fader1", (0.0, 127.0))]),
+        ([0.2, 0.22, 0.3], [LearnedSource("/fader1")]),
+        ([0.0, 1.0], [LearnedSource("/fader1")]),
+        ([10.0, 12.0, 60.0], [LearnedSource("/fader1", (0.0, 127.0))]),
         ([0.5], []),
     ],
 )
 def test_an_address_of_the_users_own_is_found_with_its_range(sent, found):
     learner = Learner()
-    answers = [learner.hear_address("/fader1", argument) for argument in sent]
+    answers = [learner.learn_from_address("/fader1", argument) for argument in sent]
     assert [answer for answer in answers if answer] == found

@@ -18,7 +18,7 @@ from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import WRITE
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE
-from yehu_server.playing.live import Arrivals, LivePlayer
+from yehu_server.playing.live_player import Arrivals, LivePlayer
 from yehu_server.playing.style import Style
 
 RATE = 48000.0

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
 from yehu_server.playing.binds import Bind, Breakpoints
-from yehu_server.playing.mapping import load, mapping_folder, own_mappings, shipped_mappings
+from yehu_server.playing.mapping import load, mapping_folder, shipped_mappings, user_mappings
 from yehu_server.playing.mapping_file import (
     MOST_ERRORS,
     mapping_file_from,
@@ -337,9 +337,9 @@ def test_what_begins_elsewhere_and_the_zones_go_over_the_base(read):
 def test_a_base_may_have_a_base_and_the_shipped_comes_before_the_users(own, read):
     own("wind", 'base = "wind"\n' + BIND)
     own("pedal", 'base = "mine/wind"\nabout = "my pedal"\n')
-    assert own_mappings() == ["pedal", "wind"]
+    assert user_mappings() == ["pedal", "wind"]
     assert load("wind").of("cc 4") == ()
-    assert load("wind", own_first=True) == load("mine/wind")
+    assert load("wind", user_first=True) == load("mine/wind")
     assert len(load("mine/wind").of("cc 4")) == 1
     assert read('base = "wind"\n').of("cc 4") == ()
     assert [file.stem for file in read('base = "wind"\n').files] == ["mine", "wind"]

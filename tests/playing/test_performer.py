@@ -8,8 +8,8 @@ import pytest
 from hands import Checked, Move, Watched, ideal
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import FIRST, TOP_SPEED, ordinary_table
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.core.player.bowing import FIRST, TOP_SPEED, default_recipes
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.playing.wishes import Key
 
@@ -376,7 +376,7 @@ def test_an_open_string_bent_up_is_stopped_and_open_again_when_it_comes_back(pla
 
 
 def test_a_note_bent_below_the_open_c_string_goes_on_on_the_f_string_as_that_is_bowed():
-    bowing = ordinary_table()
+    bowing = default_recipes()
     bowing[0, :, 71 - FIRST, TOP_SPEED] = 0.11
     listener = Watched(calibration=ideal(), bowing=bowing)
     player = Checked(listener)

@@ -10,9 +10,9 @@ from pitch import cents, frame_pitch, hertz, pitch_of
 from sound import run_for
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 
 RATE = 44100
 
@@ -22,7 +22,7 @@ class Stand:
 
     def __init__(self, **wishes: float) -> None:
         self.instrument: Instrument = Instrument(Style().spec(RATE, calibration_for(float(RATE))))
-        self.player: Wishes = Style().wishes(self.instrument)
+        self.player: WishPoster = Style().wishes(self.instrument)
         self.wish(0.0, variation=0.0, **wishes)
 
     def wish(self, seconds: float, **wishes: float) -> None:

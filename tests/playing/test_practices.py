@@ -14,19 +14,19 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
-    FARTHER,
+    DISTANCE_FACTOR,
     FIRST,
     LAST,
     PLACES,
     TOP_SPEED,
-    ordinary_table,
+    default_recipes,
 )
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import find
 from yehu_server.playing import practice as practising
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.practice import Passage, Practice, Search
-from yehu_server.playing.practices import (
+from yehu_server.playing.practice_files import (
     FORMAT,
     HIGHEST,
     LOWEST,
@@ -45,7 +45,7 @@ NAN = float("nan")
 
 def practised() -> np.ndarray:
     """A table that somebody might have practised."""
-    table = ordinary_table()
+    table = default_recipes()
     chance = np.random.default_rng(1)
     table[:, 1:, 3:20] *= chance.uniform(0.8, 1.25, table[:, 1:, 3:20].shape)
     table[1, :, -1, TOP_SPEED] = 0.11
@@ -90,7 +90,7 @@ def render(command, tmp_path, tune):
 
 def test_a_table_that_was_written_is_read_back(tmp_path):
     path = tmp_path / "mine.json"
-    for table in (practised(), ordinary_table(), shipped_practice(RATE)):
+    for table in (practised(), default_recipes(), shipped_practice(RATE)):
         write_practice(path, table, RATE)
         np.testing.assert_allclose(read_practice(path), table, atol=1.1e-4)
     again = read_practice(path)
@@ -99,7 +99,7 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
 
 
 def test_only_notes_that_are_bowed_otherwise_are_written():
-    table = ordinary_table()
+    table = default_recipes()
     assert rows_of(as_data(table, RATE)) == []
     table[0, PLACE, 70 - FIRST, AT_LIGHT] = 0.7
     assert rows_of(as_data(table, RATE)) == [("inner", "0.1", "70")]
@@ -190,9 +190,9 @@ def test_what_was_practised_is_heard_and_named(render, tmp_path):
 @pytest.mark.parametrize("rate", [44100.0, 48000.0, 96000.0])
 def test_what_is_shipped_is_within_bounds(rate):
     table = shipped_practice(rate)
-    assert table.shape == ordinary_table().shape
+    assert table.shape == default_recipes().shape
     assert np.all((table >= LOWEST) & (table <= HIGHEST))
-    positions = table[..., FARTHER] * np.array(PLACES)[:, None]
+    positions = table[..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
     assert positions.min() > 0.05
     assert positions.max() < 0.5
 
@@ -229,7 +229,7 @@ def test_a_manner_that_speaks_is_told_from_one_that_cannot(practice, note, facto
 
 
 def test_the_score_of_a_manner_is_always_the_same(practice):
-    manner = ordinary_table()[0, PLACE, 70 - FIRST]
+    manner = default_recipes()[0, PLACE, 70 - FIRST]
     search = Search(0, 70, PLACE, manner)
     scores = {practice.score(search, manner, PASSAGES) for _ in range(3)}
     assert len(scores) == 1
@@ -250,7 +250,7 @@ def test_with_a_tuning_notes_are_practised_at_its_pitches(monkeypatch):
 
     monkeypatch.setattr(practising, "_speaks", speaks)
     practice = Practice(RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35)
-    manner = ordinary_table()[0, PLACE, 70 - FIRST]
+    manner = default_recipes()[0, PLACE, 70 - FIRST]
     assert practice.score(Search(0, 70, PLACE, manner), manner, PASSAGES) == 1.0
     assert set(played) == {70.35}
 
@@ -281,7 +281,7 @@ def test_practise_takes_a_tuning_and_refuses_a_map_without_a_scale(command, tmp_
     path = tmp_path / "tuned.json"
     code, _, error = command("practise", "-o", path, "--tuning", "chaozhou-seven-equal", "--quiet")
     assert code == 0, error
-    assert read_practice(path).shape == ordinary_table().shape
+    assert read_practice(path).shape == default_recipes().shape
     code, _, error = command("practise", "-o", path, "--keyboard-map", "chaozhou")
     assert code == 2
     assert "--keyboard-map needs a scale" in error

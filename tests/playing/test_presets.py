@@ -20,8 +20,8 @@ from yehu_server.errors import OutputError, PresetError
 from yehu_server.params.preset_file import NOT_SAVED, POSSIBLE, SAVED
 from yehu_server.params.table import TABLE
 from yehu_server.playing import preset_folders as folders
-from yehu_server.playing.calibrations import calibration_for
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.calibration_store import calibration_for
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load
 from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.preset_folders import (

@@ -6,7 +6,7 @@ import mido
 import pytest
 
 from yehu_server.playing.binds import Bind
-from yehu_server.playing.live import ELSEWHERE
+from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import Mapping, load
 from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.wishes import Key
@@ -207,7 +207,7 @@ def test_a_soft_knob_of_a_box_waits_for_where_the_keyboards_note_has_it(make, pl
 def test_a_box_that_is_gone_leaves_its_faders_where_they_were(studio, player):
     studio.on(75)
     studio.cc(7, 30)
-    studio.player.let_go_of(BREATH)
+    studio.player.end_port_notes(BREATH)
     assert player.value(VOLUME) == 30 / 127
     studio.on(77)
     assert player.value(VOLUME) == 30 / 127
@@ -222,7 +222,7 @@ def test_a_box_that_is_gone_bends_presses_and_holds_no_more(studio, player):
     studio.send("aftertouch", BREATH, value=127)
     assert player.value(PRESS) > 2.0
     studio.off(75)
-    studio.player.let_go_of(BREATH)
+    studio.player.end_port_notes(BREATH)
     assert player.sounding is None
     studio.on(75)
     assert player.pitch == 75.0
@@ -232,7 +232,7 @@ def test_a_box_that_is_gone_bends_presses_and_holds_no_more(studio, player):
 def test_a_wheel_that_is_gone_while_a_note_sounds_lets_go_at_once(studio, player):
     studio.on(75)
     studio.bend(1.0)
-    studio.player.let_go_of(BREATH)
+    studio.player.end_port_notes(BREATH)
     assert player.pitch == 75.0
 
 
@@ -240,7 +240,7 @@ def test_a_keyboard_that_is_gone_leaves_nothing_to_others_but_what_is_global(lea
     learned.on(75, BREATH)
     learned.on(75)
     learned.cc(7, 30)
-    learned.player.let_go_of(BREATH)
+    learned.player.end_port_notes(BREATH)
     learned.on(76)
     assert player.value(VOLUME) == 30 / 127
 

@@ -15,7 +15,7 @@ from together import Together
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG_BYTES
 from yehu_server.core.midi.dispatch import interpret
-from yehu_server.core.midi.record import IN_PORT, MIDI, let_go, prepare_midi
+from yehu_server.core.midi.record import IN_PORT, MIDI, clear_held, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player import wishes as kinds
 from yehu_server.core.player.rows import ROW
@@ -24,9 +24,9 @@ from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.midi_player import MidiPlayer
-from yehu_server.playing.section_people import section_specs
+from yehu_server.playing.section_instruments import section_specs
 from yehu_server.playing.style import Style
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 from yehu_server.rendering.cores import Cores
 
 LATEST = round(0.040 * RATE)
@@ -83,7 +83,7 @@ class Told:
         self.posted += 1
         return True
 
-    def take_in(self) -> None:
+    def interpret_events(self) -> None:
         pass
 
     def meters(self):
@@ -150,7 +150,7 @@ def test_one_player_alone_is_on_time():
 def test_players_of_a_section_lie_one_after_another():
     apart = section(3).told[::2]
     with pytest.raises(ValueError, match="one after another"):
-        Wishes(apart)
+        WishPoster(apart)
 
 
 def test_all_play_a_line_and_nobody_begins_early_or_too_late(four):
@@ -407,7 +407,7 @@ def test_the_pitch_is_that_of_the_first_who_plays(four):
 
 def test_notes_that_ended_with_the_audio_process_are_forgotten(four):
     on(four, *CHORD, frame=0)
-    let_go(four.told[0].midi)
+    clear_held(four.told[0].midi)
     before = [len(told.of(kinds.END)) for told in four.told]
     off(four, *CHORD, frame=BEAT)
     assert [len(told.of(kinds.END)) for told in four.told] == before
@@ -497,7 +497,7 @@ def test_a_reset_lets_all_play_that_played_at_the_start():
     told, wishes = part.told, part.wishes
     midi = style.midi(wishes)
     wishes.write("/playing/section", 1.0, frame=10)
-    midi.begin_again(frame=20)
+    midi.reset_to_start_values(frame=20)
     assert wishes.value("/playing/section") == 4.0
     wishes.note_on(Key(0, 67), frame=BEAT)
     assert all(each.settled() == [67] for each in told)

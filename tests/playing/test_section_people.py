@@ -14,7 +14,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.radiation import response
 from yehu_server.core.player.calibration import wave_speed
 from yehu_server.core.player.rows import ROW
-from yehu_server.playing.section_people import (
+from yehu_server.playing.section_instruments import (
     MODE,
     SIZE,
     TUNED_CENTS,

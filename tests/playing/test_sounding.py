@@ -10,9 +10,9 @@ from pitch import cents, hertz, pitch_of
 from sound import run_for
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 
 RATE = 44100
 
@@ -22,7 +22,7 @@ def level(samples: np.ndarray) -> float:
     return 10.0 * math.log10(max(float(np.mean(np.square(samples, dtype=np.float64))), 1e-24))
 
 
-def player_at(rate: float) -> tuple[Wishes, Instrument]:
+def player_at(rate: float) -> tuple[WishPoster, Instrument]:
     style = Style()
     instrument = Instrument(style.spec(rate, calibration_for(float(rate))))
     return style.wishes(instrument), instrument

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.midi_player import MidiPlayer
 from yehu_server.playing.tuning import RangePolicy
@@ -203,7 +203,7 @@ def test_the_pedals_of_a_box_hold_the_notes_of_all_keyboards_until_they_are_up()
         expected = Boxes()
         for number, (port, message) in enumerate(boxes(seed)):
             if message is None:
-                midi.let_go_of(port)
+                midi.end_port_notes(port)
             else:
                 midi.receive(message, port=port)
             expected.take(port, message)

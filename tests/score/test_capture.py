@@ -18,7 +18,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override
-from yehu_server.core.player.bowing import ordinary_table
+from yehu_server.core.player.bowing import default_recipes
 from yehu_server.core.player.calibration import PITCHES, SPEEDS, Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.rows import ROW
@@ -43,8 +43,8 @@ from yehu_server.playing.style import Style
 from yehu_server.playing.wishes import Key
 from yehu_server.rendering.replay import blocks, replay
 from yehu_server.scores.capture import read_capture
-from yehu_server.scores.capture_beginning import Beginning, beginning_of
 from yehu_server.scores.capture_format import build
+from yehu_server.scores.capture_header import SessionStart, session_start_of
 from yehu_server.scores.capture_writer import CaptureWriter, LiveCapture
 
 RATE = 48000.0
@@ -54,17 +54,17 @@ SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
 
 
 @pytest.fixture(scope="module")
-def plain() -> Beginning:
+def plain() -> SessionStart:
     """An instrument without calibration, without a room."""
-    return Beginning((InstrumentSpec(RATE, TUNED, seed=3),), has_room=False)
+    return SessionStart((InstrumentSpec(RATE, TUNED, seed=3),), has_room=False)
 
 
 @pytest.fixture
 def write(plain):
-    def write(path, wishes=(), end=None, rests=(), lost=0):
+    def write(path, wishes=(), end=None, gaps=(), lost=0):
         writer = CaptureWriter(path, beginning=plain)
         writer.wishes(np.array(list(wishes), WISH))
-        for frame in rests:
+        for frame in gaps:
             writer.note("rest", frame, since=frame)
         if lost:
             writer.note("lost", 5, events=lost)
@@ -76,13 +76,13 @@ def write(plain):
     return write
 
 
-def first_version(path, ramps=(), values=None, end=None, rests=()):
+def first_version(path, ramps=(), values=None, end=None, gaps=()):
     """A file as the first version wrote it: of moves of bow and fingers."""
     defaults = {param.address: param.default for param in ENGINE}
     header = {"format": "yehu-server capture", "version": 1, "rate": RATE, "seed": 0}
     header |= {"tensions": list(TENSIONS), "build": build()}
     header["values"] = defaults if values is None else values
-    lines = [header, *ramps, *({"rest": frame, "since": frame} for frame in rests)]
+    lines = [header, *ramps, *({"rest": frame, "since": frame} for frame in gaps)]
     lines += [] if end is None else [{"end": end}]
     path.write_text("".join(json.dumps(line) + "\n" for line in lines))
     return path
@@ -171,7 +171,7 @@ def measured(seed: int = 1) -> Calibration:
 
 
 def test_an_instrument_is_read_as_it_began(tmp_path):
-    bowing = ordinary_table() * 1.01
+    bowing = default_recipes() * 1.01
     calibration = measured()
     spec = InstrumentSpec(
         44100.0,
@@ -187,7 +187,7 @@ def test_an_instrument_is_read_as_it_began(tmp_path):
     run(began, 100)
     began.post(BEGIN, value=69.0, other=69.0)  # what happens afterwards is no beginning
     run(began, 100)
-    beginning = beginning_of([began], has_room=False)
+    beginning = session_start_of([began], has_room=False)
     CaptureWriter(tmp_path / "c", beginning=beginning).close(0)
     again = read_capture(tmp_path / "c").beginning.ensemble().first
     for part in ("model", "state", "controls", "player"):
@@ -272,7 +272,7 @@ def test_a_replay_is_what_was_played_in_any_blocks(tmp_path):
     stage = alone(RATE)
     live = stage.first
     live.report_wishes()
-    writer = CaptureWriter(tmp_path / "c", beginning=beginning_of([live], has_room=False))
+    writer = CaptureWriter(tmp_path / "c", beginning=session_start_of([live], has_room=False))
     bow(live)
     played = np.zeros(30000, np.float32)
     for start in range(0, 30000, 100):
@@ -289,7 +289,7 @@ def test_a_rest_in_mid_session_is_replayed(tmp_path):
     stage = alone(RATE)
     live = stage.first
     live.report_wishes()
-    writer = CaptureWriter(tmp_path / "c", beginning=beginning_of([live], has_room=False))
+    writer = CaptureWriter(tmp_path / "c", beginning=session_start_of([live], has_room=False))
     live.post(BEGIN, value=69.0, other=69.0)
     played = np.zeros(20000, np.float32)
     stage.process(played[:9000])
@@ -298,7 +298,7 @@ def test_a_rest_in_mid_session_is_replayed(tmp_path):
     stage.process(played[9000:12000])
     live.post(BEGIN, value=72.0, other=72.0)
     stage.process(played[12000:])
-    assert stage.rests == [(9000, 9000)]
+    assert stage.gaps == [(9000, 9000)]
     writer.wishes(live.applied_wishes())
     writer.note("rest", 9000, since=9000)
     writer.close(live.frame)
@@ -369,12 +369,12 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
         played.append(np.zeros((block, 2), np.float32))
         stage.process(played[-1])
         frames += block
-        if seed % 2 and frames > RATE and not stage.rests:
+        if seed % 2 and frames > RATE and not stage.gaps:
             first = stage.first._rig
             first["meters"]["running"] = 1  # the process died before it had told of the block
             first["taped"] -= block
             stage.recover()
-            assert stage.rests == [(frames - block, frames)]
+            assert stage.gaps == [(frames - block, frames)]
             played[-1][:] = 0.0
         if chance.random() < 0.2:
             capture.keep_up()
@@ -386,7 +386,7 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
     read = read_capture(tmp_path / "c")
     assert np.bincount(read.players).tolist() == [each["applied"] for each in meters]
     assert len(set(read.wishes["kind"])) > 6
-    assert bool(read.rests) == bool(seed % 2)
+    assert bool(read.gaps) == bool(seed % 2)
     assert read.frames == frames
     expected = np.concatenate(played)
     assert rms(expected) > 0.001
@@ -396,7 +396,7 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
 
 
 def test_wishes_of_several_players_are_read_in_the_order_of_frames(tmp_path):
-    beginning = beginning_of(
+    beginning = session_start_of(
         [Instrument(InstrumentSpec(RATE)), Instrument(InstrumentSpec(RATE))], has_room=True
     )
     writer = CaptureWriter(tmp_path / "c", beginning=beginning)
@@ -412,8 +412,8 @@ def test_wishes_of_several_players_are_read_in_the_order_of_frames(tmp_path):
 def test_what_players_have_in_common_is_written_once(tmp_path):
     of = measured()
     players = [InstrumentSpec(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
-    players.append(InstrumentSpec(RATE, calibration=measured(2), bowing=ordinary_table() * 1.01))
-    CaptureWriter(tmp_path / "c", beginning=Beginning(tuple(players), has_room=True)).close(9)
+    players.append(InstrumentSpec(RATE, calibration=measured(2), bowing=default_recipes() * 1.01))
+    CaptureWriter(tmp_path / "c", beginning=SessionStart(tuple(players), has_room=True)).close(9)
     header = json.loads((tmp_path / "c").read_text().splitlines()[0])
     assert [player["calibration"] for player in header["players"][1:3]] == [1, 1]
     assert [player["bowing"] for player in header["players"][1:3]] == [1, 1]
@@ -429,7 +429,7 @@ def test_an_instrument_of_another_build_is_read_as_it_was(tmp_path):
     usual = Quantities()
     body = replace(usual.body, mass=tuple(1.01 * mass for mass in usual.body.mass))
     own = replace(usual, body=body, bow=replace(usual.bow, hair=7.0, xi=(0.6, 0.5)))
-    beginning = Beginning((InstrumentSpec(RATE, own),), has_room=True)
+    beginning = SessionStart((InstrumentSpec(RATE, own),), has_room=True)
     CaptureWriter(tmp_path / "c", beginning=beginning).close(9)
     (again,) = read_capture(tmp_path / "c").beginning.players
     assert again.quantities == own
@@ -456,7 +456,7 @@ MOVES = [
 ]
 
 
-def written(moves, rests=(), **options) -> np.ndarray:
+def written(moves, gaps=(), **options) -> np.ndarray:
     """What an instrument plays whose parameters move so."""
     instrument = Instrument(InstrumentSpec(RATE, TUNED, **options))
     for frame, address, target, ramp in moves:
@@ -466,7 +466,7 @@ def written(moves, rests=(), **options) -> np.ndarray:
             instrument.write(address, target, frame=frame, ramp_ms=ramp * 1e3 / RATE)
     out = np.zeros(15000, np.float32)
     start = 0
-    for stop in (*rests, len(out)):
+    for stop in (*gaps, len(out)):
         instrument.process(out[start:stop])
         if stop < len(out):
             instrument.come_to_rest()
@@ -511,9 +511,9 @@ def test_a_parameter_that_it_does_not_know_has_its_default(tmp_path):
 
 
 def test_its_notes_go_on_after_a_rest(tmp_path):
-    path = first_version(tmp_path / "c", MOVES, end=15000, rests=[5000])
+    path = first_version(tmp_path / "c", MOVES, end=15000, gaps=[5000])
     samples = replayed(path)
-    np.testing.assert_array_equal(samples, written(MOVES, rests=[5000]))
+    np.testing.assert_array_equal(samples, written(MOVES, gaps=[5000]))
     assert rms(samples[5500:9000]) > 0.001
 
 
@@ -691,13 +691,13 @@ def test_a_capture_of_years_is_refused_unless_it_is_asked_for(tmp_path, write, e
 
 
 def test_a_late_rest_is_as_long_as_an_end(tmp_path, write):
-    capture = read_capture(write(tmp_path / "c", RAMPS, end=100, rests=[10**12]))
+    capture = read_capture(write(tmp_path / "c", RAMPS, end=100, gaps=[10**12]))
     assert capture.frames == 10**12
 
 
 def test_many_rests_are_no_capture(tmp_path, write):
     with pytest.raises(ScoreError, match="too many"):
-        read_capture(write(tmp_path / "c", RAMPS, rests=range(9000, 11000)))
+        read_capture(write(tmp_path / "c", RAMPS, gaps=range(9000, 11000)))
 
 
 def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
@@ -739,7 +739,7 @@ CALIBRATION = {
     "sharpening": measured().sharpening,
     "levels": measured().levels,
 }
-BOWING = ordinary_table().tolist()
+BOWING = default_recipes().tolist()
 USUAL = Quantities().body
 BODY = {item.name: getattr(USUAL, item.name) for item in fields(USUAL)}
 NO_BODIES = [
@@ -831,7 +831,7 @@ def second_version(path, lines=(), **changes):
     """A file as the second version wrote it: of one player, without a room."""
     header = {"format": "yehu-server capture", "version": 2, "rate": RATE, "seed": 3}
     header |= {"open_strings": "always", "tensions": list(TENSIONS), "build": build()}
-    header |= {"calibration": None, "bowing": ordinary_table().tolist(), "values": {}}
+    header |= {"calibration": None, "bowing": default_recipes().tolist(), "values": {}}
     header |= changes
     path.write_text("".join(json.dumps(line) + "\n" for line in [header, *lines]))
     return path

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy import signal
-from stages import FALLEN, NAMES, RANGES, SMALL, Stage, told
+from stages import NAMES, RANGES, SILENCED, SMALL, Stage, told
 
 RATE = 48000.0
 RAMP = np.clip(np.linspace(-5.0, 6.0, round(1.1 * RATE)), 0.0, 1.0)  # 0.5 s, 0.1 s, 0.5 s
@@ -62,7 +62,7 @@ def test_a_click_would_be_seen():
 def moving(rng: np.random.Generator, parts: int, frames: int) -> tuple[np.ndarray, np.ndarray]:
     """Sounds, and places that jump about all ranges; sometimes one falls silent."""
     dry = 0.05 * rng.normal(size=(parts, frames))
-    rows = np.zeros((parts, frames, FALLEN + 1))
+    rows = np.zeros((parts, frames, SILENCED + 1))
     for part in range(parts):
         values = {}
         for name in NAMES:
@@ -71,7 +71,7 @@ def moving(rng: np.random.Generator, parts: int, frames: int) -> tuple[np.ndarra
             values[name] = np.repeat(changes, 997)[:frames]
         values["level"][rng.integers(frames) :][:500] = 0.0
         rows[part] = told(frames, **values)
-        rows[part, rng.integers(frames), FALLEN] = 1.0
+        rows[part, rng.integers(frames), SILENCED] = 1.0
     return dry, rows
 
 
@@ -106,7 +106,7 @@ def test_the_mix_is_finite_at_all_extremes(rate):
         assert np.isfinite(out).all(), corner
         assert np.isfinite(stems).all(), corner
         assert np.abs(out).max() <= 1.0
-    assert stage.record["unsound"] == 0
+    assert stage.record["invalid_samples"] == 0
 
 
 @pytest.mark.parametrize("asked", [{"size": 2.0, "decay": 10.0}, {"size": 40.0, "decay": 10.0}])
@@ -133,7 +133,7 @@ def test_a_panic_empties_the_room(size):
     rows = told(frames, **asked)
     dry = tone(frames)
     dry[frames // 2 :] = 0.0
-    rows[frames // 2, FALLEN] = 1.0
+    rows[frames // 2, SILENCED] = 1.0
     out = stage.play(dry, rows)[1][:, 1]
     assert np.abs(out[frames // 2 - 100 : frames // 2]).max() > 1e-3
     after = out[frames // 2 :]
@@ -157,7 +157,7 @@ def test_a_panic_is_no_click_in_the_room():
         at = begin - fade if begin else 0
         dry[at : at + fade] *= 0.5 + 0.5 * np.cos(np.linspace(*ends, fade))
     dry[middle:] = 0.0
-    rows[middle, FALLEN] = 1.0
+    rows[middle, SILENCED] = 1.0
     out = stage.play(dry, rows)[1].sum(axis=1)
     note = np.sum(np.square(tone(frames))) / frames * round(0.005 * RATE)
     assert splash(out)[20:].max() < 1e-6 * note

@@ -7,7 +7,7 @@ import pytest
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import new_record
-from yehu_server.core.stage.seat import SEAT, fall_silent, prepare_seat, reflect, set_reflections
+from yehu_server.core.stage.seat import SEAT, clear_filters, prepare_seat, reflect, set_reflections
 
 SOUND = 343.0
 PLACES = [
@@ -36,7 +36,7 @@ def _place(
 
 @compiled_exactly
 def _silence(seat: Any) -> None:
-    fall_silent(seat[0])
+    clear_filters(seat[0])
 
 
 class Player:

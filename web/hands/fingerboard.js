@@ -19,7 +19,7 @@ export class Fingerboard extends EventTarget {
   /**
    * @param {HTMLCanvasElement} element
    * @param {Hands} hands
-   * @param {import('./tuned.js').Tuned} tuned
+   * @param {import('./key_tuning.js').KeyTuning} tuned
    */
   constructor(element, hands, tuned) {
     super();

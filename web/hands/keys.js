@@ -57,7 +57,7 @@ const WRITING = "input:not([type=range], [type=checkbox], [type=radio]), select,
 export class Keys extends EventTarget {
   /**
    * @param {Hands} hands
-   * @param {import('./tuned.js').Tuned} tuned
+   * @param {import('./key_tuning.js').KeyTuning} tuned
    */
   constructor(hands, tuned) {
     super();

@@ -3,7 +3,7 @@
 /** @typedef {import('../hands/bow.js').Bow} Bow */
 /** @typedef {import('./picture.js').Moment} Moment */
 
-import { say } from "../words.js";
+import { translate } from "../i18n.js";
 import { Picture, font } from "./picture.js";
 
 const GAP = 1 / 24; // between marks on the hair, in widths of the area
@@ -123,8 +123,8 @@ export class Bowing extends Picture {
     context.fillStyle = colours.soft;
     context.textAlign = "center";
     context.textBaseline = "top";
-    context.fillText(say("bow.tip"), Math.max(tip, 24), y + stick);
-    context.fillText(say("bow.frog"), Math.min(frog, width - 24), y + stick);
+    context.fillText(translate("bow.tip"), Math.max(tip, 24), y + stick);
+    context.fillText(translate("bow.frog"), Math.min(frog, width - 24), y + stick);
   }
 
   /**
@@ -150,11 +150,11 @@ export class Bowing extends Picture {
     context.font = font(12);
     context.textAlign = "left";
     context.textBaseline = "top";
-    context.fillText(say("bow.light"), 12, 9);
+    context.fillText(translate("bow.light"), 12, 9);
     context.textBaseline = "bottom";
-    context.fillText(say("bow.firm"), 12, this.height - 8);
+    context.fillText(translate("bow.firm"), 12, this.height - 8);
     context.textAlign = "right";
-    context.fillText(say("bow.draw"), this.width - 12, this.height - 8);
+    context.fillText(translate("bow.draw"), this.width - 12, this.height - 8);
   }
 
   /**

@@ -4,7 +4,7 @@
 /** @typedef {import("./picture.js").Moment} Moment */
 
 import { HIGHEST, LOWEST, OPEN, isNatural, nameOf } from "../hands/scale.js";
-import { say } from "../words.js";
+import { translate } from "../i18n.js";
 import { Picture, font } from "./picture.js";
 import { soundingPitch } from "./regime.js";
 
@@ -109,7 +109,7 @@ export class Board extends Picture {
   #name(context, note) {
     if (!isNatural(note)) return;
     const open = this.#colourOf(note);
-    const openName = say(`board.open${OPEN.indexOf(note)}`);
+    const openName = translate(`board.open${OPEN.indexOf(note)}`);
     context.textBaseline = "middle";
     context.font = font(13, open ? 700 : 400);
     if (this.isAcross) this.#write(context, nameOf(note), note, this.room - 14, open, true);

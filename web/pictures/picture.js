@@ -164,7 +164,7 @@ export class Gallery {
   }
 
   /** @param {Picture} picture */
-  hang(picture) {
+  add(picture) {
     this.pictures.push(picture);
   }
 

@@ -6,7 +6,7 @@
 /** @typedef {import('../interfaces.js').Snapshot} Snapshot */
 /** @typedef {import('./picture.js').Moment} Moment */
 
-import { say } from "../words.js";
+import { translate } from "../i18n.js";
 import { Limits } from "./limits.js";
 import { Picture, font } from "./picture.js";
 import { regimeOf } from "./regime.js";
@@ -144,7 +144,7 @@ export class Schelleng extends Picture {
       context.fillRect(this.#across(beta), bottom, 1, 4);
       context.fillText(String(beta), this.#across(beta), bottom + 6);
     }
-    context.fillText(say("schelleng.beta"), (this.width + LEFT) / 2, bottom + 20);
+    context.fillText(translate("schelleng.beta"), (this.width + LEFT) / 2, bottom + 20);
     context.textAlign = "right";
     context.textBaseline = "middle";
     for (const force of FORCES) {
@@ -152,7 +152,7 @@ export class Schelleng extends Picture {
       context.fillText(String(force), LEFT - 7, this.#down(force));
     }
     context.textAlign = "left";
-    context.fillText(say("schelleng.force"), LEFT + 8, 12);
+    context.fillText(translate("schelleng.force"), LEFT + 8, 12);
   }
 
   /**
@@ -165,14 +165,14 @@ export class Schelleng extends Picture {
     context.textBaseline = "middle";
     context.textAlign = "right";
     const right = this.width - 12;
-    context.fillText(say("regime.raucous"), right, 12);
+    context.fillText(translate("regime.raucous"), right, 12);
     context.textAlign = "left";
-    context.fillText(say("regime.slipping"), LEFT + 12, this.height - BOTTOM - 14);
+    context.fillText(translate("regime.slipping"), LEFT + 12, this.height - BOTTOM - 14);
     const { least, most } = this.limits.at(WIDE);
     const y = (this.#down(least) + this.#down(most)) / 2;
     context.fillStyle = this.colours.good;
     context.textAlign = "right";
-    context.fillText(say("regime.helmholtz"), right, Math.min(y, this.height - BOTTOM - 14));
+    context.fillText(translate("regime.helmholtz"), right, Math.min(y, this.height - BOTTOM - 14));
   }
 
   /**

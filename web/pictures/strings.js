@@ -5,9 +5,9 @@
 /** @typedef {'slowed' | 'moving' | 'still'} View */
 
 import { POINTS } from "../sound/snapshot.js";
-import { say } from "../words.js";
+import { translate } from "../i18n.js";
 import { Picture, font } from "./picture.js";
-import { Rest } from "./rest.js";
+import { RestShape } from "./rest_shape.js";
 import { Stroboscope } from "./stroboscope.js";
 
 const STRINGS = /** @type {const} */ (["inner", "outer"]);
@@ -27,7 +27,7 @@ export class Strings extends Picture {
     /** @type {View} still: the room in which they move, and no motion */
     this.view = "slowed";
     this.slow = [new Stroboscope(), new Stroboscope()];
-    this.rests = [new Rest(), new Rest()];
+    this.rests = [new RestShape(), new RestShape()];
     /** @type {[Float32Array[], Float32Array[]]} the latest shapes, the last one last */
     this.trails = [[], []];
     this.swing = LEAST_SWING;
@@ -129,7 +129,7 @@ export class Strings extends Picture {
     context.textBaseline = "top";
     context.textAlign = "left";
     context.fillText(
-      say(`strings.${STRINGS[string]}`),
+      translate(`strings.${STRINGS[string]}`),
       this.#place(0) + 8,
       string * (this.height / 2) + 6,
     );

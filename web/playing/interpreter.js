@@ -5,7 +5,7 @@
  */
 
 import facts from "../facts.js";
-import { room, surroundings } from "../sound/kernel.js";
+import { room, wasmImports } from "../sound/kernel.js";
 
 const { record, tablesAt, length, slots } = facts.interpreter;
 const HALVES = 2; // of a whole number, whose lower one holds all that pages read
@@ -21,7 +21,7 @@ export class Interpreter {
   static async open(bytes) {
     /** @type {any} */
     let exported = null;
-    const env = surroundings(() => new DataView(exported.memory.buffer));
+    const env = wasmImports(() => new DataView(exported.memory.buffer));
     exported = (await WebAssembly.instantiate(bytes, { env })).instance.exports;
     return new Interpreter(exported);
   }

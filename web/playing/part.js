@@ -1,4 +1,4 @@
-/** The part that the page plays: events come to wishes for it, and values are known of it. */
+/** The part that the page plays: interprets events to wishes, and keeps the values of its parameters. */
 
 import facts from "../facts.js";
 import { TABLE, find } from "./table.js";
@@ -24,7 +24,7 @@ const TOLD_WITHIN_S = 0.1;
  * @property {(address: string) => number | undefined} [target] where a parameter of bow and
  *   fingers moves to
  * @property {number} [people] how many may play it; by default one
- * @property {(address: string) => number | undefined} [told] the value of any other parameter, where
+ * @property {(address: string) => number | undefined} [reported] the value of any other parameter, where
  *   others set them too
  */
 
@@ -72,8 +72,8 @@ export class Part {
    */
   #learnValues({ values }) {
     for (const { address, row, owned } of TABLE) {
-      const told = owned || this.#isRecent(row) ? undefined : this.#sink.told?.(address);
-      if (told !== undefined) values[row] = told;
+      const reported = owned || this.#isRecent(row) ? undefined : this.#sink.reported?.(address);
+      if (reported !== undefined) values[row] = reported;
     }
   }
 
@@ -137,8 +137,8 @@ export class Part {
     const param = find(address);
     const { row, owned } = param;
     const known = owned ? this.#written.get(row)?.value : this.interpreter?.values[row];
-    const told = owned ? this.#sink.target?.(address) : this.#sink.told?.(address);
-    return (this.#isRecent(row) ? known : (told ?? known)) ?? param.default;
+    const reported = owned ? this.#sink.target?.(address) : this.#sink.reported?.(address);
+    return (this.#isRecent(row) ? known : (reported ?? known)) ?? param.default;
   }
 
   /**

@@ -173,7 +173,7 @@ export class Player {
    * @param {number} port
    * @param {number | null} frame
    */
-  letGoOf(port, frame = null) {
+  endPortNotes(port, frame = null) {
     this.#part.take(frame === null ? this.#afterAll(null) : this.#at(frame), DISCONNECT, port);
   }
 

@@ -22,7 +22,7 @@ export const WISH = 5;
  * What the module needs of its surroundings.
  * @param {() => DataView} view of its memory
  */
-export function surroundings(view) {
+export function wasmImports(view) {
   return {
     asin: Math.asin,
     sin: Math.sin,
@@ -74,7 +74,7 @@ export class Kernel {
   constructor(module, rate, most, lookLength) {
     /** @type {any} */
     const exported = new WebAssembly.Instance(module, {
-      env: surroundings(() => this.view),
+      env: wasmImports(() => this.view),
     }).exports;
     this.exported = exported;
     this.most = most;

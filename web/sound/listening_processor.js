@@ -1,6 +1,6 @@
 /** Plays the server's sound on the browser's audio thread. */
 
-import { Listened } from "./listened.js";
+import { JitterBuffer } from "./jitter_buffer.js";
 
 const TELL_S = 0.5;
 
@@ -10,7 +10,7 @@ class Listening extends AudioWorkletProcessor {
   /** @param {{processorOptions: {rate: number}}} options */
   constructor({ processorOptions: { rate } }) {
     super();
-    this.sound = new Listened(sampleRate, rate);
+    this.sound = new JitterBuffer(sampleRate, rate);
     this.isOpen = true;
     this.untold = 0;
     this.port.onmessage = ({ data }) => {

@@ -5,11 +5,11 @@
 
 import facts from "../facts.js";
 import { TABLE } from "../playing/table.js";
-import { Listener } from "./listener.js";
+import { StreamPlayer } from "./stream_player.js";
 import { snapshotOf, targetOf } from "./snapshot.js";
 import { NOW } from "./kernel.js";
 
-/** @typedef {import('./line.js').Line} Line */
+/** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 /** @typedef {import('../interfaces.js').Status} Status */
 
 /** Rows of parameters that the engine does not own, by address. */
@@ -18,19 +18,19 @@ const ROWS = new Map(TABLE.filter(({ owned }) => !owned).map(({ address, row }) 
 /** Tells by events: 'state' of a new snapshot. */
 export class Remote extends EventTarget {
   /**
-   * @param {Line} line to the server
+   * @param {ServerConnection} line to the server
    * @param {boolean} listens whether the page hears the server; only after a touch
    * @returns {Promise<Remote>}
    */
   static async open(line, listens) {
-    const opening = listens ? Listener.open(line.status.rate) : null; // while the touch counts
+    const opening = listens ? StreamPlayer.open(line.status.rate) : null; // while the touch counts
     await line.ready;
     return new Remote(line, await opening);
   }
 
   /**
-   * @param {Line} line
-   * @param {Listener | null} listener
+   * @param {ServerConnection} line
+   * @param {StreamPlayer | null} listener
    */
   constructor(line, listener) {
     super();
@@ -81,7 +81,7 @@ export class Remote extends EventTarget {
    * The value of any other parameter, whoever set it.
    * @param {string} address
    */
-  told(address) {
+  reported(address) {
     const row = ROWS.get(address);
     return row === undefined || !this.isSeen ? undefined : this.seen[facts.lookLength + row];
   }

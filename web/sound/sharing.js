@@ -1,8 +1,8 @@
-/** Shares what a page that sounds by itself plays: with the server, and with other such pages. */
+/** Sends the wishes of a page that computes its own sound to the server and to other such pages, and plays theirs. */
 
 /** @typedef {import('../instrument.js').Instrument} Instrument */
 /** @typedef {import('../instrument.js').Wish} Wish */
-/** @typedef {import('./line.js').Line} Line */
+/** @typedef {import('./server_connection.js').ServerConnection} ServerConnection */
 
 import facts from "../facts.js";
 import { NOW } from "./kernel.js";
@@ -15,7 +15,7 @@ const CHANNELS = 1 << 12;
 export class Sharing {
   /**
    * @param {Instrument} instrument
-   * @param {Line} line
+   * @param {ServerConnection} line
    */
   constructor(instrument, line) {
     this.instrument = instrument;

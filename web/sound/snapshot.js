@@ -18,62 +18,62 @@ const SLOTS = new Map(
 );
 
 /**
- * @param {Float64Array} seen
+ * @param {Float64Array} look
  * @returns {Snapshot}
  */
-export function snapshotOf(seen) {
-  const speed = Math.abs(seen[AT.speed]);
-  const beta = seen[AT.beta];
-  const string = /** @type {0 | 1 | -1} */ (seen[AT.string]);
-  const heard = seen[AT.frequency] * 2 ** (seen[AT.error] / 1200);
+export function snapshotOf(look) {
+  const speed = Math.abs(look[AT.speed]);
+  const beta = look[AT.beta];
+  const string = /** @type {0 | 1 | -1} */ (look[AT.string]);
+  const heard = look[AT.frequency] * 2 ** (look[AT.error] / 1200);
   return {
-    frame: seen[AT.frame],
-    time: seen[AT.frame] / seen[AT.rate],
-    pitch: seen[AT.pitch],
-    heard: { certainty: seen[AT.certainty], errorCents: seen[AT.error], slips: seen[AT.slips] },
-    level: seen[AT.rms] > 0 ? Math.max(20 * Math.log10(seen[AT.rms]), LEAST_DB) : LEAST_DB,
-    shape: [shapeOf(seen, 0), shapeOf(seen, 1)],
-    bow: { string, speed: seen[AT.speed], force: seen[AT.force], beta, x: seen[AT.bow_x] },
-    hair: { place: seen[AT.hair_place], length: seen[AT.hair_length] },
-    fingers: fingersOf(seen, string),
+    frame: look[AT.frame],
+    time: look[AT.frame] / look[AT.rate],
+    pitch: look[AT.pitch],
+    heard: { certainty: look[AT.certainty], errorCents: look[AT.error], slips: look[AT.slips] },
+    level: look[AT.rms] > 0 ? Math.max(20 * Math.log10(look[AT.rms]), LEAST_DB) : LEAST_DB,
+    shape: [shapeOf(look, 0), shapeOf(look, 1)],
+    bow: { string, speed: look[AT.speed], force: look[AT.force], beta, x: look[AT.bow_x] },
+    hair: { place: look[AT.hair_place], length: look[AT.hair_length] },
+    fingers: fingersOf(look, string),
     period: 1 / heard,
-    string: { length: seen[AT.length] },
+    string: { length: look[AT.length] },
     schelleng: {
-      min: (seen[AT.lower] * speed) / beta ** 2,
-      max: (seen[AT.upper] * speed) / beta,
+      min: (look[AT.lower] * speed) / beta ** 2,
+      max: (look[AT.upper] * speed) / beta,
     },
   };
 }
 
 /**
  * The value that a parameter of bow and fingers has or moves to.
- * @param {Float64Array} seen
+ * @param {Float64Array} look
  * @param {string} address
  */
-export function targetOf(seen, address) {
+export function targetOf(look, address) {
   const slot = SLOTS.get(address);
-  return slot === undefined ? undefined : seen[AT.targets + slot];
+  return slot === undefined ? undefined : look[AT.targets + slot];
 }
 
 /**
- * @param {Float64Array} seen
+ * @param {Float64Array} look
  * @param {number} string
  */
-function shapeOf(seen, string) {
+function shapeOf(look, string) {
   const start = AT.shapes + string * POINTS;
-  return Float32Array.from(seen.subarray(start, start + POINTS));
+  return Float32Array.from(look.subarray(start, start + POINTS));
 }
 
 /**
  * The fingers that press; they stop both strings.
- * @param {Float64Array} seen
+ * @param {Float64Array} look
  * @param {number} string
  */
-function fingersOf(seen, string) {
+function fingersOf(look, string) {
   const fingers = [];
   for (let i = 0; i < FINGERS; i++) {
-    const press = seen[AT.finger_press + i];
-    if (press > 0) fingers.push({ x: seen[AT.finger_x + i], press, string: Math.max(string, 0) });
+    const press = look[AT.finger_press + i];
+    if (press > 0) fingers.push({ x: look[AT.finger_x + i], press, string: Math.max(string, 0) });
   }
   return fingers;
 }

@@ -3,7 +3,7 @@
 /** @typedef {import('../interfaces.js').Player} Player */
 
 import { make } from "../elements.js";
-import { sayOr } from "../words.js";
+import { translateOr } from "../i18n.js";
 
 /**
  * @param {Player} player
@@ -13,8 +13,8 @@ import { sayOr } from "../words.js";
 export function makeCards(player, presets, name) {
   const cards = presets.sort(byProgram).map((preset) => {
     const card = make("button", { type: "button", "aria-pressed": "false" }, [
-      make("span", {}, [() => sayOr(`preset.${preset.name}`, preset.name)]),
-      make("small", {}, [() => sayOr(`preset.${preset.name}.about`, preset.about)]),
+      make("span", {}, [() => translateOr(`preset.${preset.name}`, preset.name)]),
+      make("small", {}, [() => translateOr(`preset.${preset.name}.about`, preset.about)]),
     ]);
     card.addEventListener("click", () => {
       player.applyPreset(preset.name);

@@ -5,7 +5,7 @@
 import { find, make } from "../elements.js";
 import { NOTES } from "../hands/keys.js";
 import { isNatural, nameOf } from "../hands/scale.js";
-import { inWords, say } from "../words.js";
+import { onLanguage, translate } from "../i18n.js";
 import { statusText } from "./header.js";
 import { showLearning } from "./learn.js";
 import { whileShown } from "./tabs.js";
@@ -25,16 +25,19 @@ export function showConnections(page) {
   const status = make("p", { class: "soft" });
   const tell = () => {
     const known = page.instrument.sound?.status ?? null;
-    const backend = known ? ` · ${say(`status.${known.backend}`)} · ${known.rate} Hz` : "";
+    const backend = known ? ` · ${translate(`status.${known.backend}`)} · ${known.rate} Hz` : "";
     status.textContent = statusText(known) + backend;
   };
   whileShown(panel, tell, 500);
-  inWords(tell);
+  onLanguage(tell);
   panel.append(
     inputs(page),
     showLearning(page),
     keyboard(page),
-    make("section", { class: "group" }, [make("h2", {}, [() => say("connect.sound")]), status]),
+    make("section", { class: "group" }, [
+      make("h2", {}, [() => translate("connect.sound")]),
+      status,
+    ]),
   );
   if (document.querySelector('meta[name="yehu-server"]')) {
     import("./server.js").then(({ showServer }) => panel.prepend(showServer(page.instrument)));
@@ -43,31 +46,31 @@ export function showConnections(page) {
 
 /** @param {Page} page */
 function inputs({ midi }) {
-  const select = make("select", { "aria-label": () => say("connect.midi") });
+  const select = make("select", { "aria-label": () => translate("connect.midi") });
   const word = make("p", { class: "soft", role: "status" });
-  const ask = make("button", { type: "button" }, [() => say("connect.ask")]);
+  const ask = make("button", { type: "button" }, [() => translate("connect.ask")]);
   ask.disabled = !midi.isAble;
   ask.addEventListener("click", () => midi.open());
   select.addEventListener("change", () => midi.choose(select.value));
   const tell = () => {
     const { inputs: connected } = midi;
     select.replaceChildren(
-      make("option", { value: ALL }, [say("connect.all")]),
+      make("option", { value: ALL }, [translate("connect.all")]),
       ...connected.map(({ id, name }) => make("option", { value: id }, [name ?? id])),
     );
     select.value = midi.chosen;
     select.hidden = !midi.isOpen;
     ask.hidden = midi.isOpen;
-    if (!midi.isAble) word.textContent = say(midi.whyNot);
-    else if (midi.isRefused) word.textContent = say("connect.refused");
-    else if (!midi.isOpen) word.textContent = say("connect.about");
-    else if (connected.length === 0) word.textContent = say("connect.waiting");
-    else word.textContent = say("connect.count", { count: connected.length });
+    if (!midi.isAble) word.textContent = translate(midi.whyNot);
+    else if (midi.isRefused) word.textContent = translate("connect.refused");
+    else if (!midi.isOpen) word.textContent = translate("connect.about");
+    else if (connected.length === 0) word.textContent = translate("connect.waiting");
+    else word.textContent = translate("connect.count", { count: connected.length });
   };
   midi.addEventListener("change", tell);
-  inWords(tell);
+  onLanguage(tell);
   return make("section", { class: "group" }, [
-    make("h2", {}, [() => say("connect.midi")]),
+    make("h2", {}, [() => translate("connect.midi")]),
     word,
     ask,
     select,
@@ -78,12 +81,12 @@ function inputs({ midi }) {
 function keyboard({ keys }) {
   const octave = make("output");
   const tell = () => {
-    octave.textContent = say("connect.octave", {
+    octave.textContent = translate("connect.octave", {
       octave: Math.sign(keys.octave) * Math.abs(keys.octave / 12),
     });
   };
   keys.addEventListener("octave", tell);
-  inWords(tell);
+  onLanguage(tell);
   const lines = ROWS.map((row, i) =>
     make(
       "div",
@@ -92,8 +95,8 @@ function keyboard({ keys }) {
     ),
   );
   return make("section", { class: "group" }, [
-    make("h2", {}, [() => say("connect.keyboard")]),
-    make("p", { class: "soft" }, [() => say("connect.keyboard.about")]),
+    make("h2", {}, [() => translate("connect.keyboard")]),
+    make("p", { class: "soft" }, [() => translate("connect.keyboard.about")]),
     make("div", { class: "keyboard", "aria-hidden": "true" }, lines),
     octave,
   ]);

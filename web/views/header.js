@@ -4,7 +4,7 @@
 
 import { find } from "../elements.js";
 import { remember, settings } from "../settings.js";
-import { inWords, language, say, speak } from "../words.js";
+import { onLanguage, language, translate, setLanguage } from "../i18n.js";
 
 const EVERY = 500; // ms
 
@@ -18,19 +18,19 @@ export function showHeader({ instrument, gallery }) {
   });
   instrument.addEventListener("start", () => {
     start.dataset.text = "header.silence";
-    start.textContent = say("header.silence");
+    start.textContent = translate("header.silence");
     start.classList.remove("main");
   });
   showNotice(instrument);
   const tell = () => {
     status.textContent = statusText(instrument.sound?.status ?? null);
   };
-  inWords(tell);
+  onLanguage(tell);
   setInterval(() => {
     if (!document.hidden && instrument.sound) tell();
   }, EVERY);
   find("language", HTMLButtonElement).addEventListener("click", () => {
-    speak(language() === "zh" ? "en" : "zh");
+    setLanguage(language() === "zh" ? "en" : "zh");
   });
   find("theme", HTMLButtonElement).addEventListener("click", () => {
     const isDark = document.documentElement.dataset.theme === "dark";
@@ -38,7 +38,7 @@ export function showHeader({ instrument, gallery }) {
     document.documentElement.dataset.theme = settings.theme;
     gallery.renew();
   });
-  inWords(() => gallery.renew());
+  onLanguage(() => gallery.renew());
   darkSystem.addEventListener("change", () => gallery.renew());
 }
 
@@ -51,7 +51,7 @@ function showNotice(instrument) {
   let [key, why] = ["", ""];
   const tell = () => {
     notice.hidden = key === "";
-    notice.textContent = key && say(key, { why });
+    notice.textContent = key && translate(key, { why });
   };
   for (const event of ["prepare", "ready", "lack", "fail"]) {
     instrument.addEventListener(event, () => {
@@ -61,7 +61,7 @@ function showNotice(instrument) {
       if (event !== "prepare") find("play", HTMLElement).removeAttribute("aria-busy");
     });
   }
-  inWords(tell);
+  onLanguage(tell);
 }
 
 const darkSystem = matchMedia("(prefers-color-scheme: dark)");
@@ -71,12 +71,12 @@ const darkSystem = matchMedia("(prefers-color-scheme: dark)");
  * @param {import('../interfaces.js').Status | null} status
  */
 export function statusText(status) {
-  if (!status) return say("status.off");
+  if (!status) return translate("status.off");
   if (!status.running) {
-    return say(status.backend === "remote" ? "status.broken" : "status.waiting");
+    return translate(status.backend === "remote" ? "status.broken" : "status.waiting");
   }
   const load = status.loadPercent.toFixed(0);
   const latency = status.latencyMs.toFixed(0);
-  const dropouts = status.dropouts ? say("status.dropouts", { count: status.dropouts }) : "";
-  return say("status.on", { load, latency }) + dropouts;
+  const dropouts = status.dropouts ? translate("status.dropouts", { count: status.dropouts }) : "";
+  return translate("status.on", { load, latency }) + dropouts;
 }

@@ -1,35 +1,39 @@
 /** Teaches what the controls of MIDI devices move: one by one, and all that was taught. */
 
 /** @typedef {import('../main.js').Page} Page */
-/** @typedef {import('../taught.js').Taught} Taught */
+/** @typedef {import('../midi_learn.js').MidiLearn} MidiLearn */
 /** @typedef {import('../midi.js').Midi} Midi */
 /** @typedef {import('../playing/learned.js').LearnedBind} LearnedBind */
 
-import { allow, make, makeSwitch, offer } from "../elements.js";
+import { allow, make, makeSwitch, download } from "../elements.js";
 import { FREE } from "../playing/learned.js";
 import { BEND } from "../playing/sources.js";
 import { find } from "../playing/table.js";
-import { inWords, say, sayOr } from "../words.js";
+import { onLanguage, translate, translateOr } from "../i18n.js";
 import { nameFor, unitFor, written } from "./slider.js";
 
 /**
  * A button that teaches a control to move a parameter, and a line that tells which does.
  * @param {string} target
- * @param {Taught} taught
+ * @param {MidiLearn} taught
  * @param {Midi} midi
  */
 export function makeLearning(target, taught, midi) {
-  const button = make("button", { type: "button", class: "quiet knob", title: () => say("learn") });
+  const button = make("button", {
+    type: "button",
+    class: "quiet knob",
+    title: () => translate("learn"),
+  });
   const told = make("p", { class: "soft told", role: "status" });
   teachBy(button, () => target, taught, midi);
   const tell = () => {
     const isAwaited = taught.awaited === target;
     const bind = taught.binds.find((own) => own.target === target);
-    button.setAttribute("aria-label", `${say("learn")}: ${nameFor(target)}`);
+    button.setAttribute("aria-label", `${translate("learn")}: ${nameFor(target)}`);
     button.setAttribute("aria-pressed", String(isAwaited));
     button.classList.toggle("taught", bind !== undefined);
-    if (isAwaited) told.textContent = say("learn.move");
-    else told.textContent = bind ? say("learn.by", { source: sourceName(bind.source) }) : "";
+    if (isAwaited) told.textContent = translate("learn.move");
+    else told.textContent = bind ? translate("learn.by", { source: sourceName(bind.source) }) : "";
   };
   follow(taught, tell);
   return [button, told];
@@ -40,33 +44,33 @@ export function makeLearning(target, taught, midi) {
  * @param {Page} page
  */
 export function showLearning({ taught, midi }) {
-  const select = make("select", { "aria-label": () => say("learn.target") }, groups());
+  const select = make("select", { "aria-label": () => translate("learn.target") }, groups());
   const button = make("button", { type: "button" });
   teachBy(button, () => select.value, taught, midi);
   const soft = makeSwitch(
-    () => say("learn.soft"),
+    () => translate("learn.soft"),
     taught.isSoft,
     (isOn) => {
       taught.isSoft = isOn;
     },
   );
-  const about = make("p", { class: "soft" }, [() => say("learn.soft.about")]);
+  const about = make("p", { class: "soft" }, [() => translate("learn.soft.about")]);
   const word = make("p", { class: "soft", role: "status" });
-  const list = make("ul", { class: "binds", "aria-label": () => say("learn.list") });
-  const save = make("button", { type: "button" }, [() => say("learn.save")]);
+  const list = make("ul", { class: "binds", "aria-label": () => translate("learn.list") });
+  const save = make("button", { type: "button" }, [() => translate("learn.save")]);
   save.addEventListener("click", () => {
     const { blob, name } = taught.file();
-    offer(blob, name);
+    download(blob, name);
   });
   const saving = make("div", { class: "group" }, [
     make("div", { class: "row" }, [save]),
-    make("p", { class: "soft" }, [() => say("learn.save.about")]),
+    make("p", { class: "soft" }, [() => translate("learn.save.about")]),
   ]);
   const tell = () => {
     const { awaited, found } = taught;
-    button.textContent = say(awaited ? "learn.stop" : "learn");
+    button.textContent = translate(awaited ? "learn.stop" : "learn");
     button.setAttribute("aria-pressed", String(awaited !== null));
-    if (awaited) word.textContent = `${nameFor(awaited)}: ${say("learn.move")}`;
+    if (awaited) word.textContent = `${nameFor(awaited)}: ${translate("learn.move")}`;
     else word.textContent = found ? `${nameFor(found.target)}: ${movedBy(found)}` : "";
   };
   /** @type {{key: string, element: HTMLElement, show: (bind: LearnedBind) => void}[]} */
@@ -85,10 +89,10 @@ export function showLearning({ taught, midi }) {
     if (binds.map(keyOf).join() !== rows.map(({ key }) => key).join()) renew();
     else rows.forEach(({ show }, at) => show(binds[at]));
   });
-  inWords(renew);
+  onLanguage(renew);
   return make("section", { class: "group" }, [
-    make("h2", {}, [() => say("learn.name")]),
-    make("p", { class: "soft" }, [() => say("learn.about")]),
+    make("h2", {}, [() => translate("learn.name")]),
+    make("p", { class: "soft" }, [() => translate("learn.about")]),
     make("div", { class: "row" }, [make("div", { class: "wide" }, [select]), button]),
     make("div", {}, [soft, about]),
     word,
@@ -99,19 +103,19 @@ export function showLearning({ taught, midi }) {
 
 /**
  * Tell what is taught, now and whenever it changes.
- * @param {Taught} taught
+ * @param {MidiLearn} taught
  * @param {() => void} tell
  */
 function follow(taught, tell) {
   for (const event of ["change", "wait"]) taught.addEventListener(event, tell);
-  inWords(tell);
+  onLanguage(tell);
 }
 
 /**
  * Let a button await a control, or end that.
  * @param {HTMLButtonElement} button
  * @param {() => string} target
- * @param {Taught} taught
+ * @param {MidiLearn} taught
  * @param {Midi} midi
  */
 function teachBy(button, target, taught, midi) {
@@ -124,7 +128,7 @@ function teachBy(button, target, taught, midi) {
     await midi.open();
     if (midi.isOpen) taught.await(target());
   });
-  if (!midi.isAble) inWords(() => allow(button, say(midi.whyNot)));
+  if (!midi.isAble) onLanguage(() => allow(button, translate(midi.whyNot)));
 }
 
 /** The parameters by their groups. */
@@ -133,7 +137,7 @@ function groups() {
   return names.map((name) =>
     make(
       "optgroup",
-      { label: () => sayOr(`group.${name}`, name) },
+      { label: () => translateOr(`group.${name}`, name) },
       FREE.filter(({ group }) => group === name).map(({ address }) =>
         make("option", { value: address }, [() => nameFor(address)]),
       ),
@@ -149,14 +153,14 @@ function keyOf({ source, target }) {
 /**
  * A bind, with the values at its ends, and a button that ends it.
  * @param {LearnedBind} bind
- * @param {Taught} taught
+ * @param {MidiLearn} taught
  */
 function row(bind, taught) {
   const param = find(bind.target);
   const name = nameFor(bind.target);
   let ends = [param.lo, param.hi];
   const inputs = ends.map((_, end) => {
-    const label = `${name}, ${say(end ? "learn.to" : "learn.from")}`;
+    const label = `${name}, ${translate(end ? "learn.to" : "learn.from")}`;
     const { lo: min, hi: max } = param;
     const input = make("input", { type: "number", min, max, step: "any", "aria-label": label });
     input.addEventListener("change", () => {
@@ -177,8 +181,8 @@ function row(bind, taught) {
   const forget = make("button", {
     type: "button",
     class: "quiet",
-    "aria-label": `${say("learn.forget")}: ${sourceName(bind.source)}, ${name}`,
-    title: say("learn.forget"),
+    "aria-label": `${translate("learn.forget")}: ${sourceName(bind.source)}, ${name}`,
+    title: translate("learn.forget"),
   });
   forget.append("✕");
   forget.addEventListener("click", () => taught.forget(bind));
@@ -195,7 +199,7 @@ function row(bind, taught) {
 
 /** @param {LearnedBind} bind */
 function movedBy({ source }) {
-  return say("learn.by", { source: sourceName(source) });
+  return translate("learn.by", { source: sourceName(source) });
 }
 
 /**
@@ -203,5 +207,5 @@ function movedBy({ source }) {
  * @param {string} source
  */
 function sourceName(source) {
-  return sayOr(`source.${source}`, source.toUpperCase()); // cc 74, nrpn 300
+  return translateOr(`source.${source}`, source.toUpperCase()); // cc 74, nrpn 300
 }

@@ -5,7 +5,7 @@
 
 import { find, make } from "../elements.js";
 import { TABLE } from "../playing/table.js";
-import { inWords, say, sayOr } from "../words.js";
+import { onLanguage, translate, translateOr } from "../i18n.js";
 import { makeLearning } from "./learn.js";
 import { aboutOf, makeRange, nameFor, unitFor, written } from "./slider.js";
 import { whileShown } from "./tabs.js";
@@ -30,8 +30,8 @@ export function showParameters({ instrument, taught, midi }) {
   const panel = find("panel-all", HTMLElement);
   const search = make("input", {
     type: "search",
-    "aria-label": () => say("all.search"),
-    placeholder: () => say("all.search"),
+    "aria-label": () => translate("all.search"),
+    placeholder: () => translate("all.search"),
   });
   const none = make("p", { class: "soft", role: "status" });
   const groups = [...new Set([...ORDER, ...TABLE.map(({ group }) => group)])].map((name) => {
@@ -40,7 +40,7 @@ export function showParameters({ instrument, taught, midi }) {
     );
     const count = make("span", { class: "soft" }, [String(rows.length)]);
     const details = make("details", {}, [
-      make("summary", {}, [make("h2", {}, [() => sayOr(`group.${name}`, name)]), " ", count]),
+      make("summary", {}, [make("h2", {}, [() => translateOr(`group.${name}`, name)]), " ", count]),
       ...rows.map(({ element }) => element),
     ]);
     details.open = name === ORDER[0];
@@ -60,11 +60,11 @@ export function showParameters({ instrument, taught, midi }) {
       if (words.length) details.open = inGroup > 0;
       found += inGroup;
     }
-    none.textContent = found ? "" : say("all.none");
+    none.textContent = found ? "" : translate("all.none");
   };
   search.addEventListener("input", seek);
-  inWords(seek);
-  const reset = make("button", { type: "button" }, [() => say("all.reset")]);
+  onLanguage(seek);
+  const reset = make("button", { type: "button" }, [() => translate("all.reset")]);
   reset.addEventListener("click", () => {
     for (const { rows } of groups) for (const one of rows) one.reset();
   });
@@ -110,9 +110,9 @@ function row({ player }, param, learning) {
     {
       type: "button",
       class: "quiet reset",
-      title: () => say("all.back", { value: written(param, param.default) }),
+      title: () => translate("all.back", { value: written(param, param.default) }),
       "aria-label": () =>
-        `${nameFor(address)}: ${say("all.back", { value: written(param, param.default) })}`,
+        `${nameFor(address)}: ${translate("all.back", { value: written(param, param.default) })}`,
     },
     ["↺"],
   );
@@ -147,7 +147,7 @@ function row({ player }, param, learning) {
     follow();
   });
   back.addEventListener("click", reset);
-  inWords(follow);
+  onLanguage(follow);
   const text = () => `${nameFor(address)} ${address} ${param.doc} ${aboutOf(param)}`.toLowerCase();
   return { element, text, follow, reset };
 }

@@ -1,11 +1,11 @@
 /** The choice of the part that this page plays, where a server has several. */
 
-/** @typedef {import('../sound/line.js').Line} Line */
+/** @typedef {import('../sound/server_connection.js').ServerConnection} ServerConnection */
 
 import { find } from "../elements.js";
-import { inWords, say } from "../words.js";
+import { onLanguage, translate } from "../i18n.js";
 
-/** @param {Line} line */
+/** @param {ServerConnection} line */
 export function showPart(line) {
   const select = find("part", HTMLSelectElement);
   const tell = () => {
@@ -17,9 +17,9 @@ export function showPart(line) {
       );
     }
     for (const option of select.options)
-      option.text = say("part.of", { part: option.value, parts });
+      option.text = translate("part.of", { part: option.value, parts });
     select.value = String(part);
-    document.title = parts < 2 ? say("title") : `${say("title")} ${part}`;
+    document.title = parts < 2 ? translate("title") : `${translate("title")} ${part}`;
   };
   select.addEventListener("change", () => {
     const url = new URL(location.href);
@@ -27,5 +27,5 @@ export function showPart(line) {
     location.assign(url); // a player of its own, that knows nothing of the part before
   });
   line.addEventListener("status", tell);
-  inWords(tell);
+  onLanguage(tell);
 }

@@ -4,7 +4,7 @@
 
 import { make } from "../elements.js";
 import facts from "../facts.js";
-import { say } from "../words.js";
+import { translate } from "../i18n.js";
 import { makeCards } from "./cards.js";
 import { makeSlider } from "./slider.js";
 import { whileShown } from "./tabs.js";
@@ -34,9 +34,9 @@ export function showRoom(player, panel) {
   const sliders = SLIDERS.map((address) => makeSlider(player, address));
   whileShown(panel, () => sliders.forEach((slider) => slider.follow()), EVERY);
   return make("section", { class: "group", id: "room" }, [
-    make("h2", {}, [() => say("room.name")]),
-    make("p", { class: "soft" }, [() => say("room.about")]),
-    ...(ROOMS.length ? [makeCards(player, ROOMS, () => say("room.name"))] : []),
+    make("h2", {}, [() => translate("room.name")]),
+    make("p", { class: "soft" }, [() => translate("room.about")]),
+    ...(ROOMS.length ? [makeCards(player, ROOMS, () => translate("room.name"))] : []),
     make(
       "div",
       { class: "sliders" },

@@ -7,7 +7,7 @@ import { find } from "../elements.js";
 import { nameOf } from "../hands/scale.js";
 import { regimeOf, soundingPitch } from "../pictures/regime.js";
 import { remember, settings } from "../settings.js";
-import { inWords, say } from "../words.js";
+import { onLanguage, translate } from "../i18n.js";
 import { whileShown } from "./tabs.js";
 
 /** @type {View[]} */
@@ -22,10 +22,10 @@ export function showSeeing({ instrument, strings }) {
   const tuner = find("tuner", HTMLCanvasElement);
   const schelleng = find("schelleng", HTMLCanvasElement);
   let soundedAt = -Infinity;
-  inWords(() => {
+  onLanguage(() => {
     const name = regime.dataset.regime;
-    regime.textContent = name ? say(`regime.${name}`) : "";
-    about.textContent = say(`regime.${name ?? "silent"}.about`);
+    regime.textContent = name ? translate(`regime.${name}`) : "";
+    about.textContent = translate(`regime.${name ?? "silent"}.about`);
   });
   whileShown(
     find("panel-see", HTMLElement),
@@ -38,15 +38,15 @@ export function showSeeing({ instrument, strings }) {
       const name = regimeOf(state);
       if (regime.dataset.regime !== name) {
         regime.dataset.regime = name;
-        regime.textContent = say(`regime.${name}`);
-        about.textContent = say(`regime.${name}.about`);
+        regime.textContent = translate(`regime.${name}`);
+        about.textContent = translate(`regime.${name}.about`);
       }
       const pitch = soundingPitch(state);
       tuner.setAttribute(
         "aria-label",
         Number.isNaN(pitch)
-          ? say("tuner.silent")
-          : say("tuner.told", {
+          ? translate("tuner.silent")
+          : translate("tuner.told", {
               note: nameOf(pitch),
               cents: Math.round((pitch - Math.round(pitch)) * 100),
             }),

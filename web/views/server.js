@@ -7,10 +7,10 @@ import facts from "../facts.js";
 import { make } from "../elements.js";
 import { TABLE } from "../playing/table.js";
 import { remember, settings } from "../settings.js";
-import { Line } from "../sound/line.js";
+import { ServerConnection } from "../sound/server_connection.js";
 import { Remote } from "../sound/remote.js";
 import { Sharing } from "../sound/sharing.js";
-import { inWords, say } from "../words.js";
+import { onLanguage, translate } from "../i18n.js";
 import { showPart } from "./part.js";
 
 /** @type {Way[]} */
@@ -21,14 +21,14 @@ const WAYS = ["here", "there", "listen"];
  * @param {Instrument} instrument
  */
 export function showServer(instrument) {
-  const line = new Line();
+  const line = new ServerConnection();
   showPart(line);
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
   const choice = make("div", {
     class: "choice",
     role: "group",
-    "aria-label": () => say("server.name"),
+    "aria-label": () => translate("server.name"),
   });
   /** @type {Way | null} */
   let chosen = null;
@@ -37,7 +37,7 @@ export function showServer(instrument) {
   let sharing = null;
   const buttons = WAYS.map((way) => {
     const button = make("button", { type: "button", id: `way-${way}` }, [
-      () => say(`server.${way}`),
+      () => translate(`server.${way}`),
     ]);
     button.addEventListener("click", () => {
       remember({ way });
@@ -75,15 +75,19 @@ export function showServer(instrument) {
       button.setAttribute("aria-pressed", String(way === chosen));
       button.disabled = way === "here" && sounds !== "ready";
     }
-    about.textContent = chosen ? say(`server.${chosen}.about`) : "";
-    if (chosen && parts > 1) about.textContent += ` ${say("server.parts")}`;
-    const own = { preparing: say("server.preparing"), ready: "", none: say("server.impossible") };
+    about.textContent = chosen ? translate(`server.${chosen}.about`) : "";
+    if (chosen && parts > 1) about.textContent += ` ${translate("server.parts")}`;
+    const own = {
+      preparing: translate("server.preparing"),
+      ready: "",
+      none: translate("server.impossible"),
+    };
     const told = [
-      device ? say("server.device", { device }) : say("server.silent"),
-      say("server.pages", { count: pages }),
+      device ? translate("server.device", { device }) : translate("server.silent"),
+      translate("server.pages", { count: pages }),
       own[sounds],
     ];
-    state.textContent = line.isOpen ? told.filter(Boolean).join(" ") : say("server.gone");
+    state.textContent = line.isOpen ? told.filter(Boolean).join(" ") : translate("server.gone");
   }
 
   line.addEventListener("status", () => {
@@ -97,13 +101,13 @@ export function showServer(instrument) {
     }
     tell();
   });
-  inWords(tell);
+  onLanguage(tell);
   line.addEventListener("break", () => {
     if (chosen !== "here") instrument.silence(); // the server has ended what this page held
     tell();
   });
   return make("section", { class: "group" }, [
-    make("h2", {}, [() => say("server.name")]),
+    make("h2", {}, [() => translate("server.name")]),
     choice,
     about,
     state,

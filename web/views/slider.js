@@ -5,7 +5,7 @@
 
 import { make } from "../elements.js";
 import { find, fromUnit, toUnit } from "../playing/table.js";
-import { inWords, sayOr } from "../words.js";
+import { onLanguage, translateOr } from "../i18n.js";
 
 const STEPS = 1000;
 
@@ -14,7 +14,7 @@ const STEPS = 1000;
  * @param {string} address
  */
 export function nameFor(address) {
-  return sayOr(`parameter${address}`, find(address).label);
+  return translateOr(`parameter${address}`, find(address).label);
 }
 
 /**
@@ -22,7 +22,7 @@ export function nameFor(address) {
  * @param {Parameter} param
  */
 export function aboutOf({ address, doc }) {
-  return sayOr(`about${address}`, doc);
+  return translateOr(`about${address}`, doc);
 }
 
 /**
@@ -30,7 +30,7 @@ export function aboutOf({ address, doc }) {
  * @param {string} unit
  */
 export function unitFor(unit) {
-  return unit === "1" ? "" : sayOr(`unit.${unit}`, unit);
+  return unit === "1" ? "" : translateOr(`unit.${unit}`, unit);
 }
 
 /**
@@ -109,6 +109,6 @@ export function makeSlider(player, address, name = () => nameFor(address)) {
     show(value);
     tell(value);
   };
-  inWords(follow);
+  onLanguage(follow);
   return { element, follow };
 }

@@ -4,7 +4,7 @@
 
 import { find, make } from "../elements.js";
 import facts from "../facts.js";
-import { inWords, say, sayOr } from "../words.js";
+import { onLanguage, translate, translateOr } from "../i18n.js";
 import { makeCards } from "./cards.js";
 import { ROOMS, showRoom } from "./room.js";
 
@@ -28,8 +28,8 @@ export function showSounds({ instrument, tuned, board, taught }) {
 function presets(player) {
   const sounds = Object.values(facts.presets.shipped).filter((preset) => !ROOMS.includes(preset));
   return make("section", { class: "group" }, [
-    make("h2", {}, [() => say("sound.presets")]),
-    makeCards(player, sounds, () => say("sound.presets")),
+    make("h2", {}, [() => translate("sound.presets")]),
+    makeCards(player, sounds, () => translate("sound.presets")),
   ]);
 }
 
@@ -43,21 +43,23 @@ function presets(player) {
 function chooser(what, names, first, apply) {
   const select = make(
     "select",
-    { "aria-label": () => say(`sound.${what}`) },
-    names.map((name) => make("option", { value: name }, [() => sayOr(`${what}.${name}`, name)])),
+    { "aria-label": () => translate(`sound.${what}`) },
+    names.map((name) =>
+      make("option", { value: name }, [() => translateOr(`${what}.${name}`, name)]),
+    ),
   );
   select.value = first;
   const about = make("p", { class: "soft" });
   const tell = () => {
-    about.textContent = sayOr(`${what}.${select.value}.about`, "");
+    about.textContent = translateOr(`${what}.${select.value}.about`, "");
   };
   select.addEventListener("change", () => {
     apply(select.value);
     tell();
   });
-  inWords(tell);
+  onLanguage(tell);
   return make("section", { class: "group" }, [
-    make("h2", {}, [() => say(`sound.${what}`)]),
+    make("h2", {}, [() => translate(`sound.${what}`)]),
     select,
     about,
   ]);

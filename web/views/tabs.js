@@ -4,7 +4,7 @@
 
 import { find, make } from "../elements.js";
 import { remember, settings } from "../settings.js";
-import { say } from "../words.js";
+import { translate } from "../i18n.js";
 
 const PANELS = ["see", "sound", "tunes", "keep", "connect", "all"];
 
@@ -22,7 +22,7 @@ export function showTabs({ gallery }) {
         id: `tab-${name}`,
         "aria-controls": `panel-${name}`,
       },
-      [() => say(`tab.${name}`)],
+      [() => translate(`tab.${name}`)],
     );
     tab.addEventListener("click", () => {
       choose(name);

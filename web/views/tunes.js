@@ -7,7 +7,7 @@
 import { find, make } from "../elements.js";
 import facts from "../facts.js";
 import { TuneGuide, TunePlayer } from "../tune.js";
-import { inWords, say, sayOr } from "../words.js";
+import { onLanguage, translate, translateOr } from "../i18n.js";
 
 /** @type {Way[]} */
 const WAYS = ["listen", "along"];
@@ -17,7 +17,7 @@ export function showTunes(page) {
   const panel = find("panel-tunes", HTMLElement);
   const list = make("div", { class: "group" });
   page.instrument.addEventListener("silence", () => present?.stop());
-  panel.append(make("p", { class: "soft" }, [() => say("tunes.about")]), list);
+  panel.append(make("p", { class: "soft" }, [() => translate("tunes.about")]), list);
   import("../examples.js").then(
     ({ default: examples }) => {
       // A JSON list has no type of its places, so that `events` is told here.
@@ -26,7 +26,7 @@ export function showTunes(page) {
       tunes.sort((one, other) => Number(isForOthers(one)) - Number(isForOthers(other)));
       list.append(...tunes.map((tune) => row(page, tune)));
     },
-    () => list.append(make("p", {}, [() => say("tunes.none")])),
+    () => list.append(make("p", {}, [() => translate("tunes.none")])),
   );
 }
 
@@ -43,12 +43,12 @@ let present = null;
  * @param {Tune} tune
  */
 function row(page, tune) {
-  const name = () => sayOr(`tune.${tune.name}`, tune.name.replace(/_/g, " "));
+  const name = () => translateOr(`tune.${tune.name}`, tune.name.replace(/_/g, " "));
   const buttons = WAYS.map((way) => {
-    const label = () => `${say(`tunes.${way}`)}: ${name()}`;
+    const label = () => `${translate(`tunes.${way}`)}: ${name()}`;
     const button = make("button", { type: "button", "aria-label": label });
     button.addEventListener("click", () => toggle(button, way));
-    inWords(() => tell(button, way));
+    onLanguage(() => tell(button, way));
     return button;
   });
   const bar = make("progress", { max: 1, value: 0, "aria-label": name, hidden: true });
@@ -88,7 +88,7 @@ function row(page, tune) {
   const length = `${Math.floor(tune.seconds / 60)}:${String(Math.round(tune.seconds % 60)).padStart(2, "0")}`;
   return make("article", { class: "tune" }, [
     make("h2", {}, [name, " ", make("span", { class: "soft" }, [length])]),
-    make("p", { class: "soft" }, [() => sayOr(`tune.${tune.name}.about`, "")]),
+    make("p", { class: "soft" }, [() => translateOr(`tune.${tune.name}.about`, "")]),
     make("div", { class: "row" }, buttons),
     bar,
   ]);
@@ -100,5 +100,5 @@ function row(page, tune) {
  */
 function tell(button, way) {
   const isOn = button.getAttribute("aria-pressed") === "true";
-  button.textContent = say(isOn ? "tunes.stop" : `tunes.${way}`);
+  button.textContent = translate(isOn ? "tunes.stop" : `tunes.${way}`);
 }

@@ -13,7 +13,7 @@ import numpy as np
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.core.midi.events import START
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.style import Style
 from yehu_server.playing.tables import Controls
 

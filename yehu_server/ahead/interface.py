@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.ahead.right_tables import (
+from yehu_server.ahead.table_checks import (
     CHECKS,
     check_binds,
     check_curves,

@@ -8,7 +8,7 @@ from typing import Any
 from yehu_server.api.checks import PathLike, get_ready, number, setting, whole
 from yehu_server.api.observing import Run, curves_of
 from yehu_server.api.pitches import pitch_of, playable
-from yehu_server.api.styles import make_of
+from yehu_server.api.styles import playing_setup_of
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument as Engine
 from yehu_server.core.physics.quantities import Quantities
@@ -16,7 +16,7 @@ from yehu_server.errors import ParameterError, YehuError
 from yehu_server.lab.simulation import Simulation
 from yehu_server.params.spec import Place
 from yehu_server.params.table import find
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.wishes import Key
 
 Array = Any
@@ -84,7 +84,7 @@ class Instrument:
         practice: PathLike | None = None,
         seed: int = 0,
     ) -> None:
-        make = make_of(
+        make = playing_setup_of(
             sample_rate,
             instrument,
             preset=preset,

@@ -17,7 +17,7 @@ from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS, control_column
 from yehu_server.errors import ParameterError
 from yehu_server.lab.simulation import MAX_BYTES, Simulation, about, shape_of, signals
 from yehu_server.params.table import SLOT
-from yehu_server.playing.wishes import Wishes
+from yehu_server.playing.wishes import WishPoster
 from yehu_server.util import __version__
 
 Array = Any
@@ -78,7 +78,7 @@ class Run:
         self,
         instrument: Instrument,
         stage: Ensemble | Instrument,
-        wishes: Wishes,
+        wishes: WishPoster,
         curves: Sequence[Curve] = (),
     ) -> None:
         self._instrument, self._stage, self._wishes = instrument, stage, wishes

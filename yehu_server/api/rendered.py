@@ -12,12 +12,12 @@ import numpy as np
 from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
 from yehu_server.api.notes import Note, score_of
 from yehu_server.api.playback import Player, write_sound
-from yehu_server.api.styles import make_of
+from yehu_server.api.styles import playing_setup_of
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT
-from yehu_server.rendering.options import Options, asked_pitch
+from yehu_server.rendering.options import Options, target_pitch
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
 from yehu_server.rendering.to_files import NORMALIZED_PEAK
@@ -180,7 +180,7 @@ def render(
     >>> tune.summary.notes_played, tune.sound.ndim
     (2, 2)
     """
-    make = make_of(
+    make = playing_setup_of(
         sample_rate,
         instrument,
         preset=preset,
@@ -230,7 +230,7 @@ def _played(
     for samples in performance.blocks():
         blocks.append(samples)
         frames += len(samples)
-        asked = asked_pitch(performance.instrument)
+        asked = target_pitch(performance.instrument)
         times.append(frames / options.rate)
         pitches.append(np.nan if asked is None else asked)
         if progress is not None:

@@ -20,7 +20,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
 from yehu_server.playing.mapping import DEFAULT, load
-from yehu_server.playing.practices import read_practice
+from yehu_server.playing.practice_files import read_practice
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
 from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
@@ -29,7 +29,7 @@ LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz; as of --a4
 
 
 @dataclass(frozen=True)
-class Make:
+class PlayingSetup:
     """What instrument is played, and how."""
 
     sample_rate: int
@@ -37,7 +37,7 @@ class Make:
     style: Style
 
 
-def make_of(
+def playing_setup_of(
     sample_rate: float,
     instrument: Quantities | Mapping[str, Any] | PathLike | None,
     *,
@@ -49,7 +49,7 @@ def make_of(
     seed: int = 0,
     mapping: PathLike = DEFAULT,
     out_of_range: str = "transpose",
-) -> Make:
+) -> PlayingSetup:
     """Check options, and read the files that they name; see `render`.
 
     Raises
@@ -58,7 +58,7 @@ def make_of(
         Where one is wrong.
     """
     rate = whole(sample_rate, "sample_rate", LOWEST_RATE, HIGHEST_RATE)
-    presets = Presets(own_first=False)
+    presets = Presets(user_first=False)
     file = None
     start: tuple[tuple[str, float], ...] = ()
     if preset is not None:
@@ -69,7 +69,7 @@ def make_of(
         raise ParameterError(f"out_of_range: {out_of_range!r} is not one of {', '.join(policies)}")
     most = find("/engine/seed").hi
     style = Style(
-        mapping=load(name_of(mapping, "mapping"), own_first=False),
+        mapping=load(name_of(mapping, "mapping"), user_first=False),
         presets=presets,
         preset=file,
         start=start,
@@ -81,4 +81,4 @@ def make_of(
         bowing=None if practice is None else read_practice(path_of(practice, "practice")),
         practice=None if practice is None else path_of(practice, "practice"),
     )
-    return Make(rate, quantities_of(instrument), style)
+    return PlayingSetup(rate, quantities_of(instrument), style)

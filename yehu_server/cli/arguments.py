@@ -14,7 +14,7 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import one_line
-from yehu_server.live.addresses import OSC_ADDRESS, parse_address, shown
+from yehu_server.live.addresses import OSC_ADDRESS, format_address, parse_address
 from yehu_server.util.files import shipped_folder
 
 
@@ -192,9 +192,9 @@ def add_server(parser: Any) -> None:
     """Add --server, the address of a running server."""
     parser.add_argument(
         "--server",
-        default=shown(*OSC_ADDRESS),
+        default=format_address(*OSC_ADDRESS),
         metavar="HOST:PORT",
-        help=f"the OSC address of the server (default: {shown(*OSC_ADDRESS)})",
+        help=f"the OSC address of the server (default: {format_address(*OSC_ADDRESS)})",
     )
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_action, add_command
 from yehu_server.cli.converters import positive, target, whole
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 
 if TYPE_CHECKING:
     from yehu_server.lab.body import Fit, Measurement
@@ -112,7 +112,7 @@ def _fit(arguments: argparse.Namespace) -> int:
     from yehu_server.lab.body.body_file import body_file_of, check_ending, check_targets
     from yehu_server.lab.plot.body import write_picture
     from yehu_server.lab.plot.png import check_picture
-    from yehu_server.util.files import check_apart
+    from yehu_server.util.files import check_distinct
 
     measurements = [*arguments.measurements, *arguments.radiation]
     outputs = {"-o": arguments.output}
@@ -122,7 +122,7 @@ def _fit(arguments: argparse.Namespace) -> int:
     if arguments.plot is not None:
         check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
         outputs["--plot"] = arguments.plot
-    check_apart(outputs, measurements)
+    check_distinct(outputs, measurements)
     check_targets(arguments.output, overwrite=arguments.overwrite)
     found = fit(_read(arguments), band_hz=arguments.band, modes=arguments.modes)
     written = found.save(arguments.output, overwrite=arguments.overwrite)
@@ -130,7 +130,7 @@ def _fit(arguments: argparse.Namespace) -> int:
         write_picture(found, arguments.plot, overwrite=arguments.overwrite)
     _tell(found, as_json=arguments.json)
     if not arguments.json:
-        tell(f"written: {', '.join(map(str, written))}")
+        print_result(f"written: {', '.join(map(str, written))}")
     return 0
 
 
@@ -151,12 +151,12 @@ def _show(arguments: argparse.Namespace) -> int:
     from yehu_server.lab.body.body_file import read_fit
     from yehu_server.lab.plot.body import write_picture
     from yehu_server.lab.plot.png import check_picture
-    from yehu_server.util.files import check_apart
+    from yehu_server.util.files import check_distinct
 
     path = arguments.body or BODY_FILE
     if arguments.output is not None:
         check_picture(arguments.output, "a picture", overwrite=arguments.overwrite)
-        check_apart({"-o": arguments.output}, [path])
+        check_distinct({"-o": arguments.output}, [path])
     found = read_fit(path)
     if arguments.output is not None:
         write_picture(found, arguments.output, overwrite=arguments.overwrite)
@@ -171,7 +171,7 @@ def _tell(found: Fit, *, as_json: bool) -> None:
         print(json.dumps(fields_of(found)))
         return
     for line in lines_of(found):
-        tell(line)
+        print_result(line)
     for line in found.warnings:
         warn(line)
 
@@ -182,7 +182,7 @@ def _taps(arguments: argparse.Namespace) -> int:
 
     taps = made_taps(count=arguments.count, noise_db=arguments.noise_db)
     files, channels = write_taps(taps, arguments.output, overwrite=arguments.overwrite)
-    tell(f"{len(files)} files in {arguments.output}, for --channels {channels}")
+    print_result(f"{len(files)} files in {arguments.output}, for --channels {channels}")
     return 0
 
 

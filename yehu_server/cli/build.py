@@ -9,7 +9,7 @@ from typing import Any
 from yehu_server.cli.arguments import Parser, add_command, add_folder
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.style_options import add_tables, interpreted_style_of
-from yehu_server.cli.terminal import tell
+from yehu_server.cli.terminal import print_result
 
 EXAMPLES = """\
 examples:
@@ -83,9 +83,9 @@ def write_tables(arguments: argparse.Namespace) -> int:
     tables = style.tables(controls)
     with replacing(arguments.output, anything if arguments.overwrite else nothing) as partial:
         partial.write_bytes(tables.tobytes())
-    tell(str(arguments.output))
+    print_result(str(arguments.output))
     for address in style.mapping.addresses:
-        tell(f"control {controls.number(address)}: {address}")
+        print_result(f"control {controls.number(address)}: {address}")
     return 0
 
 
@@ -101,5 +101,5 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.what == "wasm" and cpu != "generic":
         raise ParameterError("--cpu is for libraries: a page has no processor of its own")
     for path in build(arguments.what, folder, rates=arguments.rate or RATES, cpu=cpu):
-        tell(str(path))
+        print_result(str(path))
     return 0

@@ -22,7 +22,7 @@ from yehu_server.cli.arguments import (
     warn_of_compiling,
 )
 from yehu_server.cli.converters import positive
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import OutputError, ParameterError
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         check_manifest(folder)
         build_records.clear_work([folder])
         parts = making.parts_of(description, folder, _key(description.key))
-        left, lines = making.sorted_out(parts)
+        left, lines = making.split_up_to_date(parts)
         current = len(lines)
         try:
             with (
@@ -185,5 +185,5 @@ def _report(arguments: argparse.Namespace, lines: Sequence[dict[str, Any]], curr
     elif not arguments.quiet:
         counts = f"{made} made, {current} up to date, {len(failed)} failed"
         kinds = ", ".join(f"{count} {name}" for name, count in sorted(regimes.items()))
-        tell(f"{arguments.output}: {counts} ({kinds})")
+        print_result(f"{arguments.output}: {counts} ({kinds})")
     return 1 if failed else 0

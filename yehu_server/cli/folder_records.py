@@ -29,13 +29,13 @@ NEUTRAL = (
 SOUNDING = ("playing", "scores", "rendering", "util")  # folders of code, beside what is compiled
 
 
-def sorted_out(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Task], list[Line]]:
+def split_up_to_date(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Task], list[Line]]:
     """What is to be rendered; and the lines of what is up to date.
 
     A score that failed is up to date too, as long as nothing has changed; ``--overwrite`` tries
     it again.
     """
-    from yehu_server.rendering.build_records import hash_of, told_before, up_to_date
+    from yehu_server.rendering.build_records import hash_of, previous_line, up_to_date
 
     base = base_key(arguments)
     hashing = cache(hash_of)
@@ -46,7 +46,7 @@ def sorted_out(arguments: argparse.Namespace, tree: Tree) -> tuple[list[Task], l
             beside = os.path.relpath(entry.target.with_suffix(".png"), arguments.output)
             picture = arguments.plot / beside
         key = f"{base}-{hash_of(entry.source)}"
-        task = Task(arguments, entry, picture, key, _seconds(told_before(entry.target)))
+        task = Task(arguments, entry, picture, key, _seconds(previous_line(entry.target)))
         line = up_to_date(entry.target, key, task.results, hashing)
         if line is None or ("error" in line and arguments.overwrite):
             tasks.append(task)

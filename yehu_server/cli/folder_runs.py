@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from yehu_server.cli.arguments import progress_bar, warn_of_compiling
-from yehu_server.cli.folder_far import Far, absolute, perform_far
+from yehu_server.cli.folder_cluster import ClusterTransfer, absolute, perform_on_worker
 from yehu_server.cli.folder_tasks import Done, Line, Task, perform
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import one_line
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from yehu_server.rendering.workers import Event
 
 
-class Seconds:
+class ProgressEstimate:
     """Counts the seconds of jobs: those that are done, and all.
 
     A job whose length nobody knows yet counts as the mean of the others; so files of one length
@@ -43,7 +43,7 @@ class Seconds:
         self._done = 0.0  # of those that are known,
         self._unknown_shares = 0.0  # and of the others
 
-    def hear(self, job: int, share: float, seconds: float = 0.0) -> None:
+    def update(self, job: int, share: float, seconds: float = 0.0) -> None:
         """Take a job's share that is done, and its length where that is told (else 0)."""
         self._count(job, -1.0)
         if seconds > 0.0:
@@ -100,7 +100,7 @@ def prepare(rate: int, instrument: Path | None, a4: float) -> None:
     """Compile, and measure the instrument, on a machine of a cluster."""
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.core.physics.quantities import Quantities, read_quantities
-    from yehu_server.playing.calibrations import calibration_for
+    from yehu_server.playing.calibration_store import calibration_for
 
     warm_up()
     quantities = read_quantities(instrument) if instrument else Quantities()
@@ -111,7 +111,7 @@ def _prepare_here(arguments: argparse.Namespace) -> None:
     """Compile, and measure the instrument, once before all processes need it."""
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.core.physics.quantities import Quantities, read_quantities
-    from yehu_server.playing.calibrations import calibration_for
+    from yehu_server.playing.calibration_store import calibration_for
 
     warn_of_compiling(arguments)
     warm_up()
@@ -138,13 +138,13 @@ def render_all(
         _prepare_here(arguments)
     ended = _on_cores(arguments, tasks) if cluster is None else _on_cluster(tasks, cluster)
     number = total - len(tasks)
-    seconds = Seconds([task.seconds for task in tasks])
+    seconds = ProgressEstimate([task.seconds for task in tasks])
     left = dict(enumerate(tasks))
     with progress_bar(arguments, "rendering", "s of sound") as progress, contextlib.closing(ended):
         for event in ended:
             done: Done | None = event.result
             length = event.total if done is None else done.line.get("duration_s", 0.0)
-            seconds.hear(event.job, event.share, length)
+            seconds.update(event.job, event.share, length)
             progress(seconds.done, seconds.total)
             if done is None:
                 continue
@@ -171,13 +171,13 @@ def _on_cores(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator
 
 def _on_cluster(tasks: Sequence[Task], cluster: Cluster) -> Generator[Event]:
     """Yield what becomes of tasks on a cluster; at the end of each, its `Done`."""
-    far = Far(absolute(tasks[0].arguments), cluster)
+    far = ClusterTransfer(absolute(tasks[0].arguments), cluster)
     unseen: list[int] = []
     with far.marked():
         for travel in (False, True):
             numbers = unseen if travel else range(len(tasks))
             some = far.tasks([tasks[job] for job in numbers], travel=travel)
-            with contextlib.closing(cluster.perform_all(perform_far, some)) as events:
+            with contextlib.closing(cluster.perform_all(perform_on_worker, some)) as events:
                 for event in events:
                     job = numbers[event.job]
                     if event.died:
@@ -203,4 +203,4 @@ def _tell_one(arguments: argparse.Namespace, line: Line, number: int, total: int
         print(line_of(line), flush=True)
     elif not arguments.quiet and not sys.stderr.isatty():
         what = "failed" if "error" in line else f"{line['duration_s']:.1f} s"
-        tell(f"{number} of {total}: {one_line(line['file'])}: {what}", flush=True)
+        print_result(f"{number} of {total}: {one_line(line['file'])}: {what}", flush=True)

@@ -18,7 +18,7 @@ from yehu_server.errors import OutputError, ScoreError, YehuError
 
 if TYPE_CHECKING:
     from yehu_server.rendering.folder_tree import Entry
-    from yehu_server.rendering.workers import Tell
+    from yehu_server.rendering.workers import ProgressCallback
 
 log = logging.getLogger(__name__)
 
@@ -71,11 +71,11 @@ class Done:
     read: tuple[Path, ...] = ()
 
 
-def perform(task: Task, tell: Tell) -> Done:
+def perform(task: Task, report_progress: ProgressCallback) -> Done:
     """Render a score to its place; return what became of it."""
     entry = task.entry
     try:
-        return _made(task, tell)
+        return _made(task, report_progress)
     except YehuError as error:
         is_full = any(isinstance(each, OSError) and each.errno in FULL for each in _causes(error))
         line = {"file": entry.name, "error": _without_path(str(error), entry)}
@@ -102,35 +102,35 @@ def _keep_failure(task: Task, line: Line) -> None:
         keep_failure(task.entry.target, task.key, line)
 
 
-def _made(task: Task, tell: Tell) -> Done:
+def _made(task: Task, report_progress: ProgressCallback) -> Done:
     from yehu_server.cli.render_one import rendered
     from yehu_server.cli.render_plot import check_plot
     from yehu_server.rendering import build_records
-    from yehu_server.util.files import check_apart, check_free, check_target, make_folder, why
+    from yehu_server.util.files import check_distinct, check_free, check_target, make_folder, why
 
-    entry, asked = task.entry, task.arguments
-    may_replace = replaceable(asked)
+    entry, options = task.entry, task.arguments
+    may_replace = replaceable(options)
     build_records.make_folder_for(entry.target)
     check_target(entry.target)
     check_free(entry.target, may_replace)
-    check_apart({"-o": entry.target}, [entry.source])
-    work = build_records.work_of(entry.target)
+    check_distinct({"-o": entry.target}, [entry.source])
+    work = build_records.temporary_of(entry.target)
     if task.picture is not None:
         make_folder(task.picture.parent)
-        check_plot(task.picture, overwrite=asked.overwrite)
-    own = argparse.Namespace(**vars(asked))
+        check_plot(task.picture, overwrite=options.overwrite)
+    own = argparse.Namespace(**vars(options))
     own.midi, own.output, own.plot = [entry.source], work, task.picture
     own.overwrite, own.quiet, own.json, own.jobs = True, True, False, 1
-    own.format = asked.format or "wav"
+    own.format = options.format or "wav"
     told = io.StringIO()
     try:
         with contextlib.redirect_stderr(told):
-            done = rendered(own, tell)
+            done = rendered(own, report_progress)
         summary = done.summary
         loudness = _loudness(work)
         line = {
             "file": entry.name,
-            "output": os.path.relpath(entry.target, asked.output),
+            "output": os.path.relpath(entry.target, options.output),
             "hash": build_records.hash_of(work),
             "duration_s": summary.duration_s,
             "notes": summary.notes_played,
@@ -144,7 +144,7 @@ def _made(task: Task, tell: Tell) -> Done:
         check_free(entry.target, may_replace)
         work.replace(entry.target)
         read = [path for path in done.read if path != entry.source]
-        read += _programs(asked)
+        read += _programs(options)
         build_records.keep(entry.target, task.key, read, task.results, line)
     except YehuError as error:
         for shown in (str(work), ascii(str(work))):

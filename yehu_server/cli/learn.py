@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_command, add_server, server_of
 from yehu_server.cli.converters import positive
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import ParameterError, YehuError
 
 if TYPE_CHECKING:
@@ -80,16 +80,16 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
     if arguments.forget:
         client.send(f"{own}/unlearn", address)
         _, count = client.answer(f"{own}/unlearned").arguments
-        tell(f"{address}: {count} forgotten")
+        print_result(f"{address}: {count} forgotten")
         return
     client.send(f"{own}/learn", address, int(arguments.soft))
     (target,) = client.answer(f"{own}/learning").arguments
-    tell(f"move the control for {target} ... (Ctrl-C ends)", flush=True)
+    print_result(f"move the control for {target} ... (Ctrl-C ends)", flush=True)
     try:
         for message in client.answers(LONGEST_S):
             if message.address == f"{own}/learned":
                 _, source, file = message.arguments
-                tell(f"{source} moves {target}, kept in {file}")
+                print_result(f"{source} moves {target}, kept in {file}")
                 return
     except KeyboardInterrupt:
         client.send(f"{own}/learn")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_action, add_command, add_server, server_of
 from yehu_server.cli.converters import target
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import MappingError, ParameterError
 
 if TYPE_CHECKING:
@@ -78,16 +78,16 @@ def add_to(commands: Any) -> None:
 
 
 def _list(arguments: argparse.Namespace) -> int:
-    from yehu_server.playing.mapping import own_mappings, shipped_mappings
+    from yehu_server.playing.mapping import shipped_mappings, user_mappings
 
-    own = own_mappings()
+    own = user_mappings()
     abouts = {name: _about(name) for name in shipped_mappings() if name not in own}
     abouts |= {name: f"yours: {_about(name)}" for name in own}
     if arguments.json:
         print(json.dumps(abouts))
     else:
         width = max(map(len, abouts))
-        tell("\n".join(f"{name:{width}}  {about}" for name, about in abouts.items()))
+        print_result("\n".join(f"{name:{width}}  {about}" for name, about in abouts.items()))
     return 0
 
 
@@ -95,7 +95,7 @@ def _about(name: str) -> str:
     from yehu_server.playing.mapping import load
 
     try:
-        return load(name, own_first=True).about
+        return load(name, user_first=True).about
     except MappingError as error:  # list the others all the same
         return str(error)
 
@@ -105,7 +105,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
     if arguments.live:
         return _show_live(arguments)
-    mapping = load(arguments.mapping or DEFAULT, own_first=True)
+    mapping = load(arguments.mapping or DEFAULT, user_first=True)
     if arguments.json:
         print(json.dumps(_fields(mapping)))
     else:
@@ -165,7 +165,7 @@ def _check(arguments: argparse.Namespace) -> int:
             for line in (str(error), *error.more):
                 warn(line)
         else:
-            tell(f"{file}: right, {len(mapping.binds)} binds")
+            print_result(f"{file}: right, {len(mapping.binds)} binds")
     return code
 
 
@@ -175,7 +175,7 @@ def _convert(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.mapping_writer import as_toml, canonical
     from yehu_server.util.files import anything, nothing, replacing
 
-    path = find_file(arguments.mapping, own_first=True)
+    path = find_file(arguments.mapping, user_first=True)
     text = text_of(path)
     is_json = text.lstrip().startswith("{")  # no TOML does
     data = json_of(path, text) if is_json else toml_of(path, text)
@@ -185,7 +185,7 @@ def _convert(arguments: argparse.Namespace) -> int:
         contents = replace(contents, name=arguments.output.stem)
     converted = as_toml(contents) if is_json else canonical(contents, text)
     if arguments.output is None and sys.stdout.isatty():
-        tell(converted.rstrip("\n"))
+        print_result(converted.rstrip("\n"))
     elif arguments.output is None:
         print(converted, end="")
     else:

@@ -18,7 +18,7 @@ import segno
 
 from yehu_server.cli.arguments import add_command, add_folder
 from yehu_server.cli.converters import port
-from yehu_server.cli.terminal import tell
+from yehu_server.cli.terminal import print_result
 
 QUIET = 4  # modules of white around it (ISO/IEC 18004)
 # Black and white of the 256 colours, which themes leave alone; and back.
@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.output is not None:
         written = write_page(arguments.output)
-        tell(f"{arguments.output}: {len(written)} files; index.html is the page")
+        print_result(f"{arguments.output}: {len(written)} files; index.html is the page")
         return 0
     with tempfile.TemporaryDirectory(prefix="yehu-page-") as folder:
         write_page(Path(folder))
@@ -95,7 +95,7 @@ def _show(folder: Path, port: int, opens: bool) -> None:
     from yehu_server.live.page.site import server_of, url_of
 
     with server_of(folder, port) as server:
-        tell(f"{url_of(server)}  (Ctrl-C ends it)")
+        print_result(f"{url_of(server)}  (Ctrl-C ends it)")
         if opens:
             webbrowser.open(url_of(server))
         try:

@@ -15,7 +15,7 @@ from yehu_server.cli.arguments import (
 )
 from yehu_server.cli.converters import target
 from yehu_server.cli.style_options import add_tuning, tuning_of
-from yehu_server.cli.terminal import tell
+from yehu_server.cli.terminal import print_result
 
 A4 = 440.0  # Hz
 
@@ -64,17 +64,17 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.core.physics.grid import check_rate
     from yehu_server.core.physics.quantities import Quantities, read_quantities
-    from yehu_server.playing.calibrations import calibration_for
+    from yehu_server.playing.calibration_store import calibration_for
     from yehu_server.playing.practice import Practice
-    from yehu_server.playing.practices import shipped_practice, write_practice
+    from yehu_server.playing.practice_files import shipped_practice, write_practice
     from yehu_server.playing.preset_folders import Presets
-    from yehu_server.util.files import check_apart, check_target
+    from yehu_server.util.files import check_distinct, check_target
 
     check_rate(arguments.rate)
     tuning = tuning_of(arguments)
     own = [*tuning.files, *([] if arguments.instrument is None else [arguments.instrument])]
     check_target(arguments.output)
-    check_apart({"-o": arguments.output}, own)
+    check_distinct({"-o": arguments.output}, own)
     values = {} if arguments.preset is None else Presets().load(arguments.preset).values
     quantities = read_quantities(arguments.instrument) if arguments.instrument else Quantities()
     start = time.perf_counter()
@@ -93,5 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"rate": arguments.rate, "improved": improved, "elapsed_s": elapsed}))
     elif not arguments.quiet:
-        tell(f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now")
+        print_result(
+            f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now"
+        )
     return 0

@@ -10,7 +10,7 @@ from typing import Any
 
 from yehu_server.cli.arguments import add_action, add_command
 from yehu_server.cli.style_options import add_presets_folder
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 
 EXAMPLES = """\
 examples:
@@ -61,7 +61,7 @@ def _list(arguments: argparse.Namespace) -> int:
         width = max((len(preset.name) for preset in found), default=0)
         for preset in found:
             mark = "your own: " if presets.is_own(preset.name) else ""
-            tell(f"{preset.name:{width}}  {preset.program or '-':>3}  {mark}{preset.about}")
+            print_result(f"{preset.name:{width}}  {preset.program or '-':>3}  {mark}{preset.about}")
     _warn(str(error) for error in errors)
     return 0
 
@@ -75,13 +75,13 @@ def _show(arguments: argparse.Namespace) -> int:
         fields = {"name": preset.name, "about": preset.about, "program": preset.program}
         print(json.dumps(fields | {"values": preset.values, "unknown": preset.unknown}))
         return 0
-    tell(f"{preset.name}: {preset.about}" if preset.about else preset.name)
+    print_result(f"{preset.name}: {preset.about}" if preset.about else preset.name)
     if preset.program is not None:
-        tell(f"MIDI program {preset.program}")
+        print_result(f"MIDI program {preset.program}")
     width = max(map(len, preset.values), default=0)
     for address, value in preset.values.items():
         unit = find(address).unit
-        tell(f"{address:{width}}  {value:g}" + ("" if unit == "1" else f" {unit}"))
+        print_result(f"{address:{width}}  {value:g}" + ("" if unit == "1" else f" {unit}"))
     _warn(preset.remarks())
     return 0
 
@@ -99,7 +99,7 @@ def _check(arguments: argparse.Namespace) -> int:
             _warn([str(error), *error.more])
         else:
             _warn(preset.remarks())
-            tell(f"{file}: right, {len(preset.values)} values")
+            print_result(f"{file}: right, {len(preset.values)} values")
     return code
 
 

@@ -37,7 +37,7 @@ from yehu_server.cli.render_pipe import (
 )
 from yehu_server.cli.stage_options import add_stage
 from yehu_server.cli.style_options import add_playing
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 from yehu_server.scores.score import MAX_DURATION_H
 
 EXAMPLES = """\
@@ -168,12 +168,12 @@ def run(arguments: argparse.Namespace) -> int:
     except DamagedError as error:
         warn(str(error))
         return 1
-    say = tell_beside if is_piped(arguments.output) else tell
+    report = tell_beside if is_piped(arguments.output) else print_result
     if arguments.json:
         file = sys.stderr if is_piped(arguments.output) else sys.stdout
         print(json.dumps(done.fields), file=file)
     elif not arguments.quiet:
         from yehu_server.cli.report import render_report
 
-        say(render_report(shown_target(arguments.output), done.summary))
+        report(render_report(shown_target(arguments.output), done.summary))
     return 0

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from yehu_server.cli.folder_tasks import Line
 from yehu_server.cli.render_pipe import is_piped
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import OutputError, ParameterError, ScoreError
 
 SOUNDS = (".wav", ".wave", ".flac", ".raw")  # which no folder is to be called
@@ -32,7 +32,7 @@ def is_for_folder(arguments: argparse.Namespace) -> bool:
 
 def run(arguments: argparse.Namespace) -> int:
     """Render a folder; return the exit code: 1 where some of its scores failed."""
-    from yehu_server.cli.folder_records import sorted_out
+    from yehu_server.cli.folder_records import split_up_to_date
     from yehu_server.cli.folder_runs import cluster_of, render_all
     from yehu_server.rendering import build_records
     from yehu_server.rendering.folder_tree import tree_of
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         build_records.check_manifest(arguments.output)
         build_records.clear_work(places)
         lines: list[Line] = [{"file": name, "error": why} for name, why in tree.problems]
-        tasks, current = sorted_out(arguments, tree)
+        tasks, current = split_up_to_date(arguments, tree)
         lines += current
         for line in lines * arguments.json:
             print(build_records.line_of(line))
@@ -127,5 +127,5 @@ def _report(arguments: argparse.Namespace, lines: Sequence[Line], current: Seque
         counts = f"{made} rendered, {up_to_date} up to date, {len(failed)} failed"
         if before:
             counts += f" ({before} as before; --overwrite tries again)"
-        tell(f"{arguments.output}: {counts}")
+        print_result(f"{arguments.output}: {counts}")
     return 1 if failed else 0

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import check_output, progress_bar, warn_of_compiling
 from yehu_server.cli.ensemble_parts import Players, players_of
 from yehu_server.cli.render_pipe import is_piped
-from yehu_server.cli.render_plot import PLOTTED_BLOCK, check_plot, watch_of, write_plot
+from yehu_server.cli.render_plot import PLOTTED_BLOCK, check_plot, plot_data_of, write_plot
 from yehu_server.cli.stage_options import check_stage, room_of, stem_files
 from yehu_server.cli.style_options import style_of
 from yehu_server.cli.terminal import warn
@@ -59,7 +59,7 @@ def rendered(
     from yehu_server.playing.calibration import calibration_key
     from yehu_server.rendering.options import Options
     from yehu_server.rendering.to_files import render
-    from yehu_server.util.files import check_apart
+    from yehu_server.util.files import check_distinct
 
     check_rate(arguments.rate)
     check_stage(arguments)
@@ -71,7 +71,7 @@ def rendered(
         phrasing = dict(style.settings).get("/playing/phrasing", PHRASING)
     instrument = [] if arguments.instrument is None else [arguments.instrument]
     outputs = _outputs(arguments)
-    check_apart(outputs, [*arguments.midi, *style.files, *instrument])
+    check_distinct(outputs, [*arguments.midi, *style.files, *instrument])
     form = _format(arguments)
     may_replace = anything if is_piped(arguments.output) else check_output(arguments)
     _warn_of_own(arguments, style)
@@ -102,7 +102,7 @@ def rendered(
     key = calibration_key(float(options.rate), options.quantities, style.a4)
     watch = None
     if arguments.plot is not None:
-        watch = watch_of(parts, options)
+        watch = plot_data_of(parts, options)
         options = replace(options, block=PLOTTED_BLOCK)
     with progress_bar(arguments, "rendering") as progress:
         summary = render(
@@ -162,7 +162,7 @@ def _stems(
     arguments: argparse.Namespace, options: Options, players: Players, read: Sequence[Path]
 ) -> list[Path]:
     """The files of the stems that are asked for; checks that all outputs may be written."""
-    from yehu_server.util.files import check_apart
+    from yehu_server.util.files import check_distinct
 
     stems = []
     if arguments.stems is not None:
@@ -173,14 +173,14 @@ def _stems(
         for stem in stems:
             check_output(arguments, stem)
     outputs = {**_outputs(arguments), **{f"stem {stem.name}": stem for stem in stems}}
-    check_apart(outputs, read)
+    check_distinct(outputs, read)
     return stems
 
 
 def _calibrated(arguments: argparse.Namespace, parts: Sequence[Part], rate: float) -> list[Part]:
     """Give all parts the calibration of their instruments, each measured once."""
     from yehu_server.playing.calibration import calibration_key
-    from yehu_server.playing.calibrations import calibration_for
+    from yehu_server.playing.calibration_store import calibration_for
 
     known: dict[str, Any] = {}
     with progress_bar(arguments, "calibrating", "notes") as progress:
@@ -242,8 +242,8 @@ def _scores(arguments: argparse.Namespace) -> list[Score]:
 
 def _warn_of_own(arguments: argparse.Namespace, style: Style) -> None:
     """Warn where serve would use the user's own mapping of this name."""
-    from yehu_server.playing.mapping import MINE, own_mappings
+    from yehu_server.playing.mapping import MINE, user_mappings
 
     own = style.mapping.files[0].stem
-    if (arguments.mapping or own) == own and own in own_mappings() and not arguments.quiet:
+    if (arguments.mapping or own) == own and own in user_mappings() and not arguments.quiet:
         warn(f"mapping {own}: the shipped one; --mapping {MINE}{own} is your own")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from yehu_server.rendering.options import Options, Part
-    from yehu_server.rendering.watch import Watch
+    from yehu_server.rendering.plot_data import PlotData
 
 PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for
 
@@ -26,16 +26,16 @@ def check_plot(target: Path, *, overwrite: bool) -> None:
     check_picture(target, "--plot", overwrite=overwrite)
 
 
-def watch_of(parts: Sequence[Part], options: Options) -> Watch:
+def plot_data_of(parts: Sequence[Part], options: Options) -> PlotData:
     """What gathers the picture of a rendering."""
-    from yehu_server.rendering.watch import Watch
+    from yehu_server.rendering.plot_data import PlotData
 
     duration_s = max(part.score.duration_s for part in parts)
-    return Watch(float(options.rate), duration_s, len(parts), options.style.a4)
+    return PlotData(float(options.rate), duration_s, len(parts), options.style.a4)
 
 
 def write_plot(
-    watch: Watch, target: Path, parts: Sequence[Part], options: Options, *, overwrite: bool
+    watch: PlotData, target: Path, parts: Sequence[Part], options: Options, *, overwrite: bool
 ) -> None:
     """Draw and write the picture of a rendering.
 

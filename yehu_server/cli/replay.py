@@ -16,7 +16,7 @@ from yehu_server.cli.arguments import (
     warn_of_compiling,
 )
 from yehu_server.cli.converters import hours
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 
 MAX_DURATION_H = 12.0
 EXAMPLES = """\
@@ -64,10 +64,10 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.live.audio.recorder import SUBTYPES
     from yehu_server.rendering.replay import replay
     from yehu_server.scores.capture import read_capture
-    from yehu_server.util.files import check_apart
+    from yehu_server.util.files import check_distinct
     from yehu_server.util.sound_file import format_of
 
-    check_apart({"-o": arguments.output}, [arguments.capture])
+    check_distinct({"-o": arguments.output}, [arguments.capture])
     may_replace = check_output(arguments)
     format_name = arguments.format or format_of(arguments.output)
     capture = read_capture(arguments.capture)
@@ -90,5 +90,5 @@ def run(arguments: argparse.Namespace) -> int:
     elif not arguments.quiet:
         from yehu_server.cli.report import replay_report
 
-        tell(replay_report(arguments.output, result))
+        print_result(replay_report(arguments.output, result))
     return 0

@@ -12,7 +12,7 @@ import numpy as np
 
 from yehu_server.errors import one_line
 from yehu_server.lab.simulation import Simulation
-from yehu_server.live.addresses import shown
+from yehu_server.live.addresses import format_address
 from yehu_server.live.audio.devices import AudioDevice
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
@@ -202,7 +202,7 @@ def connect_lines(
     host: str, port: int, lan: ipaddress.IPv4Interface, *, is_open: bool
 ) -> list[str]:
     """Lines that tell how to reach the server; `is_open` where it accepts any sender."""
-    lines = [f"OSC at {shown(host, port)} (UDP and TCP), such as {PREFIX}/note 67 90"]
+    lines = [f"OSC at {format_address(host, port)} (UDP and TCP), such as {PREFIX}/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
         hint = f"yehu-server serve --osc {lan.ip}:{port} --osc-allow {lan.network}"
@@ -218,7 +218,7 @@ def connect_lines(
 def page_lines(host: str, port: int, lan: str, *, networks: Sequence[str]) -> list[str]:
     """Lines that tell where the page is, and who may play with it."""
     is_anywhere = ipaddress.ip_address(host).is_unspecified
-    lines = [f"the page at http://{shown('127.0.0.1' if is_anywhere else host, port)}/"]
+    lines = [f"the page at http://{format_address('127.0.0.1' if is_anywhere else host, port)}/"]
     phones = page_for_phones(host, port, lan)
     if not phones:
         lines.append("for a phone on this network: yehu-server serve --lan")
@@ -240,10 +240,10 @@ def page_for_phones(host: str, port: int, lan: str) -> str:
     address = ipaddress.ip_address(host)
     if address.is_loopback:
         return ""
-    return f"http://{shown(lan if address.is_unspecified else host, port)}/"
+    return f"http://{format_address(lan if address.is_unspecified else host, port)}/"
 
 
 def query_line(host: str, port: int, lan: str) -> str:
     """A line with the address of OSCQuery."""
     address = ipaddress.ip_address(host)
-    return f"OSCQuery at http://{shown(lan if address.is_unspecified else host, port)}/"
+    return f"OSCQuery at http://{format_address(lan if address.is_unspecified else host, port)}/"

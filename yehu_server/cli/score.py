@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_action, add_command
 from yehu_server.cli.converters import target
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 
 if TYPE_CHECKING:
     from yehu_server.scores.written.notated import Written
@@ -59,7 +59,7 @@ def _show(arguments: argparse.Namespace) -> int:
         print(json.dumps(fields_of(written)))
     else:
         for line in lines_of(written):
-            tell(line)
+            print_result(line)
     return 0
 
 
@@ -67,10 +67,10 @@ def _export(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.scores.midi_export import midi_file
     from yehu_server.scores.reading import naming
     from yehu_server.scores.written.performed import performed
-    from yehu_server.util.files import anything, check_apart, nothing, replacing
+    from yehu_server.util.files import anything, check_distinct, nothing, replacing
 
     output = arguments.export_midi
-    check_apart({"--export-midi": output}, [arguments.score])
+    check_distinct({"--export-midi": output}, [arguments.score])
     with naming(arguments.score):
         score = performed(written)
     data, lost = midi_file(written, score)

@@ -99,18 +99,18 @@ class _Ending:
     """
 
     def __init__(self) -> None:
-        self.asked = threading.Event()
+        self.requested = threading.Event()
         self.server: Any = None  # set once it plays
         self._times = 0
 
     def __call__(self, number: int, _frame: Any) -> None:
         """Handle a signal."""
         self._times += number == signal.SIGINT
-        self.asked.set()
+        self.requested.set()
         if self._times < 2:
             return
         if self.server is not None:
-            self.server.hurry()
+            self.server.skip_fade_out()
             if self._times > 2 and self.server.is_interruptible:
                 raise KeyboardInterrupt("the sound cut off")
         else:
@@ -125,32 +125,32 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     from yehu_server.playing.mapping import is_own
 
     log = logging.getLogger("yehu_server")
-    say = log.info
+    report = log.info
     options = options_of(arguments)
     warn_of_compiling(arguments)
     with progress_bar(arguments, "calibrating", "notes") as progress:
-        server = Server(options, say, progress)
+        server = Server(options, report, progress)
     if server.output.state.problem and arguments.audio_device != "null":
-        say(f"{server.output.state.problem}: playing on a silent clock")
+        report(f"{server.output.state.problem}: playing on a silent clock")
     for mapping in {part.style.mapping.name: part.style.mapping for part in options.parts}.values():
         if is_own(mapping):
-            say(f"mapping {mapping.name}, your own: {mapping.files[0]}")
+            report(f"mapping {mapping.name}, your own: {mapping.files[0]}")
     server.start()
     ending.server = server
     try:
         lan = lan_interface()
         where = (server.osc.host, server.osc.port, lan)
         for line in connect_lines(*where, is_open=not arguments.osc_allow):
-            say(line)
+            report(line)
         if server.web is not None:
-            say(query_line(server.web.host, server.web.port, str(lan.ip)))
+            report(query_line(server.web.host, server.web.port, str(lan.ip)))
         if server.pages is not None and options.page is not None:
-            _tell_of_page(server.pages, options.page.networks, say, arguments)
+            _tell_of_page(server.pages, options.page.networks, report, arguments)
         buffer_kb = server.osc.traffic.buffer_bytes // 1000
         log.debug("the receive buffer for OSC has %d kB", buffer_kb)
         log.info("Ctrl-C ends")
         with _status_line(server):
-            _wait(ending.asked, arguments.duration)
+            _wait(ending.requested, arguments.duration)
     finally:
         server.stop()
     return 0 if server.is_whole else 2
@@ -159,7 +159,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
 def _tell_of_page(
     pages: Any,
     networks: Sequence[str],
-    say: Callable[[str], None],
+    report: Callable[[str], None],
     arguments: argparse.Namespace,
 ) -> None:
     from yehu_server.cli.page import show
@@ -169,7 +169,7 @@ def _tell_of_page(
     where = (pages.host, pages.port, lan_address())
     lines = page_lines(*where, networks=networks)
     for line in lines:
-        say(line)
+        report(line)
     phones = page_for_phones(*where)
     if phones and not arguments.quiet:
         show(phones, sys.stderr)  # where the lines of the log are

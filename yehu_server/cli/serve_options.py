@@ -16,9 +16,9 @@ from yehu_server.live.addresses import (
     ANYWHERE,
     HTTP_ADDRESS,
     OSC_ADDRESS,
+    format_address,
     lan_interface,
     parse_address,
-    shown,
 )
 from yehu_server.params.table import PREFIX
 
@@ -95,10 +95,10 @@ def _add_midi(group: Any) -> None:
 def _add_osc(group: Any) -> None:
     group.add_argument(
         "--osc",
-        default=shown(*OSC_ADDRESS),
+        default=format_address(*OSC_ADDRESS),
         metavar="HOST:PORT",
         help="address to listen at, UDP and TCP "
-        f"(default: {shown(*OSC_ADDRESS)}; this machine only)",
+        f"(default: {format_address(*OSC_ADDRESS)}; this machine only)",
     )
     group.add_argument(
         "--osc-allow",
@@ -112,10 +112,10 @@ def _add_osc(group: Any) -> None:
 def _add_web(group: Any) -> None:
     group.add_argument(
         "--http",
-        default=shown(*HTTP_ADDRESS),
+        default=format_address(*HTTP_ADDRESS),
         metavar="HOST:PORT",
         help="address to listen at for OSCQuery, HTTP and WebSocket "
-        f"(default: {shown(*HTTP_ADDRESS)}; this machine only), or none",
+        f"(default: {format_address(*HTTP_ADDRESS)}; this machine only), or none",
     )
     group.add_argument(
         "--no-http", dest="http", action="store_const", const="none", help="no OSCQuery"
@@ -219,12 +219,12 @@ def options_of(arguments: argparse.Namespace) -> Any:
     from yehu_server.live.midi.process import check_api
     from yehu_server.live.options import ServeOptions
     from yehu_server.live.web.server import WebOptions
-    from yehu_server.util.files import check_apart
+    from yehu_server.util.files import check_distinct
 
     parts = part_options(arguments)
     outputs = {"--record": arguments.record, "--capture": arguments.capture}
     config = [] if arguments.config is None else [arguments.config]
-    check_apart(
+    check_distinct(
         {name: path for name, path in outputs.items() if path is not None},
         [*(file for part in parts for file in part.style.files), *config],
     )

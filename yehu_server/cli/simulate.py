@@ -14,7 +14,7 @@ from yehu_server.cli.arguments import (
     warn_of_compiling,
 )
 from yehu_server.cli.converters import target
-from yehu_server.cli.terminal import tell
+from yehu_server.cli.terminal import print_result
 
 EXAMPLES = """\
 examples:
@@ -49,11 +49,11 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.errors import OutputError
     from yehu_server.lab.simulation import simulate
     from yehu_server.scores.gesture import read_gesture
-    from yehu_server.util.files import check_apart, check_target
+    from yehu_server.util.files import check_distinct, check_target
 
     gesture = read_gesture(arguments.gesture)
     check_target(arguments.output)
-    check_apart({"-o": arguments.output}, [arguments.gesture])
+    check_distinct({"-o": arguments.output}, [arguments.gesture])
     if arguments.output.suffix.lower() not in ("", ".npz"):
         raise OutputError(
             f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"
@@ -74,5 +74,5 @@ def run(arguments: argparse.Namespace) -> int:
     elif not arguments.quiet:
         from yehu_server.cli.report import simulate_report
 
-        tell(simulate_report(arguments.output, result))
+        print_result(simulate_report(arguments.output, result))
     return 0

@@ -132,7 +132,7 @@ def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mappi
     from yehu_server.playing.mapping import DEFAULT, MPE, load
 
     name = arguments.mapping or (MPE if arguments.mpe else DEFAULT)
-    mapping = load(name, own_first=is_live)
+    mapping = load(name, user_first=is_live)
     return replace(mapping, mpe=mapping.mpe or arguments.mpe)
 
 
@@ -156,7 +156,7 @@ def style_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Style:
     """
     from yehu_server.core.player.fingering import OpenStrings
     from yehu_server.params.table import assignment
-    from yehu_server.playing.practices import read_practice
+    from yehu_server.playing.practice_files import read_practice
 
     return replace(
         interpreted_style_of(arguments, is_live=is_live),
@@ -184,8 +184,8 @@ def interpreted_style_of(arguments: argparse.Namespace, *, is_live: bool = False
     from yehu_server.playing.style import Style
     from yehu_server.playing.tuning import RangePolicy
 
-    own_first = is_live or arguments.presets is not None
-    presets = Presets(arguments.presets, own_first=own_first)
+    user_first = is_live or arguments.presets is not None
+    presets = Presets(arguments.presets, user_first=user_first)
     start: tuple[tuple[str, float], ...] = ()
     file = None
     if arguments.preset is not None:

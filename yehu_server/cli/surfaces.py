@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import add_command, add_folder
-from yehu_server.cli.terminal import tell
-from yehu_server.live.addresses import OSC_ADDRESS, parse_address, shown
+from yehu_server.cli.terminal import print_result
+from yehu_server.live.addresses import OSC_ADDRESS, format_address, parse_address
 
 EXAMPLES = """\
 examples:
@@ -34,10 +34,10 @@ def add_to(commands: Any) -> None:
     add_folder(parser)
     parser.add_argument(
         "--server",
-        default=shown(*OSC_ADDRESS),
+        default=format_address(*OSC_ADDRESS),
         metavar="HOST:PORT",
         help="address that Max, Pd and Open Stage Control send to "
-        f"(default: {shown(*OSC_ADDRESS)}); in TouchOSC it is set by hand",
+        f"(default: {format_address(*OSC_ADDRESS)}); in TouchOSC it is set by hand",
     )
     parser.add_argument(
         "--part",
@@ -73,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
     # The host is not looked up here: a single word is more likely a mistake than a host name.
     if arguments.server.isidentifier() and arguments.server != "localhost":
         raise ParameterError(
-            f"{arguments.server!r}: expected HOST:PORT, such as {shown(*OSC_ADDRESS)}"
+            f"{arguments.server!r}: expected HOST:PORT, such as {format_address(*OSC_ADDRESS)}"
         )
     part: int = ALL if arguments.part is None else arguments.part
     if arguments.part is not None and not 1 <= part <= MOST_PARTS:
@@ -82,12 +82,12 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.check:
         stale = [surface for surface in surfaces if not is_fresh(surface, folder, server, part)]
         for surface in stale:
-            tell(
+            print_result(
                 f"{file_of(surface, folder, part)}: stale; "
                 f"yehu-server surfaces -o {folder} writes it"
             )
         return 1 if stale else 0
     make_folder(folder)
     for surface in surfaces:
-        tell(f"{write(surface, folder, server, part)}: for {surface.about}")
+        print_result(f"{write(surface, folder, server, part)}: for {surface.about}")
     return 0

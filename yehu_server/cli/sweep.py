@@ -17,7 +17,7 @@ from yehu_server.cli.arguments import (
 )
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.sweep_show import add_show
-from yehu_server.cli.terminal import tell, warn
+from yehu_server.cli.terminal import print_result, warn
 
 EXAMPLES = """\
 examples:
@@ -134,8 +134,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"strokes": len(result), "elapsed_s": elapsed, "regimes": counts}))
     elif not arguments.quiet:
-        tell(f"{arguments.output}: {len(result)} strokes in {elapsed:.1f} s")
-        tell(", ".join(f"{name} {100.0 * n / len(result):.0f} %" for name, n in counts.items()))
+        print_result(f"{arguments.output}: {len(result)} strokes in {elapsed:.1f} s")
+        print_result(
+            ", ".join(f"{name} {100.0 * n / len(result):.0f} %" for name, n in counts.items())
+        )
     return 0
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from yehu_server.cli.arguments import Parser, add_reporting
 from yehu_server.cli.converters import target
-from yehu_server.cli.terminal import tell
+from yehu_server.cli.terminal import print_result
 
 DEFAULT = "regime"
 
@@ -69,5 +69,5 @@ def show(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"strokes": len(result), "shape": result.shape, "output": str(output)}))
     elif not arguments.quiet:
-        tell(f"{output}: {len(result)} strokes")
+        print_result(f"{output}: {len(result)} strokes")
     return 0

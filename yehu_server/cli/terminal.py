@@ -12,7 +12,7 @@ from typing import Any
 from yehu_server.errors import one_line
 
 
-def tell(text: str, *, flush: bool = False) -> None:
+def print_result(text: str, *, flush: bool = False) -> None:
     """Print a result."""
     for line in text.split("\n"):
         print(one_line(line), flush=flush)

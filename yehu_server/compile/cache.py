@@ -1,4 +1,4 @@
-"""Compiled code on disk, in the place of numba's own cache, which believes whatever it finds.
+"""Compiled code on disk, with a checksum; replaces numba's cache, which does not check its files.
 
 One file for each function, signature, processor and Python, sealed: so no index can name the
 wrong one, and processes that compile at once leave each other's files whole. What fails is
@@ -27,12 +27,12 @@ log = logging.getLogger(__name__)
 TYPES_REPORT = 5  # its place in what numba keeps besides the machine code
 
 DAMAGED, FULL = "is damaged", "cannot be kept"
-_troubles: set[str] = set()  # of this process: each is told once
+_reported: set[str] = set()  # of this process: each is told once
 
 
 def _tell(trouble: str, line: str) -> None:
-    if trouble not in _troubles:
-        _troubles.add(trouble)
+    if trouble not in _reported:
+        _reported.add(trouble)
         log.warning("%s", line)
 
 
@@ -89,7 +89,7 @@ class CodeCache(NullCache):  # type: ignore[misc]
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature, where there is room for it."""
-        if FULL in _troubles or data.library.has_dynamic_globals or data.lifted:
+        if FULL in _reported or data.library.has_dynamic_globals or data.lifted:
             return
         try:
             write_sealed(self.path(sig), payload_of(*parts_of(data)))

@@ -88,7 +88,7 @@ def _cached(made: Any, function: Callable[..., Any]) -> Any:
     return made
 
 
-class Restricted(Compiler):  # type: ignore[misc]
+class NoAliasCompiler(Compiler):  # type: ignore[misc]
     """numba's compiler, told that no two arguments of a function overlap, as C's `restrict` does.
 
     Else each loop over several rows of one record first compares their addresses, a tenth of the
@@ -120,15 +120,15 @@ def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function for the audio thread: no Python objects, no GIL, no exceptions.
 
-    What it writes must be reached by one of its arguments only: see `Restricted`. Division by
+    What it writes must be reached by one of its arguments only: see `NoAliasCompiler`. Division by
     zero follows IEEE 754 (``error_model="numpy"``), since a compiled callback has nobody to
     raise to. It makes no arrays, so none are counted (``_nrt``): each row taken of one would be
     two atomic additions, by calls that put away all registers.
     """
-    return _compiled(function, pipeline_class=Restricted, _nrt=False)
+    return _compiled(function, pipeline_class=NoAliasCompiler, _nrt=False)
 
 
-def compiled_to_share(function: Callable[P, R]) -> Callable[P, R]:
+def compiled_with_aliasing(function: Callable[P, R]) -> Callable[P, R]:
     """Compile as `compiled` does, for a function whose arguments overlap, or that makes views."""
     return _compiled(function)
 
@@ -214,7 +214,7 @@ class Native:
         return Path(self._made._cache.path(self._made._sig))  # noqa: SLF001
 
     @property
-    def is_kept(self) -> bool:
+    def is_cached(self) -> bool:
         """Whether its code is in the cache, so that its first use takes no time."""
         return IS_CACHED and self._made._cache.holds(self._made._sig)  # noqa: SLF001
 
@@ -258,7 +258,7 @@ def make_of_shipped(functions: Iterable[Native]) -> None:
     wanted = [
         function
         for function in functions
-        if IS_CACHED and function.full_name not in _asked_for and not function.is_kept
+        if IS_CACHED and function.full_name not in _asked_for and not function.is_cached
     ]
     _asked_for.update(function.full_name for function in wanted)
     if wanted:

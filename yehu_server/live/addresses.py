@@ -98,7 +98,7 @@ def lan_interface() -> ipaddress.IPv4Interface:
     return ipaddress.IPv4Interface(address)  # a network of this machine alone
 
 
-def shown(host: str, port: int) -> str:
+def format_address(host: str, port: int) -> str:
     """Host and port as text that `parse_address` reads."""
     return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
@@ -128,7 +128,9 @@ def parse_address(text: str, default_host: str, default_port: int) -> Address:
         number = -1
     host = host.removeprefix("[").removesuffix("]") or default_host
     if not 0 <= number <= 65535 or not is_host(host):
-        raise ParameterError(f"{text!r}: expected HOST:PORT, such as {shown(*OSC_ADDRESS)}")
+        raise ParameterError(
+            f"{text!r}: expected HOST:PORT, such as {format_address(*OSC_ADDRESS)}"
+        )
     return host, number
 
 

@@ -16,7 +16,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import MappingError
 from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.playing.delay import Delay
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.mapping_watch import MappingWatch
 from yehu_server.scores.capture_writer import LiveCapture

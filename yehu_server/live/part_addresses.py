@@ -11,9 +11,9 @@ PART = "/part/"
 FIRST = ""  # the group of addresses without a part: those of the first, and what all share
 _GROUP = re.compile(r"(/part/(?:0|[1-9][0-9]{0,8}))(/.*)", re.DOTALL)
 # The parameters that each part has; the others are one for all.
-OWN = tuple(param for param in TABLE if not param.is_shared)
+PART_PARAMS = tuple(param for param in TABLE if not param.is_shared)
 PLAIN = frozenset(param.address + form for param in TABLE for form in ("", UNIT))
-OF_PARTS = frozenset(param.address + form for param in OWN for form in ("", UNIT))
+OF_PARTS = frozenset(param.address + form for param in PART_PARAMS for form in ("", UNIT))
 
 
 def group(part: int) -> str:
@@ -26,7 +26,7 @@ def part_of(addressed: str) -> int:
     return int(addressed.removeprefix(PART)) - 1 if addressed else 0
 
 
-def divided(address: str) -> tuple[str, str]:
+def split_group(address: str) -> tuple[str, str]:
     """The group of an address (without the prefix), and the rest."""
     if not address.startswith(PART):  # most do not
         return FIRST, address

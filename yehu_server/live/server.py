@@ -1,4 +1,4 @@
-"""The live server itself: makes everything, starts it in order, and ends it."""
+"""The live server: constructs its services, starts them in order and stops them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from yehu_server.core.engine.warming import warm_up
 from yehu_server.errors import YehuError
 from yehu_server.live.announce import Announcer, announced
 from yehu_server.live.audio.output import Output
-from yehu_server.live.audio.takes import Takes
+from yehu_server.live.audio.recordings import Recordings
 from yehu_server.live.housekeeper import Housekeeper, MappingFollower
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
@@ -29,9 +29,9 @@ from yehu_server.live.page.pages import Pages
 from yehu_server.live.services import Services
 from yehu_server.live.web.server import Sources, WebServer
 from yehu_server.playing.calibration import Progress
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.delay import Delay
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.parts import Part, assemble, number_of_instruments, player_of, seated
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.files import anything, check_free, check_target, nothing, shipped_folder
@@ -117,7 +117,7 @@ class Server:
                 for address, value in style.settings:
                     player.hold(address, value)
             undo.pop_all()
-        self.takes = Takes(self.ensemble, options.recordings, on_message)
+        self.takes = Recordings(self.ensemble, options.recordings, on_message)
         self.services.handler, self.services.osc, self.services.takes = (
             self.handler,
             self.osc,
@@ -130,7 +130,7 @@ class Server:
         self._announcer = Announcer(services, on_message) if services else None
         self._inputs: list[OscPorts | WebServer | Announcer | MidiPorts | Pages] = [self.osc]
         others = (self.web, self._announcer, self.midi, self.pages)
-        self._inputs += [way for way in others if way is not None]
+        self._inputs += [service for service in others if service is not None]
         self._hurry = threading.Event()
         self._housekeeper = self._make_housekeeper()
 
@@ -197,9 +197,9 @@ class Server:
         return WebServer(self.options.http, self.osc, self.handler.clients, sources)
 
     @staticmethod
-    def _close(way: WebServer | Pages | None) -> None:
-        if way is not None:
-            way.stop()
+    def _close(service: WebServer | Pages | None) -> None:
+        if service is not None:
+            service.stop()
 
     def start(self) -> None:
         """Start to play.
@@ -230,8 +230,8 @@ class Server:
             if self.options.record is not None:
                 self.takes.record_everything(self.options.record, overwrite=self.options.overwrite)
             undo.pop_all()
-        for way in self._inputs:
-            way.start()
+        for service in self._inputs:
+            service.start()
         self._housekeeper.start()
 
     def stop(self) -> None:
@@ -250,7 +250,7 @@ class Server:
             self.services.close()
             self.takes.close()
 
-    def hurry(self) -> None:
+    def skip_fade_out(self) -> None:
         """Let `stop` not wait for notes to fade; any thread or signal handler may call."""
         self._hurry.set()
 
@@ -260,8 +260,8 @@ class Server:
         return self.takes.is_whole and self._housekeeper.is_whole
 
     def _close_inputs(self) -> None:
-        for way in reversed(self._inputs):
-            way.stop()
+        for service in reversed(self._inputs):
+            service.stop()
 
     def _end_playing(self) -> None:
         self._close_inputs()
@@ -273,7 +273,7 @@ class Server:
         self.output.end()
 
     def _wait_for(self, frame: int) -> None:
-        """Wait until a frame is played, but not if the clock stands still or after `hurry`."""
+        """Wait until a frame is played; not where the clock stands, nor after `skip_fade_out`."""
         patience = time.monotonic() + 1.0 + (frame - self.instrument.frame) / self.instrument.rate
         while self.instrument.frame < frame and time.monotonic() < patience:
             if self._hurry.wait(0.005):

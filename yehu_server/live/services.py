@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.live.audio.output import Output
-from yehu_server.live.audio.takes import Takes
+from yehu_server.live.audio.recordings import Recordings
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.part_status import PartSources, read_part_status
@@ -33,7 +33,7 @@ class Services:
 
     handler: OscHandler
     osc: OscPorts
-    takes: Takes
+    takes: Recordings
 
     def __init__(
         self,

@@ -69,7 +69,7 @@ class Bind:
     span : tuple of float, optional
         The target's values at the two ends; by default its whole range.
     smoothing_ms : float
-        Shortest time in which a move changes a sounding note; see `Wishes.write`.
+        Shortest time in which a move changes a sounding note; see `WishPoster.write`.
     channels : tuple of int
         MIDI channels, 1 to 16, that it receives on; all if empty.
     is_soft : bool

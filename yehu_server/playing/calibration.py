@@ -24,7 +24,7 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
-    FARTHER,
+    DISTANCE_FACTOR,
     FIRM,
     LEAST_PRESS,
     LIGHT,
@@ -43,7 +43,7 @@ from yehu_server.core.player.calibration import (
 )
 from yehu_server.params.table import find
 from yehu_server.playing.pitch_and_level import SILENCE_DB, a_weighted_db, cents, pitch_hz
-from yehu_server.playing.practices import shipped_practice
+from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of
 
@@ -67,7 +67,7 @@ class _Setup:
     a4: float
     bowing: Array  # ndarray [shape=(STRINGS, NOTES, RECIPE)], at DEFAULT_PLACE
 
-    def manner(self, string: int, pitch: float, column: int) -> float:
+    def recipe_value(self, string: int, pitch: float, column: int) -> float:
         """One value of how a pitch is bowed on a string."""
         return at_pitch(self.bowing[string], float(pitch), column)
 
@@ -137,9 +137,13 @@ def _bow(
     instrument = Instrument(InstrumentSpec(rate, setup.quantities))
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
-        instrument.write("/finger/1/press", max(PRESS, setup.manner(string, pitch, LEAST_PRESS)))
-    columns = (AT_FLAUTANDO, AT_LIGHT, AT_FIRM, FARTHER, TOP_SPEED)
-    flautando, light, firm, farther, fastest = (setup.manner(string, pitch, c) for c in columns)
+        instrument.write(
+            "/finger/1/press", max(PRESS, setup.recipe_value(string, pitch, LEAST_PRESS))
+        )
+    columns = (AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, TOP_SPEED)
+    flautando, light, firm, farther, fastest = (
+        setup.recipe_value(string, pitch, c) for c in columns
+    )
     pressure = share(flautando, light, firm, 0.5 * (LIGHT + FIRM), string)
     beta = farther * DEFAULT_PLACE
     instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # an even bow: the same at every try
@@ -168,8 +172,8 @@ def _tension(setup: _Setup, string: int) -> float:
     for _ in range(ROUNDS):
         quantities = override(setup.quantities, {f"string_{string + 1}": {"T": tension}})
         tried = replace(setup, quantities=quantities)
-        heard = [_bow(tried, string, note, speed, None)[0] for speed in SPEEDS[:3]]
-        errors = [cents(f, target) for f in heard if math.isfinite(f)]
+        measured_hz = [_bow(tried, string, note, speed, None)[0] for speed in SPEEDS[:3]]
+        errors = [cents(f, target) for f in measured_hz if math.isfinite(f)]
         error = float(np.median(errors)) if errors else 0.0
         if abs(error) < PLAUSIBLE_CENTS:
             tension *= math.exp2(-2.0 * error / 1200.0)
@@ -184,7 +188,7 @@ def _stopped_note(setup: _Setup, string: int, note: float) -> list[tuple[float, 
     guess = USUAL_CENTS[string]
     bowed_at = 0.0
     for speed in SPEEDS:
-        slowed = min(speed, setup.manner(string, note, TOP_SPEED))
+        slowed = min(speed, setup.recipe_value(string, note, TOP_SPEED))
         if slowed != bowed_at:
             sharp, level = _search(setup, string, note, slowed, guess)
             guess = sharp if math.isfinite(sharp) else guess
@@ -206,8 +210,8 @@ def _search(
     flat, high = math.inf, -math.inf  # the least sharpening that was flat, the most that was sharp
     for _ in range(ROUNDS):
         x_f = ideal_position(setup.quantities, string, target * math.exp2(-sharp / 1200.0))
-        heard, level = _bow(setup, string, note, speed, x_f)
-        error = cents(heard, target) if math.isfinite(heard) else math.inf
+        measured_hz, level = _bow(setup, string, note, speed, x_f)
+        error = cents(measured_hz, target) if math.isfinite(measured_hz) else math.inf
         if abs(error) > PLAUSIBLE_CENTS:
             break
         if abs(error) < nearest:

@@ -14,8 +14,8 @@ from yehu_server.errors import MappingError
 from yehu_server.params.table import find
 from yehu_server.playing import sources
 from yehu_server.playing.binds import Bind, override_key
-from yehu_server.playing.mapping import Mapping, mapping_folder, own_folder, with_bases
-from yehu_server.playing.mapping_entries import free
+from yehu_server.playing.mapping import Mapping, mapping_folder, user_folder, with_bases
+from yehu_server.playing.mapping_entries import settable_param
 from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, text_of
 from yehu_server.playing.mapping_writer import as_toml, edited
 from yehu_server.playing.sources import COARSE, FINE_ABOVE, OF_ONE_NOTE, RESERVED, STEPS, is_address
@@ -27,7 +27,7 @@ AT_REST = {sources.BEND: 0.5, sources.PRESSURE: 0.0, sources.POLY_PRESSURE: 0.0}
 
 
 @dataclass(frozen=True)
-class Found:
+class LearnedSource:
     """A source that was moved; of an OSC address also the range of its values."""
 
     source: str
@@ -50,7 +50,7 @@ class Learner:
         self._channels: dict[int, _Channel] = {}
         self._pairs: set[tuple[int, int]] = set()  # channel, coarse half
 
-    def hear(self, message: mido.Message, port: int = 0) -> Found | None:
+    def hear(self, message: mido.Message, port: int = 0) -> LearnedSource | None:
         """Receive a MIDI message; return the source, once one has moved far enough."""
         if not hasattr(message, "channel"):
             return None
@@ -65,13 +65,13 @@ class Learner:
             return self._control(channel, message.control, message.value)
         return None
 
-    def hear_address(self, address: str, argument: float) -> Found | None:
+    def learn_from_address(self, address: str, argument: float) -> LearnedSource | None:
         """Receive a number at an OSC address of the user's own; return as `hear` does."""
         input_range = (0.0, 1.0) if 0.0 <= argument <= 1.0 else (0.0, float(STEPS))
         found = self._moved(-1, address, argument / input_range[1])
-        return Found(found.source, input_range) if found else None
+        return LearnedSource(found.source, input_range) if found else None
 
-    def _control(self, channel: int, control: int, value: int) -> Found | None:
+    def _control(self, channel: int, control: int, value: int) -> LearnedSource | None:
         state = self._channels.setdefault(channel, _Channel())
         before, state.before = state.before, control
         if control in (NRPN, NRPN_FINE):
@@ -92,12 +92,12 @@ class Learner:
                 return None  # the fine half of a pair
         found = self._moved(channel, sources.control(control), value / STEPS)
         if found is not None and (channel, control) in self._pairs:
-            return Found(sources.pair(control))
+            return LearnedSource(sources.pair(control))
         return found
 
-    def _moved(self, channel: int, source: str, position: float) -> Found | None:
+    def _moved(self, channel: int, source: str, position: float) -> LearnedSource | None:
         began = self._began_at.setdefault((channel, source), AT_REST.get(source, position))
-        return Found(source) if abs(position - began) >= DISTANCE else None
+        return LearnedSource(source) if abs(position - began) >= DISTANCE else None
 
 
 def own_file(mapping: Mapping) -> Path:
@@ -112,10 +112,12 @@ def own_file(mapping: Mapping) -> Path:
         raise MappingError(f"the mapping {mapping.name} comes from no file")
     own = mapping.files[0]
     is_shipped = own.parent.resolve() == mapping_folder().resolve()
-    return own_folder() / own.name if is_shipped else own
+    return user_folder() / own.name if is_shipped else own
 
 
-def learn(mapping: Mapping, target: str, found: Found, *, soft: bool) -> tuple[Mapping, Path]:
+def learn(
+    mapping: Mapping, target: str, found: LearnedSource, *, soft: bool
+) -> tuple[Mapping, Path]:
     """Bind a source to a target, over its whole range, and save the bind.
 
     It replaces all other binds of the target, and moves it for all notes, on whichever device
@@ -133,7 +135,7 @@ def learn(mapping: Mapping, target: str, found: Found, *, soft: bool) -> tuple[M
     MappingError
         Where the file is wrong or cannot be written; nothing is changed then.
     """
-    param = free(target, "learn one")
+    param = settable_param(target, "learn one")
     bind = Bind(
         found.source,
         param.address,

@@ -31,7 +31,7 @@ def mapping_folder() -> Path:
     return shipped_folder("mappings")
 
 
-def own_folder() -> Path:
+def user_folder() -> Path:
     """The folder of the user's mappings, which need not exist."""
     return user_config_path("yehu-server") / "mappings"
 
@@ -86,9 +86,9 @@ def shipped_mappings() -> list[str]:
     return _names(mapping_folder())
 
 
-def own_mappings() -> list[str]:
+def user_mappings() -> list[str]:
     """Names of the mappings in the user's folder."""
-    return _names(own_folder())
+    return _names(user_folder())
 
 
 def _names(folder: Path) -> list[str]:
@@ -97,17 +97,17 @@ def _names(folder: Path) -> list[str]:
 
 def is_own(mapping: Mapping) -> bool:
     """Whether a mapping comes from the user's folder."""
-    return any(_is_same(file.parent, own_folder()) for file in mapping.files[:1])
+    return any(_is_same(file.parent, user_folder()) for file in mapping.files[:1])
 
 
-def load(name_or_path: str, *, own_first: bool = False) -> Mapping:
+def load(name_or_path: str, *, user_first: bool = False) -> Mapping:
     """Read a mapping by its name, or from a file.
 
     Parameters
     ----------
     name_or_path : str
         A name, ``mine/NAME`` for one of the user's own, or a path.
-    own_first : bool
+    user_first : bool
         Whether a plain name means the user's own mapping before a shipped one.
 
     Raises
@@ -115,11 +115,11 @@ def load(name_or_path: str, *, own_first: bool = False) -> Mapping:
     MappingError
         Naming file and line.
     """
-    path = find_file(name_or_path, own_first=own_first)
+    path = find_file(name_or_path, user_first=user_first)
     return with_bases(path, read_mapping_file(path))
 
 
-def find_file(name_or_path: str, *, own_first: bool = False) -> Path:
+def find_file(name_or_path: str, *, user_first: bool = False) -> Path:
     """Find the file of a mapping by its name; anything but a name is taken as a path.
 
     Raises
@@ -129,7 +129,7 @@ def find_file(name_or_path: str, *, own_first: bool = False) -> Path:
     """
     if not _is_name(name_or_path):
         return Path(name_or_path)
-    found = _named(name_or_path, own_first=own_first)
+    found = _named(name_or_path, user_first=user_first)
     if found is None:
         raise MappingError(_unknown(name_or_path, "; or name a file"))
     return found
@@ -179,14 +179,14 @@ def _merged(below: Mapping, layer: MappingFile) -> Mapping:
     """
     overridden = {override_key(bind) for bind in layer.binds}
     exclusive = {bind.target for bind in layer.binds if bind.is_exclusive}
-    kept = [
+    remaining = [
         bind
         for bind in below.binds
         if override_key(bind) not in overridden and bind.target not in exclusive
     ]
     return Mapping(
         below.name,
-        (*kept, *layer.binds),
+        (*remaining, *layer.binds),
         tuple((dict(below.start) | dict(layer.start)).items()),
         below.mpe if layer.mpe is None else layer.mpe,
         below.about,
@@ -200,12 +200,12 @@ def _is_name(text: str) -> bool:
     return path.suffix == "" and path.name == name
 
 
-def _named(name: str, of: Path | None = None, *, own_first: bool = False) -> Path | None:
+def _named(name: str, of: Path | None = None, *, user_first: bool = False) -> Path | None:
     """The file of a name; where it is the base `of` a file, not that file itself."""
-    folders = [mapping_folder(), own_folder()]
+    folders = [mapping_folder(), user_folder()]
     if name.startswith(MINE):
         del folders[0]
-    for folder in reversed(folders) if own_first else folders:
+    for folder in reversed(folders) if user_first else folders:
         file = folder / f"{name.removeprefix(MINE)}.toml"
         try:
             if file.is_file() and not (of is not None and _is_same(file, of)):
@@ -224,6 +224,6 @@ def _is_same(one: Path, other: Path) -> bool:
 
 def _unknown(name: str, hint: str = "") -> str:
     known = ", ".join(shipped_mappings())
-    if own := own_mappings():
+    if own := user_mappings():
         known += f"; yours: {', '.join(MINE + name for name in own)}"
     return f"no mapping {name!r} (shipped: {known}{hint})"

@@ -38,7 +38,7 @@ def boolean(name: str) -> Callable[[Any], Any]:
     return read
 
 
-def free(address: str, instead: str) -> Param:
+def settable_param(address: str, instead: str) -> Param:
     """Find a parameter that the player does not move; `instead` begins the advice in the error."""
     param = find(address)
     if param.owned:
@@ -48,7 +48,7 @@ def free(address: str, instead: str) -> Param:
 
 def start(address: str, value: Any) -> float:
     """Read the value that a parameter starts with."""
-    param = free(address, "set one")
+    param = settable_param(address, "set one")
     if param.accept(value) != value:
         raise ParameterError(f"{address}: {value} is not within {param.range_text}")
     return float(value)

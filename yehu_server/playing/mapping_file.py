@@ -241,7 +241,7 @@ def _bind(entry: Any, add_error: Callable[[str, str], None]) -> Bind | None:
         add_error(missing[0], "needs a source and a target")
     else:
         source = read("source", sources.canonical, None)
-        param = read("target", lambda text: entries.free(text, "map to one"), None)
+        param = read("target", lambda text: entries.settable_param(text, "map to one"), None)
     curve: Curve | Breakpoints | None = read("curve", entries.curve, None)
     bind = Bind(
         source or "",

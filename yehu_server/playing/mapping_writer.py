@@ -91,8 +91,8 @@ def edited(contents: MappingFile, text: str, dropped: Sequence[Bind], added: Seq
 
     Comments and order stay where possible; else the text is written from scratch.
     """
-    kept = tuple(bind for bind in contents.binds if bind not in dropped)
-    wanted = replace(contents, binds=(*kept, *added))
+    remaining = tuple(bind for bind in contents.binds if bind not in dropped)
+    wanted = replace(contents, binds=(*remaining, *added))
     try:
         document = tomlkit.parse(text)
         if "bind" not in document:

@@ -28,7 +28,7 @@ from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import NOTE, POLY_PRESSURE, STEPS, VELOCITY, is_address
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 
 PATIENCE_S = 1.0  # to wait until the audio side uses other tables
 
@@ -49,7 +49,7 @@ class MidiPlayer:
 
     def __init__(
         self,
-        wishes: Wishes,
+        wishes: WishPoster,
         mapping: Mapping,
         channels: set[int] | None = None,
         *,
@@ -88,7 +88,7 @@ class MidiPlayer:
         self._wishes.post(events.CONTROL, frame, number, argument)
 
     def write(self, address: str, value: float, *, frame: int | None = None) -> float:
-        """Set a parameter for all channels, until a controller moves it; see `Wishes.write`."""
+        """Set a parameter for all channels, until a controller moves it; see `WishPoster.write`."""
         return self._wishes.set(address, value, frame=frame)
 
     def load(self, values: Values[str, float], *, frame: int | None = None) -> None:
@@ -97,11 +97,11 @@ class MidiPlayer:
             if not self._wishes.keeps(address):
                 self._wishes.write(address, value, frame=frame, kind=events.LOAD)
 
-    def let_go_of(self, port: int, *, frame: int | None = None) -> None:
+    def end_port_notes(self, port: int, *, frame: int | None = None) -> None:
         """End the notes of a port that is gone, and forget its moves, but those for all notes."""
         self._wishes.post(events.DISCONNECT, frame, port)
 
-    def begin_again(self, *, frame: int | None = None) -> None:
+    def reset_to_start_values(self, *, frame: int | None = None) -> None:
         """Set every parameter to its start value."""
         defaults = {param.address: param.default for param in TABLE}
         values = defaults | dict(self.mapping.start) | dict(self._start)

@@ -12,8 +12,8 @@ from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.errors import ParameterError
-from yehu_server.playing.live import LivePlayer
-from yehu_server.playing.section_people import part_specs, section_size
+from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.section_instruments import part_specs, section_size
 from yehu_server.playing.style import Style
 
 WIDEST = 0.7  # pan of the outermost players; by ear: the room stays around them
@@ -56,7 +56,7 @@ def number_of_instruments(styles: Sequence[Style]) -> int:
 
 
 def seated(styles: Sequence[Style]) -> list[Style]:
-    """The same styles, with a place and a seed for each part; what they say themselves counts."""
+    """Styles with a default pan and seed for each part; values that a style sets itself win."""
     own, number = [], 0
     for style, place in zip(styles, places(len(styles)), strict=True):
         seed = (style.seed + number) % SEEDS

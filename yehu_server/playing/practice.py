@@ -25,18 +25,18 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
-    FARTHER,
+    DISTANCE_FACTOR,
     FIRST,
     FLAUTANDO,
     LEAST_PRESS,
     PLACES,
     TOP_SPEED,
-    ordinary_table,
+    default_recipes,
 )
 from yehu_server.core.player.calibration import OPEN_NOTES, Calibration
 from yehu_server.core.player.fingering import HIGHEST_NOTE, HIGHEST_ON_F, LOWEST_NOTE
 from yehu_server.params.table import find
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 
 Array = Any
 Progress = Callable[[float, float], None]
@@ -51,10 +51,10 @@ SPEEDS, PRESSURES = (0.12, 0.16, 0.2, 0.25), (0.2, 0.3, 0.42, 0.55)
 QUICK = (0.2, 0.24)  # speeds (m/s) for which a light bow is practised
 RESTS_S = (0.02, 0.12)
 BEFORE_S, EARLY_S, LATE_S, UP_S, EACH_S = 0.2, 0.13, 0.38, 0.385, 0.4
-# Passages that a manner is judged by, of which the first few tell those that are worth the others;
+# Passages that a recipe is judged by, of which the first few tell those that are worth the others;
 # and of a light, quick bow.
 TRIES, HEAT, QUICK_TRIES = 16, 5, 8
-AGAIN, FINALISTS = 500_000, 4  # what begins the other passages; manners that play them
+AGAIN, FINALISTS = 500_000, 4  # what begins the other passages; recipes that play them
 # It speaks: certainty and slips in a period; cents early, when the ear has not yet tuned it, and
 # late. Weight of early.
 CERTAIN, FEWEST, MOST, NEAR_EARLY, NEAR_LATE, EARLY = 0.97, 0.7, 1.4, 60.0, 15.0, 0.3
@@ -88,7 +88,7 @@ class Passage:
 
 @dataclass(frozen=True)
 class Search:
-    """A note on a string, at one of PLACES, and the manners that a search starts from.
+    """A note on a string, at one of PLACES, and the recipes that a search starts from.
 
     `moved` is that of the default place, with the bow moved to here.
     """
@@ -110,13 +110,13 @@ class Search:
         return self.string == 0 and self.note >= OPEN_NOTES[1]
 
     def varied(
-        self, manner: Array, positions: Iterable[float], shares: Iterable[float]
+        self, recipe: Array, positions: Iterable[float], shares: Iterable[float]
     ) -> list[Array]:
-        """A manner with the bow elsewhere and other shares of Schelleng's limit."""
+        """A recipe with the bow elsewhere and other shares of Schelleng's limit."""
         varied = []
         for position in positions:
             for share in shares:
-                changed = _with(manner, FARTHER, position / PLACES[self.place])
+                changed = _with(recipe, DISTANCE_FACTOR, position / PLACES[self.place])
                 changed[[AT_FLAUTANDO, AT_LIGHT, AT_FIRM]] *= share
                 changed[AT_FIRM] = min(changed[AT_FIRM], FIRMEST[self.string])
                 if NEAREST <= position <= FARTHEST:
@@ -174,7 +174,7 @@ class Practice:
         table: Array | None = None,
         places: Iterable[int] = range(len(PLACES)),
     ) -> Array:
-        """Practise all notes; return a table as `ordinary_table` does.
+        """Practise all notes; return a table as `default_recipes` does.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class Practice:
         places : iterable of int
             Indices of PLACES to practise.
         """
-        table = ordinary_table() if table is None else table.copy()
+        table = default_recipes() if table is None else table.copy()
         asked = [place for place in places if place in self._places]
         with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
             for done, (string, note) in enumerate(STOPS, start=1):
@@ -201,7 +201,7 @@ class Practice:
         return table
 
     def _best(self, search: Search, workers: ThreadPoolExecutor) -> Array:
-        """The best manner of a note at a place; that which it starts from where that is good."""
+        """The best recipe of a note at a place; that which it starts from where that is good."""
         string, place, start = search.string, search.place, search.start
         seed = 1000 * search.note + 100 * string + place
         speeds, pressures = self._speeds, self._pressures
@@ -210,7 +210,7 @@ class Practice:
 
         def scores(tried: list[Array], passages: list[Passage]) -> Array:
             found = list(workers.map(lambda m: self.score(search, m, passages), tried))
-            return np.array(found) - [_lost(manner, start) for manner in tried]
+            return np.array(found) - [_lost(recipe, start) for recipe in tried]
 
         def choose(best: Array, score: float, tried: Iterable[Array]) -> tuple[Array, float]:
             tried = list(tried)
@@ -236,7 +236,7 @@ class Practice:
         if score < GOOD or float(scores([best], again)[0]) < GOOD:
             farthers = (DEFAULT_FARTHERS if place == DEFAULT else FARTHERS)[string]
             asked = tuple(PLACES[place] * farther for farther in farthers)
-            own = PLACES[place] * best[FARTHER]
+            own = PLACES[place] * best[DISTANCE_FACTOR]
             beta = sorted({*asked, *(own * near for near in FINE_FARTHERS)})
             best, score = choose(best, score, search.varied(best, beta, SHARES))
             best, score = choose(best, score, (_with(best, TOP_SPEED, v) for v in TOP_SPEEDS))
@@ -245,37 +245,37 @@ class Practice:
             best, score = choose(
                 best, score, (_with(best, AT_FIRM, firm * share) for share in FIRM_SHARES)
             )
-            beta = [PLACES[place] * best[FARTHER] * near for near in FINE_FARTHERS]
+            beta = [PLACES[place] * best[DISTANCE_FACTOR] * near for near in FINE_FARTHERS]
             best, score = choose(best, score, search.varied(best, beta, FINE_SHARES))
-        if best is not start:  # it was chosen for its luck, too: other passages decide
+        if best is not start:  # a best of many is biased upwards: score it again on fresh passages
             fresh = _passages(search, seed + 2 * AGAIN, 2 * TRIES, speeds, pressures)
             before, after = scores([start, best], fresh)
             best = best if after > before else start
         return self._lightly(search, best) if FLAUTANDO in pressures else best
 
     def _lightly(self, search: Search, usual: Array) -> Array:
-        """A manner with a share for flautando at which a quick bow speaks."""
+        """A recipe with a share for flautando at which a quick bow speaks."""
         passages = _passages(search, search.note, QUICK_TRIES, QUICK, (FLAUTANDO,))
         best, most = usual, -math.inf
         for share in FLAUTANDO_SHARES:
-            manner = _with(usual, AT_FLAUTANDO, usual[AT_FLAUTANDO] * share)
-            score = self.score(search, manner, passages) - CHANGED * math.log(share)
+            recipe = _with(usual, AT_FLAUTANDO, usual[AT_FLAUTANDO] * share)
+            score = self.score(search, recipe, passages) - CHANGED * math.log(share)
             if score > most + BETTER:
-                best, most = manner, score
+                best, most = recipe, score
             if score >= GOOD:
                 break
         return best
 
-    def score(self, search: Search, manner: Array, passages: Iterable[Passage]) -> float:
+    def score(self, search: Search, recipe: Array, passages: Iterable[Passage]) -> float:
         """How well a note speaks in some passages: at best 1."""
-        table = ordinary_table()
+        table = default_recipes()
         pitch = self._pitches[search.note]
         for row in {math.floor(pitch), math.ceil(pitch)}:
-            table[search.string, :, row - FIRST] = manner
+            table[search.string, :, row - FIRST] = recipe
         spec = InstrumentSpec(self._rate, self._tuned, calibration=self._calibration, bowing=table)
         instrument = Instrument(spec)
-        instrument.bow_by_tables()
-        wishes = Wishes(instrument)
+        instrument.disable_pressure_correction()
+        wishes = WishPoster(instrument)
         wishes.write("/playing/variation", 0.0)
         wishes.write("/playing/bow_length", 0.0)
         instrument.write("/bow/noise", 0.0, ramp_ms=0.0)
@@ -291,7 +291,7 @@ class Practice:
         return (speaks - off / OFF_WEIGHT) / count
 
     def _play(
-        self, instrument: Instrument, wishes: Wishes, search: Search, passage: Passage
+        self, instrument: Instrument, wishes: WishPoster, search: Search, passage: Passage
     ) -> tuple[bool, bool, float]:
         """Whether a note speaks early and late in a passage, and its error (cents) early."""
         start = instrument.frame
@@ -365,25 +365,25 @@ def _passages(
 
 
 def _moved(table: Array, string: int, note: int, place: int) -> Array:
-    """The manner of a note at the default place, with the bow moved to another.
+    """The recipe of a note at the default place, with the bow moved to another.
 
     On the F string it moves as far as ordinarily.
     """
-    manner = table[string, DEFAULT, note - FIRST].copy()
-    ordinary = ordinary_table()[string, :, note - FIRST, FARTHER]
-    manner[FARTHER] *= ordinary[place] / ordinary[DEFAULT]
+    recipe = table[string, DEFAULT, note - FIRST].copy()
+    ordinary = default_recipes()[string, :, note - FIRST, DISTANCE_FACTOR]
+    recipe[DISTANCE_FACTOR] *= ordinary[place] / ordinary[DEFAULT]
     farthest = FARTHEST / PLACES[place]
-    manner[FARTHER] = min(max(manner[FARTHER], NEAREST / PLACES[place]), farthest)
-    return manner
+    recipe[DISTANCE_FACTOR] = min(max(recipe[DISTANCE_FACTOR], NEAREST / PLACES[place]), farthest)
+    return recipe
 
 
-def _lost(manner: Array, usual: Array) -> float:
-    """What a manner loses for its distance from the usual one."""
-    moved = abs(math.log(manner[FARTHER] / usual[FARTHER]))
-    return AWAY * moved + CHANGED * abs(math.log(manner[AT_LIGHT] / usual[AT_LIGHT]))
+def _lost(recipe: Array, usual: Array) -> float:
+    """What a recipe loses for its distance from the usual one."""
+    moved = abs(math.log(recipe[DISTANCE_FACTOR] / usual[DISTANCE_FACTOR]))
+    return AWAY * moved + CHANGED * abs(math.log(recipe[AT_LIGHT] / usual[AT_LIGHT]))
 
 
-def _with(manner: Array, column: int, value: float) -> Array:
-    changed = manner.copy()
+def _with(recipe: Array, column: int, value: float) -> Array:
+    changed = recipe.copy()
     changed[column] = value
     return changed

@@ -73,13 +73,13 @@ class Presets:
     own : Path, optional
         The user's folder, created by the first `save`; by default in the user's configuration
         folder for this program.
-    own_first : bool
+    user_first : bool
         Whether the user's own presets take precedence over shipped ones of the same name or
         program, as in live playing. Else shipped ones do, and own ones have no program.
     """
 
-    def __init__(self, own: Path | None = None, *, own_first: bool = True) -> None:
-        self._own_first = own_first
+    def __init__(self, own: Path | None = None, *, user_first: bool = True) -> None:
+        self._own_first = user_first
         self.own = own or user_config_path("yehu-server") / "presets"
         self.shipped = shipped_folder("presets")
         # The presets read, or why they could not be.

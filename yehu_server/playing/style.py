@@ -15,11 +15,11 @@ from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
 from yehu_server.playing.midi_player import MidiPlayer
-from yehu_server.playing.practices import shipped_practice
+from yehu_server.playing.practice_files import shipped_practice
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
-from yehu_server.playing.wishes import Wishes
+from yehu_server.playing.wishes import WishPoster
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ class Style:
             body=body,
         )
 
-    def wishes(self, instruments: Instrument | Sequence[Instrument]) -> Wishes:
+    def wishes(self, instruments: Instrument | Sequence[Instrument]) -> WishPoster:
         """What posts wishes of this style to an instrument, or to those of a section."""
-        return Wishes(instruments, self.policy, self.tuning, self.a4)
+        return WishPoster(instruments, self.policy, self.tuning, self.a4)
 
     def tables(self, controls: Controls) -> Any:
         """The tables of this style (``midi.tables``), with named controls numbered as given."""
@@ -101,7 +101,7 @@ class Style:
             programs=self.presets.programs() if self.programs else None,
         )
 
-    def midi(self, wishes: Wishes, channels: set[int] | None = None) -> MidiPlayer:
+    def midi(self, wishes: WishPoster, channels: set[int] | None = None) -> MidiPlayer:
         """A MIDI player of this style; `channels` as in `MidiPlayer`."""
         programs = self.presets.programs() if self.programs else None
         return MidiPlayer(wishes, self.mapping, channels, start=self.start, programs=programs)

@@ -1,4 +1,4 @@
-"""Writes what files say of playing into tables for compiled code (``midi.tables``)."""
+"""Converts mapping, tuning and presets to tables for compiled code (``midi.tables``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Posts what is wished of a part, and reads from its record what it holds.
+"""Posts notes and parameters to a part, and reads the values that it has.
 
 What the wishes come to is decided in compiled code (``midi``, ``player``), at their frames.
 """
@@ -48,7 +48,7 @@ class Pending:
     is_held: bool
 
 
-class Wishes:
+class WishPoster:
     """Asks the player of an instrument, or those of a section, for notes and parameters.
 
     Parameters
@@ -98,7 +98,7 @@ class Wishes:
     @property
     def record(self) -> Any:
         """The part's record (``midi.record.MIDI``), with all that is posted for now."""
-        self._instrument.take_in()
+        self._instrument.interpret_events()
         return self._instrument.midi
 
     def post(
@@ -138,7 +138,7 @@ class Wishes:
             return None
         meters = self._instrument.meters()
         is_done = meters["drained"] > pending.number and meters["next_frame"] > pending.frame
-        # What is not live takes in all that is for now as soon as it is read.
+        # An instrument that is not live interprets due events whenever its record is read.
         is_read = not self._instrument.is_live and pending.frame <= self._instrument.frame
         if is_done or (is_read and not param.owned):
             del self._pending[param.address]
@@ -220,7 +220,7 @@ class Wishes:
         """Whether a parameter was written with ``hold``."""
         pending = self._waiting(find(address))
         is_held = pending is not None and pending.is_held
-        return is_held or bool(self.record["kept"][ROW[find(address).address]])
+        return is_held or bool(self.record["is_held"][ROW[find(address).address]])
 
     # -- notes -------------------------------------------------------------------------------
 

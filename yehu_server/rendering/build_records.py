@@ -83,7 +83,7 @@ def hash_of(path: Path) -> str:
     return digest.hexdigest()
 
 
-def work_of(target: Path) -> Path:
+def temporary_of(target: Path) -> Path:
     """Where a result is made, on the same disk, before it is moved to its target.
 
     Each time it is another place: a worker that was given up may still be making it.
@@ -160,7 +160,7 @@ def _result(path: Path) -> Record:
 def up_to_date(
     target: Path, key: str, results: Iterable[Path], hashing: Callable[[Path], str] = hash_of
 ) -> Record | None:
-    """Return what was kept to be told of a result, or of a failure; None where it has to be made.
+    """Return the manifest line of a result or failure that is up to date; None if there is none.
 
     Parameters
     ----------
@@ -183,8 +183,8 @@ def up_to_date(
     return line if is_current and isinstance(line, dict) else None
 
 
-def told_before(target: Path) -> Record:
-    """What was told of a result, whether it is up to date or not; empty where nothing was."""
+def previous_line(target: Path) -> Record:
+    """The manifest line of a result, up to date or not; empty if there is none."""
     try:
         line = json.loads(read_text(record_of(target), MOST_RECORD_BYTES))["line"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
@@ -207,12 +207,12 @@ def _beside(target: Path, path: Path) -> str:
 
 def clear_work(folders: Iterable[Path]) -> None:
     """Remove what processes that were killed left half made; nobody may be making any."""
-    for path in _leavings(folders):
+    for path in _leftovers(folders):
         with contextlib.suppress(OSError):
             path.unlink()
 
 
-def _leavings(folders: Iterable[Path]) -> Iterator[Path]:
+def _leftovers(folders: Iterable[Path]) -> Iterator[Path]:
     for folder in folders:
         try:
             files = list((folder / HIDDEN).iterdir())

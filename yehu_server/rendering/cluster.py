@@ -216,7 +216,7 @@ class Cluster:
         return ((future, next(results) if future.key in keys else None) for future in futures)
 
     def _event(self, future: Any, job: int, result: Any) -> Event:
-        if isinstance(result, cluster_worker.Stranger):
+        if isinstance(result, cluster_worker.CodeMismatch):
             raise YehuError(self._unlike("a worker that came later", result.identity))
         if future.status == "finished":
             return Event(job, 1.0, result=result)

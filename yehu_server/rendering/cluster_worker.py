@@ -66,8 +66,8 @@ def _processor() -> str:
 
 
 @dataclass(frozen=True)
-class Stranger:
-    """The answer of a worker that has another code than the client."""
+class CodeMismatch:
+    """The answer of a worker whose code differs from the client's."""
 
     identity: Identity
 
@@ -75,14 +75,14 @@ class Stranger:
 def do(job: bytes, code: str) -> Any:
     """Do a job that was pickled by `packed`, as the same code would elsewhere.
 
-    Returns what its function does, or a `Stranger` where this process has another code.
+    Returns what its function does, or a `CodeMismatch` where this process has another code.
     """
     if code != identity().code:
-        return Stranger(identity())
+        return CodeMismatch(identity())
     perform, task, setup = pickle.loads(job)  # noqa: S301 - workers do what their scheduler says
     with _turn:
         if setup not in _set_up:
-            with one_at_a_time():
+            with machine_lock():
                 pickle.loads(setup)()  # noqa: S301
             _set_up.add(setup)
         return perform(task, _tell_nobody)
@@ -107,7 +107,7 @@ def _tell_nobody(_done: float, _total: float) -> None:
 
 
 @contextlib.contextmanager
-def one_at_a_time() -> Iterator[None]:
+def machine_lock() -> Iterator[None]:
     """Hold a lock of this machine's, as long as a block lasts.
 
     What the first process compiles and keeps, the others find.

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.engine.intake import take_in
+from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mixing import mix_block
 from yehu_server.core.engine.sounding import STAGE_COLUMNS, sound_block
 from yehu_server.core.stage.geometry import EARS
@@ -51,7 +51,7 @@ class Cores:
             self.stems = np.zeros((frames, parts + 1, EARS))
         done, begin = 0, self._ensemble.frame
         while done < frames:
-            end = take_in.call(self._ensemble.address, begin + frames) - begin
+            end = interpret_events.call(self._ensemble.address, begin + frames) - begin
             self._compute(out[done:end], self.stems[done:end])
             done = end
 

@@ -17,7 +17,7 @@ from yehu_server.playing.style import Style
 from yehu_server.scores.score import Score
 
 
-def asked_pitch(instrument: Instrument) -> float | None:
+def target_pitch(instrument: Instrument) -> float | None:
     """Return the pitch of the sounding key with its bend (fractional MIDI note), if one sounds.
 
     Meters tell it too, but only those of an instrument that the callback plays.

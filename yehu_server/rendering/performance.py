@@ -11,9 +11,9 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.params.table import find
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.parts import number_of_instruments
-from yehu_server.playing.section_people import part_specs
+from yehu_server.playing.section_instruments import part_specs
 from yehu_server.rendering.cores import Cores, shared
 from yehu_server.rendering.options import Options, Part
 from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
@@ -28,7 +28,7 @@ class PartPlayer:
     ----------
     part : Part
     instruments : sequence of Instrument
-    wishes : Wishes
+    wishes : WishPoster
     midi : MidiPlayer
     """
 

@@ -33,7 +33,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 class _PipedWav(WavStream):
     """Writes a WAV file from beginning to end."""
 
-    def _tell(self) -> None:
+    def _update_header(self) -> None:
         pass
 
     def _cut(self) -> None:
@@ -79,7 +79,7 @@ class PipeWriter(SoundWriter):
         self._target = Path("standard output")
         self._channels, self._limit = channels, None
         self.frames, self.peak, self._power = 0, 0.0, 0.0
-        with self._telling():
+        with self._converting_errors():
             self._piped: _PipedWav | _Raw
             if format_name == "wav":
                 self._piped = _PipedWav(file, rate, subtype, RENDERED, channels=channels)
@@ -91,9 +91,9 @@ class PipeWriter(SoundWriter):
         """Do nothing: each write was complete."""
 
     @contextlib.contextmanager
-    def _telling(self) -> Iterator[None]:
+    def _converting_errors(self) -> Iterator[None]:
         try:
-            with super()._telling():
+            with super()._converting_errors():
                 yield
         except OutputError as error:
             if isinstance(error.__cause__, BrokenPipeError):

@@ -39,9 +39,9 @@ class Replayed:
 def blocks(capture: Capture, ensemble: Ensemble) -> Iterator[Any]:
     """Yield the samples of a capture in blocks [shape=(frames, 2), float32]."""
     frames = capture.wishes["frame"]
-    borders = merge(range(0, capture.frames, BLOCK), sorted(capture.rests), [capture.frames])
+    borders = merge(range(0, capture.frames, BLOCK), sorted(capture.gaps), [capture.frames])
     for start, stop in pairwise(border for border, _ in groupby(borders)):
-        if start in capture.rests:
+        if start in capture.gaps:
             if capture.version == 1:  # whose notes went on
                 ensemble.come_to_rest()
             else:
@@ -53,7 +53,7 @@ def blocks(capture: Capture, ensemble: Ensemble) -> Iterator[Any]:
             instrument.post(kind, frame=frame, index=index, value=value, other=other)
         samples = np.zeros((stop - start, EARS), np.float32)
         ensemble.process(samples)
-        for rest, since in capture.rests.items():
+        for rest, since in capture.gaps.items():
             if since < stop and rest > start:
                 samples[max(since - start, 0) : max(rest - start, 0)] = 0.0
         yield samples

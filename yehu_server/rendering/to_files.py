@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from yehu_server.errors import OutputError
-from yehu_server.rendering.options import Options, Part, asked_pitch
+from yehu_server.rendering.options import Options, Part, target_pitch
 from yehu_server.rendering.performance import Performance, Samples
 from yehu_server.rendering.pipe import PIPE, sound_pipe
+from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
-from yehu_server.rendering.watch import Watch
 from yehu_server.scores.score import Score
 from yehu_server.util.files import anything, why
 from yehu_server.util.sound_file import SoundWriter, check_format, sound_file
@@ -69,7 +69,7 @@ def render(
     progress: Callable[[float, float], None] | None = None,
     may_replace: Callable[[Path], bool] = anything,
     stems: Sequence[Path] = (),
-    watch: Watch | None = None,
+    watch: PlotData | None = None,
 ) -> Summary:
     """Render a score on one instrument, or parts on one each, to a sound file.
 
@@ -84,7 +84,7 @@ def render(
     stems : sequence of Path
         A file for each part, and one for the room unless it is dry; none: no stems. Their sum is
         the mix.
-    watch : Watch, optional
+    watch : PlotData, optional
         Gathers what a picture shows.
 
     Raises
@@ -124,7 +124,7 @@ def _takes(
     files: int,
     rate: int,
     progress: Callable[[float, float], None] | None,
-    watch: Watch | None,
+    watch: PlotData | None,
 ) -> Iterator[list[Samples]]:
     """Yield what goes to each of the files, block by block."""
     frames, total = 0, performance.score_frames / rate
@@ -132,7 +132,7 @@ def _takes(
         yield [samples, *performance.stems][:files]
         frames += len(samples)
         if watch is not None:
-            asked = [asked_pitch(player.instruments[0]) for player in performance.players]
+            asked = [target_pitch(player.instruments[0]) for player in performance.players]
             watch.take(samples, asked)
         if progress is not None:
             progress(frames / rate, total)

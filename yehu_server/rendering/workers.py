@@ -21,8 +21,8 @@ from typing import Any
 
 from yehu_server.errors import YehuError
 
-Tell = Callable[[float, float], None]  # what is done, and of what
-Perform = Callable[[Any, Tell], Any]
+ProgressCallback = Callable[[float, float], None]  # what is done, and of what
+Perform = Callable[[Any, ProgressCallback], Any]
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Event:
     share : float
         Of the job; 1 when it is over.
     total : float
-        What the job does in all, such as seconds of sound; 0 where it has not told.
+        What the job does in all, such as seconds of sound; 0 if it is not known yet.
     result : object
         What was returned.
     died : str
@@ -120,8 +120,8 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
                 crew.append(_Worker(context, perform))
                 job, tries[job] = waiting.popleft()
                 crew[-1].begin(job, tasks[job])
-            heard = wait([worker.connection for worker in crew])
-            for worker in [each for each in crew if each.connection in heard]:
+            ready = wait([worker.connection for worker in crew])
+            for worker in [each for each in crew if each.connection in ready]:
                 job = worker.job
                 try:
                     share, total, result = worker.connection.recv()

@@ -15,7 +15,6 @@ import numpy as np
 
 from yehu_server.core.player.wishes import WISH
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.scores.capture_beginning import Beginning, read_header
 from yehu_server.scores.capture_format import (
     FORMAT,
     VERSION,
@@ -26,6 +25,7 @@ from yehu_server.scores.capture_format import (
     player_of,
     ramp_of,
 )
+from yehu_server.scores.capture_header import SessionStart, read_header
 from yehu_server.util.files import read_lines
 
 MOST_BYTES = 1 << 30
@@ -38,12 +38,12 @@ CHUNK = 1 << 16  # wishes
 class Capture:
     """A captured session."""
 
-    beginning: Beginning
+    beginning: SessionStart
     build: dict[str, str]
     version: int = VERSION
     wishes: Any = field(default_factory=lambda: np.zeros(0, WISH))  # by frame
     players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # whose they are, from 0
-    rests: dict[int, int] = field(
+    gaps: dict[int, int] = field(
         default_factory=dict
     )  # frame of each rest, and since when it was silent
     end: int | None = None  # number of frames
@@ -59,7 +59,7 @@ class Capture:
     def frames(self) -> int:
         """Number of frames; where the end is missing, until a second after the last wish."""
         last = int(self.wishes["frame"][-1]) + 1 if len(self.wishes) else 0
-        last = max([last, *self.rests])
+        last = max([last, *self.gaps])
         return max(last, last + round(self.rate) if self.end is None else self.end)
 
 
@@ -152,8 +152,8 @@ def _take(entry: Any, capture: Capture, wishes: list[Fields], players: list[int]
         capture.end = frames_of(entry["end"])
     elif "rest" in entry:
         rest, since = frames_of(entry["rest"]), frames_of(entry["since"])
-        capture.rests[rest] = since
-        if since > rest or len(capture.rests) > MOST_RESTS:
+        capture.gaps[rest] = since
+        if since > rest or len(capture.gaps) > MOST_RESTS:
             raise ValueError("a rest before its beginning, or too many of them")
     elif "lost" in entry:
         capture.lost += frames_of(entry["events"])

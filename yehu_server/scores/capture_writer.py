@@ -15,8 +15,8 @@ from typing import Any
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
-from yehu_server.scores.capture_beginning import Beginning, beginning_of, header_of
 from yehu_server.scores.capture_format import as_line
+from yehu_server.scores.capture_header import SessionStart, header_of, session_start_of
 from yehu_server.util.files import create, discard, why, write_all
 
 ROOM_BYTES = 1 << 16  # free space needed to begin a capture
@@ -27,7 +27,7 @@ class CaptureWriter:
 
     Parameters
     ----------
-    beginning : Beginning
+    beginning : SessionStart
         What the session starts from.
     overwrite : bool
         Whether to replace an older file.
@@ -42,7 +42,7 @@ class CaptureWriter:
         self,
         target: Path,
         *,
-        beginning: Beginning,
+        beginning: SessionStart,
         overwrite: bool = False,
     ) -> None:
         self._target = target
@@ -115,7 +115,7 @@ class LiveCapture:
         self._on_message = on_message
         self._writer: CaptureWriter | None = CaptureWriter(
             target,
-            beginning=beginning_of(ensemble.instruments, has_room=has_room),
+            beginning=session_start_of(ensemble.instruments, has_room=has_room),
             overwrite=overwrite,
         )
         self._rests = 0  # number of those written
@@ -147,7 +147,7 @@ class LiveCapture:
         self._writer = None
 
     def _write(self, writer: CaptureWriter) -> None:
-        for since, frame in self._ensemble.rests[self._rests :]:
+        for since, frame in self._ensemble.gaps[self._rests :]:
             writer.note("rest", frame, since=since)
             self._rests += 1
         unreported = 0

@@ -161,7 +161,7 @@ def check_target(target: Path) -> None:
         raise OutputError(f"{target}: the folder {folder} is not writable")
 
 
-def check_apart(outputs: Mapping[str, Path], inputs: Iterable[Path] = ()) -> None:
+def check_distinct(outputs: Mapping[str, Path], inputs: Iterable[Path] = ()) -> None:
     """Check that outputs are different files from each other and from the inputs.
 
     Parameters

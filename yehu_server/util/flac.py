@@ -38,7 +38,7 @@ class FlacStream:
     ) -> None:
         self.frames = 0  # in the file
         self._given = 0
-        self._spy = _Spy(file)
+        self._spy = _CountingFile(file)
         self._encoder = soundfile.SoundFile(
             self._spy,
             "w",
@@ -57,15 +57,15 @@ class FlacStream:
         with contextlib.suppress(AssertionError, soundfile.LibsndfileError):
             self._encoder.write(samples)
         self._given += len(samples)
-        self._tell()
+        self._update_header()
 
     def close(self) -> None:
         """End the stream; the file stays open."""
         with contextlib.suppress(soundfile.LibsndfileError):
             self._encoder.close()
-        self._tell()
+        self._update_header()
 
-    def _tell(self) -> None:
+    def _update_header(self) -> None:
         self.frames = min(self._given, self._spy.frames)
         if self._spy.error is not None:
             with contextlib.suppress(OSError):
@@ -76,7 +76,7 @@ class FlacStream:
             self._spy.tell_total(self.frames)
 
 
-class _Spy(io.RawIOBase):
+class _CountingFile(io.RawIOBase):
     """The file for libsndfile, which counts blocks and keeps the first error."""
 
     def __init__(self, file: io.FileIO) -> None:

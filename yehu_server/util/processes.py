@@ -65,7 +65,7 @@ class Child:
         )
         self._widen()
         events = threading.Thread(target=self._listen, name=f"{self._name} events", daemon=True)
-        overheard = threading.Thread(target=self._overhear, name=f"{self._name} log", daemon=True)
+        overheard = threading.Thread(target=self._log_stderr, name=f"{self._name} log", daemon=True)
         try:
             overheard.start()
             events.start()
@@ -128,7 +128,7 @@ class Child:
             self._process.kill()
         self._process.wait()
         self._hang_up()
-        self._tell({"event": "gone"})
+        self._dispatch({"event": "gone"})
 
     def _read(self, line: str) -> None:
         try:
@@ -136,15 +136,15 @@ class Child:
         except ValueError:
             log.debug("%s: %s", self._name, line.rstrip())
         else:
-            self._tell(message)
+            self._dispatch(message)
 
-    def _tell(self, message: Message) -> None:
+    def _dispatch(self, message: Message) -> None:
         try:
             self._on_event(message)
         except Exception:  # later events still count
             log.exception("%s: could not act on %s", self._name, message)
 
-    def _overhear(self) -> None:
+    def _log_stderr(self) -> None:
         with contextlib.suppress(OSError, MemoryError):
             for line in self._lines(self._process.stderr):
                 log.debug("%s: %s", self._name, line.rstrip())
@@ -249,7 +249,7 @@ class Supervisor:
         if self._ending.is_set():  # `stop` set both before
             return
         begun = time.monotonic()
-        child = Child(self._module, partial(self._hear, gone), self._share)
+        child = Child(self._module, partial(self._on_child_event, gone), self._share)
         try:
             self._attend(child, gone)
         finally:
@@ -259,7 +259,7 @@ class Supervisor:
             self._backoff.worked()
         self._ending.wait(self._backoff.failed())
 
-    def _hear(self, gone: threading.Event, event: Message) -> None:
+    def _on_child_event(self, gone: threading.Event, event: Message) -> None:
         if event["event"] == "gone":
             gone.set()
         else:

@@ -60,14 +60,14 @@ class AwakeTime:
     """
 
     def __init__(self) -> None:
-        self._asked = time.monotonic()
+        self._last_call = time.monotonic()
         self._awake_s = 0.0
 
     def __call__(self) -> float:
         """Seconds awake since the clock was made."""
         now = time.monotonic()
-        self._awake_s += min(now - self._asked, LONGEST_TURN_S)
-        self._asked = now
+        self._awake_s += min(now - self._last_call, LONGEST_TURN_S)
+        self._last_call = now
         return self._awake_s
 
 

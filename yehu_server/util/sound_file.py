@@ -68,14 +68,14 @@ class SoundWriter:
         self.frames = 0
         self.peak = 0.0
         self._power = 0.0
-        with self._telling():
+        with self._converting_errors():
             make = WavStream if is_wav else FlacStream
             self._stream: WavStream | FlacStream = make(
                 file, rate, subtype, software, channels=channels
             )
 
     @property
-    def kept_frames(self) -> int:
+    def written_frames(self) -> int:
         """Number of frames in the file; an encoder may hold back more."""
         return self._stream.frames
 
@@ -87,16 +87,16 @@ class SoundWriter:
             raise OutputError(f"{self._target}: too long for a WAV file (4 GiB){instead}")
         self.peak = max(self.peak, float(np.abs(samples).max(initial=0.0)))
         self._power += float(np.square(samples, dtype=np.float64).sum())
-        with self._telling():
+        with self._converting_errors():
             self._stream.write(samples)
 
     def close(self) -> None:
         """Write what the encoder holds back."""
-        with self._telling():
+        with self._converting_errors():
             self._stream.close()
 
     @contextlib.contextmanager
-    def _telling(self) -> Iterator[None]:
+    def _converting_errors(self) -> Iterator[None]:
         try:
             yield
         except OSError as error:

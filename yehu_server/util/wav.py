@@ -71,7 +71,7 @@ class WavStream:
         try:
             write_all(self._file, encoded(samples, self._subtype))
             self.frames += len(samples)
-            self._tell()
+            self._update_header()
         except OSError:
             with contextlib.suppress(OSError):
                 self._cut()
@@ -87,9 +87,9 @@ class WavStream:
         each = self._frame_bytes
         self.frames = (self._file.seek(0, io.SEEK_END) - self._header_bytes) // each
         self._file.truncate(self._header_bytes + self.frames * each)
-        self._tell()
+        self._update_header()
 
-    def _tell(self) -> None:
+    def _update_header(self) -> None:
         self._file.seek(0)
         write_all(self._file, self._header())
         self._file.seek(0, io.SEEK_END)

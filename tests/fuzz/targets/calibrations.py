@@ -12,7 +12,7 @@ from fuzz.instrument import CALIBRATION
 from fuzz.target import scratch, target
 
 from yehu_server.core.player.calibration import Calibration
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 
 RATE = 31_000.0  # no shipped calibration has it
 HOME = sys.modules[calibration_for.__module__]

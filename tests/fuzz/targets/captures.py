@@ -13,8 +13,8 @@ from yehu_server.core.player.wishes import KINDS, RAMP
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
 from yehu_server.scores.capture import Capture, read_capture
-from yehu_server.scores.capture_beginning import Beginning
 from yehu_server.scores.capture_format import MOST_FRAMES
+from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
 
 WORDS = (
@@ -42,7 +42,7 @@ WORDS = (
 MOST_FULFILLED = 2000
 
 
-def check_beginning(beginning: Beginning) -> None:
+def check_beginning(beginning: SessionStart) -> None:
     """A replay begins with this check; what else it starts from is in range."""
     check_rate(beginning.rate)
     assert 1 <= len(beginning.players) <= MOST_PARTS
@@ -78,14 +78,14 @@ def capture(data: bytes) -> None:
     taken = read_capture(path)
     check_beginning(taken.beginning)
     assert 0 <= taken.frames <= MOST_FRAMES  # replay sets a bound of its own: --max-duration
-    assert all(0 <= since <= rest <= MOST_FRAMES for rest, since in taken.rests.items())
+    assert all(0 <= since <= rest <= MOST_FRAMES for rest, since in taken.gaps.items())
     check_wishes(taken)
     again = scratch() / "again.jsonl"
     again.unlink(missing_ok=True)
     writer = CaptureWriter(again, beginning=taken.beginning)
     for player in range(len(taken.beginning.players)):
         writer.wishes(taken.wishes[taken.players == player], player)
-    for rest, since in taken.rests.items():
+    for rest, since in taken.gaps.items():
         writer.note("rest", rest, since=since)
     writer.close(taken.frames)
     read = read_capture(again)
@@ -98,5 +98,5 @@ def capture(data: bytes) -> None:
             assert getattr(written_start, what) == getattr(start, what), what
     assert read.beginning.rate == taken.beginning.rate
     assert read.beginning.has_room == taken.beginning.has_room
-    assert read.rests == taken.rests
+    assert read.gaps == taken.gaps
     assert read.end == taken.frames

@@ -12,7 +12,7 @@ from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.live.midi.feed import MidiFeed
 from yehu_server.live.midi.process import Input
 from yehu_server.live.midi.routes import Router
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.style import Style
 

@@ -21,8 +21,8 @@ from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.packets import pack, unpack
 from yehu_server.params.table import PREFIX, TABLE, UNIT
-from yehu_server.playing import live
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing import live_player
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.style import Style
@@ -78,7 +78,7 @@ def still_time() -> Iterator[StillTime]:
         patch.object(clients, "time", clock),
         patch.object(schedule, "time", clock),
         patch.object(osc, "time", clock),
-        patch.object(live, "time", clock),
+        patch.object(live_player, "time", clock),
         patch.dict(os.environ, XDG_CONFIG_HOME=str(home)),
     ):
         yield clock

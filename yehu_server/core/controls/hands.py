@@ -21,11 +21,11 @@ from yehu_server.core.controls.slots import (
     PLUCK_POSITION,
     POSITION,
     RATE,
-    ROCK,
     SHARE,
     SIDE,
     SPEED,
     TREMOLO,
+    VIBRATO_PRESS,
 )
 from yehu_server.core.physics.layout import (
     CONTROLS_PER_FINGER,
@@ -65,7 +65,7 @@ def vibrato_at(c: Any, phase: float) -> float:
 @compiled
 def vibrate(c: Any) -> float:
     """Advance the vibrato by one sample; its value."""
-    if c.value[DEPTH] == 0.0 and c.value[ROCK] == 0.0:
+    if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
         c.vibrato = 0.0
         return 0.0
     c.vibrato += c.vibrato_pace * c.value[RATE] / c.second
@@ -98,11 +98,11 @@ def turned(c: Any) -> float:
 @compiled
 def stop_strings(c: Any, control: Array) -> None:
     """Write the fingers' controls, with vibrato; follow the sounding length they leave."""
-    rocking = vibrate(c)
+    vibrato = vibrate(c)
     stretch, harder = 1.0, 1.0
-    if rocking != 0.0:
-        stretch = 2.0 ** (-rocking * c.value[DEPTH] / 1200.0)
-        harder = 1.0 + rocking * c.value[ROCK]
+    if vibrato != 0.0:
+        stretch = 2.0 ** (-vibrato * c.value[DEPTH] / 1200.0)
+        harder = 1.0 + vibrato * c.value[VIBRATO_PRESS]
     stop = 0.0
     for j in range(MAX_FINGERS):
         column = FINGER_CONTROLS + CONTROLS_PER_FINGER * j
@@ -110,7 +110,7 @@ def stop_strings(c: Any, control: Array) -> None:
         if press > 0.0:
             c.finger_up[j] = 0
             stop = max(stop, x_f)
-            if rocking != 0.0:
+            if vibrato != 0.0:
                 x_f = c.bridge_x - (c.bridge_x - x_f) * stretch
                 press *= harder
             if c.drifting != 0:

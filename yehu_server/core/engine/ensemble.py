@@ -89,9 +89,9 @@ class Ensemble:
         return self._memory
 
     @property
-    def rests(self) -> list[tuple[int, int]]:
+    def gaps(self) -> list[tuple[int, int]]:
         """Frames that were lost with a process: the first of them and the one after them."""
-        return self.first.rests
+        return self.first.gaps
 
     @property
     def channels(self) -> int:
@@ -116,7 +116,7 @@ class Ensemble:
     def lost_states(self) -> int:
         """Number of states that were lost, of all instruments and of the mix."""
         lost = sum(instrument.lost_states for instrument in self.instruments)
-        return lost + int(self._stage["unsound"])
+        return lost + int(self._stage["invalid_samples"])
 
     def frame_at(self, time_ns: int) -> float:
         """The frame that is played at a time of ``time.monotonic_ns()``."""
@@ -171,11 +171,11 @@ class Ensemble:
         """Repair the state after a process was killed while it computed a block.
 
         All notes end, the models are put to rest, and the frames of that block become silence;
-        ``rests`` has their first frame and the one after them. Nothing may compute meanwhile.
+        ``gaps`` has their first frame and the one after them. Nothing may compute meanwhile.
         """
         is_broken = self.first.is_broken()
         for instrument in self.instruments:
-            instrument.mend()
+            instrument.repair()
         if not is_broken:
             return
         frame = max(instrument.frame for instrument in self.instruments)
@@ -185,7 +185,7 @@ class Ensemble:
         gap = self.first.tape_up_to(frame), frame
         self._stage["tape"][np.arange(*gap) % TAPE_FRAMES] = 0.0
         for instrument in self.instruments:
-            instrument.rests.append(gap)
+            instrument.gaps.append(gap)
 
     def taped(self, start: int) -> tuple[int, Array]:
         """The frames that were played from one on.

@@ -10,13 +10,13 @@ import numpy as np
 from yehu_server.core.controls.record import prepare_controls, settle
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine import native
-from yehu_server.core.engine.intake import take_in
-from yehu_server.core.engine.mailbox import LIVE_BUDGET, RING, SERVER, mend
+from yehu_server.core.engine.intake import interpret_events
+from yehu_server.core.engine.mailbox import LIVE_BUDGET, RING, SERVER, repair
 from yehu_server.core.engine.output import prepare_output, rest_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.telemetry import METERS
-from yehu_server.core.midi.record import IN_PORT, let_go, prepare_midi
+from yehu_server.core.midi.record import IN_PORT, clear_held, prepare_midi
 from yehu_server.core.midi.tables import plain_tables
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.bow import friction_bound
@@ -99,7 +99,7 @@ class Instrument:
             bowing=spec.bowing,
             seed=spec.seed,
         )
-        rig["heard"] = 0.0
+        rig["ear_buffer"] = 0.0
         prepare_output(rig["output"], self.rate)
         prepare_seat(rig["seat"][0], self.rate, spec.body)
         if self._stage is not None:
@@ -115,10 +115,10 @@ class Instrument:
         rig["published"] = rig["meters"]
         self._meters = rig["meters"].copy()  # the last consistent copy
         rig["taped"], rig["version"] = 0, 0
-        self.rests: list[tuple[int, int]] = []
+        self.gaps: list[tuple[int, int]] = []
 
     def play_alone(self) -> None:
-        """Play a part alone, which no tables describe: all that is posted is for this instrument.
+        """Reset the part to one instrument without mapping tables.
 
         Nothing may post or compute meanwhile.
         """
@@ -191,7 +191,7 @@ class Instrument:
 
         Samples of output that were not numbers are counted too.
         """
-        return int(self._rig["state"]["lost"][0] + self._rig["output"]["unsound"][0])
+        return int(self._rig["state"]["lost"][0] + self._rig["output"]["invalid_samples"][0])
 
     @property
     def dropped_events(self) -> int:
@@ -254,13 +254,13 @@ class Instrument:
         frame = self.frame if frame is None else frame
         return bool(native.post.call(self._address, frame, kind, index, value, other))
 
-    def take_in(self) -> None:
+    def interpret_events(self) -> None:
         """Interpret what is posted for now, so that the record of the part has it.
 
         Of live instruments the callback alone does.
         """
         if not self.is_live:
-            take_in.call(self._clock, self.frame + 1)
+            interpret_events.call(self._clock, self.frame + 1)
 
     @property
     def posted(self) -> int:
@@ -302,9 +302,9 @@ class Instrument:
         if self._stage is not None:
             rest_stage(self._stage[0])
 
-    def bow_by_tables(self) -> None:
-        """Let the player's right hand do nothing about what it hears, until a reset."""
-        self._rig["player"]["helps_bow"] = 0
+    def disable_pressure_correction(self) -> None:
+        """Disable the pressure correction until the next reset."""
+        self._rig["player"]["corrects_pressure"] = 0
 
     def heard(self) -> tuple[float, float, float]:
         """What the player last heard: certainty, slips in a period, error (cents)."""
@@ -314,26 +314,26 @@ class Instrument:
     def end_all(self) -> None:
         """End all notes at once, then as `come_to_rest`."""
         end_all(self._rig["player"][0], self._rig["controls"][0])
-        let_go(self._rig["midi"][0])
+        clear_held(self._rig["midi"][0])
         self.come_to_rest()
 
     def is_broken(self) -> bool:
         """Whether a process was killed while it computed a block with this instrument first."""
         return bool(self._rig["meters"]["running"][0])
 
-    def mend(self) -> None:
+    def repair(self) -> None:
         """Put meters and waiting wishes in order again, after a process was killed."""
         self._rig["version"][0, 0] += self._rig["version"][0, 0] % 2
         self._rig["meters"]["running"] = 0
-        mend(self._rig["events"][0], self._rig["mail"][0], "coming")
-        mend(self._rig["heap"][0], self._rig["mail"][0], "waiting")
+        repair(self._rig["events"][0], self._rig["mail"][0], "pending_events")
+        repair(self._rig["heap"][0], self._rig["mail"][0], "waiting")
 
     def skip_to(self, frame: int) -> None:
         """Go on at a later frame. Nothing may compute meanwhile."""
         self._rig["controls"]["frame"] = frame
 
     def tape_up_to(self, frame: int) -> int:
-        """Tell that all is on the tape up to a frame; return up to which it was."""
+        """Set the frame up to which the output ring buffer is valid; return the previous one."""
         was = int(self._rig["taped"][0, 0])
         self._rig["taped"][0, 0] = frame
         return was

@@ -1,4 +1,4 @@
-"""Takes in what parts are sent: from rings to a heap of events, and what they come to. Compiled.
+"""Interprets posted events when they are due, and distributes their wishes. Compiled.
 
 The events of a part lie with its first instrument. Each is interpreted once (``midi.interpret``),
 before the frames that it is for are computed; its wishes go to the heaps of those who play.
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled_to_share, native
+from yehu_server.compile.jit import compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.engine.atomics import at, load_acquire, store_release
@@ -54,7 +54,7 @@ interpret_event = interpret.symbol
 
 
 @native("int64(voidptr, int64)", calls=[interpret])
-def take_in(rigs: Any, end: int) -> int:
+def interpret_events(rigs: Any, end: int) -> int:
     """Interpret what all parts were sent for frames before `end`.
 
     Returns the frame before which that is done: sooner than `end`, where wishes find no room until
@@ -70,29 +70,29 @@ def take_in(rigs: Any, end: int) -> int:
     done = end
     for part in range(carray(at(rigs, PARTS_AT), (1,), np.int64)[0]):
         if carray(at(rigs, part * RIG_BYTES + MIDI_AT), (1,), MIDI)[0].people > 0:
-            done = min(done, take_in_part(rigs, part, now, end))
+            done = min(done, interpret_part_events(rigs, part, now, end))
     return int(max(done, now + 1))
 
 
-@compiled_to_share
-def take_in_part(rigs: Any, part: int, now: int, end: int) -> int:
-    """Interpret what the part was sent whose first instrument has this number; see `take_in`."""
+@compiled_with_aliasing
+def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
+    """Interpret the events of the part with this first instrument; see `interpret_events`."""
     rig = at(rigs, part * RIG_BYTES)
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     m = carray(at(rig, MIDI_AT), (1,), MIDI)[0]
     events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     drain(rigs, rig, mail, now)
-    while mail.coming > 0 and events[0].wish.frame < end:
+    while mail.pending_events > 0 and events[0].wish.frame < end:
         if not have_room(rigs, part, m.people):
             return int(max(events[0].wish.frame, now))
-        is_full = mail.coming == HEAP
+        is_full = mail.pending_events == HEAP
         event, order = events[0].wish, events[0].order
         frame, kind, index = max(event.frame, now), event.kind, event.index
         value, other = event.value, event.other
-        pop(events, mail.coming)
-        mail.coming -= 1
+        pop(events, mail.pending_events)
+        mail.pending_events -= 1
         if kind in (NOTE_OFF, END, RELEASE_ALL):
-            cancel(events, mail.coming, m, order, kind, index, value)
+            cancel(events, mail.pending_events, m, order, kind, index, value)
         interpret_event(at(rig, MIDI_AT), at(rig, TABLES_AT), frame, kind, index, value, other)
         hand_over(rigs, part, m)
         if is_full:
@@ -100,7 +100,7 @@ def take_in_part(rigs: Any, part: int, now: int, end: int) -> int:
     return end
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
     """Move posted events to the heap of a part, up to the budget of a callback."""
     events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
@@ -110,7 +110,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
         posted = load_acquire(rig, POSTED_AT + writer * CURSOR_BYTES)
         drained = mail.drained[writer, 0]
         last = min(posted, drained + mail.budget)
-        while drained < last and mail.coming < HEAP:
+        while drained < last and mail.pending_events < HEAP:
             event = ring[drained & (size - 1)]
             frame = event.frame
             if writer == MIDI_INPUTS:
@@ -119,7 +119,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
             mail.most_late[writer] = max(mail.most_late[writer], now - frame)
             push(
                 events,
-                mail.coming,
+                mail.pending_events,
                 frame,
                 event.kind,
                 event.index,
@@ -127,13 +127,13 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
                 event.other,
                 mail.ordered,
             )
-            mail.coming += 1
+            mail.pending_events += 1
             mail.ordered += 1
             drained += 1
         store_release(rig, DRAINED_AT + writer * CURSOR_BYTES, drained)
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def frame_of_arrival(rigs: Any, mail: Any, time_ns: int) -> int:
     """The frame at which a message sounds that arrived at a time of the monotonic clock.
 
@@ -148,7 +148,7 @@ def frame_of_arrival(rigs: Any, mail: Any, time_ns: int) -> int:
     return int(mail.arrived)
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def have_room(rigs: Any, part: int, people: int) -> bool:
     """Whether all who play a part have room for the wishes of another event."""
     for who in range(people):
@@ -158,7 +158,7 @@ def have_room(rigs: Any, part: int, people: int) -> bool:
     return True
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def hand_over(rigs: Any, part: int, m: Any) -> None:
     """Give those who play a part the wishes that an event came to."""
     for n in range(m.wishes):
@@ -182,11 +182,11 @@ def hand_over(rigs: Any, part: int, m: Any) -> None:
         mail.ordered += 1
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def cancel(
     events: Any, coming: int, m: Any, order: int, kind: int, channel: int, key: float
 ) -> None:
-    """Let a note not begin that was asked for ahead, where its end comes first.
+    """Cancel scheduled note-ons whose note-off arrives before they begin.
 
     Parameters
     ----------

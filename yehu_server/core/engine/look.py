@@ -94,38 +94,38 @@ def look(rig: Any, into: Any) -> None:
     c = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0]
     p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    seen = carray(into, (1,), LOOK)[0]
-    seen.frame, seen.rate = c.frame, m.rate
-    seen.pitch = sounding_pitch(p)
-    seen.frequency = p.a4 * math.exp2((seen.pitch - 69.0) / 12.0)
-    seen.certainty, seen.error, seen.slips = p.ear.certainty, p.ear.error, p.ear.slips
+    out = carray(into, (1,), LOOK)[0]
+    out.frame, out.rate = c.frame, m.rate
+    out.pitch = sounding_pitch(p)
+    out.frequency = p.a4 * math.exp2((out.pitch - 69.0) / 12.0)
+    out.certainty, out.error, out.slips = p.ear.certainty, p.ear.error, p.ear.slips
     parts = carray(at(rig, PARTS_AT), (1,), np.int64)[0]
     if parts > 0:
         mix = carray(at(rig, parts * RIG_BYTES), (1,), STAGE)[0]
-        seen.peak, seen.rms = mix.peak, mix.rms
+        out.peak, out.rms = mix.peak, mix.rms
     else:
-        seen.peak, seen.rms = t.peak, t.rms
-    seen.length = m.bridge_x
+        out.peak, out.rms = t.peak, t.rms
+    out.length = m.bridge_x
     side = c.value[SIDE]
     string = 0 if side >= 0.0 else 1
-    seen.string = string if side != 0.0 else NO_STRING
-    seen.speed = c.value[SPEED] * turned(c) * (1.0 + c.drift[drift.SPEED])
-    seen.force = abs(side) * bow_force(c, string, seen.speed) * (1.0 + c.drift[drift.FORCE])
-    seen.beta = c.value[POSITION] * c.place_drift
-    seen.bow_x = c.bridge_x - seen.beta * (c.bridge_x - c.sounding_from)
-    seen.hair_place, seen.hair_length = c.place, p.value[BOW_LENGTH]
+    out.string = string if side != 0.0 else NO_STRING
+    out.speed = c.value[SPEED] * turned(c) * (1.0 + c.drift[drift.SPEED])
+    out.force = abs(side) * bow_force(c, string, out.speed) * (1.0 + c.drift[drift.FORCE])
+    out.beta = c.value[POSITION] * c.place_drift
+    out.bow_x = c.bridge_x - out.beta * (c.bridge_x - c.sounding_from)
+    out.hair_place, out.hair_length = c.place, p.value[BOW_LENGTH]
     for j in range(MAX_FINGERS):
-        seen.finger_x[j] = c.value[FINGER_POSITION[j]]
+        out.finger_x[j] = c.value[FINGER_POSITION[j]]
         press = c.value[FINGER_PRESS[j]]
-        seen.finger_press[j] = press if press > LEAST_PRESS else 0.0
-    seen.upper = seen.lower = 0.0
-    if seen.frequency > 0.0:  # not NaN
+        out.finger_press[j] = press if press > LEAST_PRESS else 0.0
+    out.upper = out.lower = 0.0
+    if out.frequency > 0.0:  # not NaN
         Z, grip = math.sqrt(m.T[string] * m.rho_A[string]), m.mu_S - m.mu_C
-        seen.upper = upper_limit(Z, grip, 1.0, 1.0)
-        seen.lower = lower_limit(Z, grip, bridge_resistance(m, seen.frequency), 1.0, 1.0)
+        out.upper = upper_limit(Z, grip, 1.0, 1.0)
+        out.lower = lower_limit(Z, grip, bridge_resistance(m, out.frequency), 1.0, 1.0)
     for slot in range(SLOTS):
-        seen.targets[slot] = c.target[slot]
+        out.targets[slot] = c.target[slot]
     for i in range(STRINGS):
         for point in range(SHAPE_POINTS):
             place = point * m.bridge_x / m.h[i] / (SHAPE_POINTS - 1)
-            seen.shapes[i, point] = displacement(s, i, place)
+            out.shapes[i, point] = displacement(s, i, place)

@@ -48,7 +48,7 @@ MAIL = np.dtype(
         ("arrived", np.int64),  # frame of the latest message
         ("applied", np.int64),
         ("ordered", np.int64),  # number of events and wishes that came into a heap
-        ("coming", np.int64),  # entries in the heap of events, and in that of wishes
+        ("pending_events", np.int64),  # entries in the heap of events, and in that of wishes
         ("waiting", np.int64),
         ("reporting", np.int64),
         ("budget", np.int64),  # events moved to the heap at a time
@@ -57,7 +57,7 @@ MAIL = np.dtype(
 )
 
 
-def mend(heap: Array, mail: Any, count: str) -> None:
+def repair(heap: Array, mail: Any, count: str) -> None:
     """Put a heap in order again that a process left while it moved an entry, in place.
 
     Parameters

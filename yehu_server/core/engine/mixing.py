@@ -1,4 +1,4 @@
-"""The mix: what all instruments sounded, on the stage, to left and right, limited. Compiled."""
+"""Mixes all instruments, placed in the room, to left and right, and limits the sum. Compiled."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled, compiled_to_share, native
+from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.controls.slots import (
@@ -21,7 +21,7 @@ from yehu_server.core.controls.slots import (
     WIDTH_NOW,
 )
 from yehu_server.core.engine.atomics import at
-from yehu_server.core.engine.output import OUTPUT, STILL
+from yehu_server.core.engine.output import NOT_SILENCED, OUTPUT
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
 from yehu_server.core.engine.rig import METERS_AT, OUTPUT_AT, PARTS_AT, RIG_BYTES, SEAT_AT
 from yehu_server.core.engine.sounding import STAGE_COLUMNS
@@ -34,8 +34,8 @@ from yehu_server.core.stage.record import (
     DIRECT,
     EARLY,
     EVERY,
-    FALLEN,
     SEND,
+    SILENCED,
     STAGE,
     TAPE,
     TAPE_AT,
@@ -45,7 +45,7 @@ from yehu_server.core.stage.seat import (
     LEFT,
     RIGHT,
     SEAT,
-    fall_silent,
+    clear_filters,
     reflect,
     set_direct,
     set_reflections,
@@ -114,7 +114,7 @@ def mix(rigs: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
                 own[n, part, RIGHT] *= right
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
     """Place what one instrument sounded: its direct sound (``own``), and what goes to the room."""
     parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
@@ -150,12 +150,12 @@ def take_up(rigs: Any, part: int, first: int, frames: int) -> None:
         stage.own[n, RIGHT] = s.direct[RIGHT] * (x - side)
         s.direct[LEFT] += s.direct_step[LEFT]
         s.direct[RIGHT] += s.direct_step[RIGHT]
-        if n == o.fallen:
-            fall_silent(s)
-            stage.bus[n, FALLEN] = 1.0
+        if n == o.silenced_at:
+            clear_filters(s)
+            stage.bus[n, SILENCED] = 1.0
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def add_room(rigs: Any, stage: Any, frame: int, n: int) -> None:
     """Compute what the room gives to row `n` of the mix (``own``)."""
     shared = carray(at(rigs, OUTPUT_AT), (1,), OUTPUT)[0]
@@ -171,11 +171,11 @@ def add_room(rigs: Any, stage: Any, frame: int, n: int) -> None:
     early = level * r.open
     stage.own[n, LEFT] = r.left + early * bus[EARLY + LEFT]
     stage.own[n, RIGHT] = r.right + early * bus[EARLY + RIGHT]
-    if bus[FALLEN] > 0.0:
+    if bus[SILENCED] > 0.0:
         r.closing = 1
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def finish(rigs: Any, stage: Any, frame: int, n: int, out: Any) -> tuple[float, float]:
     """Limit row `n` of the mix, and put it into the block and onto the tape.
 
@@ -185,10 +185,10 @@ def finish(rigs: Any, stage: Any, frame: int, n: int, out: Any) -> tuple[float, 
     left = stage.bus[n, DIRECT + LEFT] + stage.own[n, LEFT]
     right = stage.bus[n, DIRECT + RIGHT] + stage.own[n, RIGHT]
     limited_left, limited_right = limit(left, shared.soft[n]), limit(right, shared.soft[n])
-    if not (is_sound(left, limited_left) and is_sound(right, limited_right)):
+    if not (is_valid(left, limited_left) and is_valid(right, limited_right)):
         limited_left, limited_right = 0.0, 0.0
-        stage.unsound += 1
-        begin_anew(rigs, stage)
+        stage.invalid_samples += 1
+        reset_state(rigs, stage)
     mean: Any = np.float32(0.5 * (limited_left + limited_right))
     both: Any = (np.float32(limited_left), np.float32(limited_right))
     tape = carray(at_tape(rigs), (TAPE, EARS), np.float32)
@@ -206,20 +206,20 @@ def finish(rigs: Any, stage: Any, frame: int, n: int, out: Any) -> tuple[float, 
 
 
 @compiled
-def is_sound(sample: float, limited: float) -> bool:
+def is_valid(sample: float, limited: float) -> bool:
     """Whether a sample, and what the limiter made of it, are numbers of any use; NaN is not."""
     return abs(sample) <= LARGEST and abs(limited) <= LARGEST_LIMITED
 
 
-@compiled_to_share
-def begin_anew(rigs: Any, stage: Any) -> None:
+@compiled_with_aliasing
+def reset_state(rigs: Any, stage: Any) -> None:
     """Begin with an empty stage, after numbers were lost."""
-    room.begin_anew(stage.room)
+    room.reset_state(stage.room)
     for part in range(carray(at(rigs, PARTS_AT), (1,), np.int64)[0]):
-        seat.begin_anew(carray(at(rigs, part * RIG_BYTES + SEAT_AT), (1,), SEAT)[0])
+        seat.reset_state(carray(at(rigs, part * RIG_BYTES + SEAT_AT), (1,), SEAT)[0])
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def add_to_level(rigs: Any, stage: Any, left: float, right: float) -> None:
     """Add a frame to the level of the mix in this window."""
     stage.window_peak = max(stage.window_peak, abs(left), abs(right))
@@ -231,7 +231,7 @@ def add_to_level(rigs: Any, stage: Any, left: float, right: float) -> None:
         stage.window_peak, stage.window_power, stage.window_frames = 0.0, 0.0, 0
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def at_tape(rigs: Any) -> Any:
     """Address of the tape."""
     parts = carray(at(rigs, PARTS_AT), (1,), np.int64)[0]
@@ -264,14 +264,14 @@ def mix_block(
         count = min(frames - done, CHUNK)
         for part in range(parts):
             o = carray(at(rigs, part * RIG_BYTES + OUTPUT_AT), (1,), OUTPUT)[0]
-            o.fallen = STILL
+            o.silenced_at = NOT_SILENCED
             for n in range(count):
                 o.dry[n] = samples[part, done + n]
                 for k in range(len(STAGE_INPUTS)):
                     o.stage_inputs[n, k] = all_inputs[part, done + n, k]
                 o.soft[n] = all_inputs[part, done + n, STAGE_COLUMNS - 2]
                 if all_inputs[part, done + n, STAGE_COLUMNS - 1] > 0.0:
-                    o.fallen = n
+                    o.silenced_at = n
         here = at(out, done * channels * 4)
         stems_here = at(stems, done * (parts + 1) * EARS * 8)
         mix_chunk(rigs, first + done, count, here, stems_here, has_stems)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled_to_share, native
+from yehu_server.compile.jit import compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CHUNK, CONTROLS
 from yehu_server.core.engine.atomics import (
@@ -21,7 +21,7 @@ from yehu_server.core.engine.atomics import (
     load_acquire,
     store_release,
 )
-from yehu_server.core.engine.intake import take_in
+from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mailbox import MAIL, RING, SERVER, WRITERS
 from yehu_server.core.engine.mixing import mix
 from yehu_server.core.engine.output import OUTPUT
@@ -53,7 +53,7 @@ from yehu_server.core.engine.rig import (
     VERSION_AT,
 )
 from yehu_server.core.engine.sounding import sound
-from yehu_server.core.engine.telemetry import METERS, account, tell_time
+from yehu_server.core.engine.telemetry import METERS, account, update_clock
 from yehu_server.core.physics.layout import STATE
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import PLAYER
@@ -63,7 +63,7 @@ from yehu_server.core.stage.record import STAGE
 STALL_NS = 20_000_000
 TRIES = 100
 
-take_in_events, sound_chunk, mix_chunk = take_in.symbol, sound.symbol, mix.symbol
+take_in_events, sound_chunk, mix_chunk = interpret_events.symbol, sound.symbol, mix.symbol
 
 
 @native("void(voidptr)")
@@ -81,7 +81,7 @@ publish_meters = publish.symbol
 
 @native(
     "int32(voidptr, voidptr, uint64, voidptr, uint64, voidptr)",
-    calls=[take_in, sound, mix, publish],
+    calls=[interpret_events, sound, mix, publish],
 )
 def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rigs: Any) -> int:
     """Compute one block for PortAudio (a PaStreamCallback).
@@ -103,7 +103,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     channels = carray(at(rigs, parts * RIG_BYTES), (1,), STAGE)[0].channels
     t.running = 1
     block: Any = np.int64(frames)
-    tell_time(t, c.frame, started_ns, block)
+    update_clock(t, c.frame, started_ns, block)
     publish_meters(rigs)  # at once, so that messages that arrive now are stamped by this block
     done = 0
     while done < block:
@@ -115,7 +115,7 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
         mix_chunk(rigs, first, count, here, here, 0)
         done += count
     for part in range(parts):
-        tell_of(at(rigs, part * RIG_BYTES), t.frame, block)
+        update_meters(at(rigs, part * RIG_BYTES), t.frame, block)
     restore_denormals(mode)
     account(t, thread_cpu_ns() - cpu_ns, flags)
     t.running, t.ended_ns = 0, monotonic_ns()
@@ -125,22 +125,22 @@ def callback(_input: Any, output: Any, frames: Any, _times: Any, flags: Any, rig
     return 0
 
 
-@compiled_to_share
-def tell_of(rig: Any, frame: int, block: int) -> None:
+@compiled_with_aliasing
+def update_meters(rig: Any, frame: int, block: int) -> None:
     """Write what a block did to one instrument into its meters."""
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
     mail = carray(at(rig, MAIL_AT), (1,), MAIL)[0]
     state = carray(at(rig, STATE_AT), (1,), STATE)[0]
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     t.frame, t.block = frame, block
-    t.unconverged, t.lost = state.unconverged, state.lost + o.unsound
+    t.unconverged, t.lost = state.unconverged, state.lost + o.invalid_samples
     t.late_events = 0
     for writer in range(WRITERS):
         t.late_events += mail.late[writer]
     t.applied, t.drained = mail.applied, mail.drained[SERVER, 0]
     t.next_frame = carray(at(rig, CONTROLS_AT), (1,), CONTROLS)[0].frame
     t.pitch = sounding_pitch(carray(at(rig, PLAYER_AT), (1,), PLAYER)[0])
-    t.waiting, t.unreported = mail.coming + mail.waiting, mail.unreported
+    t.waiting, t.unreported = mail.pending_events + mail.waiting, mail.unreported
 
 
 @native("int64(voidptr, voidptr)")
@@ -188,7 +188,7 @@ def post_from(
     return post_to(rig, writer, frame, kind, index, value, other)
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def post_to(
     rig: Any, writer: int, frame: int, kind: int, index: int, value: float, other: float
 ) -> int:

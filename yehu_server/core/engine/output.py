@@ -25,12 +25,15 @@ BLOCKED_HZ = 10.0  # cutoff of the DC blocker
 # Pressure (Pa) for a newton at the bridge: a blend is about as loud at both of its ends.
 BRIDGE_PRESSURE = 0.1
 LARGEST = 1e12  # of full scale: a sample beyond this is an error
-STILL = -1
+NOT_SILENCED = -1
 
 OUTPUT = np.dtype(
     [
         ("last", np.float64),  # the last sample
-        ("unsound", np.int64),  # number of samples that were not numbers, replaced by silence
+        (
+            "invalid_samples",
+            np.int64,
+        ),  # number of samples that were not numbers, replaced by silence
         ("ghost", np.float64),  # decays from the last sample before a lost state
         ("decay", np.float64),
         ("pressure", np.float64),  # input and output of the DC blocker (Pa)
@@ -44,7 +47,10 @@ OUTPUT = np.dtype(
         ("soft", np.float64, CHUNK),
         ("stage_inputs", np.float64, (CHUNK, len(STAGE_INPUTS))),
         ("dry", np.float64, CHUNK),  # the samples, for the stage
-        ("fallen", np.int64),  # row of `dry` at which the instrument came to rest, or STILL
+        (
+            "silenced_at",
+            np.int64,
+        ),  # row of `dry` at which the instrument came to rest, or NOT_SILENCED
     ],
     align=True,
 )
@@ -52,7 +58,7 @@ OUTPUT = np.dtype(
 
 def prepare_output(output: Any, rate: float) -> None:
     """Set the coefficients of a record of dtype OUTPUT [shape=(1,)] for a rate (Hz), in place."""
-    output["unsound"], output["fallen"] = 0, STILL
+    output["invalid_samples"], output["silenced_at"] = 0, NOT_SILENCED
     output["decay"] = pole_of_time(FADE_S, rate)
     output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
     rest_output(output)
@@ -65,13 +71,13 @@ def rest_output(output: Any) -> None:
 
 
 @compiled
-def fall_silent(o: Any) -> None:
+def clear_filters(o: Any) -> None:
     """Clear the filters' states, when the model is put to rest. Real time: safe."""
     o.pressure, o.swing, o.ghost = 0.0, 0.0, 0.0
 
 
 @compiled
-def play_out(o: Any, n: int) -> float:
+def output_sample(o: Any, n: int) -> float:
     """Compute a sample from row `n` of the probes; a lost state fades out. Real time: safe.
 
     The sample is finite whatever the probes are; it is not limited.
@@ -89,7 +95,7 @@ def play_out(o: Any, n: int) -> float:
     sample = o.swing * o.gain[n] + o.ghost
     if not abs(sample) <= LARGEST:  # true for NaN too
         sample = 0.0
-        o.unsound += 1
-        fall_silent(o)
+        o.invalid_samples += 1
+        clear_filters(o)
     o.last = sample
     return float(sample)

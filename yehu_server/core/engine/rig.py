@@ -1,4 +1,4 @@
-"""The rig: the record of one instrument and its player, in memory that processes may share.
+"""The state of one instrument and its player ("rig"), laid out in memory that processes may share.
 
 The rigs of all that play together lie one after another; the stage's record comes after the last.
 """
@@ -16,7 +16,7 @@ from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.record import MIDI
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.physics.layout import MODEL, STATE
-from yehu_server.core.player.ear import HEARD
+from yehu_server.core.player.ear import EAR_SAMPLES
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.wishes import WISH
 from yehu_server.core.stage.record import STAGE
@@ -31,7 +31,7 @@ RIG = np.dtype(
         ("state", STATE),
         ("controls", CONTROLS),
         ("player", PLAYER),
-        ("heard", np.float64, 2 * HEARD),
+        ("ear_buffer", np.float64, 2 * EAR_SAMPLES),
         ("output", OUTPUT),
         ("mail", MAIL),
         ("meters", METERS),
@@ -69,7 +69,7 @@ def memory_bytes(parts: int) -> int:
 
 PARTS_AT = _offset("parts")
 MODEL_AT, STATE_AT, CONTROLS_AT = _offset("model"), _offset("state"), _offset("controls")
-PLAYER_AT, HEARD_AT = _offset("player"), _offset("heard")
+PLAYER_AT, EAR_BUFFER_AT = _offset("player"), _offset("ear_buffer")
 OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("meters")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
 RINGS_AT = np.array([_offset("ring"), _offset("midi_ring"), _offset("page_ring")])  # by writer

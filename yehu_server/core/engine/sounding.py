@@ -1,4 +1,4 @@
-"""The sound of one instrument, before the stage: its player acts, its model moves. Compiled."""
+"""Computes the samples of one instrument before the room: player, controls, model. Compiled."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import compiled, compiled_to_share, native
+from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.hands import write_controls
 from yehu_server.core.controls.ramps import (
@@ -29,12 +29,12 @@ from yehu_server.core.engine.mailbox import (
     copy_wish,
     pop,
 )
-from yehu_server.core.engine.output import OUTPUT, STILL, fall_silent, play_out
+from yehu_server.core.engine.output import NOT_SILENCED, OUTPUT, clear_filters, output_sample
 from yehu_server.core.engine.processor import flush_denormals, restore_denormals
 from yehu_server.core.engine.rig import (
     CONTROLS_AT,
+    EAR_BUFFER_AT,
     HEAP_AT,
-    HEARD_AT,
     MAIL_AT,
     METERS_AT,
     MODEL_AT,
@@ -48,7 +48,7 @@ from yehu_server.core.engine.rig import (
 from yehu_server.core.engine.telemetry import METERS, close_window, hear
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.layout import MODEL, RELATIVE_VELOCITY, STATE, STRINGS
-from yehu_server.core.player.ear import HEARD, remember
+from yehu_server.core.player.ear import EAR_SAMPLES, remember
 from yehu_server.core.player.listening import attend
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.wishes import WISH, fulfil
@@ -58,7 +58,7 @@ Array = Any
 fulfil_wish, attend_string = fulfil.symbol, attend.symbol
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def apply(rig: Any, mail: Any, c: Any) -> None:
     """Fulfil the wishes that are due at this frame, and report them."""
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
@@ -75,7 +75,7 @@ def apply(rig: Any, mail: Any, c: Any) -> None:
         mail.waiting -= 1
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def report(rig: Any, mail: Any, frame: int, wish: Any) -> None:
     """Report a fulfilled wish for captures, with the frame that it was fulfilled at."""
     reported = mail.reported[0]
@@ -117,7 +117,7 @@ def sound(rig: Any, wanted: int) -> None:
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
     p = carray(at(rig, PLAYER_AT), (1,), PLAYER)[0]
     wanted = min(wanted, CHUNK)
-    o.fallen = STILL
+    o.silenced_at = NOT_SILENCED
     done = 0
     while done < wanted:
         first, start = c.frame, done
@@ -125,7 +125,7 @@ def sound(rig: Any, wanted: int) -> None:
         while done < wanted and not silenced and not retuned:
             apply(rig, mail, c)
             if c.frame == p.ear.next:
-                attend_string(at(rig, PLAYER_AT), at(rig, CONTROLS_AT), at(rig, HEARD_AT))
+                attend_string(at(rig, PLAYER_AT), at(rig, CONTROLS_AT), at(rig, EAR_BUFFER_AT))
             move(c)
             write_controls(c, o.controls[done])
             gain = level(c)
@@ -150,23 +150,23 @@ def sound(rig: Any, wanted: int) -> None:
                 end = done
             kernel.advance(model, state, o.controls[begin:end], o.probes[begin:end], None)
             begin = end
-        put_out(rig, first, start, done)
+        write_output(rig, first, start, done)
         if silenced:
             kernel.come_to_rest(model[0], state[0])
-            fall_silent(o)
-            o.fallen = done - 1
+            clear_filters(o)
+            o.silenced_at = done - 1
         close_window(t, model[0], state[0].motion)
 
 
-@compiled_to_share
-def put_out(rig: Any, first: int, start: int, end: int) -> None:
+@compiled_with_aliasing
+def write_output(rig: Any, first: int, start: int, end: int) -> None:
     """Make samples of some rows of the probes, which begin at frame `first`; tell the ear."""
     o = carray(at(rig, OUTPUT_AT), (1,), OUTPUT)[0]
     t = carray(at(rig, METERS_AT), (1,), METERS)[0]
-    heard = carray(at(rig, HEARD_AT), (2 * HEARD,), np.float64)
+    heard = carray(at(rig, EAR_BUFFER_AT), (2 * EAR_SAMPLES,), np.float64)
     for n in range(start, end):
         remember(heard, first + n - start, o.probes[n, RELATIVE_VELOCITY])
-        o.dry[n] = play_out(o, n)
+        o.dry[n] = output_sample(o, n)
         hear(t, o.dry[n])
 
 
@@ -197,7 +197,7 @@ def sound_block(rig: Any, frames: int, dry: Any, inputs: Any) -> None:
             for k in range(len(STAGE_INPUTS)):
                 all_inputs[done + n, k] = o.stage_inputs[n, k]
             all_inputs[done + n, STAGE_COLUMNS - 2] = o.soft[n]
-            all_inputs[done + n, STAGE_COLUMNS - 1] = 1.0 if n == o.fallen else 0.0
+            all_inputs[done + n, STAGE_COLUMNS - 1] = 1.0 if n == o.silenced_at else 0.0
         done += count
     restore_denormals(mode)
 

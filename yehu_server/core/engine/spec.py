@@ -1,4 +1,4 @@
-"""All that an instrument and its player start from, in one value that whoever makes one shares."""
+"""The immutable configuration from which an instrument and its player are made."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import ordinary_table
+from yehu_server.core.player.bowing import default_recipes
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.params.table import TABLE, find
@@ -32,7 +32,7 @@ class InstrumentSpec:
     seed : int
         Seed of the variation between notes.
     bowing : ndarray
-        How each note is bowed; by default ``player.bowing.ordinary_table``.
+        How each note is bowed; by default ``player.bowing.default_recipes``.
     start_values : mapping
         Values of parameters at the start, by address; others have their default.
     body : int
@@ -44,7 +44,7 @@ class InstrumentSpec:
     calibration: Calibration | None = None
     open_strings: OpenStrings = OpenStrings.ALWAYS
     seed: int = 0
-    bowing: Any = field(default_factory=ordinary_table, compare=False)
+    bowing: Any = field(default_factory=default_recipes, compare=False)
     start_values: Mapping[str, float] = field(default_factory=dict)
     body: int = 0
 

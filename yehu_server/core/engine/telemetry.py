@@ -117,7 +117,7 @@ def displacement(s: Any, i: int, place: float) -> float:
 
 
 @compiled
-def tell_time(t: Any, frame: int, started_ns: int, frames: int) -> None:
+def update_clock(t: Any, frame: int, started_ns: int, frames: int) -> None:
     """Update the time of frames at the start of a callback. Real time: safe.
 
     Parameters

@@ -15,7 +15,7 @@ import sys
 from yehu_server.compile.bitcode.capture import capturing
 from yehu_server.compile.bitcode.shipped import Shipped
 from yehu_server.compile.jit import IS_CACHED, IS_PLAIN, make_of_shipped
-from yehu_server.core.engine.intake import take_in
+from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mixing import mix, mix_block
 from yehu_server.core.engine.native import (
     callback,
@@ -28,24 +28,34 @@ from yehu_server.core.engine.native import (
     taped,
 )
 from yehu_server.core.engine.sounding import sound, sound_block
-from yehu_server.core.midi.dispatch import APART, interpret
+from yehu_server.core.midi.dispatch import NATIVE_FUNCTIONS, interpret
 from yehu_server.core.player.listening import attend
 from yehu_server.core.player.wishes import fulfil
 
 # Compiled at a time: the model and the player in a process of their own, and what is sent to them.
 MODEL = (sound, fulfil, attend, mix)
-BESIDE = (*APART, interpret, publish, read_meters, frame_at, post, post_from, read_reports, taped)
-PLAYED_BY = (*MODEL, *BESIDE, take_in, sound_block, mix_block, callback)
+BESIDE = (
+    *NATIVE_FUNCTIONS,
+    interpret,
+    publish,
+    read_meters,
+    frame_at,
+    post,
+    post_from,
+    read_reports,
+    taped,
+)
+ALL_FUNCTIONS = (*MODEL, *BESIDE, interpret_events, sound_block, mix_block, callback)
 
 
 def warm_up() -> None:
     """Compile all functions that playing needs, or load them from the cache."""
     if IS_PLAIN:
         return
-    make_of_shipped(PLAYED_BY)
+    make_of_shipped(ALL_FUNCTIONS)
     with contextlib.ExitStack() as stack:
         beside = None
-        if IS_CACHED and (os.cpu_count() or 1) > 1 and not sound.is_kept:
+        if IS_CACHED and (os.cpu_count() or 1) > 1 and not sound.is_cached:
             command = [sys.executable, "-m", __name__]
             beside = subprocess.Popen(command, stderr=subprocess.DEVNULL)  # noqa: S603 - our own
             stack.callback(beside.kill)  # where we are interrupted
@@ -53,21 +63,21 @@ def warm_up() -> None:
             _ = function.address
         if beside is not None:
             beside.wait()
-    for function in PLAYED_BY:
+    for function in ALL_FUNCTIONS:
         _ = function.address
 
 
 def capture() -> Shipped:
     """What to ship, for a shorter first start; in a new process, with an empty cache."""
     with capturing() as captured:
-        for function in PLAYED_BY:
+        for function in ALL_FUNCTIONS:
             function.capture(captured)
     return captured.shipped()
 
 
 def is_warm() -> bool:
     """Whether all functions that playing needs are in the cache."""
-    return all(function.is_kept for function in PLAYED_BY)
+    return all(function.is_cached for function in ALL_FUNCTIONS)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import add_active, forget_moves, moves_all, moves_key, plays
 from yehu_server.core.midi.curves import from_unit, picks_up, to_unit
+from yehu_server.core.midi.emit_wishes import write, write_native
 from yehu_server.core.midi.record import CHANNELS, MIDI, NONE
 from yehu_server.core.midi.section import sounds
 from yehu_server.core.midi.tables import (
@@ -31,12 +32,11 @@ from yehu_server.core.midi.values import (
     NO_KEY,
     STEPS,
     find_values,
-    find_values_apart,
+    find_values_native,
     keep_targets_of,
     receives,
     set_target,
 )
-from yehu_server.core.midi.wishing import write, write_apart
 from yehu_server.core.player.rows import IS_OWNED, ROW
 
 # "Reset all controllers" leaves volume, as the recommended practice RP-015 asks.
@@ -48,9 +48,9 @@ FINE_BITS, FINEST = 7, 16383.0
 
 
 @native(
-    "void(voidptr, voidptr, int64, int64, int64, int64)", calls=[find_values_apart, write_apart]
+    "void(voidptr, voidptr, int64, int64, int64, int64)", calls=[find_values_native, write_native]
 )
-def follow_apart(
+def follow_native(
     midi_at: Any, tables_at: Any, frame: int, source: int, channel: int, gliding: int
 ) -> None:
     """See `follow`."""
@@ -73,7 +73,7 @@ def follow_apart(
             follow_key(m, t, frame, source, channel, glides, key_channel, key, of_key)
 
 
-_follow = follow_apart.symbol
+_follow = follow_native.symbol
 
 
 @compiled_exactly
@@ -173,9 +173,10 @@ def first_receiving(m: Any, t: Any, source: int, channel: int) -> int:
 
 
 @native(
-    "void(voidptr, voidptr, int64, int64, int64, float64)", calls=[find_values_apart, follow_apart]
+    "void(voidptr, voidptr, int64, int64, int64, float64)",
+    calls=[find_values_native, follow_native],
 )
-def move_apart(
+def move_native(
     midi_at: Any, tables_at: Any, frame: int, source: int, channel: int, position: float
 ) -> None:
     """See `move`."""
@@ -201,7 +202,7 @@ def move_apart(
     follow(m, t, frame, source, channel, True)
 
 
-_move = move_apart.symbol
+_move = move_native.symbol
 
 
 @compiled_exactly
@@ -313,8 +314,8 @@ def set_directly(m: Any, frame: int, row: int, value: float, glide_ms: float) ->
 # -- forgetting -----------------------------------------------------------------------------------
 
 
-@native("void(voidptr, voidptr, int64, int64)", calls=[follow_apart])
-def reset_controllers_apart(midi_at: Any, tables_at: Any, frame: int, channel: int) -> None:
+@native("void(voidptr, voidptr, int64, int64)", calls=[follow_native])
+def reset_controllers_native(midi_at: Any, tables_at: Any, frame: int, channel: int) -> None:
     """See `reset_controllers`."""
     m = carray(midi_at, (1,), MIDI)[0]
     t = carray(tables_at, (1,), TABLES)[0]
@@ -330,7 +331,7 @@ def reset_controllers_apart(midi_at: Any, tables_at: Any, frame: int, channel: i
             follow(m, t, frame, source, channel, False)
 
 
-_reset_controllers = reset_controllers_apart.symbol
+_reset_controllers = reset_controllers_native.symbol
 
 
 @compiled_exactly

@@ -81,7 +81,7 @@ def is_in_zone(m: Any, channel: int, master: int) -> bool:
 def bend_range(m: Any, channel: int) -> float:
     """Pitch bend range of a channel (semitones)."""
     usual = m.value[BEND_RANGE]
-    if m.kept[BEND_RANGE] != 0 or not is_midi(channel):
+    if m.is_held[BEND_RANGE] != 0 or not is_midi(channel):
         return float(usual)
     if not math.isnan(m.bend_range[channel]):
         return float(m.bend_range[channel])

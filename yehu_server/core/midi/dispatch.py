@@ -10,11 +10,24 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.midi.binds import (
-    follow_apart,
-    move_apart,
+    follow_native,
     move_control,
-    reset_controllers_apart,
+    move_native,
+    reset_controllers_native,
     set_directly,
+)
+from yehu_server.core.midi.emit_wishes import (
+    begin_key,
+    begin_key_native,
+    end_key,
+    end_listed_native,
+    express,
+    hold_nothing,
+    pass_on,
+    record_wish,
+    release_held,
+    write,
+    write_native,
 )
 from yehu_server.core.midi.events import (
     CONTROL,
@@ -33,42 +46,29 @@ from yehu_server.core.midi.events import (
 from yehu_server.core.midi.keys import list_key
 from yehu_server.core.midi.messages import (
     SUSTAIN,
-    change_control_apart,
+    change_control_native,
     disconnect,
     is_bound,
     receive,
     reset,
-    reset_apart,
+    reset_native,
 )
 from yehu_server.core.midi.notes import (
     end_all,
     end_notes,
-    end_notes_apart,
+    end_notes_native,
     lift_pedal,
-    lift_pedal_apart,
+    lift_pedal_native,
     note_off,
     note_on,
-    note_on_apart,
+    note_on_native,
 )
 from yehu_server.core.midi.record import CHANNELS, MIDI, NONE, emit
-from yehu_server.core.midi.remapping import change_binds, change_binds_apart, start
+from yehu_server.core.midi.remapping import change_binds, change_binds_native, start
 from yehu_server.core.midi.section import slide_players
 from yehu_server.core.midi.tables import CONTROL as CONTROL_SOURCE
 from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.midi.values import find_values_apart
-from yehu_server.core.midi.wishing import (
-    begin_key,
-    begin_key_apart,
-    end_key,
-    end_listed_apart,
-    express,
-    hold_nothing,
-    pass_on,
-    record_wish,
-    release_kept,
-    write,
-    write_apart,
-)
+from yehu_server.core.midi.values import find_values_native
 from yehu_server.core.player.rows import ROW, ROWS
 from yehu_server.core.player.wishes import (
     BEGIN,
@@ -91,24 +91,24 @@ START_VALUES = np.array([param.default for param in PLAYERS_FIRST])
 
 
 # What is compiled apart, so that it is compiled once.
-APART = (
-    write_apart,
-    begin_key_apart,
-    end_listed_apart,
-    find_values_apart,
-    follow_apart,
-    move_apart,
-    end_notes_apart,
-    note_on_apart,
-    change_binds_apart,
-    lift_pedal_apart,
-    reset_controllers_apart,
-    change_control_apart,
-    reset_apart,
+NATIVE_FUNCTIONS = (
+    write_native,
+    begin_key_native,
+    end_listed_native,
+    find_values_native,
+    follow_native,
+    move_native,
+    end_notes_native,
+    note_on_native,
+    change_binds_native,
+    lift_pedal_native,
+    reset_controllers_native,
+    change_control_native,
+    reset_native,
 )
 
 
-@native("void(voidptr, voidptr, int64, int64, int64, float64, float64)", calls=APART)
+@native("void(voidptr, voidptr, int64, int64, int64, float64, float64)", calls=NATIVE_FUNCTIONS)
 def interpret(
     midi: Any, tables: Any, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
@@ -139,14 +139,14 @@ def interpret(
     elif kind in (NOTE_ON, FINGER_ON, NOTE_OFF):
         act_on_key(m, t, frame, kind, index, value, min(other, 1.0))
     elif kind in (SET, LOAD) and 0 <= index < ROWS:
-        if kind == SET or m.kept[index] == 0:
+        if kind == SET or m.is_held[index] == 0:
             set_directly(m, frame, index, value, max(other, 0.0))
     elif kind == CONTROL and index >= 0:
         move_control(m, t, frame, CONTROL_SOURCE + index, value)
     elif kind in (DISCONNECT, LEAVE, RELEASE_ALL):
         act_on_end(m, t, frame, kind, index, value)
     elif kind == START:
-        start_anew(m, t, frame, value != 0.0)
+        apply_start_values(m, t, frame, value != 0.0)
 
 
 @compiled_exactly
@@ -174,7 +174,7 @@ def act_on_end(m: Any, t: Any, frame: int, kind: int, index: int, value: float) 
 
 
 @compiled_exactly
-def start_anew(m: Any, t: Any, frame: int, with_all: bool) -> None:
+def apply_start_values(m: Any, t: Any, frame: int, with_all: bool) -> None:
     """Set parameters to the start values of the tables; first `with_all` to those of their own."""
     if with_all:
         for i in range(len(START_ROWS)):
@@ -206,7 +206,7 @@ def wish(m: Any, frame: int, kind: int, index: int, value: float, other: float) 
         slide_players(m, frame, value)
     else:
         if kind == RELEASE:
-            release_kept(m)
+            release_held(m)
         elif kind == STOP and value != 0.0:
             hold_nothing(m)
         pass_on(m, frame, kind, index, value, other)

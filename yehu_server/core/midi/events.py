@@ -1,6 +1,6 @@
 """Events: all that a part can be sent, each at a frame.
 
-The kinds of wishes (``player.wishes``) are events too: whoever knows what it wishes, such as a
+A wish (``player.wishes``) may also be posted directly as an event, as a replay does.
 replay, posts them, and they pass on to the players of the part. Beside them:
 
 | kind | index | value | other |

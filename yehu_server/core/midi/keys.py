@@ -66,8 +66,8 @@ def list_key(m: Any, number: int) -> None:
 
 
 @compiled_exactly
-def heir(m: Any) -> int:
-    """The number of the key that sounds again when those listed end; NONE where none does."""
+def next_sounding_key(m: Any) -> int:
+    """Index of the held key that sounds again when the listed keys end; NONE if there is none."""
     if m.sounding == NONE or m.is_listed[m.sounding] == 0:
         return NONE
     for n in range(m.held - 1, -1, -1):

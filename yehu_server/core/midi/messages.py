@@ -12,15 +12,15 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.binds import (
     disconnect_channel,
-    follow_apart,
+    follow_native,
     forget_all_moves,
     move,
-    move_apart,
     move_coarse,
     move_fine,
+    move_native,
     press_key,
     reset_controllers,
-    reset_controllers_apart,
+    reset_controllers_native,
     set_directly,
 )
 from yehu_server.core.midi.channels import (
@@ -29,15 +29,16 @@ from yehu_server.core.midi.channels import (
     is_in_zone,
     plays,
 )
+from yehu_server.core.midi.emit_wishes import stop_sound, write_native
 from yehu_server.core.midi.keys import list_key
 from yehu_server.core.midi.notes import (
     end_all,
     end_channel,
     end_notes,
-    end_notes_apart,
+    end_notes_native,
     hold_by_pedal,
     lift_pedal,
-    lift_pedal_apart,
+    lift_pedal_native,
     list_channel,
     note_off,
     note_on,
@@ -57,7 +58,6 @@ from yehu_server.core.midi.registered_parameters import (
     select,
 )
 from yehu_server.core.midi.tables import BEND, PAIR, PRESSURE, TABLES
-from yehu_server.core.midi.wishing import stop_sound, write_apart
 from yehu_server.core.player.rows import ROWS
 
 # High halves of status bytes.
@@ -129,14 +129,14 @@ def passes(t: Any, kind: int) -> bool:
 @native(
     "void(voidptr, voidptr, int64, int64, int64, int64)",
     calls=[
-        move_apart,
-        follow_apart,
-        lift_pedal_apart,
-        reset_controllers_apart,
-        end_notes_apart,
+        move_native,
+        follow_native,
+        lift_pedal_native,
+        reset_controllers_native,
+        end_notes_native,
     ],
 )
-def change_control_apart(
+def change_control_native(
     midi_at: Any, tables_at: Any, frame: int, channel: int, control: int, value: int
 ) -> None:
     """See `change_control`."""
@@ -169,7 +169,7 @@ def change_control_apart(
         move_both(m, t, frame, channel, control, value)
 
 
-_change_control = change_control_apart.symbol
+_change_control = change_control_native.symbol
 
 
 @compiled_exactly
@@ -252,7 +252,7 @@ def change_program(m: Any, t: Any, frame: int, channel: int, program: int) -> No
         if math.isnan(t.program_row[program, i]):
             return
         row = int(t.program_row[program, i])
-        if m.kept[row] == 0:
+        if m.is_held[row] == 0:
             set_directly(m, frame, row, t.program_value[program, i], 0.0)
 
 
@@ -270,8 +270,8 @@ def disconnect(m: Any, t: Any, frame: int, port: int) -> None:
     begin_port(m, t, port)
 
 
-@native("void(voidptr, voidptr, int64)", calls=[end_notes_apart, write_apart])
-def reset_apart(midi_at: Any, tables_at: Any, frame: int) -> None:
+@native("void(voidptr, voidptr, int64)", calls=[end_notes_native, write_native])
+def reset_native(midi_at: Any, tables_at: Any, frame: int) -> None:
     """See `reset`."""
     m = carray(midi_at, (1,), MIDI)[0]
     t = carray(tables_at, (1,), TABLES)[0]
@@ -283,7 +283,7 @@ def reset_apart(midi_at: Any, tables_at: Any, frame: int) -> None:
     forget_all_moves(m, frame)
 
 
-_reset = reset_apart.symbol
+_reset = reset_native.symbol
 
 
 @compiled_exactly

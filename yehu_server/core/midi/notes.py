@@ -10,21 +10,21 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.channels import forget_channel, is_midi, master_of, moves_all
-from yehu_server.core.midi.keys import find_key, heir, list_key
+from yehu_server.core.midi.emit_wishes import (
+    begin_key,
+    begin_key_native,
+    end_listed,
+    end_listed_native,
+    express,
+)
+from yehu_server.core.midi.keys import find_key, list_key, next_sounding_key
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, MIDI, NONE
 from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, TABLES, VELOCITY
 from yehu_server.core.midi.values import (
     find_values,
-    find_values_apart,
+    find_values_native,
     keep_targets_of,
     remember_last,
-)
-from yehu_server.core.midi.wishing import (
-    begin_key,
-    begin_key_apart,
-    end_listed,
-    end_listed_apart,
-    express,
 )
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE, OPEN_WITHIN
 
@@ -74,9 +74,9 @@ def fitted(policy: int, note: float) -> float:
 
 @native(
     "void(voidptr, voidptr, int64, int64, float64, float64, float64)",
-    calls=[find_values_apart, begin_key_apart],
+    calls=[find_values_native, begin_key_native],
 )
-def note_on_apart(
+def note_on_native(
     midi_at: Any,
     tables_at: Any,
     frame: int,
@@ -119,7 +119,7 @@ def note_on_apart(
     begin_key(m, frame, channel, key, playable, velocity, struck)
 
 
-_note_on = note_on_apart.symbol
+_note_on = note_on_native.symbol
 
 
 @compiled_exactly
@@ -170,12 +170,12 @@ def release_key(m: Any, t: Any, number: int) -> None:
         hold_by_pedal(m, number, pedal)
 
 
-@native("void(voidptr, voidptr, int64)", calls=[find_values_apart, end_listed_apart])
-def end_notes_apart(midi_at: Any, tables_at: Any, frame: int) -> None:
+@native("void(voidptr, voidptr, int64)", calls=[find_values_native, end_listed_native])
+def end_notes_native(midi_at: Any, tables_at: Any, frame: int) -> None:
     """See `end_notes`."""
     m = carray(midi_at, (1,), MIDI)[0]
     t = carray(tables_at, (1,), TABLES)[0]
-    n = heir(m)
+    n = next_sounding_key(m)
     if n != NONE:
         channel, key = m.held_channel[n], m.held_key[n]
         remember_last(m, channel, key)
@@ -183,7 +183,7 @@ def end_notes_apart(midi_at: Any, tables_at: Any, frame: int) -> None:
     end_listed(m, frame)
 
 
-_end_notes = end_notes_apart.symbol
+_end_notes = end_notes_native.symbol
 
 
 @compiled_exactly
@@ -221,8 +221,8 @@ def hold_by_pedal(m: Any, number: int, pedal: int) -> None:
         m.held_by[number], m.held_since[number] = pedal, m.pedalled
 
 
-@native("void(voidptr, voidptr, int64, int64)", calls=[end_notes_apart])
-def lift_pedal_apart(midi_at: Any, tables_at: Any, frame: int, channel: int) -> None:
+@native("void(voidptr, voidptr, int64, int64)", calls=[end_notes_native])
+def lift_pedal_native(midi_at: Any, tables_at: Any, frame: int, channel: int) -> None:
     """See `lift_pedal`."""
     m = carray(midi_at, (1,), MIDI)[0]
     t = carray(tables_at, (1,), TABLES)[0]
@@ -241,7 +241,7 @@ def lift_pedal_apart(midi_at: Any, tables_at: Any, frame: int, channel: int) -> 
     end_notes(m, t, frame)
 
 
-_lift_pedal = lift_pedal_apart.symbol
+_lift_pedal = lift_pedal_native.symbol
 
 
 @compiled_exactly

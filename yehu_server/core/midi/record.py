@@ -1,4 +1,4 @@
-"""The record of a part: what it was sent, what of it still holds, and the wishes it comes to."""
+"""The state of a part: held keys, controllers, channels, and wishes of the present event."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MIDI = np.dtype(
         ("tables", np.int64),  # number of those in use
         # What was wished of parameters, by row; and which are held.
         ("value", np.float64, ROWS),
-        ("kept", np.int64, ROWS),
+        ("is_held", np.int64, ROWS),
         # Held keys, in the order pressed, and the one that sounds: its number, or NONE.
         ("held", np.int64),
         ("held_channel", np.int64, MOST_HELD),
@@ -121,8 +121,8 @@ MIDI = np.dtype(
         ("chord_row", np.int64, (MOST_CHORD, ROWS)),
         ("chord_value", np.float64, (MOST_CHORD, ROWS)),
         ("is_divided", np.int64),
-        ("dealt", np.int64),
-        ("dealt_person", np.int64, PEOPLE),
+        ("assigned", np.int64),
+        ("assigned_player", np.int64, PEOPLE),
         ("order", np.int64, MOST_CHORD),
         # Values for the note that begins next, or sounds again.
         ("values", np.int64),
@@ -188,10 +188,10 @@ def prepare_midi(
     m["is_registered"] = 1
     m["coarse"] = m["fine"] = NONE
     m["fader_wrote"] = np.nan
-    let_go(m)
+    clear_held(m)
 
 
-def let_go(m: Any) -> None:
+def clear_held(m: Any) -> None:
     """Forget what is held, in place, where a part's sound was lost."""
     m["held"], m["sounding"], m["listed"], m["values"] = 0, NONE, 0, 0
     m["is_listed"] = 0

@@ -14,10 +14,10 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import address_of, carray
 from yehu_server.core.midi.binds import restore_moves, set_directly
+from yehu_server.core.midi.emit_wishes import write, write_native
 from yehu_server.core.midi.record import MIDI, NONE
 from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, TABLES
-from yehu_server.core.midi.values import find_values, find_values_apart, keep_target
-from yehu_server.core.midi.wishing import write, write_apart
+from yehu_server.core.midi.values import find_values, find_values_native, keep_target
 from yehu_server.core.player.rows import ROWS
 from yehu_server.params.table import TABLE
 
@@ -40,8 +40,8 @@ def start_value(t: Any, row: int) -> float:
     return float(DEFAULTS[row])
 
 
-@native("void(voidptr, voidptr, voidptr, int64)", calls=[find_values_apart, write_apart])
-def change_binds_apart(midi_at: Any, before_at: Any, tables_at: Any, frame: int) -> None:
+@native("void(voidptr, voidptr, voidptr, int64)", calls=[find_values_native, write_native])
+def change_binds_native(midi_at: Any, before_at: Any, tables_at: Any, frame: int) -> None:
     """See `change_binds`."""
     m = carray(midi_at, (1,), MIDI)[0]
     before = carray(before_at, (1,), TABLES)[0]
@@ -64,7 +64,7 @@ def change_binds_apart(midi_at: Any, before_at: Any, tables_at: Any, frame: int)
             write(m, frame, row, m.found_value[row], False, 0.0, NONE)
 
 
-_change_binds = change_binds_apart.symbol
+_change_binds = change_binds_native.symbol
 
 
 @compiled_exactly

@@ -37,7 +37,7 @@ def time_of(m: Any, who: int, frame: int) -> int:
 
 @compiled_exactly
 def act(m: Any, who: int, frame: int, late: int) -> int:
-    """When to begin or end what is wished for a frame; later wishes wait for it."""
+    """The frame at which a player acts that is `late` frames late; its later wishes wait."""
     at = max(time_of(m, who, frame), frame + late)
     m.wished[who], m.waits[who] = frame, at
     return at
@@ -47,7 +47,7 @@ def act(m: Any, who: int, frame: int, late: int) -> int:
 
 
 @compiled_exactly
-def tell_all(
+def emit_to_all(
     m: Any,
     frame: int,
     kind: int,
@@ -110,7 +110,7 @@ def add_value(m: Any, row: int, value: float) -> None:
 
 
 @compiled_exactly
-def let_play(m: Any, people: int, frame: int) -> None:
+def set_playing_count(m: Any, people: int, frame: int) -> None:
     """Let so many play; the others end their notes and rest."""
     for who in range(people, m.people):
         at = act(m, who, frame, 0)
@@ -160,15 +160,15 @@ def begin_together(m: Any, frame: int, channel: int, key: float, pitch: float) -
     for who in range(m.playing):
         free += 1 if m.holds[who] == 0 else 0
     m.is_divided = 1 if m.is_divided != 0 and 0 < free < m.playing else 0
-    m.dealt = 0
+    m.assigned = 0
     for who in range(m.playing):
         if m.is_divided == 0 or m.holds[who] == 0:
-            m.dealt_person[m.dealt] = who
-            m.dealt += 1
+            m.assigned_player[m.assigned] = who
+            m.assigned += 1
     m.chord_at = frame
     plan_onset(m, frame)
-    for i in range(m.dealt):
-        who = m.dealt_person[i]
+    for i in range(m.assigned):
+        who = m.assigned_player[i]
         begin_of(m, who, 0, act(m, who, frame, m.late[who]))
 
 
@@ -199,17 +199,17 @@ def divide(m: Any, frame: int) -> None:
             m.order[place] = m.order[place - 1]
             place -= 1
         m.order[place] = n
-    each, more = m.dealt // m.chord, m.dealt % m.chord
-    dealt = 0
+    each, more = m.assigned // m.chord, m.assigned % m.chord
+    assigned = 0
     for place in range(m.chord):
         for _ in range(each + 1 if place < more else each):
-            who = m.dealt_person[dealt]
-            dealt += 1
-            redeal(m, who, m.order[place], time_of(m, who, frame))
+            who = m.assigned_player[assigned]
+            assigned += 1
+            reassign_note(m, who, m.order[place], time_of(m, who, frame))
 
 
 @compiled_exactly
-def redeal(m: Any, who: int, note: int, at: int) -> None:
+def reassign_note(m: Any, who: int, note: int, at: int) -> None:
     """Give a player a note of the chord, in place of the one it has."""
     had, channel, key = m.has_note[who], m.note_channel[who], m.note_key[who]
     if had != 0 and channel == m.chord_channel[note] and key == m.chord_key[note]:
@@ -270,7 +270,7 @@ def end_hold(m: Any, who: int, number: int, at: int, more: float) -> None:
 
 @compiled_exactly
 def end_together(m: Any, frame: int) -> None:
-    """End the keys that are listed, which the part still holds; who has others plays on with them.
+    """End the listed keys; a player that holds other keys goes on with the last of those.
 
     The values that are kept are those of the key that sounds again.
     """
@@ -289,7 +289,7 @@ def end_together(m: Any, frame: int) -> None:
         if own == 0:
             continue
         at = act(m, who, frame, max(m.late[who], begun - frame))
-        if m.values > 0 and last >= 0 and heir_of(m, who) == last:
+        if m.values > 0 and last >= 0 and next_sounding_key_of(m, who) == last:
             for i in range(m.values):
                 row = m.values_row[i]
                 value = own_of(m, who, EXPRESS, row, m.values_value[i])
@@ -304,7 +304,7 @@ def end_together(m: Any, frame: int) -> None:
 
 
 @compiled_exactly
-def heir_of(m: Any, who: int) -> int:
+def next_sounding_key_of(m: Any, who: int) -> int:
     """Number, among the keys that the part holds, of the one that a player goes on with, or NONE.
 
     Those that are listed end.

@@ -112,7 +112,7 @@ def latest_for_all(m: Any, t: Any, bind: int, but: int) -> tuple[int, float, int
 
 
 @native("void(voidptr, voidptr, int64, float64)")
-def find_values_apart(midi_at: Any, tables_at: Any, channel: int, key: float) -> None:
+def find_values_native(midi_at: Any, tables_at: Any, channel: int, key: float) -> None:
     """See `find_values`."""
     m = carray(midi_at, (1,), MIDI)[0]
     t = carray(tables_at, (1,), TABLES)[0]
@@ -142,7 +142,7 @@ def find_values_apart(midi_at: Any, tables_at: Any, channel: int, key: float) ->
         m.found[row], m.found_value[row] = number, value
 
 
-_find_values = find_values_apart.symbol
+_find_values = find_values_native.symbol
 
 
 @compiled_exactly

@@ -2,7 +2,7 @@
 
 Notes near the body's modes (A4 at 439 Hz above all) and the open F string jump to other
 registers under a fast or a heavy bow. How each note is bowed on each string is found by practising
-(`yehu_server.playing.practice`); `ordinary_table` is what practising starts from.
+(`yehu_server.playing.practice`); `default_recipes` is what practising starts from.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ EDGES = np.array((1.3, 4.0))
 # A bowing recipe says how a note is bowed: the highest bow speed (m/s) at which it speaks; values
 # of /bow/pressure for FLAUTANDO, LIGHT and FIRM; a factor on the distance of the bow from the
 # bridge; the least finger force (N).
-TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, FARTHER, LEAST_PRESS = range(6)
+TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, LEAST_PRESS = range(6)
 RECIPE = 6
-ORDINARY = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
+DEFAULT_RECIPE = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
 FIRST, LAST = 64, 91  # the notes of the table; beyond them all are bowed as these
 # The bow positions of the table; beyond them all notes are bowed as at these.
 PLACES = (0.06, 0.08, 0.1, 0.13, 0.165, 0.2, 0.25)
@@ -40,10 +40,10 @@ NOTES = LAST - FIRST + 1
 NEAREST_ON_F = 0.17
 
 
-def ordinary_table() -> Array:
+def default_recipes() -> Array:
     """All notes bowed alike: ndarray [shape=(STRINGS, len(PLACES), NOTES, RECIPE)]."""
-    table = np.tile(np.array(ORDINARY), (STRINGS, len(PLACES), NOTES, 1))
-    table[0, :, :, FARTHER] = np.maximum(NEAREST_ON_F / np.array(PLACES), 1.0)[:, None]
+    table = np.tile(np.array(DEFAULT_RECIPE), (STRINGS, len(PLACES), NOTES, 1))
+    table[0, :, :, DISTANCE_FACTOR] = np.maximum(NEAREST_ON_F / np.array(PLACES), 1.0)[:, None]
     return table
 
 
@@ -59,7 +59,7 @@ def recipe_value(table: Array, string: int, place: float, pitch: float, column: 
     place : float
         The bow position wished for.
     column : int
-        TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, FARTHER or LEAST_PRESS.
+        TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR or LEAST_PRESS.
     """
     at = math.log(place)
     row = 0

@@ -1,4 +1,4 @@
-"""The right hand keeps the string speaking by what it hears, and remembers it. Compiled.
+"""Corrects the bow's pressure so that the string keeps speaking, and remembers it. Compiled.
 
 A string that slips more than once in a period has too light a bow, one without a period too heavy
 a one. The hand leans more or less, in steps, until the string speaks: never where the player
@@ -13,14 +13,14 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.bowing import FIRM, FLAUTANDO, SCRATCHY
 from yehu_server.core.player.ear import SURE, learning_bin
-from yehu_server.core.player.right_hand import lean
+from yehu_server.core.player.right_hand import set_bow_pressure
 from yehu_server.core.player.rows import LISTENING, PRESSURE, TREMOLO
 
 FEW, MANY = 0.6, 1.5  # slips in a period: between them the string speaks
 ROUGH = 0.8  # certainty below which it has no period
 PATIENCE = 12  # hearings of the same fault before the hand acts
 GRACE = 8  # hearings until it judges what it did
-EASY = 16  # hearings of a string that speaks, before the hand takes half of its help back
+EASY = 16  # hops in Helmholtz motion before the correction is halved
 HEAVIER, LIGHTER = 1.25, 0.8  # steps of the factor on the bow's pressure
 LIGHTEST, HEAVIEST, HEAVIEST_FLAUTANDO = 0.5, 1.8, 1.3
 EVEN = 0.05  # nearer to 1 than this the factor is 1
@@ -28,21 +28,21 @@ SPEAKS, TOO_LIGHT, TOO_HEAVY = 0, 1, 2
 
 
 @compiled_exactly
-def begin_leaning(p: Any, pitch: float) -> None:
+def begin_pressure_correction(p: Any, pitch: float) -> None:
     """Begin a note with the pressure that it was learnt to need."""
-    p.leaning, p.fault, p.faults = 1.0, SPEAKS, 0
+    p.pressure_factor, p.fault, p.faults = 1.0, SPEAKS, 0
     p.spoken, p.eased_from = 0, 0.0
-    if may_lean(p):
+    if may_correct_pressure(p):
         row, place, pace = learning_bin(p, pitch)
-        known = p.learnt_leaning[p.string, row, place, pace]
-        p.leaning = min(known, heaviest(p)) if known > 0.0 else 1.0
-        p.eased_from = p.leaning if known > 0.0 else 0.0
+        known = p.learnt_pressure_factor[p.string, row, place, pace]
+        p.pressure_factor = min(known, heaviest(p)) if known > 0.0 else 1.0
+        p.eased_from = p.pressure_factor if known > 0.0 else 0.0
 
 
 @compiled_exactly
-def may_lean(p: Any) -> bool:
+def may_correct_pressure(p: Any) -> bool:
     """Whether the hand may help: not where it is to scratch or to tremble."""
-    listens = p.value[LISTENING] > 0.0 and p.helps_bow != 0
+    listens = p.value[LISTENING] > 0.0 and p.corrects_pressure != 0
     return bool(listens and p.value[PRESSURE] < SCRATCHY and p.value[TREMOLO] == 0.0)
 
 
@@ -64,14 +64,14 @@ def fault_of(p: Any) -> int:
 
 
 @compiled_exactly
-def help_bow(p: Any, c: Any, pitch: float) -> None:
-    """Lean more or less on the bow where the string has not spoken for a while."""
-    if not may_lean(p):
+def correct_pressure(p: Any, c: Any, pitch: float) -> None:
+    """Change the pressure factor where the string has not spoken for PATIENCE hops."""
+    if not may_correct_pressure(p):
         return
     fault = fault_of(p)
     if fault == SPEAKS:
         p.faults = min(p.faults, 0)
-        if p.leaning != 1.0 and p.ear.certainty > SURE and p.ear.slips > FEW:
+        if p.pressure_factor != 1.0 and p.ear.certainty > SURE and p.ear.slips > FEW:
             p.spoken += 1
             if p.spoken == EASY:
                 ease_or_learn(p, c, pitch)
@@ -83,28 +83,30 @@ def help_bow(p: Any, c: Any, pitch: float) -> None:
         return
     p.faults = PATIENCE - GRACE
     was_eased = p.eased_from > 0.0
-    if was_eased and p.leaning != p.eased_from:
-        p.leaning = p.eased_from  # it needs all of the help
+    if was_eased and p.pressure_factor != p.eased_from:
+        p.pressure_factor = p.eased_from  # it needs all of the help
     elif fault == TOO_LIGHT:
-        p.leaning = min(p.leaning * HEAVIER, heaviest(p))
+        p.pressure_factor = min(p.pressure_factor * HEAVIER, heaviest(p))
     else:
-        p.leaning = max(p.leaning * LIGHTER, LIGHTEST)
-    p.eased_from = p.leaning if was_eased else 0.0
-    lean(p, c, pitch, True)
+        p.pressure_factor = max(p.pressure_factor * LIGHTER, LIGHTEST)
+    p.eased_from = p.pressure_factor if was_eased else 0.0
+    set_bow_pressure(p, c, pitch, True)
 
 
 @compiled_exactly
 def ease_or_learn(p: Any, c: Any, pitch: float) -> None:
-    """Take half of the help back, once: it may have been needed at the beginning only.
+    """Once, reduce the correction to its square root: the attack alone may have needed it.
+
+    If the string then fails again, it is restored; if not, it is learnt.
 
     What the string still speaks with, or could not do without, is remembered.
     """
     if p.eased_from == 0.0:
-        p.eased_from = p.leaning
-        p.leaning = math.sqrt(p.leaning)
-        p.leaning = 1.0 if abs(p.leaning - 1.0) < EVEN else p.leaning
+        p.eased_from = p.pressure_factor
+        p.pressure_factor = math.sqrt(p.pressure_factor)
+        p.pressure_factor = 1.0 if abs(p.pressure_factor - 1.0) < EVEN else p.pressure_factor
         p.spoken = 0
-        lean(p, c, pitch, True)
+        set_bow_pressure(p, c, pitch, True)
         return
     row, place, pace = learning_bin(p, pitch)
-    p.learnt_leaning[p.string, row, place, pace] = p.leaning
+    p.learnt_pressure_factor[p.string, row, place, pace] = p.pressure_factor

@@ -55,7 +55,7 @@ CALMING, STEADY = 0.8, 1e-6  # a hand that does not play comes to rest, by so mu
 LATE = 2  # hops after which what a finger did is heard
 DRAWN_FROM = 1 << 31  # of the seed's numbers; those before are the notes' (``variation``)
 
-UNSTEADY = np.dtype(
+DRIFT_STATE = np.dtype(
     [
         ("slow", np.float64, (DRIFTS, TIMES)),  # the sequences of each drift
         ("tremor", np.float64, (HANDS, 2)),  # of each hand, now and one hop ago
@@ -72,14 +72,14 @@ UNSTEADY = np.dtype(
 @compiled_exactly
 def draw(p: Any) -> float:
     """The next random number, -1 to 1."""
-    p.unsteady.drawn += 1
-    return chance((p.seed << 32) + DRAWN_FROM + p.unsteady.drawn)
+    p.drift_state.drawn += 1
+    return chance((p.seed << 32) + DRAWN_FROM + p.drift_state.drawn)
 
 
 @compiled_exactly
-def sway(p: Any, c: Any) -> None:
+def advance_drift(p: Any, c: Any) -> None:
     """Let the hands drift and tremble on to where they are one hop later."""
-    u, amount = p.unsteady, p.value[VARIATION]
+    u, amount = p.drift_state, p.value[VARIATION]
     for hand in range(HANDS):
         now, before = u.tremor[hand, 0], u.tremor[hand, 1]
         u.tremor[hand, 0] = TURN * now - RADIUS**2 * before + KICK * draw(p)
@@ -107,9 +107,9 @@ def sway(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def sway_vibrato(p: Any, c: Any) -> None:
+def vary_vibrato(p: Any, c: Any) -> None:
     """Let the vibrato's rate and width follow the deviates of its turn."""
-    u, amount = p.unsteady, p.value[VARIATION] if p.sounding >= 0 else 0.0
+    u, amount = p.drift_state, p.value[VARIATION] if p.sounding >= 0 else 0.0
     if c.vibrato < u.phase:
         u.pace, u.width = math.sqrt(3.0) * draw(p), math.sqrt(3.0) * draw(p)
     u.phase = c.vibrato
@@ -135,17 +135,17 @@ def is_playing(p: Any, drift: int) -> bool:
         return False
     row = BOW_SPEED
     if drift == FORCE:
-        row = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.kept[BOW_FORCE] == 0 else BOW_FORCE
+        row = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.is_held[BOW_FORCE] == 0 else BOW_FORCE
     elif drift == PLACE:
         row = BOW_POSITION
     elif drift == CENTS:
         row = FINGER_POSITION[p.finger]
     elif drift == PRESS:
         row = FINGER_PRESS[p.finger]
-    return bool(p.taken[row] == 0 and p.kept[row] == 0)
+    return bool(p.taken[row] == 0 and p.is_held[row] == 0)
 
 
 @compiled_exactly
 def heard_semitones(p: Any) -> float:
     """The finger's drift in what is heard now."""
-    return float(p.unsteady.cents[LATE] / 100.0)
+    return float(p.drift_state.cents[LATE] / 100.0)

@@ -42,7 +42,7 @@ def learnt_cents(p: Any, string: int, pitch: float) -> float:
 
 Array = Any
 
-HEARD = 1 << 12  # samples that the ear remembers; a power of two
+EAR_SAMPLES = 1 << 12  # samples that the ear remembers; a power of two
 SPAN_S = 300 / 44100  # of the sound that is compared, and about its distance in time
 HOP_S = 0.005  # from one hearing to the next
 BEHIND = CHUNK  # frames that a hearing lags behind: by then they are computed
@@ -68,10 +68,10 @@ def prepare_ear(ear: Any, rate: float) -> None:
     """Set up a record of dtype EAR for a rate (Hz), in place."""
     ear["hop"] = round(HOP_S * rate)
     ear["span"] = round(SPAN_S * rate)
-    begin_hearing(ear, 0)
+    reset_ear(ear, 0)
 
 
-def begin_hearing(ear: Any, frame: int) -> None:
+def reset_ear(ear: Any, frame: int) -> None:
     """Let the next hearing be the first due from a frame on; nothing is certain yet."""
     hop = int(ear["hop"])
     ear["next"] = BEHIND + hop * max(1, -((BEHIND - frame) // hop))
@@ -80,10 +80,10 @@ def begin_hearing(ear: Any, frame: int) -> None:
 
 @compiled
 def remember(heard: Array, frame: int, slip: float) -> None:
-    """Keep a sample, at both halves, so that the last HEARD lie in a row. Real time: safe."""
-    at = frame & (HEARD - 1)
+    """Keep a sample, at both halves, so that the last EAR_SAMPLES lie in a row. Real time: safe."""
+    at = frame & (EAR_SAMPLES - 1)
     heard[at] = slip
-    heard[at + HEARD] = slip
+    heard[at + EAR_SAMPLES] = slip
 
 
 @compiled
@@ -134,9 +134,10 @@ def best_lag(heard: Array, end: int, span: int, lowest: int, highest: int) -> in
 def hear(ear: Any, heard: Array, frame: int, period: float) -> None:
     """Hear a string whose period is expected (samples), at the `frame` of a hearing.
 
-    What was certain is looked for where it was; what was not, everywhere about the expected.
+    If the last estimate was certain, only NEAR samples about its lag are searched; otherwise
+    all lags within SEARCHED of the expected one.
     """
-    end = HEARD + ((frame - BEHIND) & (HEARD - 1))
+    end = EAR_SAMPLES + ((frame - BEHIND) & (EAR_SAMPLES - 1))
     span = ear.span
     # An odd number, so that a string whose periods differ in turn is heard to have no such period.
     periods = 2.0 * max(0.0, np.rint(0.5 * (span / period - 1.0))) + 1.0

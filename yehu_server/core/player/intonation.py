@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS
-from yehu_server.core.player.rows import TRUST
+from yehu_server.core.player.rows import CALIBRATION
 
 Array = Any
 
@@ -27,7 +27,9 @@ def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float)
     that are bowed more slowly were measured so. `sharper` (cents) is what the ear adds to the
     measured sharpening.
     """
-    sharp = sharper + p.value[TRUST] * read(p.sharpening[string], STOPPED[string], pitch, speed)
+    sharp = sharper + p.value[CALIBRATION] * read(
+        p.sharpening[string], STOPPED[string], pitch, speed
+    )
     frequency = p.a4 * math.exp2((pitch - sharp / 100.0 - 69.0) / 12.0)
     return float(p.bridge_x - p.wave_speed[string] / (2.0 * frequency))
 

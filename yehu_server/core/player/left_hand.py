@@ -16,9 +16,9 @@ from yehu_server.core.player.rows import (
     FINGER_COUNT,
     FINGER_POSITION,
     FINGER_PRESS,
+    PLAYING_VIBRATO_PRESS,
+    PLAYING_VIBRATO_RATE,
     PRESS,
-    ROCKING,
-    ROCKING_RATE,
     VIBRATO_DEPTH,
     VIBRATO_ONSET,
     VIBRATO_PRESS,
@@ -87,7 +87,7 @@ def press(p: Any, c: Any, least_press: float) -> None:
 
 
 @compiled_exactly
-def leave(p: Any, c: Any) -> None:
+def lift_all(p: Any, c: Any) -> None:
     """Lift all fingers, also those that a direct write put down."""
     p.string, p.position, p.pressing = -1, OPEN, 0.0
     for finger in range(FINGER_COUNT):
@@ -96,15 +96,15 @@ def leave(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def rock(p: Any, c: Any) -> None:
+def set_vibrato(p: Any, c: Any) -> None:
     """Set depth and rate of the vibrato as wished."""
     move(p, c, VIBRATO_DEPTH, vibrato_cents(p), USUAL_MS)
-    move(p, c, VIBRATO_PRESS, p.value[ROCKING], USUAL_MS)
-    move(p, c, VIBRATO_RATE, p.value[ROCKING_RATE], USUAL_MS)
+    move(p, c, VIBRATO_PRESS, p.value[PLAYING_VIBRATO_PRESS], USUAL_MS)
+    move(p, c, VIBRATO_RATE, p.value[PLAYING_VIBRATO_RATE], USUAL_MS)
 
 
 @compiled_exactly
-def begin_rocking(p: Any, c: Any) -> None:
+def begin_vibrato(p: Any, c: Any) -> None:
     """Fade in the vibrato of a new note."""
     delay_ms = vibrato_delay_ms(p)
     move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)

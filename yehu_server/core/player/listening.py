@@ -1,4 +1,4 @@
-"""What the player does every 5 ms: holds its hands, minds the bow, listens, corrects. Compiled."""
+"""The player's work of each 5 ms: drift, the bow's end, the ear, corrections. Compiled."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from yehu_server.compile.memory import carray
 from yehu_server.core.controls.hands import vibrato_at
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
-from yehu_server.core.player.bowing_by_ear import help_bow
-from yehu_server.core.player.drift import heard_semitones, sway, sway_vibrato
-from yehu_server.core.player.ear import BEHIND, HEARD, hear
-from yehu_server.core.player.notes import mind_the_bow, sounding_pitch
+from yehu_server.core.player.bowing_by_ear import correct_pressure
+from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
+from yehu_server.core.player.ear import BEHIND, EAR_SAMPLES, hear
+from yehu_server.core.player.notes import reverse_bow_at_end, sounding_pitch
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.rows import LISTENING
 from yehu_server.core.player.tuning_by_ear import tune
@@ -24,7 +24,7 @@ from yehu_server.core.player.tuning_by_ear import tune
 def listen(p: Any, c: Any, heard: Any) -> None:
     """Listen to the bowed string, and act on what is heard.
 
-    Of a bow that is drawn by hand the player only hears.
+    While the bow is drawn by hand, the string is analysed but nothing is corrected.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def listen(p: Any, c: Any, heard: Any) -> None:
     hear(p.ear, heard, c.frame, p.rate / (p.a4 * 2.0 ** ((aim - 69.0) / 12.0)))
     if not by_hand:  # who draws the bow corrects it
         tune(p, c, pitch)
-        help_bow(p, c, pitch)
+        correct_pressure(p, c, pitch)
 
 
 @compiled_exactly
@@ -69,7 +69,7 @@ def attend(player: Any, controls: Any, sound: Any) -> None:
     p = carray(player, (1,), PLAYER)[0]
     c = carray(controls, (1,), CONTROLS)[0]
     p.ear.next += p.ear.hop
-    sway(p, c)
-    sway_vibrato(p, c)
-    mind_the_bow(p, c)
-    listen(p, c, carray(sound, (2 * HEARD,), np.float64))
+    advance_drift(p, c)
+    vary_vibrato(p, c)
+    reverse_bow_at_end(p, c)
+    listen(p, c, carray(sound, (2 * EAR_SAMPLES,), np.float64))

@@ -13,7 +13,7 @@ from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import left_hand, right_hand, velocity
 from yehu_server.core.player.bowing import LEAST_PRESS, recipe_value
-from yehu_server.core.player.bowing_by_ear import begin_leaning
+from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import FIRST_OPEN, choose, stay
 from yehu_server.core.player.held import NOT_HELD, add_key, find_key, remove_key
 from yehu_server.core.player.left_hand import LIFTING_MS, side_of
@@ -114,7 +114,7 @@ def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
     take_back(p, BOW_SPEED)
     take_back(p, BOW_SIDE)
     right_hand.lift(p, c, LIFTING_MS)
-    left_hand.leave(p, c)
+    left_hand.lift_all(p, c)
     p.finger_pitch = FIRST_OPEN
     take(c, SILENCE, 0.0, 0)
 
@@ -138,14 +138,16 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     string, position = choose(p, pitch, wished_speed(p))
     left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
     begin_tuning(p, pitch)
-    begin_leaning(p, pitch)
-    unsettle(p, c, max(slide_ms, SLURRED_MS if is_slur else p.value[ATTACK] * struck_attack(p)))
-    left_hand.rock(p, c)
-    left_hand.begin_rocking(p, c)
+    begin_pressure_correction(p, pitch)
+    pause_listening(
+        p, c, max(slide_ms, SLURRED_MS if is_slur else p.value[ATTACK] * struck_attack(p))
+    )
+    left_hand.set_vibrato(p, c)
+    left_hand.begin_vibrato(p, c)
     set_assist(p, c)
     set_level(p, c)
     even_out(p, c)
-    lean(p, c)
+    set_bow_pressure(p, c)
     if not is_legato:
         right_hand.bite(p, c)
     if is_on(p, PIZZICATO):
@@ -156,7 +158,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
 
 
 @compiled_exactly
-def mind_the_bow(p: Any, c: Any) -> None:
+def reverse_bow_at_end(p: Any, c: Any) -> None:
     """Turn a bow that comes to its end."""
     if p.sounding < 0 or p.value[TREMOLO] != 0.0:
         return
@@ -166,8 +168,8 @@ def mind_the_bow(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def unsettle(p: Any, c: Any, moving_ms: float) -> None:
-    """Hear the string again once what moves for a time has settled."""
+def pause_listening(p: Any, c: Any, moving_ms: float) -> None:
+    """Ignore the string until a move of `moving_ms` has ended and the pitch has settled."""
     frames = int(1e-3 * (moving_ms + SETTLING_MS) * p.rate)
     p.settled_at = max(p.settled_at, c.frame + frames)
 
@@ -267,9 +269,9 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 
 
 @compiled_exactly
-def lean(p: Any, c: Any) -> None:
+def set_bow_pressure(p: Any, c: Any) -> None:
     """Set the bow's pressure and position."""
-    right_hand.lean(p, c, note_pitch(p), p.sounding >= 0)
+    right_hand.set_bow_pressure(p, c, note_pitch(p), p.sounding >= 0)
 
 
 @compiled_exactly
@@ -290,12 +292,12 @@ def even_out(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def stop_helping(p: Any, c: Any) -> None:
+def reset_corrections(p: Any, c: Any) -> None:
     """Take back what the ear has corrected of the sounding note."""
-    p.sharper, p.leaning = 0.0, 1.0
+    p.sharper, p.pressure_factor = 0.0, 1.0
     if p.sounding >= 0:
         follow_bend(p, c)
-        lean(p, c)
+        set_bow_pressure(p, c)
 
 
 @compiled_exactly
@@ -309,10 +311,10 @@ def follow_bend(p: Any, c: Any) -> None:
     left_hand.stop(p, c, string, position, least_press(p, string), BEND_RAMP_MS)
     if string != before:
         begin_tuning(p, pitch)
-    if string != before or not right_hand.bows_alike(p, pitch):
-        lean(p, c)
+    if string != before or not right_hand.has_same_recipe(p, pitch):
+        set_bow_pressure(p, c)
         draw(p, c, USUAL_MS)
     if pitch != was:
         p.first_error, p.jumps = math.nan, 0
-        unsettle(p, c, BEND_RAMP_MS)
+        pause_listening(p, c, BEND_RAMP_MS)
     even_out(p, c)

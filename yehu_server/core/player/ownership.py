@@ -29,7 +29,7 @@ def ramp_to(p: Any, c: Any, row: int, value: float, ramp_ms: float) -> None:
 @compiled_exactly
 def move(p: Any, c: Any, row: int, value: float, ramp_ms: float) -> None:
     """Move a parameter, unless it is taken over or already moving to this value."""
-    if p.taken[row] != 0 or p.kept[row] != 0 or p.sent[row] == value:
+    if p.taken[row] != 0 or p.is_held[row] != 0 or p.sent[row] == value:
         return
     p.sent[row] = value
     ramp_ms = SMOOTH_MS[row] if ramp_ms < 0.0 else ramp_ms
@@ -48,18 +48,18 @@ def write_directly(p: Any, c: Any, row: int, value: float, hold: bool) -> None:
 
     Newtons are heard only without assist.
     """
-    give_up(p, row, hold)
+    mark_taken(p, row, hold)
     if row == BOW_FORCE:
-        give_up(p, BOW_ASSIST, hold)
+        mark_taken(p, BOW_ASSIST, hold)
         ramp_to(p, c, BOW_ASSIST, 0.0, USUAL_MS)
     ramp_to(p, c, row, value, USUAL_MS)
 
 
 @compiled_exactly
-def give_up(p: Any, row: int, hold: bool) -> None:
-    """Record that a direct write took a parameter over, until the next note or as held."""
+def mark_taken(p: Any, row: int, hold: bool) -> None:
+    """Mark a parameter as taken over by a direct write, until the next note or as held."""
     if hold:
-        p.kept[row] = 1
+        p.is_held[row] = 1
     else:
         p.taken[row] = 1
     forget(p, row)
@@ -84,4 +84,4 @@ def release(p: Any) -> None:
     """Own all parameters again, held ones too."""
     take_all_back(p)
     for row in range(ROWS):
-        p.kept[row] = 0
+        p.is_held[row] = 0

@@ -12,7 +12,13 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SIDE
 from yehu_server.core.physics.elementary import chance
-from yehu_server.core.player.rows import NOTE_LENGTH, PHRASING, ROCKING_DELAY, VARIATION, VIBRATO
+from yehu_server.core.player.rows import (
+    NOTE_LENGTH,
+    PHRASING,
+    PLAYING_VIBRATO_DELAY,
+    VARIATION,
+    VIBRATO,
+)
 
 # A sum of so many uniform numbers is all but normal.
 ADDED = 12
@@ -26,14 +32,14 @@ VARIED_LANDING, MOST_LANDING = 0.8, 2.0  # of the time of a landing; and its lar
 def begin_sequence(p: Any, seed: int) -> None:
     """Begin the sequence of a seed."""
     p.seed, p.drawn = seed, 0
-    p.unsteady.slow[:], p.unsteady.tremor[:], p.unsteady.drawn = 0.0, 0.0, 0
+    p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.drawn = 0.0, 0.0, 0
 
 
 @compiled_exactly
 def vary_next_note(p: Any) -> None:
     """Draw the deviates of a new note."""
     varied = p.value[VARIATION] * VARIED_FRACTION
-    p.hurry = 1.0 + varied * deviate(p)
+    p.speed_variation = 1.0 + varied * deviate(p)
     p.weight = 1.0 + varied * deviate(p)
     p.detuned = deviate(p)
 
@@ -83,8 +89,8 @@ def vibrato_cents(p: Any) -> float:
 def vibrato_delay_ms(p: Any) -> float:
     """Time in which the vibrato of a new note comes: as wished; the player's own comes late."""
     if p.value[VIBRATO] > 0.0 or p.value[PHRASING] == 0.0:
-        return float(p.value[ROCKING_DELAY])
-    return float(max(p.value[ROCKING_DELAY], LATE_MS))
+        return float(p.value[PLAYING_VIBRATO_DELAY])
+    return float(max(p.value[PLAYING_VIBRATO_DELAY], LATE_MS))
 
 
 @compiled_exactly

@@ -1,4 +1,4 @@
-"""The player's record: what it was wished, what it does, and what it knows of its instrument."""
+"""The player's state: requested values, held keys, hands, ear, and calibration."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.player.bowing import DEFAULT_RECIPE, PLACES, RECIPE, default_recipes
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
-from yehu_server.core.player.bowing import ORDINARY, PLACES, RECIPE, ordinary_table
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration, wave_speed
-from yehu_server.core.player.drift import UNSTEADY
-from yehu_server.core.player.ear import EAR, begin_hearing, prepare_ear
+from yehu_server.core.player.drift import DRIFT_STATE
+from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
 from yehu_server.core.player.rows import (
     BOW_SIDE,
@@ -37,7 +37,7 @@ PLAYER = np.dtype(
         ("value", np.float64, ROWS),  # of each parameter, as wished
         # Ownership, by parameter: see ``ownership``.
         ("taken", np.int64, ROWS),
-        ("kept", np.int64, ROWS),
+        ("is_held", np.int64, ROWS),
         ("sent", np.float64, ROWS),  # where the player last sent it; NaN: nowhere
         ("glide_ms", np.float64),  # the least time of each move
         # The held keys, in the order pressed.
@@ -67,13 +67,21 @@ PLAYER = np.dtype(
         ("first_error", np.float64),  # cents: heard first; NaN: nothing yet
         ("first_sharper", np.float64),  # the correction then
         ("learnt", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),  # cents
-        ("helps_bow", np.int64),  # 0 while it practises: only the left hand acts on what is heard
-        ("leaning", np.float64),  # factor on the bow's pressure
-        ("fault", np.int64),  # heard last, and how often in a row; below 0: what was done is new
+        (
+            "corrects_pressure",
+            np.int64,
+        ),  # 0 during practice: pitch is corrected, bow pressure is not
+        ("pressure_factor", np.float64),  # factor on the bow's pressure
+        # The fault in the last hop, and for how many hops; below 0: before a correction is judged.
+        ("fault", np.int64),
         ("faults", np.int64),
         ("spoken", np.int64),  # hearings in which the string spoke, with its help
-        ("eased_from", np.float64),  # the help before the hand took some back; 0: it did not yet
-        ("learnt_leaning", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),
+        ("eased_from", np.float64),  # the pressure factor before a trial with less; 0: none yet
+        (
+            "learnt_pressure_factor",
+            np.float64,
+            (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES),
+        ),
         # The right hand.
         ("direction", np.float64),  # of the stroke
         ("pace", np.float64),  # factor on the bow's speed, so that its hair lasts
@@ -81,12 +89,12 @@ PLAYER = np.dtype(
         ("recipe", np.float64, RECIPE),  # how the sounding pitch is bowed
         ("balance", np.float64),  # dB
         # The variation: deviates of this note, and the random numbers drawn so far.
-        ("hurry", np.float64),  # factor on the bow's speed
+        ("speed_variation", np.float64),  # factor on the bow's speed
         ("weight", np.float64),  # factor on the bow's pressure
         ("detuned", np.float64),  # semitones, at full variation
         ("seed", np.int64),
         ("drawn", np.int64),
-        ("unsteady", UNSTEADY),  # drift and tremor
+        ("drift_state", DRIFT_STATE),  # drift and tremor
         # The instrument.
         ("bridge_x", np.float64),  # m
         ("a4", np.float64),  # Hz
@@ -125,7 +133,7 @@ def prepare_player(
     calibration : Calibration, optional
         By default fingers stop where an ideal string is in tune, and no note is evened out.
     bowing : ndarray
-        By default `ordinary_table`.
+        By default `default_recipes`.
     seed : int
         Of the variation between notes.
 
@@ -143,10 +151,10 @@ def prepare_player(
     p["finger"] = FINGER_COUNT - 1  # so that the first finger comes first
     p["string"], p["position"] = -1, OPEN
     p["direction"] = UP
-    p["recipe"] = ORDINARY
-    p["first_error"], p["leaning"], p["helps_bow"] = np.nan, 1.0, 1
+    p["recipe"] = DEFAULT_RECIPE
+    p["first_error"], p["pressure_factor"], p["corrects_pressure"] = np.nan, 1.0, 1
     prepare_ear(p["ear"], rate)
-    p["hurry"] = p["weight"] = p["pace"] = 1.0
+    p["speed_variation"] = p["weight"] = p["pace"] = 1.0
     p["seed"] = seed
     p["bridge_x"] = quantities.bridge_x
     p["wave_speed"] = [wave_speed(quantities, string) for string in range(STRINGS)]
@@ -156,7 +164,7 @@ def prepare_player(
         p["sharpening"] = calibration.sharpening
         if calibration.levels:
             p["levels"] = calibration.levels
-    p["bowing"] = ordinary_table() if bowing is None else bowing
+    p["bowing"] = default_recipes() if bowing is None else bowing
     p["open_strings"] = list(OpenStrings).index(open_strings)
     return player
 
@@ -172,9 +180,9 @@ def end_all(player: Any, controls: Any) -> None:
     player["side"], player["pressing"] = 0.0, 0.0
     player["string"], player["position"] = -1, OPEN
     player["taken"], player["sent"] = 0, np.nan
-    begin_hearing(player["ear"], int(controls["frame"]))  # a hop may be half done
+    reset_ear(player["ear"], int(controls["frame"]))  # a hop may be half done
     player["direction"], player["pace"] = UP, 1.0
-    for name in UNSTEADY.names or ():
-        player["unsteady"][name] = 0
+    for name in DRIFT_STATE.names or ():
+        player["drift_state"][name] = 0
     for row in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):
         controls["target"][SLOT_OF[row]] = 0.0

@@ -9,7 +9,7 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
-    FARTHER,
+    DISTANCE_FACTOR,
     RECIPE,
     TOP_SPEED,
     recipe_value,
@@ -50,7 +50,7 @@ HARDEST_PULL_N = find("/pluck/force").hi
 def wished_speed(p: Any) -> float:
     """Bow speed (m/s) that the player wishes for."""
     share = SOFTEST + (1.0 - SOFTEST) * p.value[DYNAMICS]
-    return float(p.value[SPEED] * share * struck_speed(p) * p.hurry * p.pace)
+    return float(p.value[SPEED] * share * struck_speed(p) * p.speed_variation * p.pace)
 
 
 @compiled_exactly
@@ -66,7 +66,7 @@ def speed_at(p: Any, pitch: float) -> float:
 
 
 @compiled_exactly
-def bows_alike(p: Any, pitch: float) -> bool:
+def has_same_recipe(p: Any, pitch: float) -> bool:
     """Whether a pitch is bowed as the present one is."""
     for column in range(RECIPE):
         if recipe_of(p, pitch, column) != p.recipe[column]:
@@ -75,7 +75,7 @@ def bows_alike(p: Any, pitch: float) -> bool:
 
 
 @compiled_exactly
-def lean(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
+def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     """Set bow pressure and position, as wished and adapted to the sounding pitch, if any."""
     pressure = p.value[PRESSURE] * p.weight
     if is_sounding:
@@ -83,9 +83,9 @@ def lean(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
             p.recipe[column] = recipe_of(p, pitch, column)
         m = p.recipe
         pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0))
-        pressure *= p.leaning
+        pressure *= p.pressure_factor
     move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
-    move(p, c, BOW_POSITION, p.value[POSITION] * p.recipe[FARTHER], USUAL_MS)
+    move(p, c, BOW_POSITION, p.value[POSITION] * p.recipe[DISTANCE_FACTOR], USUAL_MS)
 
 
 @compiled_exactly

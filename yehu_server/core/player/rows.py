@@ -35,8 +35,11 @@ TREMOLO, PIZZICATO = ROW["/playing/tremolo"], ROW["/playing/pizzicato"]
 BOW_LENGTH, NOTE_LENGTH = ROW["/playing/bow_length"], ROW["/playing/note_length"]
 STRING, DIRECTION = ROW["/playing/string"], ROW["/playing/direction"]
 PRESS, BEND = ROW["/playing/press"], ROW["/playing/bend"]
-VIBRATO, ROCKING = ROW["/playing/vibrato"], ROW["/playing/vibrato_press"]
-ROCKING_RATE, ROCKING_DELAY = ROW["/playing/vibrato_rate"], ROW["/playing/vibrato_delay"]
+VIBRATO, PLAYING_VIBRATO_PRESS = ROW["/playing/vibrato"], ROW["/playing/vibrato_press"]
+PLAYING_VIBRATO_RATE, PLAYING_VIBRATO_DELAY = (
+    ROW["/playing/vibrato_rate"],
+    ROW["/playing/vibrato_delay"],
+)
 VOLUME, EXPRESSION = ROW["/playing/volume"], ROW["/playing/expression"]
 ASSIST, VARIATION = ROW["/playing/assist"], ROW["/playing/variation"]
 PHRASING = ROW["/playing/phrasing"]
@@ -44,4 +47,4 @@ ATTACK, RELEASE = ROW["/playing/attack"], ROW["/playing/release"]
 PORTAMENTO, PORTAMENTO_TIME = ROW["/playing/portamento"], ROW["/playing/portamento_time"]
 VELOCITY = ROW["/playing/velocity"]
 LISTENING = ROW["/playing/listening"]
-TRUST, SEED = ROW["/engine/calibration"], ROW["/engine/seed"]
+CALIBRATION, SEED = ROW["/engine/calibration"], ROW["/engine/seed"]

@@ -67,6 +67,6 @@ def is_at_its_end(p: Any, c: Any, speed: float) -> bool:
     """Whether the bow has to turn now, at a speed (m/s), to turn before its end."""
     if p.side == 0.0 or p.value[BOW_LENGTH] == 0.0:
         return False
-    if p.taken[BOW_SPEED] != 0 or p.kept[BOW_SPEED] != 0:
+    if p.taken[BOW_SPEED] != 0 or p.is_held[BOW_SPEED] != 0:
         return False
     return hair_left(p, c, p.direction) < 0.5e-3 * CHANGE_MS * speed

@@ -46,7 +46,7 @@ def tune(p: Any, c: Any, pitch: float) -> None:
     if ear.certainty < SURE or not FEWEST_SLIPS < ear.slips < MOST_SLIPS or p.position < 0.0:
         return
     finger = FINGER_POSITION[p.finger]
-    if p.taken[finger] != 0 or p.kept[finger] != 0:
+    if p.taken[finger] != 0 or p.is_held[finger] != 0:
         return
     if p.value[PRESS] != p.first_press:  # a finger that presses harder is to be heard
         return
@@ -55,7 +55,7 @@ def tune(p: Any, c: Any, pitch: float) -> None:
         p.first_error, p.first_sharper = ear.error, p.sharper
     if abs(p.sharper - p.first_sharper) > ASTRAY * abs(p.first_error) + ASTRAY_CENTS:
         p.sharper = p.learnt[p.string, row, place, pace] = p.first_sharper
-        p.first_error = math.inf  # nothing goes astray any more: it stays where it was
+        p.first_error = math.inf  # no more in this note: the pitch does not follow the finger
         place_finger(p, c, pitch)
         return
     if math.isinf(p.first_error):

@@ -26,10 +26,10 @@ RISING_MS, FALLING_MS = 90.0, 15.0
 def even_out(p: Any, c: Any, pitch: float, speed: float) -> None:
     """Set ``/output/balance`` for a pitch (fractional MIDI note) and bow speed (m/s)."""
     string = max(p.string, 0)  # before the first note the inner string is open
-    heard = pitch
+    sounding_pitch = pitch
     if p.position == OPEN:
-        heard = SECOND_OPEN if string == 1 else FIRST_OPEN
-    balance = balance_db(p, string, heard, speed) * p.value[EVENNESS]
+        sounding_pitch = SECOND_OPEN if string == 1 else FIRST_OPEN
+    balance = balance_db(p, string, sounding_pitch, speed) * p.value[EVENNESS]
     balance += 0.0 if p.by_hand != 0 else struck_db(p)
     is_off = c.value[SIDE] == 0.0 and p.by_hand == 0
     ramp_ms = RISING_MS if balance > p.balance and not is_off else FALLING_MS

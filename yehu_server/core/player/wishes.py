@@ -1,4 +1,4 @@
-"""Wishes: all that a player can be asked for, each at a frame. Compiled.
+"""The requests that a player accepts, each with the frame at which it is carried out. Compiled.
 
 | kind | index | value | other |
 |---|---|---|---|
@@ -36,6 +36,7 @@ from yehu_server.core.player.rows import (
     BEND,
     BOW_FORCE,
     BOW_SPEED,
+    CALIBRATION,
     DYNAMICS,
     EVENNESS,
     EXPRESSION,
@@ -45,17 +46,16 @@ from yehu_server.core.player.rows import (
     LISTENING,
     LOWEST,
     PHRASING,
+    PLAYING_VIBRATO_PRESS,
+    PLAYING_VIBRATO_RATE,
     POSITION,
     PRESS,
     PRESSURE,
-    ROCKING,
-    ROCKING_RATE,
     ROWS,
     SEED,
     SMOOTH_MS,
     SPEED,
     TREMOLO,
-    TRUST,
     VELOCITY,
     VIBRATO,
     VOLUME,
@@ -141,9 +141,9 @@ def write(p: Any, c: Any, row: int, value: float, hold: bool, glide_ms: float) -
         write_directly(p, c, row, value, hold)
         return
     if hold:
-        p.kept[row] = 1
+        p.is_held[row] = 1
         forget(p, row)
-    elif p.kept[row] != 0:
+    elif p.is_held[row] != 0:
         return
     if p.value[row] == value:
         return
@@ -160,14 +160,14 @@ def express(p: Any, c: Any, row: int, value: float) -> None:
     """Set a parameter for the note that begins next; what it moves, the note will."""
     if IS_ENGINES[row]:
         write(p, c, row, value, False, 0.0)
-    elif p.kept[row] == 0:
+    elif p.is_held[row] == 0:
         p.value[row] = value
 
 
 @compiled_exactly
 def follow(p: Any, c: Any, row: int) -> None:
     """Move what follows a parameter of the player while a note sounds."""
-    if row in (BEND, TRUST):
+    if row in (BEND, CALIBRATION):
         notes.follow_bend(p, c)
     elif row == PRESS:
         left_hand.press(p, c, notes.least_press(p, max(p.string, 0)))
@@ -179,11 +179,11 @@ def follow(p: Any, c: Any, row: int) -> None:
         notes.draw(p, c, USUAL_MS)
         notes.follow_bend(p, c)
     elif row in (PRESSURE, POSITION):
-        notes.lean(p, c)
+        notes.set_bow_pressure(p, c)
     elif row == TREMOLO:
         notes.draw(p, c, USUAL_MS)
-    elif row in (VIBRATO, ROCKING, ROCKING_RATE, PHRASING):
-        left_hand.rock(p, c)
+    elif row in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING):
+        left_hand.set_vibrato(p, c)
     elif row == ASSIST:
         notes.set_assist(p, c)
     elif row in (VOLUME, EXPRESSION):
@@ -195,6 +195,6 @@ def follow(p: Any, c: Any, row: int) -> None:
         notes.follow_bend(p, c)
         notes.even_out(p, c)
     elif row == LISTENING and p.value[LISTENING] == 0.0:
-        notes.stop_helping(p, c)
+        notes.reset_corrections(p, c)
     elif row == SEED:
         begin_sequence(p, int(p.value[SEED]))

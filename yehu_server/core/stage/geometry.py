@@ -68,7 +68,7 @@ def within(value: float, lo: float, hi: float) -> float:
 
 
 @compiled_exactly
-def see_images(
+def find_images(
     size: float, distance: float, pan: float, decay: float, delays: Array, gains: Array
 ) -> None:
     """Find when and how loud each ear hears the images of a player, beside the direct sound.

@@ -15,13 +15,16 @@ EVERY = 32  # frames between two looks at what is asked of the room and the seat
 BUSES = 7
 # Of both ears: the direct sound, what enters the room, what is reflected at once; and whether an
 # instrument was put to rest at this frame.
-DIRECT, SEND, EARLY, FALLEN = 0, 2, 4, 6
+DIRECT, SEND, EARLY, SILENCED = 0, 2, 4, 6
 
 STAGE = np.dtype(
     [
         ("has_room", np.int64),  # 0: dry
         ("channels", np.int64),  # of the device: left and right in turn, or one with both
-        ("unsound", np.int64),  # number of frames that were not numbers, replaced by silence
+        (
+            "invalid_samples",
+            np.int64,
+        ),  # number of frames that were not numbers, replaced by silence
         ("bus", np.float64, (CHUNK, BUSES)),
         ("own", np.float64, (CHUNK, EARS)),  # what one of the sources gives
         # Level of the mix, over windows of a sixtieth of a second, as in the meters.

@@ -130,8 +130,8 @@ def set_room(r: Any, size: float, decay: float, damping: float) -> None:
 
 
 @compiled_exactly
-def begin_anew(r: Any) -> None:
-    """Be the empty room of the start, after numbers were lost. Real time: safe."""
+def reset_state(r: Any) -> None:
+    """Clear all sound and filter state after an invalid sample. Real time: safe."""
     r.size, r.open, r.closing, r.emptying = 0.0, 0.0, 1, LENGTH
 
 

@@ -114,7 +114,7 @@ def set_reflections(
     s.moved = 1.0 if s.size == 0.0 else 0.0
     s.size, s.decay, s.damping, s.distance, s.pan = size, decay, damping, distance, pan
     s.now = 1 - s.now
-    geometry.see_images(size, distance, pan, decay, s.seconds, s.gain[s.now])
+    geometry.find_images(size, distance, pan, decay, s.seconds, s.gain[s.now])
     for ear in range(EARS):
         for wall in range(WALLS):
             frames = int(math.floor(s.seconds[ear, wall] * s.rate + 0.5))  # noqa: RUF046 - a float, compiled
@@ -144,14 +144,14 @@ def reflect(s: Any, frame: int, x: float) -> None:
         s.mute -= 1
         s.early[LEFT], s.early[RIGHT] = 0.0, 0.0
         return
-    hear_set(s, frame, s.now, min(1.0, s.moved), 0.0)
+    add_reflections(s, frame, s.now, min(1.0, s.moved), 0.0)
     if s.moved < 1.0:
-        hear_set(s, frame, 1 - s.now, 1.0 - s.moved, 1.0)
+        add_reflections(s, frame, 1 - s.now, 1.0 - s.moved, 1.0)
         s.moved += s.move_step
 
 
 @compiled_exactly
-def hear_set(s: Any, frame: int, which: int, amplitude: float, add: float) -> None:
+def add_reflections(s: Any, frame: int, which: int, amplitude: float, add: float) -> None:
     """Hear one of the two sets of reflections, and add it to what was heard, or not (0)."""
     for ear in range(EARS):
         heard = 0.0
@@ -162,8 +162,8 @@ def hear_set(s: Any, frame: int, which: int, amplitude: float, add: float) -> No
 
 
 @compiled_exactly
-def fall_silent(s: Any) -> None:
-    """Reflect nothing of what was kept, once the room has closed. Real time: safe."""
+def clear_filters(s: Any) -> None:
+    """Discard the delayed samples once the room has faded out. Real time: safe."""
     s.mute = -int(CLOSE_S * s.rate) - 2
 
 
@@ -180,8 +180,8 @@ def mute(s: Any) -> None:
 
 
 @compiled_exactly
-def begin_anew(s: Any) -> None:
-    """Sit as at the start, after numbers were lost. Real time: safe."""
+def reset_state(s: Any) -> None:
+    """Reset the seat to its start state after an invalid sample. Real time: safe."""
     s.mute = SPAN
     s.before, s.filtered, s.size, s.moved = 0.0, 0.0, 0.0, 1.0
     for ear in range(EARS):

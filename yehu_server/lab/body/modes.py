@@ -113,7 +113,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Step:
-    """What is known at given frequencies and dampings: amounts, error, and where it falls."""
+    """The least-squares solution at given frequencies and dampings, with its derivatives."""
 
     points: Floats
     amounts: Floats  # of the columns of length one, not below zero

@@ -24,11 +24,11 @@ def lines_of(fit: Fit) -> list[str]:
         lines.append(f"of {', '.join(fit.measurement.sources)}, {lo:.0f} to {hi:.0f} Hz")
     for what, off in (("admittance", fit.admittance_db), ("radiation", fit.radiation_db)):
         if off is not None:
-            lines.append(f"{what}: {told_differences(off)}")
+            lines.append(f"{what}: {describe_differences(off)}")
     return lines
 
 
-def told_differences(off: Differences) -> str:
+def describe_differences(off: Differences) -> str:
     """How far a fit is from its measurement, in words."""
     return (
         f"{off.rms:.2f} dB off the measurement (rms), which scatters by {off.scatter:.2f} dB; "

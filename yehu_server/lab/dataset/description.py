@@ -12,7 +12,7 @@ from typing import Any
 from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, YehuError
-from yehu_server.lab.dataset.draws import Draw, chance, draw_of, number, shares_of
+from yehu_server.lab.dataset.draws import Distribution, chance, number, read_distribution, shares_of
 from yehu_server.params.table import find
 from yehu_server.playing.calibration import calibration_key
 from yehu_server.scores.gesture import CONTROLS
@@ -91,7 +91,7 @@ class Description:
     count: int
     seed: int
     rate: float
-    draws: Mapping[str, Draw]
+    draws: Mapping[str, Distribution]
     splits: tuple[tuple[str, float], ...]
     every: int
     signals: tuple[str, ...]
@@ -170,12 +170,12 @@ def description_of(data: Mapping[str, Any], folder: Path = Path()) -> Descriptio
     )
 
 
-def _draws(entries: Mapping[str, Any], kind: str) -> dict[str, Draw]:
+def _draws(entries: Mapping[str, Any], kind: str) -> dict[str, Distribution]:
     known = STROKES if kind == "strokes" else NOTES
     defaults = {name: default for name, (default, _, _) in known.items() if default is not None}
-    draws: dict[str, Draw] = {}
+    draws: dict[str, Distribution] = {}
     for name, entry in {**defaults, **entries}.items():
-        draw = draw_of(entry, f"draw.{name}")
+        draw = read_distribution(entry, f"draw.{name}")
         lo, hi = _bounds(name, kind, known)
         if not lo <= draw.ends[0] <= draw.ends[1] <= hi:
             raise ParameterError(f"draw.{name}: within {lo:g} to {hi:g}")

@@ -1,4 +1,4 @@
-"""What is left to chance in a data set: how a value is drawn, and the same one each time.
+"""The random values of a data set: their distributions, and a reproducible draw for each sound.
 
 A draw depends on the seed, the number of the sound and the name of the value alone. So it is the
 same in any order, on any machine and with any library; another entry in the description, or more
@@ -27,7 +27,7 @@ def chance(seed: int, number: int, name: str) -> float:
     return (int.from_bytes(digest[:8], "big") >> 11) / 2**53
 
 
-class Draw(Protocol):
+class Distribution(Protocol):
     """How a value is drawn."""
 
     def value(self, share: float) -> float:
@@ -46,7 +46,7 @@ class Draw(Protocol):
 
 
 @dataclass(frozen=True)
-class Between:
+class UniformReal:
     """Even from one number to another, by their difference or by their ratio."""
 
     lo: float
@@ -71,7 +71,7 @@ class Between:
 
 
 @dataclass(frozen=True)
-class Whole:
+class UniformInteger:
     """Each whole number from one to another alike."""
 
     lo: int
@@ -142,7 +142,7 @@ class Normal:
         return False
 
 
-def draw_of(entry: Any, where: str) -> Draw:
+def read_distribution(entry: Any, where: str) -> Distribution:
     """Read how a value is drawn: a number, or a table as docs/dataset.md describes.
 
     Raises
@@ -152,7 +152,7 @@ def draw_of(entry: Any, where: str) -> Draw:
     """
     if not isinstance(entry, Mapping):
         value = number(entry, where)
-        return Between(value, value)
+        return UniformReal(value, value)
     names = set(entry)
     if names <= {"choose", "weights"} and "choose" in names:
         return _choice(entry, where)
@@ -175,12 +175,12 @@ def draw_of(entry: Any, where: str) -> Draw:
     if spacing == "whole":
         if lo != int(lo) or hi != int(hi):
             raise ParameterError(f"{where}: from and to are whole numbers")
-        return Whole(int(lo), int(hi))
+        return UniformInteger(int(lo), int(hi))
     if spacing not in ("even", "ratio"):
         raise ParameterError(f"{where}.spacing: even, ratio or whole")
     if spacing == "ratio" and lo <= 0.0:
         raise ParameterError(f"{where}: by ratio, from is above 0")
-    return Between(lo, hi, by_ratio=spacing == "ratio")
+    return UniformReal(lo, hi, by_ratio=spacing == "ratio")
 
 
 NORMAL = ("mean", "deviation", "from", "to")

@@ -13,7 +13,7 @@ from yehu_server.lab.dataset.description import Description
 from yehu_server.lab.dataset.files import Line, names_of, write_sound
 from yehu_server.rendering import build_records
 from yehu_server.rendering.build_records import write_manifest
-from yehu_server.rendering.workers import Event, Tell
+from yehu_server.rendering.workers import Event, ProgressCallback
 from yehu_server.util.files import make_folder
 
 TOGETHER = 16  # sounds that are made, and kept in the records, as one
@@ -60,18 +60,18 @@ class Made:
     files: tuple[tuple[str, bytes], ...] = ()
 
 
-def perform(part: Part, tell: Tell) -> Made:
+def perform(part: Part, report_progress: ProgressCallback) -> Made:
     """Make some sounds, where the folder is; where it is not seen, they are sent back."""
     if part.mark is None or part.mark.is_file():
-        return Made(_made(part, part.folder, tell))
+        return Made(_made(part, part.folder, report_progress))
     with tempfile.TemporaryDirectory(prefix="yehu-server-") as name:
         folder = Path(name)
-        lines = _made(part, folder, tell)
+        lines = _made(part, folder, report_progress)
         names = [line[each] for line in lines if "error" not in line for each in ("file", "arrays")]
         return Made(lines, tuple((each, (folder / each).read_bytes()) for each in names))
 
 
-def _made(part: Part, folder: Path, tell: Tell) -> tuple[Line, ...]:
+def _made(part: Part, folder: Path, report_progress: ProgressCallback) -> tuple[Line, ...]:
     from yehu_server.lab.dataset.notes import melody
     from yehu_server.lab.dataset.strokes import stroke
 
@@ -87,7 +87,7 @@ def _made(part: Part, folder: Path, tell: Tell) -> tuple[Line, ...]:
             lines.append({"file": name, "number": number, "error": str(error)})
         except MemoryError:
             lines.append({"file": name, "number": number, "error": "not enough memory"})
-        tell(done, len(part.numbers))
+        report_progress(done, len(part.numbers))
     return tuple(lines)
 
 
@@ -123,7 +123,7 @@ def parts_of(description: Description, folder: Path, key: str) -> list[Part]:
     ]
 
 
-def sorted_out(parts: Iterable[Part]) -> tuple[list[Part], list[Line]]:
+def split_up_to_date(parts: Iterable[Part]) -> tuple[list[Part], list[Line]]:
     """The parts that have to be made, and the lines of those that are up to date."""
     left, lines = [], []
     for part in parts:

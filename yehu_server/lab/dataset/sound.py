@@ -14,7 +14,7 @@ from yehu_server.core.player.calibration import Calibration
 from yehu_server.lab.dataset.description import A4, Description
 from yehu_server.lab.regimes.judge import LEAST_PERIODS, PERIODS, judge
 from yehu_server.lab.regimes.names import REGIMES, UNBOWED
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 
 Array = Any
 

@@ -125,12 +125,12 @@ def _write_table(axes: Any, fit: Fit) -> None:
     told = [f"{len(fit.body.mass)} bridge modes", f"{len(fit.body.sections)} sections of radiation"]
     for what, off in (("admittance", fit.admittance_db), ("radiation", fit.radiation_db)):
         if off is not None:
-            told += ["", *_told(what, off)]
+            told += ["", *_describe(what, off)]
     text = "\n".join([*modes, "", *told])
     axes.text(0.0, 1.0, text, family="monospace", fontsize=9.0, va="top", transform=axes.transAxes)
 
 
-def _told(what: str, off: Differences) -> list[str]:
+def _describe(what: str, off: Differences) -> list[str]:
     return [
         f"{what}, fitted less measured:",
         f"  {off.rms:.2f} dB rms, {off.most:.1f} dB at most",

@@ -10,7 +10,7 @@ import numpy as np
 
 from yehu_server.lab.plot import png
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.rendering.watch import Watch
+from yehu_server.rendering.plot_data import PlotData
 
 RANGE_DB = 80.0
 LEVELS_DB = (-70.0, 0.0)
@@ -21,7 +21,7 @@ GRID: Any = {"axis": "y", "color": "0.9", "lw": 0.6}
 ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 2, "frameon": False}
 
 
-def draw_level(axes: Any, watch: Watch) -> None:
+def draw_level(axes: Any, watch: PlotData) -> None:
     """Draw root mean square and peak over time."""
     times = watch.times_s
     axes.fill_between(times, LEVELS_DB[0], watch.peaks_db, color=PEAK, lw=0.0, label="peak")
@@ -31,7 +31,7 @@ def draw_level(axes: Any, watch: Watch) -> None:
     axes.legend(**ABOVE)
 
 
-def draw_pitch(axes: Any, watch: Watch) -> None:
+def draw_pitch(axes: Any, watch: PlotData) -> None:
     """Draw the pitches that were asked for and, of a single voice, that was heard."""
     times, asked = watch.asked
     is_asked = bool(np.isfinite(asked).any())
@@ -52,7 +52,7 @@ def draw_pitch(axes: Any, watch: Watch) -> None:
     axes.legend(**ABOVE)
 
 
-def draw_spectrogram(axes: Any, watch: Watch, *, has_pitch: bool = False) -> None:
+def draw_spectrogram(axes: Any, watch: PlotData, *, has_pitch: bool = False) -> None:
     """Draw the spectrum over time with its colour bar, and the pitch that was heard over it."""
     levels = watch.spectra_db
     axes.set_ylabel("kHz")
@@ -81,7 +81,7 @@ def draw_spectrogram(axes: Any, watch: Watch, *, has_pitch: bool = False) -> Non
 SIZE = (14.0, 9.0)  # inches
 
 
-def write_picture(watch: Watch, target: Path, title: str, *, overwrite: bool = False) -> None:
+def write_picture(watch: PlotData, target: Path, title: str, *, overwrite: bool = False) -> None:
     """Draw what was gathered of a rendering, and write it to a PNG file.
 
     Raises

@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.errors import ParameterError
 from yehu_server.lab.plot.axes import axes_of
 from yehu_server.lab.plot.panels import draw_level, draw_pitch, draw_spectrogram
-from yehu_server.rendering.watch import TOP_HZ, Watch
+from yehu_server.rendering.plot_data import TOP_HZ, PlotData
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,7 +58,7 @@ def spectrogram(
     >>> yehu.plot.spectrogram(tune, top_hz=5000).get_ylabel()
     'kHz'
     """
-    watch = watch_of(sound, sample_rate)
+    watch = plot_data_of(sound, sample_rate)
     axes = axes_of(ax)
     if not (isinstance(top_hz, Real) and 0.0 < top_hz <= TOP_HZ):
         raise ParameterError(f"top_hz: {top_hz} is not within 0 to {TOP_HZ:g} Hz")
@@ -90,7 +90,7 @@ def level(sound: Any, sample_rate: float | None = None, *, ax: Axes | None = Non
     >>> yehu.plot.level(yehu.render([("A4", 0.0, 0.3)])).get_ylabel()
     'dB of full scale'
     """
-    watch = watch_of(sound, sample_rate)
+    watch = plot_data_of(sound, sample_rate)
     axes = axes_of(ax)
     draw_level(axes, watch)
     axes.set(xlim=(0.0, watch.duration_s), xlabel="s")
@@ -124,7 +124,7 @@ def pitch(
     >>> yehu.plot.pitch(yehu.render([("F4", 0.0, 0.3), ("A4", 0.3, 0.3)])).get_ylabel()
     'pitch'
     """
-    watch = watch_of(sound, sample_rate, a4)
+    watch = plot_data_of(sound, sample_rate, a4)
     axes = axes_of(ax)
     draw_pitch(axes, watch)
     axes.set(xlim=(0.0, watch.duration_s), xlabel="s")
@@ -168,13 +168,13 @@ def is_pressure(sound: Any) -> bool:
     return hasattr(sound, "arrays") and "sound" not in sound.arrays
 
 
-def watch_of(sound: Any, sample_rate: float | None = None, a4: float | None = None) -> Watch:
+def plot_data_of(sound: Any, sample_rate: float | None = None, a4: float | None = None) -> PlotData:
     """Gather what pictures show of a sound; see `sound_of`."""
     samples, rate = sound_of(sound, sample_rate)
     if is_pressure(sound):
         samples = samples / max(float(np.abs(samples).max(initial=0.0)), LEAST_PRESSURE)
     a4 = float(getattr(sound, "a4", 440.0) if a4 is None else a4)
-    watch = Watch(rate, len(samples) / rate, 1, a4)
+    watch = PlotData(rate, len(samples) / rate, 1, a4)
     times, pitches = getattr(sound, "asked", (np.zeros(0), np.zeros(0)))
     begin = 0
     for end, pitch_asked in zip((rate * times).round().astype(int), pitches, strict=True):

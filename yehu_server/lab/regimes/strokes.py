@@ -1,6 +1,7 @@
 """Whole strokes of the bow, each from rest to its finding, in one compiled call without the GIL.
 
-A stroke moves controls along curves that all strokes of a `Hands` share: each stroke scales a
+A stroke moves controls along curves that all strokes of a `ControlCurves` share: each stroke scales
+a
 curve's values, and moves and stretches its time. So many strokes are a few numbers each.
 """
 
@@ -12,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.compile.jit import IS_PLAIN, compiled_exactly, compiled_to_share
+from yehu_server.compile.jit import IS_PLAIN, compiled_exactly, compiled_with_aliasing
 from yehu_server.compile.memory import with_attributes
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.layout import (
@@ -54,7 +55,7 @@ STROKE = np.dtype(
 
 
 @dataclass(frozen=True)
-class Hands:
+class ControlCurves:
     """The curves of all controls, one after another.
 
     Attributes
@@ -70,12 +71,12 @@ class Hands:
     values: Array
 
 
-def hands_of(curves: dict[int, list[tuple[float, float]]]) -> Hands:
+def control_curves_of(curves: dict[int, list[tuple[float, float]]]) -> ControlCurves:
     """The curves of some columns of the controls as arrays."""
     points = [curves.get(column, []) for column in range(control_columns(1))]
     first = np.cumsum([0, *map(len, points)])
     flat = np.array([point for curve in points for point in curve], np.float64).reshape(-1, 2)
-    return Hands(first, flat[:, 0].copy(), flat[:, 1].copy())
+    return ControlCurves(first, flat[:, 0].copy(), flat[:, 1].copy())
 
 
 def prepared(
@@ -129,7 +130,7 @@ def write_controls(
         control[column] = move["scale"] * value_at(times, values, point, last, time)
 
 
-@compiled_to_share
+@compiled_with_aliasing
 def bow_strokes(
     models: Array,
     rests: Array,
@@ -151,7 +152,7 @@ def bow_strokes(
         The state from which each model begins.
     strokes : ndarray [dtype=STROKE]
     first, times, values : ndarray
-        Of `Hands`.
+        Of `ControlCurves`.
     model, state : ndarray [shape=(1,)]
         Records to work in.
     signals : ndarray [shape=(6, most frames)]
@@ -191,7 +192,7 @@ def bow_strokes(
         out.faults = min(MOST_FAULTS, state[0].unconverged + state[0].lost)
 
 
-def find(models: Array, rests: Array, strokes: Array, hands: Hands) -> Array:
+def find(models: Array, rests: Array, strokes: Array, hands: ControlCurves) -> Array:
     """Bow strokes, and judge each: findings [shape=(strokes,), dtype=FINDING].
 
     The strokes do not touch each other: any order of them, in any number of calls, finds the same.

@@ -17,7 +17,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import wave_speed
 from yehu_server.errors import ParameterError
 from yehu_server.lab.regimes.judge import check_length
-from yehu_server.lab.regimes.strokes import STROKE, Hands, hands_of, prepared
+from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curves_of, prepared
 from yehu_server.lab.sweeps.axes import Axis, Value
 from yehu_server.lab.sweeps.notes import distinct
 from yehu_server.scores.gesture import CONTROLS, Gesture, gesture_from
@@ -112,7 +112,9 @@ class GestureBow:
     def _gesture(self, values: Mapping[str, Any]) -> Gesture:
         return gesture_from(self.varied(values), self.folder)
 
-    def strokes(self, axes: Sequence[Axis], index: Array) -> tuple[Array, Array, Array, Hands]:
+    def strokes(
+        self, axes: Sequence[Axis], index: Array
+    ) -> tuple[Array, Array, Array, ControlCurves]:
         """Models, states at rest, strokes and curves of some points.
 
         Parameters
@@ -157,7 +159,7 @@ class GestureBow:
             [gesture.sample_rate for gesture in gestures],
             [gesture.pluck for gesture in gestures],
         )
-        return models, rests, strokes, hands_of(curves)
+        return models, rests, strokes, control_curves_of(curves)
 
     def gesture(self, axes: Sequence[Axis], place: Sequence[int]) -> Gesture:
         """One of the strokes as a gesture, for `simulate`."""

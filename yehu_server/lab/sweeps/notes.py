@@ -24,9 +24,9 @@ from yehu_server.core.player.calibration import (
 )
 from yehu_server.errors import ParameterError
 from yehu_server.lab.regimes.judge import check_length
-from yehu_server.lab.regimes.strokes import STROKE, Hands, hands_of, prepared
+from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curves_of, prepared
 from yehu_server.lab.sweeps.axes import Axis
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.scores.gesture import CONTROLS, Gesture
 
 Array = Any
@@ -62,7 +62,7 @@ LONGEST = 60.0  # s
 A4 = 440.0
 SLACK = 1.5  # by which a note may be lowered
 UNTOUCHED = 0.012  # m: where a lifted finger waits
-HANDS = hands_of(
+HANDS = control_curves_of(
     {
         F_N: [(HAIR_ON, 0.0), (HAIR_DOWN, 1.0)],
         V_B: [(0.0, 0.0), (1.0, 1.0)],
@@ -145,7 +145,9 @@ class NoteBow:
         bowed = round((self.duration - BOW_MOVES) * self.rate)
         check_length(bowed, self.rate, frequency_hz(deepest, A4) / SLACK)
 
-    def strokes(self, axes: Sequence[Axis], index: Array) -> tuple[Array, Array, Array, Hands]:
+    def strokes(
+        self, axes: Sequence[Axis], index: Array
+    ) -> tuple[Array, Array, Array, ControlCurves]:
         """Models, states at rest, strokes and curves of some points.
 
         Parameters

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.lab.regimes.strokes import Hands
+from yehu_server.lab.regimes.strokes import ControlCurves
 from yehu_server.lab.sweeps.axes import Axis, axis_from
 from yehu_server.lab.sweeps.gestures import GestureBow
 from yehu_server.lab.sweeps.notes import NoteBow
@@ -43,7 +43,9 @@ class Bow(Protocol):
     def check(self, axes: Sequence[Axis]) -> None:
         """Refuse axes that cannot be varied, or values that are out of bounds."""
 
-    def strokes(self, axes: Sequence[Axis], index: Array) -> tuple[Array, Array, Array, Hands]:
+    def strokes(
+        self, axes: Sequence[Axis], index: Array
+    ) -> tuple[Array, Array, Array, ControlCurves]:
         """Models, states at rest, strokes and curves: see `lab.regimes.strokes.find`."""
 
     def gesture(self, axes: Sequence[Axis], place: Sequence[int]) -> Gesture:

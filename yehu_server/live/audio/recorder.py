@@ -99,7 +99,7 @@ class Recorder:
     @property
     def seconds(self) -> float:
         """Length of the recording (s)."""
-        return self._writer.kept_frames / self._tape.rate
+        return self._writer.written_frames / self._tape.rate
 
     def stop(self) -> None:
         """End the recording at the last frame played."""
@@ -142,7 +142,7 @@ class Recorder:
             self._writer.close()
         except OutputError as error:
             self.failure = self.failure or str(error)
-        if self._writer.kept_frames == 0:
+        if self._writer.written_frames == 0:
             self.failure = self.failure or f"{self.target}: there is nothing to write"
             discard(self._file, self.target)
         self._file.close()

@@ -119,7 +119,7 @@ class MidiFeed:
             for part in self._router.parts_of(name, channel):
                 self._rings[part].post(time_ns, self._message, index)
 
-    def let_go_of(self, name: str, time_ns: int, *, is_gone: bool) -> None:
+    def end_port_notes(self, name: str, time_ns: int, *, is_gone: bool) -> None:
         """End the notes of an input; with `is_gone`, count it as no longer open."""
         with self._posting:
             for part in self._router.parts_of(name):

@@ -14,7 +14,7 @@ from yehu_server.core.engine.mailbox import MIDI_INPUTS
 from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.live.midi.routes import Route, Router
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.util.processes import Child, Message, Supervisor
 
 log = logging.getLogger(__name__)
@@ -65,7 +65,7 @@ class MidiPorts:
         self._supervisor = Supervisor(  # it ends as JACK's server does
             "yehu_server.live.midi.process",
             "MIDI inputs",
-            on_event=self._heard,
+            on_event=self._on_event,
             attend=self._attend,
             on_exit=self._ended,
             on_error=on_message,
@@ -75,7 +75,7 @@ class MidiPorts:
         self._missing: set[str] = set()  # patterns reported as matching nothing
         self.problem = ""
         for player in players:
-            player.listening = self._tell_hearing
+            player.on_learning_changed = self._send_forwarding
 
     @property
     def connected(self) -> list[str]:
@@ -107,10 +107,10 @@ class MidiPorts:
             disconnect=DISCONNECT,
         )
         self._child = child
-        self._tell_hearing()
+        self._send_forwarding()
         gone.wait()
 
-    def _tell_hearing(self) -> None:
+    def _send_forwarding(self) -> None:
         """Have the process tell of messages while something is to be learned, and only then."""
         if self._child is not None:
             self._child.send("hear", hear=any(player.listens for player in self._players))
@@ -119,10 +119,10 @@ class MidiPorts:
         if by_itself:
             self._let_go()
 
-    def _heard(self, event: Message) -> None:
+    def _on_event(self, event: Message) -> None:
         kind = event["event"]
         if kind == "midi":
-            self._hear(event["port"], event["bytes"])
+            self._learn_from(event["port"], event["bytes"])
         elif kind == "appeared":
             self._connected[event["port"]] = None
             self._number(event["port"], event["number"])
@@ -163,19 +163,19 @@ class MidiPorts:
         self._numbers = {name: old for name, old in self._numbers.items() if old != number}
         self._numbers[port] = number
 
-    def _hear(self, port: str, data: Sequence[int]) -> None:
+    def _learn_from(self, port: str, data: Sequence[int]) -> None:
         """Hear a message that is played already, for what is to be learned."""
         with contextlib.suppress(ValueError, IndexError):  # damaged
             message = mido.Message.from_bytes(data)
             for part in self._router.parts_of(port, getattr(message, "channel", None)):
-                self._players[part].hear_message(message, self._numbers[port])
+                self._players[part].learn_from_message(message, self._numbers[port])
 
     def _let_go(self) -> None:
         """End the notes of all ports, whose process is gone."""
         for port in self._connected:
             for part in self._router.parts_of(port):
                 player = self._players[part]
-                player.let_go_of(self._numbers[port], frame=player.frame_of())
+                player.end_port_notes(self._numbers[port], frame=player.frame_of())
         if self._connected:
             self._on_message(f"MIDI: {', '.join(self._connected)} gone; notes are ended")
         self._connected.clear()

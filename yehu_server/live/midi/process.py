@@ -37,7 +37,7 @@ class Input:
 
     Attributes
     ----------
-    is_heard : bool
+    is_forwarded : bool
         Whether the parent is told of each message, too.
     """
 
@@ -47,7 +47,7 @@ class Input:
         self.midi = midi
         self.name = name
         self.full_name = full_name
-        self.is_heard = False
+        self.is_forwarded = False
         self._feed = feed
         self._parent = parent
         self._last = 0.0
@@ -63,14 +63,14 @@ class Input:
             self._senses = True
         elif data[0] not in CLOCKS and len(data) <= MOST_BYTES:  # no system exclusive
             self._feed.receive(self.name, data, at)
-            if self.is_heard:
+            if self.is_forwarded:
                 self._parent.tell("midi", port=self.name, bytes=list(data))
 
     def sense(self) -> None:
         """End the notes of the port where active sensing has stopped."""
         if self._senses and time.monotonic() - self._last > SENSE_WITHIN_S:
             self._senses = False
-            self._feed.let_go_of(self.name, time.monotonic_ns(), is_gone=False)
+            self._feed.end_port_notes(self.name, time.monotonic_ns(), is_gone=False)
             self._parent.tell("silent", port=self.name)
 
     def wait_anew(self) -> None:
@@ -121,7 +121,7 @@ class Inputs:
             gone |= {name for name, port in self._open.items() if port.full_name in left}
         for name in gone:
             self._open.pop(name).close()
-            self._feed.let_go_of(name, time.monotonic_ns(), is_gone=True)
+            self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
             self._parent.tell("vanished", port=name)
         self._refused &= set(stable)
         for name, full_name in stable.items():
@@ -150,11 +150,11 @@ class Inputs:
             else:
                 port.sense()
 
-    def hear(self, is_heard: bool) -> None:
+    def hear(self, is_forwarded: bool) -> None:
         """Tell the parent of each message from now on, or no more; any thread may call."""
-        self._is_heard = is_heard
+        self._is_heard = is_forwarded
         for port in list(self._open.values()):
-            port.is_heard = is_heard
+            port.is_forwarded = is_forwarded
 
     def _start(self) -> bool:
         finder, problem = open_client(self._api)
@@ -189,11 +189,11 @@ class Inputs:
                 port.midi.open_port(port.midi.get_ports().index(full_name), name=name[:32])
         except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
             self._refused.add(name)
-            self._feed.let_go_of(name, time.monotonic_ns(), is_gone=True)
+            self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
             self._parent.tell("refused", port=name, reason=str(error))
             return
         self._open[name] = port
-        port.is_heard = self._is_heard
+        port.is_forwarded = self._is_heard
         self._parent.tell("appeared", port=name, number=number)
 
     def _client(self) -> Any:

@@ -38,16 +38,16 @@ class StableNames:
         for full_name in full_names:
             count = next(n for n in itertools.count() if (full_name, n) not in present)
             present[full_name, count] = ""
-        kept = {key: self._names[key] for key in present if key in self._names}
-        taken = set(kept.values())
+        named = {key: self._names[key] for key in present if key in self._names}
+        taken = set(named.values())
         for key in present:
-            if key not in kept:
+            if key not in named:
                 base = _base(key[0])
                 choices = (base if n == 1 else f"{base} #{n}" for n in itertools.count(1))
-                kept[key] = next(name for name in choices if name not in taken)
-                taken.add(kept[key])
-        self._names = kept
-        return [kept[key] for key in present]
+                named[key] = next(name for name in choices if name not in taken)
+                taken.add(named[key])
+        self._names = named
+        return [named[key] for key in present]
 
 
 def stable_names(names: Iterable[str]) -> list[str]:

@@ -24,16 +24,16 @@ from yehu_server.live.osc.peers import Peer
 
 MOST_BYTES = 16 << 20  # of all waiting packets
 TURN_NS, SLICE_NS = 2_000_000, 500_000  # of one call of `work`, and of one sender's turn in it
-FORGIVEN_NS = 1_000_000_000  # half-life of the time that a sender has used
-RESCALE_NS = 500 * FORGIVEN_NS  # before numbers grow too large
+USE_HALF_LIFE_NS = 1_000_000_000  # half-life of the time that a sender has used
+RESCALE_NS = 500 * USE_HALF_LIFE_NS  # before numbers grow too large
 # A packet longer than the first is charged the second beforehand.
 LITTLE_BYTES, LONG_TAKES_NS = 1 << 10, 1_000_000_000.0
-# A sender is known after the first time, until it is silent for the second. One that is not known
+# A sender is established once it is NEW_SENDER_NS old, until it is silent for SILENT_NS. A new one
 # is charged as if it had used the third.
-STRANGE_NS, SILENT_NS = 1_000_000_000, 60_000_000_000
-STRANGERS_TOOK_NS = 100_000_000.0
+NEW_SENDER_NS, SILENT_NS = 1_000_000_000, 60_000_000_000
+NEW_SENDER_USED_NS = 100_000_000.0
 MOST_KNOWN, MOST_SENDERS = 256, 2048
-OWED_BYTES = 4 << 10  # for which a known sender always finds room
+GUARANTEED_BYTES = 4 << 10  # for which a known sender always finds room
 
 T = TypeVar("T")
 
@@ -115,7 +115,7 @@ class Backlog(Generic[T]):
         """
         sender = self._sender(peer, time.monotonic_ns())
         size += OVERHEAD_BYTES
-        is_owed = sender.is_known and self._quota.of(sender) + size <= OWED_BYTES
+        is_owed = sender.is_known and self._quota.of(sender) + size <= GUARANTEED_BYTES
         if not self._quota.take(sender, size, is_due=is_due or is_owed or thing is None):
             return False
         self._count += 1
@@ -221,14 +221,14 @@ class Backlog(Generic[T]):
         """
         passed_ns = now_ns - self._began_ns
         if passed_ns > RESCALE_NS:
-            factor = 0.5 ** (passed_ns / FORGIVEN_NS)
+            factor = 0.5 ** (passed_ns / USE_HALF_LIFE_NS)
             for sender in self._senders.values():
                 sender.took *= factor
             for host in self._hosts.values():
                 host.took *= factor
             self._queue = [(key * factor, order, sender) for key, order, sender in self._queue]
             self._began_ns, passed_ns = now_ns, 0
-        return math.pow(2.0, passed_ns / FORGIVEN_NS)
+        return math.pow(2.0, passed_ns / USE_HALF_LIFE_NS)
 
     # -- senders -------------------------------------------------------------------------------
 
@@ -237,17 +237,17 @@ class Backlog(Generic[T]):
         if sender is None:
             if len(self._senders) >= self._sweep_at:
                 self._sweep()
-            took = STRANGERS_TOOK_NS * self._scale(now_ns)
+            took = NEW_SENDER_USED_NS * self._scale(now_ns)
             host = self._hosts.setdefault(peer.host, Host())
             sender = self._senders[peer] = Sender(peer, host, now_ns, now_ns, took)
-        elif not sender.is_known and now_ns - sender.since_ns > STRANGE_NS:
+        elif not sender.is_known and now_ns - sender.since_ns > NEW_SENDER_NS:
             self._know(sender, now_ns)
         sender.heard_ns = now_ns
         return sender
 
     def _know(self, sender: Sender[T], now_ns: int) -> None:
         """Count a sender among the known ones, if there is a place."""
-        if len(self._known) >= MOST_KNOWN and now_ns - self._looked_ns > STRANGE_NS:
+        if len(self._known) >= MOST_KNOWN and now_ns - self._looked_ns > NEW_SENDER_NS:
             self._looked_ns = now_ns
             for one in self._known:
                 one.is_known = now_ns - one.heard_ns < SILENT_NS

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from yehu_server.live.part_addresses import FIRST, group
 from yehu_server.params.table import PREFIX, find
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_address
 

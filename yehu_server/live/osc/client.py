@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Self
 
 from yehu_server.errors import DeviceError, RefusedError
-from yehu_server.live.addresses import Address, shown, why
+from yehu_server.live.addresses import Address, format_address, why
 from yehu_server.live.osc.packets import Message, PacketError, pack, unpack
 from yehu_server.params.table import PREFIX
 
@@ -28,7 +28,7 @@ class OscClient:
     """
 
     def __init__(self, server: Address) -> None:
-        self._name = shown(*server)
+        self._name = format_address(*server)
         try:
             family, kind, _, _, address = socket.getaddrinfo(*server, type=socket.SOCK_DGRAM)[0]
             self._socket = socket.socket(family, kind)

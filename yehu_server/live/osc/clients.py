@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from yehu_server.errors import shortened
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
-from yehu_server.live.osc.status import PLACE
+from yehu_server.live.osc.status import STATUS_PREFIX
 from yehu_server.live.osc.subscriptions import (
     ERRORS_A_SECOND,
     ERRORS_AT_ONCE,
@@ -20,7 +20,7 @@ from yehu_server.live.osc.subscriptions import (
     Subscriber,
     Values,
 )
-from yehu_server.live.part_addresses import FIRST, divided
+from yehu_server.live.part_addresses import FIRST, split_group
 
 FLUSH_S = 1.0 / 60.0  # between rounds of sending
 SLICE_S = 0.0005  # of a round, after which other messages are handled
@@ -43,7 +43,7 @@ class Clients:
     prefix : str
         Put before addresses.
     status : callable, optional
-        Returns the status values of a group, by name; their addresses are PLACE and the name.
+        Returns the status values of a group, by name; STATUS_PREFIX makes addresses of names.
     """
 
     def __init__(self, values: Values, prefix: str, status: Status = lambda _group: {}) -> None:
@@ -91,7 +91,7 @@ class Clients:
             return
         client = self._client(peer)
         if client.muted_until <= time.monotonic():
-            client.to_send.update((address, divided(address)[0]) for address in addresses)
+            client.to_send.update((address, split_group(address)[0]) for address in addresses)
             self._is_waiting = True
 
     def mute(self, peer: Peer, seconds: float) -> None:
@@ -104,7 +104,7 @@ class Clients:
     def subscribe(self, peer: Peer, seconds: float, form: str = "", addressed: str = FIRST) -> bool:
         """Send a peer every change for some time; return whether there was room for one more.
 
-        `form` is empty for plain values, UNIT for values as 0 to 1, or PLACE for the status;
+        `form` is empty for plain values, UNIT for values as 0 to 1, STATUS_PREFIX for the status;
         `addressed` is the group of addresses.
         """
         client, now = self._client(peer), time.monotonic()
@@ -113,10 +113,10 @@ class Clients:
             if len(hosts) >= MOST_SUBSCRIBERS or hosts.count(peer.host) >= MOST_OF_A_HOST:
                 return False
         self._is_waiting = True
-        if form == PLACE:
+        if form == STATUS_PREFIX:
             client.status_subscribed[addressed] = now + seconds
             names = self._status(addressed)
-            sent = (addressed + PLACE + name for name in names)
+            sent = (addressed + STATUS_PREFIX + name for name in names)
             client.to_send.update(dict.fromkeys(sent, addressed))
             return True
         client.subscribed[addressed] = now + seconds, form
@@ -143,7 +143,7 @@ class Clients:
         """End what `listen` began."""
         self._client(peer).ignore(address)
 
-    def hears(self, peer: Peer) -> bool:
+    def is_subscribed(self, peer: Peer) -> bool:
         """Whether a peer is sent changes of values."""
         client = self._clients.get(peer)
         if client is None:

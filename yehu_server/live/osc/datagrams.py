@@ -44,8 +44,8 @@ def datagrams(udp: socket.socket) -> Datagrams:
     if sys.platform == "linux" and struct.calcsize("P") == struct.calcsize("q"):
         library = ctypes.PyDLL(None)
         if hasattr(library, "recvmmsg"):
-            return Together(udp, library.recvmmsg)
-    return OneByOne(udp)
+            return BatchReader(udp, library.recvmmsg)
+    return SingleReader(udp)
 
 
 class _Vector(ctypes.Structure):
@@ -67,7 +67,7 @@ class _Header(ctypes.Structure):
     )
 
 
-class Together:
+class BatchReader:
     """Reads all waiting datagrams by one call, which keeps the GIL."""
 
     def __init__(self, udp: socket.socket, recvmmsg: Callable[..., int]) -> None:
@@ -133,14 +133,14 @@ class Together:
         """A ``struct sockaddr`` as Python's sockets tell it."""
         address = self._addresses.get(name)
         if address is None:
-            address = _told(name)
+            address = _parse_sockaddr(name)
             if len(self._addresses) >= MOST_NAMES:
                 self._addresses.clear()
             self._addresses[name] = address
         return address
 
 
-def _told(name: bytes) -> Any:
+def _parse_sockaddr(name: bytes) -> Any:
     (family,), (port,) = struct.unpack_from("H", name), struct.unpack_from(">H", name, 2)
     if family == socket.AF_INET:
         return socket.inet_ntop(family, name[4:8]), port
@@ -148,7 +148,7 @@ def _told(name: bytes) -> Any:
     return socket.inet_ntop(socket.AF_INET6, name[8:24]), port, flow, scope
 
 
-class OneByOne:
+class SingleReader:
     """Reads each datagram by a call."""
 
     def __init__(self, udp: socket.socket) -> None:

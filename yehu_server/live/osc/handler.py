@@ -21,19 +21,19 @@ from yehu_server.live.osc.patterns import is_pattern
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
-from yehu_server.live.osc.status import PLACE, Counts
+from yehu_server.live.osc.status import STATUS_PREFIX, Counts
 from yehu_server.live.part_addresses import (
     FIRST,
-    OWN,
     PART,
+    PART_PARAMS,
     check_own,
     check_part,
-    divided,
     group,
     part_of,
+    split_group,
 )
 from yehu_server.params.table import BY_ADDRESS, PREFIX, UNIT
-from yehu_server.playing.live import Arrivals, LivePlayer
+from yehu_server.playing.live_player import Arrivals, LivePlayer
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import is_own
 
@@ -99,7 +99,9 @@ class OscHandler:
     def _values(self, addressed: str) -> dict[str, float]:
         """The values of the parameters of a group, by address."""
         values = self._groups[addressed].values()
-        return {param.address: values[param.address] for param in OWN} if addressed else values
+        return (
+            {param.address: values[param.address] for param in PART_PARAMS} if addressed else values
+        )
 
     def _states(self, addressed: str) -> Values[str, float | str]:
         """The status values of a group, by name."""
@@ -164,9 +166,9 @@ class OscHandler:
         ]
         return min(waits, default=None)
 
-    def hears(self, peer: Peer) -> bool:
+    def is_subscribed(self, peer: Peer) -> bool:
         """See `sockets.Handler`."""
-        return self.clients.hears(peer)
+        return self.clients.is_subscribed(peer)
 
     def gone(self, peer: Peer) -> None:
         """See `sockets.Handler`."""
@@ -198,8 +200,8 @@ class OscHandler:
         if known in self._calls and known != address:
             return [self._calls[known]]
         own = self._own()
-        if is_own(address) or divided(known)[0]:
-            own |= self._heard(address, own)
+        if is_own(address) or split_group(known)[0]:
+            own |= self._learn_actions(address, own)
         if address in own:
             return [own[address]]
         if is_pattern(address):
@@ -208,7 +210,7 @@ class OscHandler:
         raise UnknownError
 
     def _own(self) -> dict[str, Act]:
-        """What moves the addresses of the user's own: plain ones are the first's who binds them."""
+        """Actions for addresses that mappings bind; without a part, of the first part that does."""
         own: dict[str, Act] = {}
         for part, player in enumerate(self._players):
             for address in player.addresses:
@@ -217,9 +219,9 @@ class OscHandler:
                 own[PREFIX + group(part) + address] = act
         return own
 
-    def _heard(self, address: str, own: dict[str, Act]) -> dict[str, Act]:
+    def _learn_actions(self, address: str, own: dict[str, Act]) -> dict[str, Act]:
         """The same, where MIDI learn of a part waits for an address to hear."""
-        addressed, plain = divided(address.removeprefix(PREFIX))
+        addressed, plain = split_group(address.removeprefix(PREFIX))
         player = self._groups.get(addressed)
         listening = [player] if addressed else self._players
         hearing = [one for one in listening if one is not None and one.listens and is_own(plain)]
@@ -262,8 +264,8 @@ class OscHandler:
         call.check_peer()
         known: dict[tuple[str, bool], Values[str, float | str]] = {}
         for address in addresses:
-            addressed, own = divided(address)
-            is_status = own.startswith(PLACE)
+            addressed, own = split_group(address)
+            is_status = own.startswith(STATUS_PREFIX)
             if (addressed, is_status) not in known:
                 source = self._states if is_status else self._values
                 known[addressed, is_status] = source(addressed)
@@ -272,7 +274,7 @@ class OscHandler:
 
     def _found(self, address: str) -> str:
         """The address of a parameter; raises ParameterError, with a similar one if there is one."""
-        addressed, own = divided(address)
+        addressed, own = split_group(address)
         check_part(addressed, len(self._players))
         check_own(addressed, own)
         form = UNIT if own.endswith(UNIT) else ""

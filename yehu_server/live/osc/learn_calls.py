@@ -11,13 +11,13 @@ from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.request import Request
-from yehu_server.live.part_addresses import check_own, divided
+from yehu_server.live.part_addresses import check_own, split_group
 from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learn
-from yehu_server.playing.learn import Found
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.learn import LearnedSource
+from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.mapping_entries import free
+from yehu_server.playing.mapping_entries import settable_param
 
 PATIENCE_S = 60.0  # to wait for something to be moved
 NOT_MOVED = -1.0
@@ -59,7 +59,7 @@ class LearnCalls:
         target = self._target(address, "learn one")
         wants, until = self._wants, time.monotonic() + PATIENCE_S
 
-        def found(source: Found) -> None:
+        def found(source: LearnedSource) -> None:
             if wants == self._wants and time.monotonic() <= until:
                 learn_it = partial(self._found, call.peer, target, source, soft=soft)
                 self._services.run_in_background(learn_it)
@@ -67,7 +67,7 @@ class LearnCalls:
         self._player.listen(found)
         call.peer.send(pack(f"{self._prefix}/learning", self._prefix + target))
 
-    def _found(self, peer: Peer, target: str, source: Found, *, soft: bool) -> None:
+    def _found(self, peer: Peer, target: str, source: LearnedSource, *, soft: bool) -> None:
         """Write what was found to the user's file; aside, as a disk may be slow."""
         try:
             mapping, path = learn.learn(self._player.mapping, target, source, soft=soft)
@@ -128,9 +128,9 @@ class LearnCalls:
     def _target(self, address: str, what: str) -> str:
         """An address of the part as the parameter table has it; raises where it is no free one."""
         plain = address.removeprefix(PREFIX)
-        addressed, own = divided(plain)
+        addressed, own = split_group(plain)
         if addressed not in ("", self._addressed):
             raise ParameterError(f"{address}: is of another part; see {PREFIX}{addressed}/learn")
         own = own.removesuffix(UNIT)
         check_own(self._addressed, own)
-        return free(own, what).address
+        return settable_param(own, what).address

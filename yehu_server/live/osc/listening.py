@@ -9,7 +9,7 @@ import struct
 import sys
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.addresses import shown, why
+from yehu_server.live.addresses import format_address, why
 
 BUFFER_BYTES = 32 << 20  # asked for; the system may grant less
 DATAGRAM_BYTES = 1 << 14  # longer ones are dropped: a few would fill the system's buffer
@@ -41,7 +41,9 @@ def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
                 return _bind(family, host, port)
         return _bind(family, host, port)
     except OSError as error:
-        raise DeviceError(f"OSC: cannot listen at {shown(host, port)}: {why(error)}") from error
+        raise DeviceError(
+            f"OSC: cannot listen at {format_address(host, port)}: {why(error)}"
+        ) from error
 
 
 def _bind(family: int, host: str, port: int) -> tuple[socket.socket, socket.socket]:

@@ -11,8 +11,8 @@ from typing import Any
 from yehu_server.errors import ParameterError, RefusedError, YehuError
 from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.patterns import PatternError, matches
-from yehu_server.live.osc.status import PLACE, STATUS, as_argument
-from yehu_server.live.part_addresses import OWN, check_own, check_part, divided
+from yehu_server.live.osc.status import STATUS, STATUS_PREFIX, as_argument
+from yehu_server.live.part_addresses import PART_PARAMS, check_own, check_part, split_group
 from yehu_server.params.table import PREFIX, TABLE, UNIT, find, read
 
 NAMES = [row.name for row in STATUS]
@@ -22,8 +22,8 @@ LONGEST_PATTERN = 256
 
 def value_at(values: Values[str, Any], address: str) -> float | str:
     """A value of a group: of the status, or of a parameter."""
-    if address.startswith(PLACE):
-        return as_argument(values[address.removeprefix(PLACE)])
+    if address.startswith(STATUS_PREFIX):
+        return as_argument(values[address.removeprefix(STATUS_PREFIX)])
     return read(values, address)
 
 
@@ -31,21 +31,23 @@ def readable(groups: Iterable[str]) -> Iterator[str]:
     """The addresses of all values, of parameters and then of the status, of some groups."""
     for addressed in groups:
         for form in ("", UNIT):
-            yield from (addressed + param.address + form for param in (OWN if addressed else TABLE))
+            yield from (
+                addressed + param.address + form for param in (PART_PARAMS if addressed else TABLE)
+            )
     for addressed in groups:
         names = PART_NAMES if addressed else NAMES
-        yield from (addressed + PLACE + name for name in names)
+        yield from (addressed + STATUS_PREFIX + name for name in names)
 
 
 def parameter_of(address: str) -> str:
     """Find a parameter; raise ParameterError, with a similar address if there is one."""
     names = list(dict.fromkeys((*NAMES, *PART_NAMES)))
-    if address.startswith(PLACE):
-        name = address.removeprefix(PLACE)
+    if address.startswith(STATUS_PREFIX):
+        name = address.removeprefix(STATUS_PREFIX)
         if name in names:
             raise ParameterError(f"the status cannot be set; ask for it by {PREFIX}/get")
         close = difflib.get_close_matches(name, names, n=1)
-        hint = f"; did you mean {PLACE}{close[0]}?" if close else ""
+        hint = f"; did you mean {STATUS_PREFIX}{close[0]}?" if close else ""
         raise ParameterError(f"unknown status value {address!r}{hint}")
     return find(address).address
 
@@ -55,7 +57,7 @@ def near(address: str, parts: int) -> str:
     if not address.startswith(PREFIX + "/"):
         return f"unknown address (all begin with {PREFIX}/)"
     try:
-        addressed, own = divided(address.removeprefix(PREFIX)[:LONGEST_PATTERN])
+        addressed, own = split_group(address.removeprefix(PREFIX)[:LONGEST_PATTERN])
         check_part(addressed, parts)
         check_own(addressed, own)
         parameter_of(own.removesuffix(UNIT))

@@ -12,11 +12,11 @@ from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.preset_calls import PresetCalls
 from yehu_server.live.osc.request import Request
-from yehu_server.live.osc.status import PLACE, as_argument
-from yehu_server.live.part_addresses import OWN, part_of
+from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
+from yehu_server.live.part_addresses import PART_PARAMS, part_of
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE, UNIT
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 
 SUBSCRIBED_S = 60.0
 
@@ -42,7 +42,7 @@ class PartCalls:
         self._clients = context.clients
         self._services = context.services
         self._drop_scheduled = context.drop_scheduled
-        self._params = OWN if addressed else TABLE
+        self._params = PART_PARAMS if addressed else TABLE
         self.by_address: dict[str, Act] = {
             "/note": self._note,
             "/note/off": self._note_off,
@@ -57,7 +57,7 @@ class PartCalls:
             "/status": self._status,
             "/subscribe": self._subscribe,
             "/subscribe/unit": lambda call: self._subscribe(call, UNIT),
-            "/subscribe/status": lambda call: self._subscribe(call, PLACE),
+            "/subscribe/status": lambda call: self._subscribe(call, STATUS_PREFIX),
         }
         self.by_address |= PresetCalls(player, addressed, context).by_address
         self.by_address |= LearnCalls(player, addressed, context).by_address
@@ -142,7 +142,7 @@ class PartCalls:
         if self._addressed:
             values = self._services.part_status(part_of(self._addressed))
         for name, value in values.items():
-            yield f"{self._prefix}{PLACE}{name}", value
+            yield f"{self._prefix}{STATUS_PREFIX}{name}", value
 
     def _subscribe(self, call: Request, form: str = "") -> None:
         numbers = call.numbers(0, 2)

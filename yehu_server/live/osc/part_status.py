@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from yehu_server.core.engine.instrument import Instrument
-    from yehu_server.playing.live import LivePlayer
+    from yehu_server.playing.live_player import LivePlayer
 
 SILENT_DB = -120.0
 

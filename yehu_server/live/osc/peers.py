@@ -141,9 +141,9 @@ class TcpPeer:
         self.name = f"{address[0]}:{address[1]} (TCP)"
         self.host = address[0]
         self.framing = Framing()
-        self.has_spoken = False  # sent a whole packet
-        self.heard_s = time.monotonic()  # time of its last packet, or of its connecting
-        self.is_being_heard = False  # packets of it wait or are handled; no more are read
+        self.has_sent_packet = False  # sent a whole packet
+        self.last_packet_s = time.monotonic()  # time of its last packet, or of its connecting
+        self.has_pending_packets = False  # packets of it wait or are handled; no more are read
         self.reads = True  # until its end of the connection is closed
         self._unsent = bytearray()
         self._finished = False

@@ -13,7 +13,7 @@ from yehu_server.live.osc.request import Request
 from yehu_server.live.part_addresses import OF_PARTS, PLAIN
 from yehu_server.params.preset_file import Preset, morph
 from yehu_server.params.table import PREFIX
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 
 
 class PresetCalls:

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from yehu_server.live.osc.limits import OVERHEAD_BYTES, MemoryQuota
-from yehu_server.playing.live import LivePlayer
+from yehu_server.playing.live_player import LivePlayer
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
 TOGETHER_NS, TRIES = 100_000, 10
@@ -42,20 +42,20 @@ class TagClock:
 
     def __init__(self, player: LivePlayer) -> None:
         self._player = player
-        self._tie: tuple[float, int] | None = None  # a time (s since 1970) and its frame
+        self._anchor: tuple[float, int] | None = None  # a time (s since 1970) and its frame
 
     def frame_at(self, due_s: float) -> int:
         """The frame that is played at a time (s since 1970)."""
         rate = self._player.instrument.rate
         now_s, now_ns = both_clocks()
         true = self._player.instrument.frame_at(now_ns) + (due_s - now_s) * rate
-        if self._tie is not None:
-            moment, frame = self._tie
+        if self._anchor is not None:
+            moment, frame = self._anchor
             counted = frame + round((due_s - moment) * rate)
             if abs(counted - true) < STRAY_S * rate:
                 return counted
-        self._tie = (due_s, round(true))
-        return self._tie[1]
+        self._anchor = (due_s, round(true))
+        return self._anchor[1]
 
 
 class Schedule(Generic[T, Sender]):
@@ -107,14 +107,14 @@ class Schedule(Generic[T, Sender]):
 
     def drop(self, which: Callable[[T], bool]) -> None:
         """Drop some things."""
-        kept = []
+        remaining = []
         for entry in self._waiting:
             _, _, thing, sender, size = entry
             if which(thing):
                 self._quota.give_back(sender, size)
             else:
-                kept.append(entry)
-        self._waiting = kept
+                remaining.append(entry)
+        self._waiting = remaining
         heapq.heapify(self._waiting)
 
     def clear(self) -> None:

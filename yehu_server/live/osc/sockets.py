@@ -56,7 +56,7 @@ class Handler(Protocol):
     def wait_s(self) -> float | None:
         """Seconds until `tick` has something to do; None where it has nothing."""
 
-    def hears(self, peer: Peer) -> bool:
+    def is_subscribed(self, peer: Peer) -> bool:
         """Whether a peer is sent changes of values."""
 
     def gone(self, peer: Peer) -> None:
@@ -92,7 +92,7 @@ class OscPorts:
         self._datagrams = datagrams(self._udp)
         self._wake_here, self._wake_there = socket.socketpair()
         self._wake_there.setblocking(False)
-        self._asked: deque[Callable[[], object]] = deque()
+        self._calls: deque[Callable[[], object]] = deque()
         for readable in (self._udp, self._tcp, self._wake_here):
             readable.setblocking(False)
             self._selector.register(readable, selectors.EVENT_READ)
@@ -133,7 +133,7 @@ class OscPorts:
 
     def call_soon(self, action: Callable[[], object]) -> None:
         """Call a function in the thread that serves; any thread may call."""
-        self._asked.append(action)
+        self._calls.append(action)
         self._wake()
 
     def _wake(self) -> None:
@@ -150,8 +150,8 @@ class OscPorts:
 
     def _turn(self) -> None:
         """Read the sockets, handle packets for a while, and do what is due."""
-        asked = self._handler.wait_s()
-        wait = LONGEST_WAIT_S if asked is None else min(asked, LONGEST_WAIT_S)
+        handler_wait_s = self._handler.wait_s()
+        wait = LONGEST_WAIT_S if handler_wait_s is None else min(handler_wait_s, LONGEST_WAIT_S)
         self._has_more = False
         for key, events in self._selector.select(0.0 if self._backlog else wait):
             self._serve(key, events)
@@ -168,7 +168,7 @@ class OscPorts:
 
     def is_behind(self, peer: Peer) -> bool:
         """Whether a WebSocket's peer should wait before it sends more; any thread may call."""
-        return len(self._asked) >= MOST_ASKED or self._backlog.bytes_of(peer) >= BEHIND_BYTES
+        return len(self._calls) >= MOST_ASKED or self._backlog.bytes_of(peer) >= BEHIND_BYTES
 
     def _handle(self, data: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
         """The steps that handle a packet, or a part of a stream."""
@@ -180,8 +180,8 @@ class OscPorts:
         try:
             for packet in peer.framing.packets(data):
                 self.traffic.packets += 1
-                peer.has_spoken = True
-                peer.heard_s = time.monotonic()
+                peer.has_sent_packet = True
+                peer.last_packet_s = time.monotonic()
                 try:
                     yield from self._handler.handle(packet, peer, arrived_ns)
                 except Exception:  # a defect of the server; later packets are handled
@@ -193,7 +193,7 @@ class OscPorts:
             self._warn(f"{peer.name}: {error}; connection closed")
             self.drain_and_close(peer)
         finally:
-            peer.is_being_heard = False
+            peer.has_pending_packets = False
 
     def _warn(self, what: str) -> None:
         """Log what a peer did wrong, as a warning once a second at most."""
@@ -215,19 +215,19 @@ class OscPorts:
         elif key.fileobj is self._tcp:
             self._accept()
         elif key.fileobj is self._wake_here:
-            self._do_asked()
+            self._run_calls()
         elif isinstance(key.data, TcpPeer):
             if events & selectors.EVENT_WRITE:
                 key.data.flush()
             if events & selectors.EVENT_READ and key.data.reads:
                 self._read_stream(key.data)
 
-    def _do_asked(self) -> None:
+    def _run_calls(self) -> None:
         with contextlib.suppress(BlockingIOError):
             self._wake_here.recv(STREAM_BYTES)
-        for _ in range(len(self._asked)):  # what is added meanwhile waits for the next turn
-            self._asked.popleft()()
-        if self._asked:
+        for _ in range(len(self._calls)):  # what is added meanwhile waits for the next turn
+            self._calls.popleft()()
+        if self._calls:
             self._wake()
 
     def _read_datagrams(self) -> None:
@@ -308,14 +308,14 @@ class OscPorts:
         silent = [
             peer
             for peer in peers
-            if now - peer.heard_s > (QUIET_S if peer.has_spoken else SPEAKS_WITHIN_S)
-            and not peer.is_being_heard
-            and not self._handler.hears(peer)
+            if now - peer.last_packet_s > (QUIET_S if peer.has_sent_packet else SPEAKS_WITHIN_S)
+            and not peer.has_pending_packets
+            and not self._handler.is_subscribed(peer)
         ]
-        return min(silent, key=lambda peer: peer.heard_s, default=None)
+        return min(silent, key=lambda peer: peer.last_packet_s, default=None)
 
     def _read_stream(self, peer: TcpPeer) -> None:
-        if peer.is_being_heard:  # the sender waits; nothing is lost
+        if peer.has_pending_packets:  # the sender waits; nothing is lost
             return
         try:
             data = peer.socket.recv(STREAM_BYTES)
@@ -324,7 +324,7 @@ class OscPorts:
         except OSError:
             data = b""
         if data:
-            peer.is_being_heard = True
+            peer.has_pending_packets = True
             self._backlog.add(data, peer, time.monotonic_ns(), len(data), is_due=True)
         else:
             self.drain_and_close(peer)

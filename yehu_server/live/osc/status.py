@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from yehu_server.live.osc.peers import Traffic, WebTraffic
     from yehu_server.playing.delay import Delay
 
-PLACE = "/status/"  # before the names, in addresses
+STATUS_PREFIX = "/status/"  # before the names, in addresses
 INT_MAX = (1 << 31) - 1
 
 
@@ -326,7 +326,7 @@ STATUS: tuple[StatusValue, ...] = (
     ),
     StatusValue("recording", TEXT, "Names of the files being recorded.", lambda now: now.recording),
 )
-STATUS_ADDRESSES = frozenset(PLACE + row.name for row in STATUS)
+STATUS_ADDRESSES = frozenset(STATUS_PREFIX + row.name for row in STATUS)
 
 
 def read_status(now: StatusSources) -> dict[str, float | str]:

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
-from yehu_server.live.osc.status import PLACE, as_argument
-from yehu_server.live.part_addresses import divided
+from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
+from yehu_server.live.part_addresses import split_group
 from yehu_server.params.table import UNIT, read
 
 ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0
@@ -58,8 +58,8 @@ class Subscriber:
 
     def among(self, address: str) -> tuple[str, dict[str, set[str]]]:
         """The group of an address, and among which of its addresses it stands."""
-        addressed, own = divided(address)
-        return addressed, self.watches if own.startswith(PLACE) else self.listens
+        addressed, own = split_group(address)
+        return addressed, self.watches if own.startswith(STATUS_PREFIX) else self.listens
 
     def ignore(self, address: str) -> None:
         """Tell it no more of an address that it listens to."""
@@ -145,7 +145,7 @@ class ChangePublisher:
         for one in subscribers:
             wanted.update(one.states(now), one.watches)
             for address, group in one.sending.items():
-                if address.startswith(PLACE, len(group)):
+                if address.startswith(STATUS_PREFIX, len(group)):
                     wanted.add(group)
                     is_new = is_new or address not in self._last_status.get(group, ())
         if not wanted or (now - self._looked < STATUS_S and not is_new):
@@ -154,7 +154,7 @@ class ChangePublisher:
         before, self._last_status = self._last_status, {}
         for group in sorted(wanted):
             states = {
-                group + PLACE + name: as_argument(value)
+                group + STATUS_PREFIX + name: as_argument(value)
                 for name, value in self._status(group).items()
             }
             self._last_status[group] = states
@@ -189,7 +189,7 @@ class ChangePublisher:
 
     def _value(self, address: str, group: str) -> float | str:
         own = address.removeprefix(group)
-        if own.startswith(PLACE):
+        if own.startswith(STATUS_PREFIX):
             return self._last_status[group][address]
         return read(self._last[group], own)
 

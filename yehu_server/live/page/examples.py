@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.ahead.build import RATES
-from yehu_server.playing.calibrations import calibration_for
+from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, MPE
 from yehu_server.playing.style import Style
-from yehu_server.scores.capture_beginning import Beginning, header_of
+from yehu_server.scores.capture_header import SessionStart, header_of
 from yehu_server.scores.score import ScoreEvent
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.util.files import shipped_folder, write_text
@@ -19,7 +19,7 @@ from yehu_server.util.files import shipped_folder, write_text
 PROCESSOR = {"machine": "wasm32", "processor": "any"}
 
 
-def write_beginnings(folder: Path) -> list[Path]:
+def write_capture_headers(folder: Path) -> list[Path]:
     """Write a file for each rate, as `48000.json`; return them.
 
     Raises
@@ -33,7 +33,7 @@ def write_beginnings(folder: Path) -> list[Path]:
 
 def _write(path: Path, rate: float) -> Path:
     spec = Style().spec(rate, calibration_for(rate))
-    header = header_of(Beginning((spec,), has_room=True))
+    header = header_of(SessionStart((spec,), has_room=True))
     header["build"] |= PROCESSOR
     write_text(path, json.dumps(header, separators=(",", ":")))
     return path

@@ -1,4 +1,4 @@
-"""The facts that the page shares with the server, so that no table is written twice."""
+"""The constants and tables that the page needs, generated from those of the server."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.playing import learn, sources
 from yehu_server.playing.binds import Bind
-from yehu_server.playing.live import ELSEWHERE
+from yehu_server.playing.live_player import ELSEWHERE
 from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import NOTE_NAMES

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from yehu_server.ahead.module_cache import page_module
 from yehu_server.errors import YehuError
-from yehu_server.live.page.examples import write_beginnings
+from yehu_server.live.page.examples import write_capture_headers
 from yehu_server.util.processes import Parent
 
 LOWEST = 19
@@ -23,7 +23,7 @@ def main() -> None:
     os.nice(LOWEST)
     try:
         with tempfile.TemporaryDirectory(prefix="yehu-page-") as folder:
-            for file in write_beginnings(Path(folder)):
+            for file in write_capture_headers(Path(folder)):
                 parent.tell("beginning", name=file.name, text=file.read_text("utf-8"))
         path = page_module()
     except (YehuError, OSError) as error:

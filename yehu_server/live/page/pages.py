@@ -14,8 +14,8 @@ from yehu_server.live.addresses import Address
 from yehu_server.live.page.players import CHANNELS, FIRST
 from yehu_server.live.page.sockets import MOST_PAGES
 from yehu_server.live.web.server import listen
-from yehu_server.playing.live import LivePlayer
-from yehu_server.playing.section_people import SECTION
+from yehu_server.playing.live_player import LivePlayer
+from yehu_server.playing.section_instruments import SECTION
 from yehu_server.util.processes import Child, Supervisor
 
 STATUS_S = 0.5
@@ -118,6 +118,6 @@ class Pages:
     def _ended(self, by_itself: bool) -> None:
         """End what the pages held, whose process is gone."""
         for player in self._players:
-            player.let_go_of_channels(FIRST, MOST_PAGES * CHANNELS, frame=player.frame_of())
+            player.end_channel_notes(FIRST, MOST_PAGES * CHANNELS, frame=player.frame_of())
         if by_itself:
             self._on_message("pages: their process ended; it is started again")

@@ -12,9 +12,9 @@ from typing import Any
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL, SET
 from yehu_server.core.player.rows import ROW
 from yehu_server.core.player.wishes import BEGIN, DRAW, END, HOLD, LIFT, STOP, WRITE
-from yehu_server.live.page.shared_view import Seen
+from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
-from yehu_server.playing.live import Arrivals
+from yehu_server.playing.live_player import Arrivals
 
 FIRST, CHANNELS = 1 << 16, 1 << 12  # channels of the first page, and of each
 LOWEST = -(CHANNELS // 2)  # of them, as a page numbers its own
@@ -34,10 +34,10 @@ class PagePlayers:
         The first instrument of each part.
     """
 
-    def __init__(self, seen: Seen, rigs: Sequence[int]) -> None:
-        self._seen = seen
+    def __init__(self, view: SharedView, rigs: Sequence[int]) -> None:
+        self._view = view
         self._rigs = rigs
-        self._arrivals = Arrivals(seen.frame_of, seen.rate)
+        self._arrivals = Arrivals(view.frame_of, view.rate)
         # The parts that each page played: frame of its latest wish, and whether it draws the bow.
         self._played: dict[int, dict[int, tuple[int, bool]]] = {}
 
@@ -54,34 +54,34 @@ class PagePlayers:
             When they came (``time.monotonic_ns()``).
         """
         now = self._arrivals.frame_of(arrived_ns)
-        most = now + round(AHEAD_S * self._seen.rate)
+        most = now + round(AHEAD_S * self._view.rate)
         parts = self._played.setdefault(page, {})
         for at, kind, index, value, other in wishes.tolist():
             frame = int(min(max(at, now), most))
-            asked = FIRST_PART if kind in (WRITE, HOLD) and index in SHARED else part
-            latest, draws = parts.get(asked, (frame, False))
+            target_part = FIRST_PART if kind in (WRITE, HOLD) and index in SHARED else part
+            latest, draws = parts.get(target_part, (frame, False))
             draws = kind == DRAW or (draws and kind != LIFT)
-            parts[asked] = max(latest, frame), draws
-            self._post_one(page, asked, frame, int(kind), int(index), value, other)
+            parts[target_part] = max(latest, frame), draws
+            self._post_one(page, target_part, frame, int(kind), int(index), value, other)
 
     def _post_one(
         self, page: int, part: int, frame: int, kind: int, index: int, value: float, other: float
     ) -> None:
         rig = self._rigs[part]
         if kind == STOP and value != 0.0:  # a panic: whatever anybody holds ends
-            self._seen.post(rig, frame, RELEASE_ALL, value=1.0)
-            self._seen.post(rig, frame, LIFT)
+            self._view.post(rig, frame, RELEASE_ALL, value=1.0)
+            self._view.post(rig, frame, LIFT)
         elif kind == WRITE:
             kind = SET
         elif kind in (BEGIN, END):
             index += FIRST + page * CHANNELS - LOWEST
-        self._seen.post(rig, frame, kind, index, value, other)
+        self._view.post(rig, frame, kind, index, value, other)
 
     def leave(self, page: int, left_ns: int) -> None:
         """End all that a page holds which is gone, after all that it wished ahead."""
         now = self._arrivals.frame_of(left_ns)
         for part, (latest, draws) in self._played.pop(page, {}).items():
             rig, frame = self._rigs[part], max(now, latest)
-            self._seen.post(rig, frame, LEAVE, FIRST + page * CHANNELS, CHANNELS)
+            self._view.post(rig, frame, LEAVE, FIRST + page * CHANNELS, CHANNELS)
             if draws:
-                self._seen.post(rig, frame, LIFT)
+                self._view.post(rig, frame, LIFT)

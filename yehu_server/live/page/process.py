@@ -19,7 +19,7 @@ from typing import Any
 from aiohttp import web
 
 from yehu_server.live.addresses import Allowed
-from yehu_server.live.page.shared_view import Seen
+from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
 from yehu_server.live.page.sockets import MOST_PAGES, PageSockets
 from yehu_server.live.web.guard import own_names, refusal
@@ -42,15 +42,15 @@ class Pages:
         self._site = Site()
         self._sounds = PREPARING  # whether pages can sound themselves
         self._status: dict[str, Any] = {}
-        seen = Seen(order["memory"])
-        self._sockets = PageSockets(seen, order["rigs"], self._told)
+        view = SharedView(order["memory"])
+        self._sockets = PageSockets(view, order["rigs"], self._status_fields)
         self._loop = asyncio.new_event_loop()
         self._finder = Child("yehu_server.live.page.module_process", self._hear_of_module)
 
     def _hear_of_module(self, event: Message) -> None:
         self._loop.call_soon_threadsafe(self._found, event)
 
-    def _told(self) -> dict[str, Any]:
+    def _status_fields(self) -> dict[str, Any]:
         return self._status | {"sounds": self._sounds}
 
     def _found(self, event: Message) -> None:
@@ -59,16 +59,16 @@ class Pages:
             self._site.add_module(Path(event["path"]).read_bytes())
             self._sounds = READY
         elif event["event"] == "beginning":
-            self._site.add_beginning(event["name"], event["text"])
+            self._site.add_capture_header(event["name"], event["text"])
         elif self._sounds == PREPARING:
-            self._site.lack_module(event.get("reason", "what prepares it has ended"))
+            self._site.set_no_module(event.get("reason", "what prepares it has ended"))
             self._sounds = NONE
 
     def hear(self, orders: Iterator[Message]) -> None:
         """Hear of the state of the server, until the control process hangs up."""
         for order in orders:
             self._loop.call_soon_threadsafe(self._status.update, order["status"])
-            self._loop.call_soon_threadsafe(self._sockets.tell_own, order["own"])
+            self._loop.call_soon_threadsafe(self._sockets.set_own_values, order["own"])
         self._finder.kill()
         os._exit(0)
 

@@ -27,7 +27,7 @@ MARGIN = TAPE // 8  # frames of the tape that may be overwritten during a copy
 SHARED_ROWS = [ROW[param.address] for param in TABLE if param.is_shared]
 
 
-class Seen:
+class SharedView:
     """Instruments on a stage in shared memory, while another process plays them.
 
     Parameters
@@ -78,10 +78,10 @@ class Seen:
         own : mapping
             Values of rows in place of those that it has.
         """
-        seen, values = self._look[0], self._rigs["player"]["value"][rig].copy()
+        record, values = self._look[0], self._rigs["player"]["value"][rig].copy()
         look.call(self._address + rig * RIG_BYTES, self._look.ctypes.data)
         if rig:
-            seen["peak"], seen["rms"] = self._stage["peak"], self._stage["rms"]
+            record["peak"], record["rms"] = self._stage["peak"], self._stage["rms"]
             values[SHARED_ROWS] = self._rigs["player"]["value"][0, SHARED_ROWS]
         for row, value in own.items():
             values[row] = value

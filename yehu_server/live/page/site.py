@@ -17,12 +17,12 @@ from aiohttp import web
 
 from yehu_server.ahead.module_cache import SHIPPED, page_module, shipped_version
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.live.page.examples import examples, write_beginnings
+from yehu_server.live.page.examples import examples, write_capture_headers
 from yehu_server.live.page.facts import facts, module, write
 from yehu_server.util.files import replacing, shipped_folder
 
 INDEX = "index.html"
-# By this the page knows that a server stands behind it: no file of its own tells.
+# This meta element tells the page that a yehu server serves it; the static page does not have it.
 MARK = ('<meta charset="utf-8">', '<meta charset="utf-8">\n<meta name="yehu-server" content="1">')
 TYPES = {
     ".css": "text/css; charset=utf-8",
@@ -48,7 +48,7 @@ HEADERS = {
 
 
 @dataclass(frozen=True)
-class Kept:
+class CachedFile:
     """A file: its bytes, as they are and compressed, and what tells whether it has changed."""
 
     content_type: str
@@ -61,49 +61,49 @@ class Site:
     """The files of the page, by their names in the address."""
 
     def __init__(self) -> None:
-        self._files: dict[str, Kept] = {}
+        self._files: dict[str, CachedFile] = {}
         self._lacks: str | None = None
         folder = page_folder()
         for name in map(Path.as_posix, page_files()):
-            self._keep(name, (folder / name).read_bytes())
+            self._store(name, (folder / name).read_bytes())
         index = (folder / INDEX).read_text("utf-8").replace(*MARK, 1)
-        self._keep(INDEX, index.encode())
-        self._keep(FACTS, module(facts()).encode())
-        self._keep("examples.js", module(examples()).encode())
+        self._store(INDEX, index.encode())
+        self._store(FACTS, module(facts()).encode())
+        self._store("examples.js", module(examples()).encode())
 
     def add_module(self, data: bytes) -> None:
         """Add the instrument in WebAssembly, once it is there."""
-        self._keep(MODULE, data)
+        self._store(MODULE, data)
 
-    def lack_module(self, reason: str) -> None:
+    def set_no_module(self, reason: str) -> None:
         """Answer with a reason that there is none, and that there won't be one."""
         self._lacks = reason
 
-    def add_beginning(self, name: str, text: str) -> None:
+    def add_capture_header(self, name: str, text: str) -> None:
         """Add a file that captures of pages begin with."""
-        self._keep(f"{CAPTURES}/{name}", text.encode())
+        self._store(f"{CAPTURES}/{name}", text.encode())
 
     def answer(self, request: web.Request) -> web.Response:
         """Answer with the file of a request's path."""
-        kept = self._files.get(request.path.removeprefix("/") or INDEX)
-        if kept is None and request.path == f"/{MODULE}":
+        cached = self._files.get(request.path.removeprefix("/") or INDEX)
+        if cached is None and request.path == f"/{MODULE}":
             if self._lacks is not None:
                 raise web.HTTPNotFound(text=f"{self._lacks}\n")
             raise web.HTTPServiceUnavailable(headers={"Retry-After": "1"}, text="not built yet\n")
-        if kept is None:
+        if cached is None:
             raise web.HTTPNotFound(text="nothing here\n")
-        headers = HEADERS | {"ETag": kept.tag, "Vary": "Accept-Encoding"}
-        if kept.tag in request.headers.get("If-None-Match", ""):
+        headers = HEADERS | {"ETag": cached.tag, "Vary": "Accept-Encoding"}
+        if cached.tag in request.headers.get("If-None-Match", ""):
             return web.Response(status=304, headers=headers)
-        headers["Content-Type"] = kept.content_type
-        if kept.compressed is not None and "gzip" in request.headers.get("Accept-Encoding", ""):
+        headers["Content-Type"] = cached.content_type
+        if cached.compressed is not None and "gzip" in request.headers.get("Accept-Encoding", ""):
             headers["Content-Encoding"] = "gzip"
-            return web.Response(body=kept.compressed, headers=headers)
-        return web.Response(body=kept.plain, headers=headers)
+            return web.Response(body=cached.compressed, headers=headers)
+        return web.Response(body=cached.plain, headers=headers)
 
-    def _keep(self, name: str, data: bytes) -> None:
+    def _store(self, name: str, data: bytes) -> None:
         small = gzip.compress(data, mtime=0)
-        self._files[name] = Kept(
+        self._files[name] = CachedFile(
             TYPES[Path(name).suffix],
             data,
             small if len(small) < WORTH_IT * len(data) else None,
@@ -155,7 +155,7 @@ def write_page(folder: Path) -> list[Path]:
     try:
         _copy(module, folder / MODULE)
         write(folder)
-        beginnings = write_beginnings(folder / CAPTURES)
+        beginnings = write_capture_headers(folder / CAPTURES)
     except OSError as error:
         raise OutputError(f"{folder}: {error.strerror}") from error
     written += [*map(Path, sorted(GENERATED)), Path(MODULE)]

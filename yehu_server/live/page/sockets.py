@@ -1,6 +1,6 @@
 """The WebSockets of pages: they get looks, sound and each other's wishes, and send wishes.
 
-A client that does not read gets none until it does, and nobody waits for it.
+Messages to a client that does not read are dropped; other clients are not delayed.
 
 A message of numbers is a sequence of float64, little-endian. From a page it is wishes, of WISH
 numbers each. To a page its first number says what follows: LOOK or WISHES, or it comes from the
@@ -23,7 +23,7 @@ from aiohttp import WSMsgType, web
 from yehu_server.core.player.wishes import EXPRESS, HOLD, KINDS, RAMP, WRITE
 from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers
-from yehu_server.live.page.shared_view import Seen
+from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
 
 TEXT, BINARY = 0x81, 0x82  # whole messages
@@ -92,13 +92,13 @@ class PageSockets:
 
     def __init__(
         self,
-        seen: Seen,
+        view: SharedView,
         rigs: Sequence[int],
         status: Callable[[], Mapping[str, Any]],
     ) -> None:
-        self._seen = seen
+        self._view = view
         self._rigs = rigs
-        self._players = PagePlayers(seen, rigs)
+        self._players = PagePlayers(view, rigs)
         self._status = status
         self._pages: dict[web.WebSocketResponse, Page] = {}
         self._listeners: dict[web.WebSocketResponse, Any] = {}
@@ -190,7 +190,7 @@ class PageSockets:
 
     # -- telling all -------------------------------------------------------------------------
 
-    def tell_own(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
+    def set_own_values(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
         """Take the values that parts have where their instruments have others.
 
         Parameters
@@ -207,7 +207,7 @@ class PageSockets:
         async for _ in every(LOOK_S):
             viewers = [page for page in self._pages.values() if page.looks]
             for part in {page.part for page in viewers}:
-                look = self._seen.look(self._rigs[part], self._own.get(part, {}))
+                look = self._view.look(self._rigs[part], self._own.get(part, {}))
                 frame = frame_of(struct.pack("<d", LOOK) + look)
                 for page in viewers:
                     if page.part == part:
@@ -219,11 +219,11 @@ class PageSockets:
         while True:
             if not self._listeners:
                 await asyncio.sleep(IDLE_S)
-                sent = self._seen.taped() - FIRST_FRAMES
+                sent = self._view.taped() - FIRST_FRAMES
                 continue
-            end = self._seen.taped()
+            end = self._view.taped()
             if end > sent:
-                begin, samples = self._seen.sound(max(sent, 0), end)
+                begin, samples = self._view.sound(max(sent, 0), end)
                 frame = frame_of(struct.pack("<d", begin) + samples)
                 for transport in self._listeners.values():
                     write(transport, frame, MOST_UNSENT)
@@ -244,14 +244,14 @@ class PageSockets:
         )
 
     def _send_status(self, page: Page) -> None:
-        load, dropouts = self._seen.load()
+        load, dropouts = self._view.load()
         status = {
             "page": page.number,
             "pages": len(self._pages),
             "part": page.part + 1,
             "parts": len(self._rigs),
-            "rate": self._seen.rate,
-            "frame": self._seen.taped(),
+            "rate": self._view.rate,
+            "frame": self._view.taped(),
             "load": load,
             "dropouts": dropouts,
             **self._status(),

@@ -15,8 +15,16 @@ from typing import Any
 from yehu_server.errors import ParameterError
 from yehu_server.live.osc.call_table import CALLS, Argument, Call
 from yehu_server.live.osc.part_status import PART_STATUS, PartValue
-from yehu_server.live.osc.status import PLACE, STATUS, StatusValue, as_argument
-from yehu_server.live.part_addresses import FIRST, OF_PARTS, OWN, PLAIN, check_part, divided, group
+from yehu_server.live.osc.status import STATUS, STATUS_PREFIX, StatusValue, as_argument
+from yehu_server.live.part_addresses import (
+    FIRST,
+    OF_PARTS,
+    PART_PARAMS,
+    PLAIN,
+    check_part,
+    group,
+    split_group,
+)
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE
 from yehu_server.params.table import UNIT as AS_UNIT
@@ -42,8 +50,8 @@ UNIT_NAMES = {
     "dB": "gain.db",
 }
 # Addresses to which clients may listen, without the prefix, and below a part.
-LISTENABLE = PLAIN | {PLACE + row.name for row in STATUS}
-LISTENABLE_OF_PARTS = OF_PARTS | {PLACE + row.name for row in PART_STATUS}
+LISTENABLE = PLAIN | {STATUS_PREFIX + row.name for row in STATUS}
+LISTENABLE_OF_PARTS = OF_PARTS | {STATUS_PREFIX + row.name for row in PART_STATUS}
 PART_DOC = "Part {}: a player of its own, with the instrument that it plays."
 
 
@@ -57,7 +65,7 @@ class Snapshot:
 
 def is_listenable(address: str, parts: int) -> bool:
     """Whether clients may listen to an address, without the prefix."""
-    addressed, own = divided(address)
+    addressed, own = split_group(address)
     try:
         check_part(addressed, parts)
     except ParameterError:
@@ -104,11 +112,11 @@ def _nodes(
 ) -> Iterable[tuple[str, Callable[[], Node]]]:
     """The addresses of a group, and what describes each."""
     prefix = PREFIX + addressed
-    for param in OWN if addressed else TABLE:
+    for param in PART_PARAMS if addressed else TABLE:
         yield prefix + param.address, partial(_of_param, param, addressed, snapshot)
         yield prefix + param.address + AS_UNIT, partial(_of_unit, param, addressed, snapshot)
     for row in PART_STATUS if addressed else STATUS:
-        yield prefix + PLACE + row.name, partial(_of_status, row, addressed, snapshot)
+        yield prefix + STATUS_PREFIX + row.name, partial(_of_status, row, addressed, snapshot)
     for call in CALLS:
         if not (addressed and call.is_for_all):
             yield prefix + call.address, partial(_of_call, call)

@@ -19,7 +19,7 @@ from urllib.parse import urlsplit
 from aiohttp import web
 
 from yehu_server.errors import DeviceError, one_line
-from yehu_server.live.addresses import Address, Allowed, plain, shown, why
+from yehu_server.live.addresses import Address, Allowed, format_address, plain, why
 from yehu_server.live.osc.call_table import Call
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.peers import WebTraffic
@@ -245,13 +245,13 @@ def listen(what: str, host: str, port: int) -> socket.socket:
         dualstack = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
         return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
     except OSError as error:
-        where = shown(host, port)
+        where = format_address(host, port)
         raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}") from error
 
 
 def _with_port(host: str, port: int) -> str:
     """The host of a request's header Host, which was checked, with another port."""
-    return shown(urlsplit(f"//{host}").hostname or "", port)
+    return format_address(urlsplit(f"//{host}").hostname or "", port)
 
 
 def _is_text(received: str) -> bool:

@@ -100,13 +100,13 @@ def semitones_of(character: str, weight: str, mode: Mode) -> float:
     weight : str
         LIGHT, HEAVY or LIVING where that is written before it, else empty.
     """
-    if character == WU and lives(character, weight, mode):
+    if character == WU and is_living(character, weight, mode):
         return LIVING_SEMITONES
     heavy = weight in (HEAVY, LIVING) or (not weight and character in mode.heavy)
     return HEAVY_SEMITONES.get(character, ERSIPU[character]) if heavy else ERSIPU[character]
 
 
-def lives(character: str, weight: str, mode: Mode) -> bool:
+def is_living(character: str, weight: str, mode: Mode) -> bool:
     """Whether a character is played as a living note: 五, and the heavy 三 of that mode."""
     if weight:
         return weight == LIVING and character in (SAN, WU)

@@ -23,7 +23,7 @@ class _Open:
     endings: bool = False
 
 
-class Braces:
+class RepeatStack:
     """Collects elements, in the order of the page."""
 
     def __init__(self, bars: Bars) -> None:

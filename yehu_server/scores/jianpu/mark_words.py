@@ -1,4 +1,4 @@
-"""Words of jianpu that are no notes: marks, dynamics, texts, and what only concerns the page."""
+"""Words of jianpu other than notes: marks, dynamics, texts, and ignored layout commands."""
 
 from __future__ import annotations
 

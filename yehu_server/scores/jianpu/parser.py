@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from yehu_server.scores.jianpu.bars import Bars
 from yehu_server.scores.jianpu.elements import MetreMark, Sounding, TempoMark
-from yehu_server.scores.jianpu.form import MOST_UNFOLDED, Braces, Jump
+from yehu_server.scores.jianpu.form import MOST_UNFOLDED, Jump, RepeatStack
 from yehu_server.scores.jianpu.mark_words import AHEAD, SILENT, Act, Action, action_of
 from yehu_server.scores.jianpu.note_words import (
     Figure,
@@ -21,7 +21,7 @@ from yehu_server.scores.jianpu.note_words import (
     quarters,
 )
 from yehu_server.scores.jianpu.scale import Scale
-from yehu_server.scores.jianpu.text import Word, failure, shown
+from yehu_server.scores.jianpu.text import Word, failure, printable
 from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO, Grace
 
 MOST_TUPLET, MOST_BARS_REST = 64, 1000
@@ -53,7 +53,7 @@ class PartParser:
         self.unknown, self.notices = unknown, notices
         self.scale = scale
         self._bars = Bars(notices)
-        self._braces = Braces(self._bars)
+        self._braces = RepeatStack(self._bars)
         self._octaves = Octaves.UNSAID
         self._keeps_length, self._last_beams = False, 0
         self._tuplet = Fraction(1)
@@ -84,7 +84,7 @@ class PartParser:
             if word.text.startswith('"'):
                 return
         if not any(read(word) for read in self._ways):
-            self.unknown[shown(word.text)] += 1
+            self.unknown[printable(word.text)] += 1
 
     def end(self) -> list[object]:
         """Return all elements in the order of the page.

@@ -22,7 +22,7 @@ from yehu_server.scores.jianpu.mark_words import SILENT_HEADERS
 from yehu_server.scores.jianpu.parser import PartParser
 from yehu_server.scores.jianpu.part import PartPlayer, Played
 from yehu_server.scores.jianpu.scale import Scale
-from yehu_server.scores.jianpu.text import Header, Word, decoded, shown, words_of
+from yehu_server.scores.jianpu.text import Header, Word, decoded, printable, words_of
 from yehu_server.scores.score import COMMON_TIME, Metre
 from yehu_server.scores.written.notated import (
     MOST_BEATS,
@@ -144,9 +144,9 @@ class _Reader:
 
     def _head(self, header: Header, scale: Scale, part: int) -> None:
         if header.name in ("title", "标题", "曲名"):
-            self._title = self._title or shown(header.value)
+            self._title = self._title or printable(header.value)
         elif header.name in ("instrument", "乐器"):
-            self._names.setdefault(part, shown(header.value))
+            self._names.setdefault(part, printable(header.value))
         elif header.name in ("notation", "谱", "谱式") and header.value in NOTATIONS:
             self._characters = NOTATIONS[header.value]
             scale.characters = self._characters
@@ -154,7 +154,7 @@ class _Reader:
             scale.mode = mode_named(header.value) or scale.mode
         elif header.name not in SILENT_HEADERS:
             value = f"={header.value}" if header.name in ("notation", "mode", "谱", "调") else "="
-            self._unknown[shown(f"{header.name}{value}")] += 1
+            self._unknown[printable(f"{header.name}{value}")] += 1
 
     def written(self) -> Written:
         """Return the score. Raises ScoreError where it has no notes."""

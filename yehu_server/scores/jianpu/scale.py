@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from yehu_server.scores.jianpu.characters import ERSIPU, USUAL_MODE, lives, semitones_of
+from yehu_server.scores.jianpu.characters import ERSIPU, USUAL_MODE, is_living, semitones_of
 from yehu_server.scores.jianpu.note_words import MAJOR, MOST_OCTAVES, Figure
-from yehu_server.scores.jianpu.text import Word, failure, shown
+from yehu_server.scores.jianpu.text import Word, failure, printable
 
 MIDDLE_C = 60.0
 LETTERS = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
@@ -77,12 +77,12 @@ class Scale:
         octaves = figure.octave + (self._octave if shifted else 0)
         found = key + semitones + figure.alter + 12.0 * octaves
         if not 0.0 <= found <= 127.0:
-            raise failure(word, f"{shown(word.text)} is beyond any instrument")
+            raise failure(word, f"{printable(word.text)} is beyond any instrument")
         return found
 
     def living(self, figure: Figure) -> str:
         """The character of a living note of 二四谱; empty for others."""
-        if self._is_ersipu(figure) and lives(figure.sign, figure.weight, self.mode):
+        if self._is_ersipu(figure) and is_living(figure.sign, figure.weight, self.mode):
             return figure.sign
         return ""
 

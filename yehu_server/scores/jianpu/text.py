@@ -56,7 +56,7 @@ def failure(word: Word, reason: str) -> ScoreError:
     return ScoreError(f"line {word.line}, column {word.column}: {reason}")
 
 
-def shown(text: str) -> str:
+def printable(text: str) -> str:
     """A word for a message: short and printable."""
     short = text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
     return short if short.isprintable() else ascii(short)[1:-1]

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader, RawDirection
-from yehu_server.scores.musicxml.marks import STEPS, NoteMarks, neighbour, number, shown
+from yehu_server.scores.musicxml.marks import STEPS, NoteMarks, neighbour, number, printable
 from yehu_server.scores.musicxml.repeats import MOST_TIMES, BarLines
 from yehu_server.scores.written.notated import MOST_BEATS, MOST_NOTES, Mark
 
@@ -98,7 +98,7 @@ class BarReader:
             elif child.tag == "barline":
                 self._barline(child)
             elif child.tag not in PRINTED:
-                self._unknown[shown(child.tag)] += 1
+                self._unknown[printable(child.tag)] += 1
             elif child.tag in ("harmony", "figured-bass"):
                 self._warnings["chord symbols are not played"] += 1
             if self._at.denominator > FINEST:  # divisions that change and change

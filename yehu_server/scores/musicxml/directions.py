@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from xml.etree.ElementTree import Element
 
-from yehu_server.scores.musicxml.marks import number, shown
+from yehu_server.scores.musicxml.marks import number, printable
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
 from yehu_server.scores.written.words import Meaning, meaning_of
 
@@ -84,7 +84,7 @@ class DirectionReader:
         elif tag in ("segno", "coda"):
             self._jumps.add(tag)
         elif tag not in PRINTED:
-            self._unknown[shown(tag)] += 1
+            self._unknown[printable(tag)] += 1
 
     def _add(
         self, at: Fraction, kind: str, name: str = "", value: float | None = None, which: str = ""
@@ -102,7 +102,7 @@ class DirectionReader:
             elif set(name) in ({"p"}, {"f"}):  # five and six of them
                 self._add(at, "sign", name[:4])
             else:
-                self._unknown[f"dynamics {shown(name)}"] += 1
+                self._unknown[f"dynamics {printable(name)}"] += 1
 
     def sound(self, sound: Element, at: Fraction, *, with_dynamics: bool = True) -> None:
         """Read one <sound>."""
@@ -137,7 +137,7 @@ class DirectionReader:
         if meaning is not None:
             self._mean(meaning, at, has_tempo=has_tempo, jumps=jumps)
         elif not has_tempo:  # beside a figure, any words are the tempo's name
-            self._unknown[f'words "{shown(words)}"'] += 1
+            self._unknown[f'words "{printable(words)}"'] += 1
 
     def _mean(self, meaning: Meaning, at: Fraction, *, has_tempo: bool, jumps: bool) -> None:
         if meaning.kind == "jump":

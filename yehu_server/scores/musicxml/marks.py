@@ -54,7 +54,7 @@ def number(text: str | None, default: float = 0.0) -> float:
     return value if abs(value) < 1e9 else default
 
 
-def shown(text: str) -> str:
+def printable(text: str) -> str:
     """A mark as a warning shows it."""
     line = one_line(text.strip())
     return line if len(line) <= MOST_SHOWN else f"{line[:MOST_SHOWN]}..."
@@ -118,7 +118,7 @@ class NoteMarks:
         self.marks.append(Mark(name, value))
 
     def _unknown(self, element: Element) -> None:
-        self._count(f"{shown(element.tag)} {shown(element.text or '')}".strip())
+        self._count(f"{printable(element.tag)} {printable(element.text or '')}".strip())
 
     def _articulations(self, articulations: Element) -> None:
         for child in articulations:
@@ -179,11 +179,11 @@ class NoteMarks:
         elif value == LOW_STRING:
             self.add("inner-string")
         else:
-            self._count(f"string {shown(string.text or '')}")
+            self._count(f"string {printable(string.text or '')}")
 
     def _finger(self, fingering: Element) -> None:
         text = (fingering.text or "").strip()
         if text in {"0", "1", "2", "3", "4"}:
             self.add("finger", float(text))
         elif text:
-            self._count(f"fingering {shown(text)}")
+            self._count(f"fingering {printable(text)}")

@@ -14,7 +14,7 @@ from xml.etree.ElementTree import Element, SubElement
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores.musicxml.bars import FINEST, BarReader, RawBar
 from yehu_server.scores.musicxml.file import read_root
-from yehu_server.scores.musicxml.marks import shown
+from yehu_server.scores.musicxml.marks import printable
 from yehu_server.scores.musicxml.repeats import BarLines, order_of
 from yehu_server.scores.musicxml.voices import parts_of
 from yehu_server.scores.score import COMMON_TIME, Metre
@@ -58,7 +58,7 @@ def written_of(root: Element) -> Written:
     if root.tag == "score-timewise":
         root = _partwise(root)
     if root.tag != "score-partwise":
-        raise ScoreError(f"is no MusicXML score: its root is <{shown(root.tag)}>")
+        raise ScoreError(f"is no MusicXML score: its root is <{printable(root.tag)}>")
     unknown: Counter[str] = Counter()
     warnings: Counter[str] = Counter()
     elements = root.findall("part")
@@ -174,7 +174,7 @@ def _metres(bars: list[RawBar], played: list[tuple[int, Fraction]]) -> list[Metr
 
 def _names(root: Element) -> dict[str, str]:
     return {
-        part.get("id", ""): shown(part.findtext("part-name") or "")
+        part.get("id", ""): printable(part.findtext("part-name") or "")
         for part in root.iterfind("part-list/score-part")
     }
 
@@ -183,5 +183,5 @@ def _title(root: Element) -> str:
     for path in ("work/work-title", "movement-title"):
         title = (root.findtext(path) or "").strip()
         if title:
-            return shown(title)
+            return printable(title)
     return ""

@@ -7,7 +7,7 @@ import struct
 from dataclasses import dataclass, field
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.smf.faults import Faults
+from yehu_server.scores.smf.faults import DamageReport
 from yehu_server.scores.smf.track import Track, decode
 
 MAX_EVENTS = 1_000_000  # of any kind; a message takes some 0.5 kB in memory
@@ -30,7 +30,7 @@ class Part:
     tracks: list[Track] = field(default_factory=list)
 
 
-def read_parts(data: bytes, start: int, end: int, faults: Faults) -> list[Part]:
+def read_parts(data: bytes, start: int, end: int, faults: DamageReport) -> list[Part]:
     """Read the header and the tracks of a file, or of several that were joined.
 
     Parameters
@@ -91,7 +91,7 @@ def _next(data: bytes, at: int, end: int) -> int:
     return found.start() if found else end
 
 
-def _header(data: bytes, at: int, end: int, faults: Faults) -> tuple[Part | None, int]:
+def _header(data: bytes, at: int, end: int, faults: DamageReport) -> tuple[Part | None, int]:
     """A header, or None where it is damaged; and the byte after it."""
     length = _length(data, at)
     after = at + 8 + length
@@ -107,7 +107,7 @@ def _header(data: bytes, at: int, end: int, faults: Faults) -> tuple[Part | None
     return Part(at, file_format, announced, division), after
 
 
-def _track(data: bytes, at: int, end: int, room: int, faults: Faults) -> tuple[Track, int]:
+def _track(data: bytes, at: int, end: int, room: int, faults: DamageReport) -> tuple[Track, int]:
     """A track, and the byte after it.
 
     Its length is believed where a chunk follows or the file ends. If not, the track is read up to

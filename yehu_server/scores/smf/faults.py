@@ -12,8 +12,8 @@ class DamagedError(ScoreError):
     """A file that could be played, with damage, where none is accepted."""
 
 
-class Faults:
-    """Faults of one file, by kind; each names what was done about it."""
+class DamageReport:
+    """The damage found in one file, by kind; each entry says how the reader went on."""
 
     def __init__(self) -> None:
         self._found: dict[str, tuple[int, int]] = {}  # how often, and the first byte
@@ -29,14 +29,14 @@ class Faults:
     def warnings(self) -> tuple[str, ...]:
         """A line for each kind, by place in the file."""
         by_place = sorted(self._found.items(), key=lambda fault: fault[1][1])
-        return tuple(_told(what, times, at) for what, (times, at) in by_place)
+        return tuple(_describe(what, times, at) for what, (times, at) in by_place)
 
     def refuse(self) -> None:
         """Raise DamagedError for the first fault in the file, if there is one."""
         if self._found:
             what, (_, at) = min(self._found.items(), key=lambda fault: fault[1][1])
-            raise DamagedError(f"{_told(what, 1, at)}: refused by --strict")
+            raise DamagedError(f"{_describe(what, 1, at)}: refused by --strict")
 
 
-def _told(what: str, times: int, at: int) -> str:
+def _describe(what: str, times: int, at: int) -> str:
     return f"{what}, at byte {at}" if times == 1 else f"{what}, {times} times, first at byte {at}"

@@ -30,7 +30,7 @@ from yehu_server.scores.score import (
     concatenate,
 )
 from yehu_server.scores.smf.chunks import Part, read_parts
-from yehu_server.scores.smf.faults import Faults
+from yehu_server.scores.smf.faults import DamageReport
 from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
 from yehu_server.scores.smf.wrapper import unwrapped
 from yehu_server.util.files import read_bytes
@@ -39,7 +39,7 @@ PERCUSSION = 9  # whose notes end by themselves
 ALL_SOUND_OFF, ALL_NOTES_OFF = 120, 123  # and from there on, changes of mode end notes too
 
 
-def ended(messages: Sequence[Placed], faults: Faults) -> list[Placed]:
+def ended(messages: Sequence[Placed], faults: DamageReport) -> list[Placed]:
     """Return messages in order, with a note-off for each note that nothing ends.
 
     Such a note lasts until another note of its channel begins. Where none does, it lasts as long
@@ -126,7 +126,7 @@ def read_score(
     shown = os.fspath(path)
     if not shown.isprintable():  # a line break or a stray byte in a name
         shown = ascii(shown)
-    faults = Faults()
+    faults = DamageReport()
     try:
         score = _parse(_load(path), song, max_duration_h, faults)
         if strict:
@@ -154,7 +154,7 @@ def _load(path: str | os.PathLike[str]) -> bytes:
     return data
 
 
-def _parse(data: bytes, song: int | None, max_duration_h: float, faults: Faults) -> Score:
+def _parse(data: bytes, song: int | None, max_duration_h: float, faults: DamageReport) -> Score:
     start, end = unwrapped(data, faults)
     parts = read_parts(data, start, end, faults)
     playable = [part for part in parts if any(track.messages for track in part.tracks)]
@@ -176,7 +176,7 @@ def _parse(data: bytes, song: int | None, max_duration_h: float, faults: Faults)
 _Song = tuple[list[Track], int, int]  # what sounds together, number of the first, the division
 
 
-def _songs(part: Part, faults: Faults) -> list[_Song]:
+def _songs(part: Part, faults: DamageReport) -> list[_Song]:
     """The songs of a file, which play one after another: the tracks of format 2, or one."""
     tracks, form = part.tracks, part.file_format
     if len(tracks) != part.announced:
@@ -202,7 +202,7 @@ def _chosen(songs: Sequence[_Song], song: int) -> _Song:
 
 
 def _play_together(
-    tracks: Sequence[Track], first: int, division: int, max_duration_h: float, faults: Faults
+    tracks: Sequence[Track], first: int, division: int, max_duration_h: float, faults: DamageReport
 ) -> Score:
     # Sorting is stable: at one tick, the order of the tracks and within them stays.
     tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import mido
 
-from yehu_server.scores.smf.faults import Faults
+from yehu_server.scores.smf.faults import DamageReport
 
 DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
 USUAL_TICKS = 480  # a quarter note, where a file has 0
@@ -21,7 +21,7 @@ FILM_FRAMES = (24, 25, 29, 30)
 SMPTE = 0x8000
 
 
-def checked_division(division: int, at: int, faults: Faults) -> int:
+def checked_division(division: int, at: int, faults: DamageReport) -> int:
     """Return the division of a header, at a byte; where it is impossible, the one assumed."""
     if division == 0:
         faults.add(f"a division of 0: {USUAL_TICKS} ticks a quarter note assumed", at)
@@ -137,7 +137,7 @@ class _Cursor:
             raise EOFError
         self.pos = found.start()
 
-    def number(self, faults: Faults) -> int:
+    def number(self, faults: DamageReport) -> int:
         """A variable-length number; one that is padded is read to its end."""
         value = 0
         for place in range(LONGEST_NUMBER_BYTES):
@@ -156,7 +156,7 @@ def _message(status: int, body: bytes) -> mido.Message:
     return mido.Message.from_bytes([status, *body])
 
 
-def decode(data: bytes, start: int, stop: int, room: int, faults: Faults) -> Track:
+def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) -> Track:
     """Read the events from one byte to another, as far as possible.
 
     Reading ends with the first event beyond `room`, so that `events` is larger then.
@@ -206,7 +206,7 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: Faults) -> Tra
     return track
 
 
-def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: Faults) -> None:
+def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: DamageReport) -> None:
     """Keep a tempo or a time signature; other metas are dropped."""
     if kind == SET_TEMPO:
         tempo = int.from_bytes(body[:3], "big")

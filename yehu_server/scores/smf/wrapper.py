@@ -6,7 +6,7 @@ What is no MIDI file at all is named, so that its owner knows what to do with it
 from __future__ import annotations
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.smf.faults import Faults
+from yehu_server.scores.smf.faults import DamageReport
 
 JUNK_BYTES = 65_536  # among which a header is searched
 HEADER = b"MThd\0\0\0"  # with the length that all headers have, so that prose is none
@@ -54,7 +54,7 @@ OTHERS: tuple[tuple[int, bytes, str], ...] = (
 )
 
 
-def unwrapped(data: bytes, faults: Faults) -> tuple[int, int]:
+def unwrapped(data: bytes, faults: DamageReport) -> tuple[int, int]:
     """Return where the MIDI file begins and where it ends.
 
     Raises

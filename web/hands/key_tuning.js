@@ -5,7 +5,7 @@ import { HIGHEST, LOWEST } from "./scale.js";
 
 /** @typedef {import('../playing/tables.js').Tuning} Tuning */
 
-export class Tuned {
+export class KeyTuning {
   constructor() {
     /** @type {Record<string, Tuning>} */
     this.all = facts.tunings;

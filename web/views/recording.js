@@ -3,12 +3,12 @@
 /** @typedef {import('../main.js').Page} Page */
 /** @typedef {import('../instrument.js').Instrument} Instrument */
 
-import { allow, find, make, offer } from "../elements.js";
-import { Keeper, Replayer, readPerformance } from "../performance.js";
-import { inWords, say } from "../words.js";
+import { allow, find, make, download } from "../elements.js";
+import { CaptureWriter, Replayer, readCapture } from "../capture.js";
+import { onLanguage, translate } from "../i18n.js";
 
 /** @param {Page} page */
-export function showKeeping({ instrument }) {
+export function showRecording({ instrument }) {
   find("panel-keep", HTMLElement).append(recording(instrument), performances(instrument));
 }
 
@@ -23,13 +23,13 @@ function toggle(off, on, changed) {
   const button = make("button", { type: "button" });
   const tell = () => {
     button.setAttribute("aria-pressed", String(isOn));
-    button.textContent = say(isOn ? on : off);
+    button.textContent = translate(isOn ? on : off);
   };
   const set = (/** @type {boolean} */ isOnNow) => {
     isOn = isOnNow;
     tell();
   };
-  inWords(tell);
+  onLanguage(tell);
   button.addEventListener("click", () => {
     isOn = !isOn;
     tell();
@@ -56,7 +56,7 @@ function recording(instrument) {
     if (!record) return;
     begun = isOn ? performance.now() : 0;
     if (isOn) record.start();
-    else offer(await record.stop(), fileName("wav"));
+    else download(await record.stop(), fileName("wav"));
   });
   setInterval(() => {
     if (begun && !document.hidden) time.textContent = clock((performance.now() - begun) / 1000);
@@ -67,27 +67,27 @@ function recording(instrument) {
     if (!begun) time.textContent = why ?? "";
   };
   instrument.addEventListener("start", judge);
-  inWords(judge);
+  onLanguage(judge);
   return make("section", { class: "group" }, [
-    make("h2", {}, [() => say("keep.sound")]),
-    make("p", { class: "soft" }, [() => say("keep.sound.about")]),
+    make("h2", {}, [() => translate("keep.sound")]),
+    make("p", { class: "soft" }, [() => translate("keep.sound.about")]),
     make("div", { class: "row" }, [button, time]),
   ]);
 }
 
 /** @param {Instrument} instrument */
 function performances(instrument) {
-  const keeper = new Keeper(instrument);
+  const keeper = new CaptureWriter(instrument);
   const word = make("p", { class: "soft", role: "status" });
   const keep = toggle("keep.begin", "keep.stop", async (isOn) => {
     if (isOn) keeper.start();
-    else offer(await keeper.stop(), fileName("jsonl"));
+    else download(await keeper.stop(), fileName("jsonl"));
   });
   const input = make("input", {
     type: "file",
     accept: ".jsonl",
     hidden: true,
-    "aria-label": () => say("keep.load"),
+    "aria-label": () => translate("keep.load"),
   });
   /** @type {Replayer | null} */
   let replayer = null;
@@ -101,19 +101,19 @@ function performances(instrument) {
     input.value = "";
     if (!file) return;
     try {
-      const read = await readPerformance(file);
+      const read = await readCapture(file);
       replayer = new Replayer(instrument, read);
       load.set(true);
       const { players } = read;
       word.textContent =
-        players > 1 ? say("keep.one", { name: file.name, count: players }) : file.name;
+        players > 1 ? translate("keep.one", { name: file.name, count: players }) : file.name;
       replayer.addEventListener("end", () => {
         replayer = null;
         load.set(false);
         word.textContent = "";
       });
     } catch {
-      word.textContent = say("keep.wrong", { name: file.name });
+      word.textContent = translate("keep.wrong", { name: file.name });
     }
   });
   instrument.addEventListener("silence", () => replayer?.stop());
@@ -123,10 +123,10 @@ function performances(instrument) {
     if (!replayer) word.textContent = reason(instrument, true) ?? "";
   };
   instrument.addEventListener("start", judge);
-  inWords(judge);
+  onLanguage(judge);
   return make("section", { class: "group" }, [
-    make("h2", {}, [() => say("keep.performance")]),
-    make("p", { class: "soft" }, [() => say("keep.performance.about")]),
+    make("h2", {}, [() => translate("keep.performance")]),
+    make("p", { class: "soft" }, [() => translate("keep.performance.about")]),
     make("div", { class: "row" }, [keep.button, load.button, input]),
     word,
   ]);
@@ -138,8 +138,8 @@ function performances(instrument) {
  * @param {boolean} isThere
  */
 function reason(instrument, isThere) {
-  if (!instrument.sound) return say("keep.first");
-  return isThere ? undefined : say("missing");
+  if (!instrument.sound) return translate("keep.first");
+  return isThere ? undefined : translate("missing");
 }
 
 /** @param {number} seconds */

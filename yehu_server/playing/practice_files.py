@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.player.bowing import FIRST, LAST, PLACES, RECIPE, ordinary_table
+from yehu_server.core.player.bowing import FIRST, LAST, PLACES, RECIPE, default_recipes
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
 from yehu_server.util.documents import parse_json
@@ -50,8 +50,8 @@ def _in_a_line(values: re.Match[str]) -> str:
 
 
 def as_data(table: Array, rate: float) -> dict[str, Any]:
-    """A table of bowing as JSON values: what is bowed otherwise than in `ordinary_table`."""
-    ordinary = ordinary_table()
+    """A table of bowing as JSON values: what is bowed otherwise than in `default_recipes`."""
+    ordinary = default_recipes()
     bowing = {
         name: {
             str(place): {
@@ -74,7 +74,7 @@ def table_of(data: Any) -> Array:
     ParameterError
         Where they are none, or a value is out of range.
     """
-    table = ordinary_table()
+    table = default_recipes()
     try:
         if data["format"] != FORMAT or data["version"] != VERSION:
             raise ParameterError("is not a practice that this version knows; practise anew")
@@ -82,13 +82,13 @@ def table_of(data: Any) -> Array:
             for place, notes in places.items():
                 own = table[STRING_NAMES.index(name), PLACES.index(float(place))]
                 for note, values in notes.items():
-                    own[int(note) - FIRST] = _manner(note, values)
+                    own[int(note) - FIRST] = _recipe(note, values)
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
         raise ParameterError("is not a practice") from error
     return table
 
 
-def _manner(note: str, values: Any) -> Array:
+def _recipe(note: str, values: Any) -> Array:
     row = np.array(values, np.float64)
     if row.shape != (RECIPE,) or not FIRST <= int(note) <= LAST:
         raise ParameterError(f"note {note}: expected {RECIPE} numbers")

@@ -4,7 +4,7 @@
 
 import { find, make, makeSwitch } from "../elements.js";
 import { remember, settings } from "../settings.js";
-import { inWords, say } from "../words.js";
+import { onLanguage, translate } from "../i18n.js";
 import { makeSlider } from "./slider.js";
 
 const SLIDERS = [
@@ -15,9 +15,9 @@ const SLIDERS = [
 const EVERY = 250; // ms
 
 /** @param {Page} page */
-export function showWays({ instrument, hands, fingerboard }) {
+export function showPlayingOptions({ instrument, hands, fingerboard }) {
   const assist = makeSwitch(
-    () => say("ways.assist"),
+    () => translate("ways.assist"),
     settings.isAssisted,
     (isOn) => {
       hands.rest();
@@ -26,20 +26,20 @@ export function showWays({ instrument, hands, fingerboard }) {
     },
   );
   const landing = makeSwitch(
-    () => say("ways.landing"),
+    () => translate("ways.landing"),
     settings.isLandingInTune,
     (isOn) => {
       fingerboard.isLandingInTune = isOn;
       remember({ isLandingInTune: isOn });
     },
   );
-  inWords(() => {
-    assist.title = say("ways.assist.about");
-    landing.title = say("ways.landing.about");
+  onLanguage(() => {
+    assist.title = translate("ways.assist.about");
+    landing.title = translate("ways.landing.about");
   });
   const switches = make("div", { class: "switches" }, [assist, landing, directions(fingerboard)]);
   const sliders = SLIDERS.map(([address, key]) =>
-    makeSlider(instrument.player, address, () => say(key)),
+    makeSlider(instrument.player, address, () => translate(key)),
   );
   find("ways", HTMLElement).append(switches, ...sliders.map(({ element }) => element));
   setInterval(() => {
@@ -54,10 +54,10 @@ function directions(fingerboard) {
   const choice = make("div", {
     class: "choice",
     role: "group",
-    "aria-label": () => say("ways.direction"),
+    "aria-label": () => translate("ways.direction"),
   });
   const buttons = /** @type {const} */ (["across", "down"]).map((direction) => {
-    const button = make("button", { type: "button" }, [() => say(`ways.${direction}`)]);
+    const button = make("button", { type: "button" }, [() => translate(`ways.${direction}`)]);
     button.addEventListener("click", () => choose(direction));
     choice.append(button);
     return { direction, button };

@@ -1,4 +1,4 @@
-"""What a part wishes: parameters, notes, a bow drawn by hand. Compiled.
+"""Emits wishes for all players of a part: parameters, notes, a bow drawn by hand. Compiled.
 
 It knows what is held and kept, and passes each wish on to the one player of the part, or to those
 of a section.
@@ -17,9 +17,9 @@ from yehu_server.core.midi.record import MIDI, NONE, SECTION, emit
 from yehu_server.core.midi.section import (
     add_value,
     begin_together,
+    emit_to_all,
     end_together,
-    let_play,
-    tell_all,
+    set_playing_count,
 )
 from yehu_server.core.midi.section_players import DISTANCE_ROW, GAIN_ROW, PAN_ROW, begin_sequence
 from yehu_server.core.player.rows import HIGHEST, IS_OWNED, LOWEST, SEED
@@ -40,11 +40,11 @@ def pass_on(m: Any, frame: int, kind: int, index: int, value: float, other: floa
     if m.people == 1:
         emit(m, 0, frame, kind, index, value, other)
     else:
-        tell_all(m, frame, kind, index, value, other, False, 0, 0.0)
+        emit_to_all(m, frame, kind, index, value, other, False, 0, 0.0)
 
 
 @native("float64(voidptr, int64, int64, float64, int64, float64, int64)")
-def write_apart(
+def write_native(
     midi_at: Any, frame: int, row: int, value: float, holding: int, glide_ms: float, of_key: int
 ) -> float:
     """See `write`."""
@@ -54,34 +54,34 @@ def write_apart(
     if row == SECTION:
         value = min(np.rint(value), float(m.people))
     if not IS_OWNED[row]:
-        if m.kept[row] != 0 and not hold:
+        if m.is_held[row] != 0 and not hold:
             value = m.value[row]
             if row == SEED and m.people > 1:
                 begin_sequence(m, int(np.rint(value)))
             return value
         m.value[row] = value
     if hold:
-        m.kept[row] = 1
+        m.is_held[row] = 1
     kind = HOLD if hold else WRITE
     if m.people == 1:
         emit(m, 0, frame, kind, row, value, glide_ms)
         return value
     if of_key == NONE:
-        tell_all(m, frame, kind, row, value, glide_ms, False, 0, 0.0)
+        emit_to_all(m, frame, kind, row, value, glide_ms, False, 0, 0.0)
     else:
         channel, key = m.held_channel[of_key], m.held_key[of_key]
-        tell_all(m, frame, kind, row, value, glide_ms, True, channel, key)
+        emit_to_all(m, frame, kind, row, value, glide_ms, True, channel, key)
     if row == SECTION and int(value) != m.playing:
-        let_play(m, int(value), frame)
+        set_playing_count(m, int(value), frame)
         for own in (GAIN_ROW, PAN_ROW, DISTANCE_ROW):
-            own_kind = HOLD if m.kept[own] != 0 else WRITE
-            tell_all(m, frame, own_kind, own, m.value[own], 0.0, False, 0, 0.0)
+            own_kind = HOLD if m.is_held[own] != 0 else WRITE
+            emit_to_all(m, frame, own_kind, own, m.value[own], 0.0, False, 0, 0.0)
     elif row == SEED:
         begin_sequence(m, int(np.rint(value)))
     return value
 
 
-_write = write_apart.symbol
+_write = write_native.symbol
 
 
 @compiled_exactly
@@ -103,7 +103,7 @@ def write(
 @compiled_exactly
 def express(m: Any, frame: int, row: int, value: float) -> None:
     """Set a parameter for the note that begins next, or sounds again."""
-    if m.kept[row] != 0:
+    if m.is_held[row] != 0:
         return
     m.value[row] = in_range(row, value)
     if m.people == 1:
@@ -113,17 +113,17 @@ def express(m: Any, frame: int, row: int, value: float) -> None:
 
 
 @compiled_exactly
-def release_kept(m: Any) -> None:
+def release_held(m: Any) -> None:
     """Hold no parameter any more."""
     for row in range(len(LOWEST)):
-        m.kept[row] = 0
+        m.is_held[row] = 0
 
 
 # -- notes ----------------------------------------------------------------------------------------
 
 
 @native("void(voidptr, int64, int64, float64, float64, float64, int64)")
-def begin_key_apart(
+def begin_key_native(
     midi_at: Any, frame: int, channel: int, key: float, pitch: float, velocity: float, struck: int
 ) -> None:
     """See `begin_key`."""
@@ -140,7 +140,7 @@ def begin_key_apart(
         begin_together(m, frame, channel, key, pitch)
 
 
-_begin_key = begin_key_apart.symbol
+_begin_key = begin_key_native.symbol
 
 
 @compiled_exactly
@@ -152,7 +152,7 @@ def begin_key(
 
 
 @native("void(voidptr, int64)")
-def end_listed_apart(midi_at: Any, frame: int) -> None:
+def end_listed_native(midi_at: Any, frame: int) -> None:
     """See `end_listed`."""
     m = carray(midi_at, (1,), MIDI)[0]
     if m.listed == 0:
@@ -167,7 +167,7 @@ def end_listed_apart(midi_at: Any, frame: int) -> None:
     forget_listed(m)
 
 
-_end_listed = end_listed_apart.symbol
+_end_listed = end_listed_native.symbol
 
 
 @compiled_exactly
@@ -195,8 +195,8 @@ def record_wish(m: Any, kind: int, index: int, value: float, other: float) -> No
     """Record what a wish does that goes directly to the only player of the part."""
     if kind in (WRITE, HOLD, EXPRESS):
         if kind == HOLD:
-            m.kept[index] = 1
-        if not IS_OWNED[index] and (kind == HOLD or m.kept[index] == 0):
+            m.is_held[index] = 1
+        if not IS_OWNED[index] and (kind == HOLD or m.is_held[index] == 0):
             m.value[index] = in_range(index, value)
     elif kind == BEGIN:
         hold_key(m, index, value, 0.0, 0, NONE)
@@ -208,7 +208,7 @@ def record_wish(m: Any, kind: int, index: int, value: float, other: float) -> No
         if other == 0.0:
             forget_listed(m)
     elif kind == RELEASE:
-        release_kept(m)
+        release_held(m)
     elif kind == STOP and value != 0.0:
         hold_nothing(m)
 

@@ -20,7 +20,7 @@ SILENT_DB = -120.0
 HEARD_DB = -60.0  # below, no pitch is looked for
 
 
-class Watch:
+class PlotData:
     """Level, spectrum and pitch of a sound at up to `COLUMNS` times, and the pitches asked for.
 
     Parameters

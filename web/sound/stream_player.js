@@ -1,23 +1,23 @@
 /** Hears the server: its sound comes by a WebSocket, and is played by the page. */
 
-import { Listened } from "./listened.js";
+import { JitterBuffer } from "./jitter_buffer.js";
 import { CHANNELS } from "./kernel.js";
-import { socketUrl } from "./line.js";
+import { socketUrl } from "./server_connection.js";
 
 const FFT = 4096;
 const SCRIPT_FRAMES = 512;
 const FADE_S = 0.01;
 
-export class Listener {
+export class StreamPlayer {
   /**
    * @param {number} rate of the server's sound, in Hz
-   * @returns {Promise<Listener>}
+   * @returns {Promise<StreamPlayer>}
    */
   static async open(rate) {
     const context = new AudioContext({ latencyHint: "interactive" });
     const resumed = context.resume();
     try {
-      const listener = new Listener(context, rate);
+      const listener = new StreamPlayer(context, rate);
       await listener.#connect();
       await resumed;
       return listener;
@@ -67,7 +67,7 @@ export class Listener {
    * @param {MessagePort} port
    */
   #script(port) {
-    const sound = new Listened(this.context.sampleRate, this.rate);
+    const sound = new JitterBuffer(this.context.sampleRate, this.rate);
     const node = this.context.createScriptProcessor(SCRIPT_FRAMES, 0, CHANNELS);
     node.onaudioprocess = ({ outputBuffer }) => {
       sound.fillIn(outputBuffer.getChannelData(0), outputBuffer.getChannelData(1));

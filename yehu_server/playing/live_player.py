@@ -18,10 +18,10 @@ from yehu_server.core.midi.events import LEAVE
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.binds import Bind
-from yehu_server.playing.learn import Found, Learner
+from yehu_server.playing.learn import LearnedSource, Learner
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.style import Style
-from yehu_server.playing.wishes import Key, Wishes
+from yehu_server.playing.wishes import Key, WishPoster
 
 ELSEWHERE = -1  # the channel of notes that do not come from MIDI
 
@@ -66,12 +66,12 @@ class LivePlayer:
     part : int
         Which of the parts on the stage it plays, counted from 0. What all parts share is the
         first one's.
-    wishes : Wishes, optional
+    wishes : WishPoster, optional
         What its wishes go through; by default those of the style, to the instrument.
 
     Attributes
     ----------
-    listening : callable
+    on_learning_changed : callable
         Called where `listens` changes, from any thread.
     """
 
@@ -82,7 +82,7 @@ class LivePlayer:
         *,
         delay_ms: float,
         part: int = 0,
-        wishes: Wishes | None = None,
+        wishes: WishPoster | None = None,
     ) -> None:
         self.instrument = instrument
         self.part = part
@@ -92,8 +92,8 @@ class LivePlayer:
         self._wishes = style.wishes(instrument) if wishes is None else wishes
         self._midi = style.midi(self._wishes)
         self._learner = Learner()
-        self._found: Callable[[Found], None] | None = None
-        self.listening: Callable[[], None] = lambda: None
+        self._found: Callable[[LearnedSource], None] | None = None
+        self.on_learning_changed: Callable[[], None] = lambda: None
         self._latest = 0  # the latest frame of any call
 
     @property
@@ -111,7 +111,7 @@ class LivePlayer:
         return int(self.instrument.frame_at(moment)) + self.delay
 
     def _at(self, frame: int) -> int:
-        """The frame itself; remembers the latest."""
+        """Return the frame, and record it as the latest one."""
         if self._latest > frame + self.instrument.rate:  # the wall clock was set back
             self._latest = frame
         self._latest = max(self._latest, frame)
@@ -145,7 +145,7 @@ class LivePlayer:
         Raises
         ------
         ParameterError
-            As `Wishes.write`.
+            As `WishPoster.write`.
         """
         with self._lock:
             return self._midi.write(address, value, frame=self._at(frame))
@@ -210,14 +210,14 @@ class LivePlayer:
             positions = self._midi.positions()
             return [(bind, position, self.value(bind.target)) for bind, position in positions]
 
-    def listen(self, found: Callable[[Found], None] | None) -> None:
+    def listen(self, found: Callable[[LearnedSource], None] | None) -> None:
         """Call `found` once with the source that the user moves next; with None, stop listening.
 
         It is called from any thread, and must not block.
         """
         with self._lock:
             self._learner, self._found = Learner(), found
-        self.listening()
+        self.on_learning_changed()
 
     @property
     def listens(self) -> bool:
@@ -227,18 +227,18 @@ class LivePlayer:
     def hear(self, address: str, argument: float) -> None:
         """Receive a number at an OSC address of the user's own, for `listen`."""
         with self._lock:
-            self._report(self._learner.hear_address(address, argument))
+            self._report(self._learner.learn_from_address(address, argument))
 
-    def hear_message(self, message: mido.Message, port: int) -> None:
+    def learn_from_message(self, message: mido.Message, port: int) -> None:
         """Receive a MIDI message of a port, counted from 0, for `listen`; it plays elsewhere."""
         with self._lock:
             self._report(self._learner.hear(message, port))
 
-    def _report(self, source: Found | None) -> None:
+    def _report(self, source: LearnedSource | None) -> None:
         if source is not None and self._found is not None:
             found, self._found = self._found, None
             found(source)
-            self.listening()
+            self.on_learning_changed()
 
     # -- notes -------------------------------------------------------------------------------
 
@@ -254,10 +254,10 @@ class LivePlayer:
         with self._lock:
             return self._wishes.pitch
 
-    def let_go_of(self, port: int, *, frame: int) -> None:
+    def end_port_notes(self, port: int, *, frame: int) -> None:
         """End the notes of a port that is gone."""
         with self._lock:
-            self._midi.let_go_of(port, frame=self._at(frame))
+            self._midi.end_port_notes(port, frame=self._at(frame))
 
     def note_on(self, note: float, velocity: float, *, frame: int) -> None:
         """Begin a note (fractional MIDI note; velocity 0 to 127).
@@ -277,7 +277,7 @@ class LivePlayer:
             self._midi.note_off(_key(note), self._at(frame))
 
     def slide(self, pitch: float, *, frame: int) -> float:
-        """See `Wishes.slide`.
+        """See `WishPoster.slide`.
 
         Raises
         ------
@@ -288,7 +288,7 @@ class LivePlayer:
             return self._wishes.slide(_within("pitch", pitch), frame=self._at(frame))
 
     def draw(self, speed: float, force: float, *, frame: int) -> tuple[float, float]:
-        """See `Wishes.draw`."""
+        """See `WishPoster.draw`."""
         with self._lock:
             return self._wishes.draw(speed, force, frame=self._at(frame))
 
@@ -308,10 +308,10 @@ class LivePlayer:
     def reset(self, *, frame: int) -> None:
         """As `panic`, and set every parameter to its start value."""
         with self._lock:
-            self._midi.begin_again(frame=self._after_all(frame))
+            self._midi.reset_to_start_values(frame=self._after_all(frame))
             self.panic(frame=frame)
 
-    def let_go_of_channels(self, first: int, channels: int, *, frame: int) -> None:
+    def end_channel_notes(self, first: int, channels: int, *, frame: int) -> None:
         """End what is held on channels whose owner is gone, and lift a bow drawn by hand."""
         with self._lock:
             frame = self._after_all(frame)

@@ -13,7 +13,7 @@ const PRESSED = 0.1; // and so does one that presses harder by so much, N
 
 /** @typedef {import("../interfaces.js").Snapshot} Snapshot */
 
-export class Rest {
+export class RestShape {
   constructor() {
     this.mean = new Float32Array(POINTS);
     this.count = 0;

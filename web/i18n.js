@@ -20,14 +20,14 @@ export async function loadWords() {
   const module = language() === "zh" ? import("./texts/zh.js") : import("./texts/en.js");
   texts = (await module).default;
   document.documentElement.lang = language() === "zh" ? "zh-Hans" : "en";
-  document.title = say("title");
+  document.title = translate("title");
 }
 
 /**
  * Speak another language from now on; nothing else changes.
  * @param {'en' | 'zh'} chosen
  */
-export async function speak(chosen) {
+export async function setLanguage(chosen) {
   remember({ language: chosen });
   await loadWords();
   fillWords(document);
@@ -39,7 +39,7 @@ export async function speak(chosen) {
  * as the page.
  * @param {() => void} tell
  */
-export function inWords(tell) {
+export function onLanguage(tell) {
   changes.addEventListener("change", tell);
   tell();
 }
@@ -49,7 +49,7 @@ export function inWords(tell) {
  * @param {string} key
  * @param {Record<string, string | number>} [values]
  */
-export function say(key, values = {}) {
+export function translate(key, values = {}) {
   return (texts[key] ?? key).replace(/\{(\w+)\}/g, (whole, name) => String(values[name] ?? whole));
 }
 
@@ -58,7 +58,7 @@ export function say(key, values = {}) {
  * @param {string} key
  * @param {string} otherwise
  */
-export function sayOr(key, otherwise) {
+export function translateOr(key, otherwise) {
   return texts[key] ?? otherwise;
 }
 
@@ -69,17 +69,17 @@ export function sayOr(key, otherwise) {
  */
 export function fillWords(root) {
   for (const element of root.querySelectorAll("[data-text]")) {
-    element.textContent = say(/** @type {HTMLElement} */ (element).dataset.text ?? "");
+    element.textContent = translate(/** @type {HTMLElement} */ (element).dataset.text ?? "");
   }
   for (const element of root.querySelectorAll("[data-label]")) {
-    const label = say(/** @type {HTMLElement} */ (element).dataset.label ?? "");
+    const label = translate(/** @type {HTMLElement} */ (element).dataset.label ?? "");
     element.setAttribute("aria-label", label);
     if (element instanceof HTMLButtonElement) element.title = label;
   }
   for (const element of root.querySelectorAll("[data-hint]")) {
     element.setAttribute(
       "placeholder",
-      say(/** @type {HTMLElement} */ (element).dataset.hint ?? ""),
+      translate(/** @type {HTMLElement} */ (element).dataset.hint ?? ""),
     );
   }
 }

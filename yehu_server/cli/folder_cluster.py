@@ -20,13 +20,13 @@ from yehu_server.errors import OutputError, ParameterError
 
 if TYPE_CHECKING:
     from yehu_server.rendering.cluster import Cluster
-    from yehu_server.rendering.workers import Tell
+    from yehu_server.rendering.workers import ProgressCallback
 
 MARK = "seen-{}"  # in the hidden folder: who finds it sees the output
 
 
 @dataclass(frozen=True)
-class FarTask:
+class ClusterTask:
     """A task for a worker: with the score, or with marks that tell whether the worker sees it.
 
     Attributes
@@ -43,8 +43,8 @@ class FarTask:
 
 
 @dataclass(frozen=True)
-class FarDone:
-    """What became of it: where the folders were not seen, nothing; else as in one process.
+class ClusterResult:
+    """The result of a task: None if the worker cannot see the folders, else as in a local process.
 
     Attributes
     ----------
@@ -56,11 +56,11 @@ class FarDone:
     made: tuple[bytes, ...] = ()
 
 
-def perform_far(far: FarTask, tell: Tell) -> FarDone:
+def perform_on_worker(far: ClusterTask, tell: ProgressCallback) -> ClusterResult:
     """Render a score on a worker."""
     if far.score is None:
         is_seen = all(mark.is_file() for mark in far.marks)
-        return FarDone(perform(far.task, tell) if is_seen else None)
+        return ClusterResult(perform(far.task, tell) if is_seen else None)
     task = far.task
     with tempfile.TemporaryDirectory(prefix="yehu-server-") as name:
         folder = Path(name)
@@ -80,7 +80,7 @@ def perform_far(far: FarTask, tell: Tell) -> FarDone:
         )
         done = perform(here, tell)
         made = () if "error" in done.line else tuple(path.read_bytes() for path in here.results)
-    return FarDone(done, made)
+    return ClusterResult(done, made)
 
 
 def absolute(arguments: argparse.Namespace) -> argparse.Namespace:
@@ -104,8 +104,8 @@ def _is_path(name: str) -> bool:
     return Path(name).name != name or bool(Path(name).suffix)
 
 
-class Far:
-    """The way of a folder's tasks to a cluster, and of their results back.
+class ClusterTransfer:
+    """Sends a folder's tasks to a cluster and stores the results.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ class Far:
                         "keep it where all workers see it"
                     )
 
-    def tasks(self, tasks: Sequence[Task], *, travel: bool = False) -> Iterator[FarTask]:
+    def tasks(self, tasks: Sequence[Task], *, travel: bool = False) -> Iterator[ClusterTask]:
         """Tasks for workers; with the scores where they do not see the folders."""
         is_sent = travel or not self._marks
         for task in tasks:
@@ -155,7 +155,7 @@ class Far:
             entry = replace(entry, source=entry.source.absolute(), target=entry.target.absolute())
             picture = None if task.picture is None else task.picture.absolute()
             own = replace(task, arguments=self._arguments, entry=entry, picture=picture)
-            yield FarTask(own, self._marks, self._score(task) if is_sent else None)
+            yield ClusterTask(own, self._marks, self._score(task) if is_sent else None)
 
     def _score(self, task: Task) -> bytes | None:
         try:
@@ -163,7 +163,7 @@ class Far:
         except OSError:  # the worker tells why, as one here would
             return None
 
-    def received(self, task: Task, far: FarDone) -> Done:
+    def received(self, task: Task, far: ClusterResult) -> Done:
         """Put what has travelled in its place."""
         done = far.done or Done({})
         if not far.made:

@@ -27,7 +27,7 @@ const PATIENCE = 60_000; // ms to wait for something to be moved
  * @property {Learner} learner
  * @property {number} timer
  */
-export class Taught extends EventTarget {
+export class MidiLearn extends EventTarget {
   /** @type {Wait | null} */
   #wait = null;
 

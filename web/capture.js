@@ -2,7 +2,7 @@
 
 /** @typedef {import('./instrument.js').Instrument} Instrument */
 /** @typedef {import('./instrument.js').Wish} Wish */
-/** @typedef {import('./interfaces.js').Kept} Kept */
+/** @typedef {import('./interfaces.js').CapturedWishes} CapturedWishes */
 
 import facts from "./facts.js";
 import { TABLE, find } from "./playing/table.js";
@@ -19,7 +19,7 @@ const OF_SLOT = TABLE.filter(({ slot }) => slot !== null).map(({ address }) => a
 const SILENCE = "silence"; // in place of an engine's parameter
 
 /** Keeps the wishes that the instrument fulfils. */
-export class Keeper {
+export class CaptureWriter {
   /** @param {Instrument} instrument */
   constructor(instrument) {
     this.instrument = instrument;
@@ -54,7 +54,7 @@ export class Keeper {
   }
 }
 
-/** @param {Kept} kept */
+/** @param {CapturedWishes} kept */
 function linesOf({ from, wishes }) {
   const lines = [];
   for (let i = 0; i < wishes.length; i += WISH) {
@@ -94,7 +94,7 @@ function lineOf(frame, kind, index, value, other) {
  * @param {Blob} file
  * @returns {Promise<Performance>}
  */
-export async function readPerformance(file) {
+export async function readCapture(file) {
   if (file.size > MOST_BYTES) throw new RangeError("too large");
   const [head, ...lines] = (await file.text()).split("\n").filter((line) => line !== "");
   const { format, version, rate, ...begun } = JSON.parse(head);

@@ -59,7 +59,7 @@ export function socketUrl(name) {
  * Tells by events: 'open', 'break', 'status', 'look' (detail: the numbers), 'wishes' of another
  * page (detail: {page, wishes}), and 'left' (detail: the number of a page that went).
  */
-export class Line extends EventTarget {
+export class ServerConnection extends EventTarget {
   constructor() {
     super();
     this.status = { ...UNKNOWN };

@@ -30,7 +30,7 @@ const SINCS = Array.from({ length: PHASES + 1 }, (_, phase) =>
   }),
 );
 
-export class Listened {
+export class JitterBuffer {
   /**
    * @param {number} rate of what is read, in Hz
    * @param {number} sourceRate of what is written

@@ -12,7 +12,7 @@ from yehu_server.util.files import inside
 ENDINGS = (".wav", ".flac")
 
 
-class Takes:
+class Recordings:
     """A recording of everything, and beside it one at a time that clients request.
 
     Parameters

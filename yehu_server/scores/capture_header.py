@@ -22,19 +22,19 @@ from yehu_server.core.physics.quantities import (
     measured_body,
     override,
 )
-from yehu_server.core.player.bowing import ordinary_table
+from yehu_server.core.player.bowing import default_recipes
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
-from yehu_server.playing.calibrations import as_data, read_calibration
+from yehu_server.playing.calibration_store import as_data, read_calibration
 from yehu_server.scores.capture_format import FORMAT, VERSION, build, frames_of
 
 LOWEST_A4, HIGHEST_A4 = 1.0, 20000.0  # Hz
 
 
 @dataclass(frozen=True)
-class Beginning:
+class SessionStart:
     """All that a session starts from: the players in their order on the stage."""
 
     players: tuple[InstrumentSpec, ...]
@@ -50,15 +50,15 @@ class Beginning:
         return Ensemble(self.players, has_room=self.has_room)
 
 
-def beginning_of(instruments: Sequence[Instrument], *, has_room: bool) -> Beginning:
+def session_start_of(instruments: Sequence[Instrument], *, has_room: bool) -> SessionStart:
     """What instruments on one stage started from."""
-    return Beginning(tuple(instrument.spec for instrument in instruments), has_room)
+    return SessionStart(tuple(instrument.spec for instrument in instruments), has_room)
 
 
 # ---------------------------------------------------------------- as JSON values
 
 
-def header_of(beginning: Beginning) -> dict[str, Any]:
+def header_of(beginning: SessionStart) -> dict[str, Any]:
     """The first line of a capture."""
     starts = beginning.players
     return {
@@ -72,7 +72,7 @@ def header_of(beginning: Beginning) -> dict[str, Any]:
 
 
 def _as_data(start: InstrumentSpec, before: Sequence[InstrumentSpec]) -> dict[str, Any]:
-    """The JSON values of a player, where some come before; what is one's of those is named so."""
+    """The JSON values of a player; what an earlier player has too is given as its number."""
     calibration: Any = None if start.calibration is None else as_data(start.calibration)
     bowing: Any = start.bowing.tolist()
     for number, other in enumerate(before, start=1):
@@ -111,7 +111,7 @@ def _changes(own: Any, usual: Any) -> dict[str, Any]:
 # ---------------------------------------------------------------- reading
 
 
-def read_header(header: Any, version: int) -> Beginning:
+def read_header(header: Any, version: int) -> SessionStart:
     """What a session starts from, by the first line of its capture.
 
     Raises
@@ -126,7 +126,7 @@ def read_header(header: Any, version: int) -> Beginning:
     if version < VERSION:
         tuned = _tuned(header["tensions"])
         start = _start(header, rate, tuned, []) if version > 1 else _first(header, rate, tuned)
-        return Beginning((start,), bool(header.get("room", False)))
+        return SessionStart((start,), bool(header.get("room", False)))
     entries, starts = header["players"], list[InstrumentSpec]()
     if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_PARTS:
         raise ParameterError(f"expected 1 to {MOST_PARTS} players")
@@ -134,7 +134,7 @@ def read_header(header: Any, version: int) -> Beginning:
         starts.append(_start(entry, rate, _quantities(entry["quantities"]), starts))
     if type(header["room"]) is not bool:
         raise ValueError("room")
-    return Beginning(tuple(starts), header["room"])
+    return SessionStart(tuple(starts), header["room"])
 
 
 def _first(header: Any, rate: float, quantities: Quantities) -> InstrumentSpec:
@@ -180,7 +180,7 @@ def _bowing(data: Any, before: Sequence[InstrumentSpec]) -> Any:
     bowing = np.array(data, np.float64)
     if bowing.ndim == 3:  # of captures made when both strings were bowed by one table
         bowing = np.stack([bowing] * STRINGS)
-    if bowing.shape != ordinary_table().shape or not np.all(np.isfinite(bowing)):
+    if bowing.shape != default_recipes().shape or not np.all(np.isfinite(bowing)):
         raise ValueError("bowing")
     return bowing
 

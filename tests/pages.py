@@ -1,4 +1,4 @@
-"""The documentation's pages, and what stands in them: prose, code, headings, links."""
+"""The documentation's pages, and what stands in them: prose, code, blocks."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "yehu_server"
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
-LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
-HEADING = re.compile(r"^#+ +(.+?)\s*$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -36,11 +34,6 @@ class Page:
         """The text without its blocks of code."""
         return FENCED.sub("", self.text)
 
-    @cached_property
-    def flat(self) -> str:
-        """The text with each run of blanks and line breaks as one blank."""
-        return " ".join(self.text.split())
-
     def blocks(self, language: str) -> list[str]:
         """The blocks of code in a language; "" is for those that name none."""
         return [block for name, block in FENCED.findall(self.text) if name == language]
@@ -49,22 +42,7 @@ class Page:
     def code(self) -> list[str]:
         """What stands between backquotes, but for what is told of as history."""
         paragraphs = re.split(r"\n\s*\n", self.prose)
-        return [
-            code
-            for paragraph in paragraphs
-            if "history" not in paragraph
-            for code in CODE.findall(paragraph)
-        ]
-
-    @cached_property
-    def links(self) -> list[str]:
-        return LINK.findall(CODE.sub("", self.prose))
-
-    @cached_property
-    def anchors(self) -> set[str]:
-        """The fragments by which its headings are reached, as GitHub makes them."""
-        headings = (heading.replace("`", "").lower() for heading in HEADING.findall(self.prose))
-        return {re.sub(r"[^\w\- ]", "", heading).replace(" ", "-") for heading in headings}
+        return CODE.findall("\n".join(each for each in paragraphs if "history" not in each))
 
     def commands(self) -> Iterator[str]:
         """The lines of its blocks that one types, with continued ones in one."""

@@ -14,8 +14,8 @@ PRINT = """
 import importlib, pkgutil, sys
 import numpy as np
 import yehu_server
-CORE = ("core.physics", "core.controls", "core.player", "core.stage", "core.engine")
-for folder in ("params", *CORE):
+parts = ("physics", "controls", "player", "stage", "engine")
+for folder in ("params", *(f"core.{part}" for part in parts)):
     package = importlib.import_module(f"yehu_server.{folder}")
     for found in pkgutil.iter_modules(package.__path__):
         module = importlib.import_module(f"{package.__name__}.{found.name}")

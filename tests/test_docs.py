@@ -1,23 +1,27 @@
-"""The documentation holds: links lead somewhere, commands run, files and addresses are there."""
+"""The documentation holds: what it names is there, commands can be given, programs run.
+
+MkDocs checks the links (tests/documentation/).
+"""
 
 from __future__ import annotations
 
 import argparse
+import builtins
 import json
 import re
 import runpy
 import shlex
-import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
 from pages import PACKAGE, PAGES, ROOT, Page, page
 
+import yehu_server
 from yehu_server.cli import _parser, main
+from yehu_server.live.addresses import HTTP_ADDRESS, OSC_ADDRESS
 from yehu_server.live.osc.call_table import CALLS, PREFIX
 from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.status import STATUS
@@ -26,29 +30,35 @@ from yehu_server.params.table import TABLE, UNIT
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 OURS = ("yehu-server", "scripts/yehu")
 FOREIGN = (".venv/bin/pytest", ".venv/bin/mkdocs", "open-stage-control")
-# What the table of parameters will know once the example of CONTRIBUTING.md is followed.
-EXAMPLE = "/bow/turn"
+SLOW = {"docs/body.md"}  # whose programs take half a minute
+# What there will be once the example of CONTRIBUTING.md is followed.
+EXAMPLE_ADDRESS, EXAMPLE_NAME = "/bow/turn", "TURN"
 
-# ---------------------------------------------------------------- links
+
+# ---------------------------------------------------------------- what is written
 
 
-@each_page
-def test_every_link_leads_to_a_file_and_to_a_heading_in_it(page: Page):
-    for link in page.links:
-        address = urlsplit(link)
-        if address.scheme:
-            assert address.scheme == "https", link
-            continue
-        target = (page.path.parent / address.path).resolve() if address.path else page.path
-        assert target.exists(), link
-        if address.fragment:
-            assert address.fragment in Page(target).anchors, link
+def test_what_scripts_generate_writes_is_up_to_date():
+    script = runpy.run_path(str(ROOT / "scripts" / "generate.py"))
+    stale = [path.name for path, text in script["written"]() if path.read_text("utf-8") != text]
+    assert not stale, "run: .venv/bin/python scripts/generate.py"
+
+
+def test_what_is_marked_as_generated_is_there():
+    lines = (ROOT / ".gitattributes").read_text(encoding="utf-8").splitlines()
+    for line in lines:
+        assert not line or line.startswith("#") or any(ROOT.glob(line.split()[0])), line
 
 
 @pytest.mark.parametrize("index", ["docs/README.md", "docs/decisions/README.md"])
 def test_an_index_leads_to_every_page_beside_it(index):
     beside = {path.name for path in (ROOT / index).parent.glob("*.md")} - {"README.md"}
-    assert beside - set(page(index).links) == set()
+    assert {name for name in beside if f"]({name})" not in page(index).text} == set()
+
+
+def test_every_call_is_described():
+    described = " ".join(page("docs/osc.md").code)
+    assert [call.address for call in CALLS if PREFIX + call.address not in described] == []
 
 
 # ---------------------------------------------------------------- commands
@@ -67,61 +77,29 @@ def options_of(parser: argparse.ArgumentParser) -> set[str]:
     return found.union(*map(options_of, commands_of(parser).values()))
 
 
-@cache
-def project() -> dict[str, Any]:
-    with (ROOT / "pyproject.toml").open("rb") as file:
-        return tomllib.load(file)
-
-
-@cache
-def options_of_scripts() -> set[str]:
-    """What scripts, benchmarks, the fuzzer and our tests' settings have for options."""
-    files = [*(ROOT / "scripts").glob("*"), *(ROOT / "bench").glob("*.py")]
-    files += [ROOT / "tests" / "conftest.py", *(ROOT / "tests" / "fuzz").glob("*.py")]
-    texts = (file.read_text(encoding="utf-8") for file in files if file.is_file())
-    return {option for text in texts for option in re.findall(r"(?<![\w-])--[a-z][\w-]*", text)}
-
-
-def check_script(words: list[str]) -> None:
-    """A script that is there, with options that it has."""
-    script, *arguments = words
-    text = (ROOT / script).read_text(encoding="utf-8")
-    for argument in arguments:
-        if argument.startswith("--"):
-            assert argument in text, argument
-        elif "/" in argument:
-            assert (ROOT / argument).exists(), argument
-
-
-def check_curl(words: list[str]) -> None:
-    """An address of the tree, at the server's own."""
-    (url,) = words
-    address = urlsplit(url)
-    assert address.netloc == _parser().parse_args(["serve"]).http
-    assert address.path == "/" or is_known(address.path), url
-
-
 def check_command(line: str) -> None:
     """What one may type: our command with arguments that it takes, or a tool of the checkout."""
     words = shlex.split(re.sub(r" {3,}.*|^NUMBA_DISABLE_JIT=1 ", "", line))
-    if words[0].removeprefix(".venv/bin/") in OURS:
+    tool = words[0].removeprefix(".venv/bin/")
+    if tool in OURS:
         try:
             _parser().parse_args(words[1:])
         except SystemExit as error:
             raise AssertionError(line) from error
-    elif words[0] == ".venv/bin/python":
-        check_script(words[1:])
-    elif words[0] == "scripts/test":
-        check_script(words)
-    elif words[0] == ".venv/bin/pytest":
+    elif tool in {"python", "pytest", "scripts/test"}:
+        script = ROOT / (words[1] if tool == "python" else "scripts/test")
         for word in words[1:]:
-            assert "/" not in word or (ROOT / word).exists(), word
-    elif words[0] == "curl":
-        check_curl(words[1:])
-    elif words[0].startswith(PREFIX):
-        assert is_known(words[0]), line
+            if word.startswith("--"):
+                assert word in script.read_text(encoding="utf-8"), word
+            assert word.startswith("--") or "/" not in word or (ROOT / word).exists(), word
+    elif tool == "curl":
+        address = urlsplit(words[1])
+        assert address.netloc == "{}:{}".format(*HTTP_ADDRESS)
+        assert address.path == "/" or is_address(address.path), line
+    elif tool.startswith(PREFIX):
+        assert is_address(tool), line
     else:
-        assert words[0] in {"git", "cd", "scripts/lock", ".venv/bin/hatchling"}, line
+        assert tool in {"git", "cd", "scripts/lock", "hatchling"}, line
 
 
 @each_page
@@ -130,117 +108,152 @@ def test_every_command_in_a_block_can_be_given(page: Page):
         check_command(line)
 
 
-PROGRAMS = [(page.name, block) for page in PAGES for block in page.blocks("python")]
+@each_page
+def test_a_server_is_where_it_listens_by_default(page: Page):
+    ports = set(re.findall(r"(?:127\.0\.0\.1:|to port |on port )(\d+)", page.text))
+    osc, http = OSC_ADDRESS[1], HTTP_ADDRESS[1]
+    assert ports <= {str(osc), str(http), str(http + 1)}  # the last is the page's
 
 
 @pytest.mark.parametrize(
-    ("name", "program"), [row for row in PROGRAMS if row[1].startswith("import ")]
+    ("name", "program"),
+    [
+        pytest.param(page.name, block, marks=[pytest.mark.slow] * (page.name in SLOW))
+        for page in PAGES
+        for block in page.blocks("python")
+    ],
 )
 def test_every_program_runs(name, program, tmp_path, monkeypatch, capsys):
+    code = compile(program, f"<{name}>", "exec")
+    if not program.startswith("import "):
+        return  # a piece of one
     monkeypatch.chdir(tmp_path)
     controls = {"bow_force": 0.7, "bow_velocity": 0.3}
     (tmp_path / "gesture.json").write_text(json.dumps({"duration": 0.01, "controls": controls}))
     assert main(["simulate", "gesture.json", "-o", "run.npz", "--energy"]) == 0
     capsys.readouterr()
-    exec(compile(program, f"<{name}>", "exec"), {})  # noqa: S102 - our own documentation
+    exec(code, {})  # noqa: S102 - our own documentation
     assert capsys.readouterr().out
 
 
-@each_page
-def test_every_command_and_option_in_a_sentence_is_there(page: Page):
-    commands = commands_of(_parser())
-    everywhere = options_of(_parser()) | options_of_scripts()
-    for code in page.code:
-        words = code.split()
-        if words[0] in FOREIGN:
-            continue
-        if words[0] in OURS and len(words) > 1:
-            words = words[1:]
-            assert words[0] in commands or words[0].startswith("-"), code
-        options = {word.partition("=")[0] for word in words if re.match(r"--[a-z]", word)}
-        known = options_of(commands[words[0]]) if words[0] in commands else everywhere
-        assert options <= known, code
-
-
-# ---------------------------------------------------------------- files
+# ---------------------------------------------------------------- what is named
 
 FOLDERS = {path.name for path in (*ROOT.iterdir(), *PACKAGE.iterdir()) if path.is_dir()}
 # Words in capitals stand for names that the reader gives; so do files of the reader's own.
 PLACEHOLDER = re.compile(r"\b[A-Z]{2,}\b|\.\.\.")
+MADE = {"web/facts.js", "web/examples.js"}  # that git ignores
+OTHERS = {"NUMBA_SLP_VECTORIZE", "net.core.rmem_max", "cmp", "arp", "bb3"}  # of other programs
+OWN = (".h", ".json", ".npz", ".wav")  # endings of files of the reader's own
 
 
-def places(name: str, page: Page) -> Iterator[Path]:
-    """Where a file that a page names may be."""
-    for folder in (ROOT, PACKAGE, page.path.parent, ROOT / "tests"):
-        yield from folder.glob(name)
-    if "/" not in name:
-        for folder in (PACKAGE, ROOT / "tests", ROOT / "docs", ROOT / "mappings"):
-            yield from folder.rglob(name)
+@cache
+def sources() -> dict[Path, set[str]]:
+    """The words of each file of code, without the comments."""
+    found = {}
+    for folder in (PACKAGE, *(ROOT / each for each in ("scripts", "bench", "tests", "web"))):
+        for path in folder.rglob("*"):
+            if path.suffix in {".py", ".js", ".mjs", ".sh", ""} and path.is_file():
+                text = re.sub(r"\s# .*", "", path.read_text(encoding="utf-8", errors="replace"))
+                found[path] = set(re.findall(r"(?<![\w-])--[a-z][\w-]*|\w+", text))
+    del found[Path(__file__)]
+    return found
 
 
-@each_page
-def test_every_file_that_is_named_is_there(page: Page):
-    installed = project()["tool"]["hatch"]["build"]["targets"]["wheel"]["sources"].values()
-    for code in page.code:
-        for word in code.split():
-            name = word.rstrip("/")
-            first, slash, _ = name.partition("/")
-            is_source = re.fullmatch(r"[\w*-]+\.(py|md|html|pd|tosc|maxpat)", name)
-            is_path = slash and first in FOLDERS and re.fullmatch(r"[\w./*-]+", name)
-            if (is_source or is_path) and not PLACEHOLDER.search(name.removesuffix("README.md")):
-                is_there = name in installed or next(places(name, page), None) is not None
-                assert is_there, f"{page.name}: {name}"
+@cache
+def words() -> set[str]:
+    parameters = {param.address.strip("/").replace("/", "_").upper() for param in TABLE}
+    return {EXAMPLE_NAME, *dir(builtins), *parameters}.union(*sources().values())
 
 
-def test_what_is_marked_as_generated_is_there():
-    lines = (ROOT / ".gitattributes").read_text(encoding="utf-8").splitlines()
-    patterns = [line.split()[0] for line in lines if line and not line.startswith("#")]
-    assert patterns
-    for pattern in patterns:
-        assert next(ROOT.glob(pattern), None) is not None, pattern
+def is_option(word: str, command: str) -> bool:
+    parser = commands_of(_parser()).get(command)
+    if parser is not None:
+        return word in options_of(parser)
+    return word in options_of(_parser()) or word in words()
 
 
-def test_the_page_of_parameters_is_fresh():
-    script = runpy.run_path(str(ROOT / "scripts" / "parameters.py"))
-    assert script["page"]() == page("docs/parameters.md").text, (
-        "docs/parameters.md is stale; run: .venv/bin/python scripts/parameters.py"
-    )
+def is_file(name: str, page: Page) -> bool:
+    def places() -> Iterator[Path]:
+        for folder in (ROOT, PACKAGE, page.path.parent, ROOT / "tests"):
+            yield from folder.glob(name)
+        if "/" not in name:
+            for folder in (PACKAGE, *(ROOT / each for each in ("tests", "docs", "mappings"))):
+                yield from folder.rglob(name)
+
+    shipped = name.removeprefix("yehu_server/")
+    return name in MADE or any(places()) or shipped in {"docs", "examples", "mappings", "presets"}
 
 
-@pytest.mark.parametrize(
-    "block", page("CONTRIBUTING.md").blocks("diff"), ids=lambda block: block.splitlines()[0][4:]
-)
-def test_what_the_example_changes_stands_in_the_code(block):
-    head, _, body = block.partition("\n")
-    source = (ROOT / head.removeprefix("--- ")).read_text(encoding="utf-8")
-    lines = body.splitlines()
-    before, after = (
-        "\n".join(line[1:] for line in lines if not line.startswith(sign)) for sign in "+-"
-    )
-    assert before in source or after in source  # to whoever has followed it, too
-
-
-# ---------------------------------------------------------------- addresses
+def is_symbol(name: str) -> bool:
+    """Whether there is such a name: in its module where it has one before it, or anywhere."""
+    *before, last = name.split(".")
+    if before and before[0] in {"yehu", "yehu_server"}:
+        found = yehu_server
+        for part in [*before[1:], last]:
+            if not hasattr(found, part):
+                return (PACKAGE / "/".join([*before[1:], last])).exists()
+            found = getattr(found, part)
+        return True
+    modules = list(PACKAGE.rglob("/".join(before) + ".py")) if before else []
+    if modules:
+        return any(last in sources()[path] for path in modules)
+    made = re.sub("^yehu_|^YEHU_|_total$", "", last)  # a metric, or a name of yehu.h
+    return name in OTHERS or made in words() or {*before, last} <= words()
 
 
 @cache
 def addresses() -> set[str]:
     """Every address there is, and what is above it."""
-    found = {EXAMPLE, *(param.address for param in TABLE), *(call.address for call in CALLS)}
-    found |= {f"/status/{row.name}" for row in (*STATUS, *PART_STATUS)} | {"/status/NAME"}
+    found = {EXAMPLE_ADDRESS, *(row.address for row in (*TABLE, *CALLS)), "/status/NAME"}
+    found |= {f"/status/{row.name}" for row in (*STATUS, *PART_STATUS)}
     for file in (PACKAGE / "live").rglob("*.py"):  # what is answered
         found |= set(re.findall(r'["}](/[a-z/]+)"', file.read_text(encoding="utf-8")))
     groups = {"/" + "/".join(address.split("/")[1:depth]) for address in found for depth in (2, 3)}
-    return found | groups
+    return found | groups | {""}
 
 
-def is_known(address: str) -> bool:
+def is_address(address: str) -> bool:
     """Whether there is an address, as it is written with ``/yehu`` or without."""
     plain = address.removeprefix(PREFIX).removesuffix(".moved").removesuffix(UNIT)
-    known = addresses() | {""}
+    known = addresses()
     if below := re.fullmatch(r"/part/(?:N|\d+|\*)(/.*)?", plain):
         plain, known = (below[1] or "").removesuffix("/"), known | {"/fader1", "/NAME"}
     return plain.removesuffix("/...") in known
+
+
+def missing(code: str, page: Page) -> Iterator[str]:
+    """What a piece of code in a sentence names that is not there."""
+    first, *rest = code.split()
+    command = rest[0] if first in OURS and rest else first
+    if first != command and command[0] != "-" and command not in commands_of(_parser()):
+        yield command
+    for word in code.split() if first not in FOREIGN else ():
+        name = re.sub(r"=\S*$|[/,]+$", "", word)
+        top, slash, _ = name.partition("/")
+        if re.match(r"--[a-z]", word):
+            if not is_option(name, command):
+                yield word
+        elif re.fullmatch(r"[\w*-]+\.(py|md|html|pd|tosc|maxpat)", name) or (
+            slash and top in FOLDERS and re.fullmatch(r"[\w./*-]+", name)
+        ):
+            if not PLACEHOLDER.search(name.removesuffix("README.md")) and not is_file(name, page):
+                yield word
+        elif re.fullmatch(r"@?[a-zA-Z]\w*(\.[a-zA-Z]\w*)*(\(\))?", name, re.ASCII):
+            is_name = not rest or re.search(r"[_.@(]", name)  # else an English word, or a value
+            if is_name and not name.endswith(OWN) and not is_symbol(name.strip("@()")):
+                yield word
+
+
+@each_page
+def test_what_a_page_names_is_there(page: Page):
+    assert [word for code in page.code for word in missing(code, page)] == []
+
+
+@pytest.mark.parametrize("block", page("CONTRIBUTING.md").blocks("diff"))
+def test_a_change_that_is_shown_is_of_a_file_with_such_lines(block):
+    head, *lines = block.splitlines()
+    around = " ".join(line for line in lines if line.startswith(" "))
+    assert set(re.findall(r"\w+", around)) <= sources()[ROOT / head.removeprefix("--- ")]
 
 
 @each_page
@@ -249,15 +262,4 @@ def test_every_address_that_is_named_is_one(page: Page):
     for code in (*page.code, *page.blocks("toml"), *page.blocks("json")):
         for address in re.findall(r"(?<![\w./])/[a-z][\w/.]*(?![\w{])", code):
             if address.split("/")[1] in groups:
-                assert is_known(address), f"{page.name}: {address}"
-
-
-# ---------------------------------------------------------------- layers
-
-
-def test_the_readme_has_the_layers_that_are_held():
-    contract = project()["tool"]["importlinter"]["contracts"][0]
-    held = [set(re.findall(r"\w+", layer)) for layer in contract["layers"] if "(" not in layer]
-    table = page("README.md").text.partition("| layer | what it is for |\n|---|---|\n")[2]
-    rows = table.partition("\n\n")[0].splitlines()
-    assert [set(re.findall(r"`(\w+)`", row.split("|")[1])) for row in rows] == held
+                assert is_address(address), address

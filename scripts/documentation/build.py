@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 import webbrowser
 from pathlib import Path
 
-from check import faults
-from notebooks import RUN, run_all
-from places import NOTEBOOK, NOTEBOOKS, ROOT
+from notebooks import ROOT, RUN, run_all
 
 from yehu_server.cli.converters import port
 from yehu_server.errors import OutputError, YehuError
@@ -23,13 +20,15 @@ MARK = ".yehu-site"  # lists the files of a site, which the next one may replace
 PORT = 8011
 
 
-def build(folder: Path, *, runs: bool = False) -> int:
+def build(folder: Path, settings: Path = ROOT / "mkdocs.yml", *, runs: bool = False) -> int:
     """Build the site into a folder, in place of an earlier site there.
 
     Parameters
     ----------
     folder : Path
         A new or empty folder, or one with an earlier site.
+    settings : Path
+        MkDocs's own, with the folder of pages beside it.
     runs : bool
         Run the notebooks, to show what they draw and play.
 
@@ -43,86 +42,45 @@ def build(folder: Path, *, runs: bool = False) -> int:
     OutputError
         Where the folder has other files, or cannot be written.
     YehuError
-        Where a notebook fails, MkDocs warns of something, or a link of the site leads nowhere.
+        Where a notebook fails, or MkDocs warns of something, such as a link that leads nowhere;
+        what it says goes to stderr.
     """
     folder = folder.absolute()
-    check_folder(folder)
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        scratch = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
-    except OSError as error:
-        raise OutputError(f"{folder}: {error.strerror}") from error
-    try:
-        site = scratch / "site"
-        notebooks = scratch / "notebooks" if runs else None
-        if notebooks is not None:
-            run_all(sorted((ROOT / NOTEBOOKS).glob(f"*{NOTEBOOK}")), notebooks)
-        run_mkdocs(site, notebooks=notebooks)
-        if found := list(faults(site)):
-            more = f", and {len(found) - 1} more" if len(found) > 1 else ""
-            raise YehuError(f"the site is not whole: {found[0]}{more}")
-        (site / MARK).write_text("\n".join(sorted(_files_of(site))) + "\n", encoding="utf-8")
-        _put(site, folder, scratch / "earlier")
-        return len(list(folder.rglob("*.html")))
-    except OSError as error:
-        raise OutputError(f"{folder}: {error.strerror}") from error
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
-
-
-def check_folder(folder: Path) -> None:
-    """Refuse a folder with files that no earlier build has written.
-
-    Raises
-    ------
-    OutputError
-        If it has some, or is no folder.
-    """
-    try:
-        if not folder.exists():
-            return
-        others = sorted(path.name for path in folder.iterdir())
+        earlier = _files_of(folder)
         mark = folder / MARK
-        if mark.exists():
-            ours = set(mark.read_text(encoding="utf-8").splitlines())
-            others = sorted(_files_of(folder) - ours - {MARK})
+        ours = mark.read_text(encoding="utf-8").splitlines() if mark.exists() else []
+        if others := sorted(earlier - {*ours, MARK}):
+            raise OutputError(
+                f"{folder}: has other files, such as {others[0]}; name a new folder, or one of an "
+                "earlier site"
+            )
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as scratch:
+            site = Path(scratch) / "site"
+            notebooks = Path(scratch) / "notebooks" if runs else None
+            if notebooks is not None:
+                run_all(notebooks)
+            run_mkdocs(site, settings, notebooks)
+            files = _files_of(site)
+            (site / MARK).write_text("\n".join(sorted(files)) + "\n", encoding="utf-8")
+            if folder.exists():
+                folder.rename(Path(scratch) / "earlier")
+            site.rename(folder)
+        return sum(name.endswith(".html") for name in files)
     except OSError as error:
         raise OutputError(f"{folder}: {error.strerror}") from error
-    if others:
-        raise OutputError(
-            f"{folder}: has other files, such as {others[0]}; name a new folder, or one of an "
-            "earlier site"
-        )
 
 
 def _files_of(folder: Path) -> set[str]:
-    """The files of a folder, by their paths in it."""
-    return {
-        (Path(root) / name).relative_to(folder).as_posix()
-        for root, _, names in os.walk(folder)
-        for name in names
-    }
+    """The files of a folder, by their paths in it; none where it does not exist."""
+    if folder.exists():
+        next(folder.iterdir(), None)  # an error where it is no folder, unlike rglob
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
-def run_mkdocs(
-    site: Path, settings: Path = ROOT / "mkdocs.yml", *, notebooks: Path | None = None
-) -> None:
-    """Have MkDocs write a site; a warning of it is an error.
-
-    Parameters
-    ----------
-    site : Path
-        The folder to write.
-    settings : Path
-        MkDocs's own, with the folder of pages beside it.
-    notebooks : Path, optional
-        Where the notebooks are that were run.
-
-    Raises
-    ------
-    YehuError
-        Where MkDocs warns; what it says goes to stderr.
-    """
+def run_mkdocs(site: Path, settings: Path, notebooks: Path | None) -> None:
+    """Have MkDocs write a site, strictly: a warning of it is an error."""
     # Not --quiet: with it, --strict counts no warnings.
     words = ["build", "--strict", "--config-file", settings, "--site-dir", site]
     done = subprocess.run(  # noqa: S603 - our own command
@@ -137,18 +95,6 @@ def run_mkdocs(
         told = [line for line in done.stderr.splitlines() if not line.startswith(("INFO", "DEBUG"))]
         print(*told, sep="\n", file=sys.stderr)
         raise YehuError("MkDocs did not build the site: it says above why")
-
-
-def _put(site: Path, folder: Path, earlier: Path) -> None:
-    """Put the new site where the earlier one was."""
-    if folder.exists():
-        folder.rename(earlier)
-    try:
-        site.rename(folder)
-    except OSError:
-        if earlier.exists():
-            earlier.rename(folder)
-        raise
 
 
 def show(number: int, *, opens: bool, runs: bool) -> None:

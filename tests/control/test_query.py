@@ -6,18 +6,15 @@ import json
 import math
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from web_client import walk
 
 from yehu_server.live.osc.call_table import CALLS, Argument, Call
-from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
 from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, UNIT_NAMES, Snapshot, find, node_at
 from yehu_server.params.table import TABLE
 
-DOCS = Path(__file__).parents[2] / "docs"
 NOTHING = {Kind.TEXT: "", Kind.GAUGE: 0.0, Kind.COUNTER: 0}
 VALUES = {param.address: param.default for param in TABLE}
 STANDING = {row.name: NOTHING[row.kind] for row in STATUS}
@@ -156,14 +153,6 @@ def test_long_counts_go_as_floats():
     root = tree(Snapshot(VALUES, STANDING | {"frame": INT_MAX + 1, "underruns": 3}))
     assert find(root, "/yehu/status/frame")["TYPE"] == "f"
     assert find(root, "/yehu/status/underruns")["TYPE"] == "i"
-
-
-def test_the_documentation_has_the_status_table():
-    rows = "".join(f"| `{row.name}` | {row.doc} |\n" for row in STATUS)
-    text = (DOCS / "osc.md").read_text("utf-8")
-    assert f"| name | what |\n|---|---|\n{rows}\n" in text
-    rows = "".join(f"| `{row.name}` | {row.doc} |\n" for row in PART_STATUS)
-    assert f"| of a part | what |\n|---|---|\n{rows}\n" in text
 
 
 @pytest.mark.parametrize("module", ["yehu_server.cli", "yehu_server.rendering.to_files"])

@@ -1,79 +1,136 @@
-"""The site is written whole, and in place of an earlier site only."""
+"""The site is written whole, in place of an earlier site only, and not where a link is broken."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
-from documentation.made import WHOLE, written
 
 from yehu_server.errors import OutputError, YehuError
 
+PLAYER = '<audio controls src="data:audio/wav;base64,c291bmQ="></audio>'
+HOOKS = Path(__file__).parents[2] / "scripts" / "documentation" / "hooks.py"
+
 
 @pytest.fixture
-def mkdocs(scripts, monkeypatch):
-    """An imitation of MkDocs, which writes these files."""
-    files = dict(WHOLE)
-    monkeypatch.setattr(scripts["build"], "run_mkdocs", lambda folder, **_: written(folder, files))
-    return files
+def build(monkeypatch):
+    """The build of a site of one page, by its text."""
+    monkeypatch.syspath_prepend(HOOKS.parent)
+    import build as scripts
+
+    def build_page(folder: Path, text: str = "") -> None:
+        source = folder.parent / "source"
+        (source / "docs").mkdir(parents=True, exist_ok=True)
+        (source / "mkdocs.yml").write_text(
+            "site_name: s\ntheme: {name: null, custom_dir: theme}\n"
+            "validation: {anchors: warn}\nplugins: []\n"
+        )
+        (source / "theme").mkdir(exist_ok=True)
+        (source / "theme" / "main.html").write_text("{{ page.content }}")
+        (source / "docs" / "index.md").write_text(f"# Title\n\n{text}\n")
+        scripts.build(folder, source / "mkdocs.yml")
+
+    return build_page
 
 
 def names_in(folder: Path) -> set[str]:
     return {path.name for path in folder.iterdir()}
 
 
-def test_a_site_replaces_an_earlier_one_whole(scripts, mkdocs, tmp_path):
-    scripts["build"].build(tmp_path / "site")
-    mkdocs["more.html"] = "<p>"
-    del mkdocs["sub/index.html"]
-    mkdocs["index.html"] = "<p>"
-    scripts["build"].build(tmp_path / "site")
-    assert names_in(tmp_path / "site") >= {"index.html", "more.html", "sub"}
-    assert names_in(tmp_path / "site" / "sub") == {"other.html"}
-    assert names_in(tmp_path) == {"site"}
+def test_a_site_replaces_an_earlier_one_whole(build, tmp_path):
+    build(tmp_path / "site", "earlier")
+    build(tmp_path / "site", "later")
+    assert "later" in (tmp_path / "site" / "index.html").read_text()
+    assert names_in(tmp_path) == {"site", "source"}
 
 
-@pytest.mark.usefixtures("mkdocs")
-def test_a_folder_with_other_files_is_left_as_it_is(scripts, tmp_path):
+def test_what_others_have_put_into_a_folder_is_not_lost(build, tmp_path):
     (tmp_path / "home").mkdir()
     (tmp_path / "home" / "diary.txt").write_text("mine")
-    with pytest.raises(OutputError, match="has other files"):
-        scripts["build"].build(tmp_path / "home")
+    with pytest.raises(OutputError, match=r"has other files, such as diary\.txt"):
+        build(tmp_path / "home")
     assert names_in(tmp_path / "home") == {"diary.txt"}
-
-
-@pytest.mark.usefixtures("mkdocs")
-def test_what_others_have_put_into_a_site_is_not_lost(scripts, tmp_path):
-    scripts["build"].build(tmp_path / "site")
-    (tmp_path / "site" / "sub" / "CNAME").write_text("example.org")
-    with pytest.raises(OutputError, match=r"has other files, such as sub/CNAME"):
-        scripts["build"].build(tmp_path / "site")
-    assert (tmp_path / "site" / "sub" / "CNAME").read_text() == "example.org"
-
-
-@pytest.mark.usefixtures("mkdocs")
-def test_a_file_is_no_folder_for_a_site(scripts, tmp_path):
-    (tmp_path / "site").write_text("mine")
+    build(tmp_path / "site")
+    (tmp_path / "site" / "CNAME").write_text("example.org")
+    with pytest.raises(OutputError, match="has other files, such as CNAME"):
+        build(tmp_path / "site")
     with pytest.raises(OutputError, match="Not a directory"):
-        scripts["build"].build(tmp_path / "site")
-    assert (tmp_path / "site").read_text() == "mine"
+        build(tmp_path / "site" / "CNAME")
+    assert (tmp_path / "site" / "CNAME").read_text() == "example.org"
 
 
-def test_a_site_with_a_broken_link_is_not_written(scripts, mkdocs, tmp_path):
-    scripts["build"].build(tmp_path / "site")
-    mkdocs["index.html"] = '<a href="none.html">'
-    with pytest.raises(YehuError, match=r"index\.html: none\.html: no such file"):
-        scripts["build"].build(tmp_path / "site")
-    assert (tmp_path / "site" / "index.html").read_text() == WHOLE["index.html"]
-    assert names_in(tmp_path) == {"site"}
-
-
-@pytest.mark.parametrize(
-    "page", ["[a link](none.md)", "[an anchor](index.md#none)", "[an anchor](#none)"]
-)
-def test_a_warning_of_mkdocs_is_an_error_and_told(scripts, tmp_path, capsys, page):
-    settings = "site_name: s\nvalidation: {anchors: warn}\n"
-    written(tmp_path, {"mkdocs.yml": settings, "docs/index.md": f"# Title\n\n{page}\n"})
+@pytest.mark.parametrize("link", ["none.md", "index.md#none", "#none", "none.png"])
+def test_a_site_with_a_broken_link_is_not_written(build, tmp_path, capsys, link):
+    build(tmp_path / "site", "whole")
     with pytest.raises(YehuError, match="MkDocs did not build"):
-        scripts["build"].run_mkdocs(tmp_path / "site", tmp_path / "mkdocs.yml")
+        build(tmp_path / "site", f"[a link]({link})")
     assert "none" in capsys.readouterr().err
+    assert "whole" in (tmp_path / "site" / "index.html").read_text()
+    assert names_in(tmp_path) == {"site", "source"}
+
+
+# ---------------------------------------------------------------- notebooks
+
+
+def code(source, *outputs):
+    return {
+        "cell_type": "code", "source": source, "outputs": list(outputs), "metadata": {},
+        "execution_count": None,
+    }  # fmt: skip
+
+
+TITLE = {"cell_type": "markdown", "source": ["# A note\n", "\n", "Some words."], "metadata": {}}
+
+
+@pytest.fixture
+def notebooks(monkeypatch, tmp_path):
+    """The module, with notebooks in a folder for a test; and how to write one there."""
+    monkeypatch.syspath_prepend(HOOKS.parent)
+    import notebooks as module
+
+    monkeypatch.setattr(module, "FOLDER", tmp_path)
+
+    def written(*cells) -> Path:
+        (tmp_path / "note.ipynb").write_text(
+            json.dumps({"cells": cells, "metadata": {}, "nbformat": 4})
+        )
+        return tmp_path / "note.ipynb"
+
+    return module, written
+
+
+def test_a_notebook_becomes_a_page_with_its_code_and_what_it_shows(notebooks):
+    module, written = notebooks
+    shows = [
+        {"output_type": "stream", "text": ["1\n"]},
+        {"output_type": "display_data", "data": {"image/png": "aGVs\nbG8=", "text/plain": "<F>"}},
+        {"output_type": "execute_result", "data": {"text/plain": ["array", "(2)"]}},
+        {"output_type": "display_data", "data": {"text/html": PLAYER, "text/plain": "<A>"}},
+    ]
+    text, files = module.shown(written(TITLE, code("print(1)", *shows), code('"```"')))
+    assert text.rstrip().split("\n\n") == [
+        "# A note",
+        '<a href="note.ipynb" download>This notebook as a file</a>',
+        "Some words.",
+        "```python\nprint(1)\n```",
+        "```text\n1\n```",
+        "![what the code above draws](note_1.png)",
+        "```text\narray(2)\n```",
+        "[What the code above plays](note_2.wav)",
+        '``````python\n"```"\n``````',
+    ]
+    assert files == {"note_1.png": b"hello", "note_2.wav": b"sound"}
+
+
+def test_notebooks_are_run_and_their_outputs_shown(notebooks, tmp_path, monkeypatch, capfd):
+    module, written = notebooks
+    path = written(TITLE, code("print(20 + 22)"))
+    module.run_all(tmp_path / "run")
+    monkeypatch.setenv("YEHU_NOTEBOOKS", str(tmp_path / "run"))
+    assert "```text\n42\n```" in module.shown(path)[0]
+    assert json.loads(path.read_text())["cells"][1]["outputs"] == []
+    written(code("1 / 0"))
+    with pytest.raises(YehuError, match=r"note\.ipynb: does not run"):
+        module.run_all(tmp_path / "failing")
+    assert "ZeroDivisionError" in capfd.readouterr().err

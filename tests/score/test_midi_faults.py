@@ -14,9 +14,7 @@ from midi_faults import AGREES, CASES, DIFFERS, REFUSES, UNASKED, Case
 from pages import ROOT, page
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores import score as duration
 from yehu_server.scores.score import Score
-from yehu_server.scores.smf import chunks, faults, reader, wrapper
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
 
@@ -62,20 +60,6 @@ def test_a_fault_has_the_outcome_that_is_written_of_it(case: Case, written):
 def test_the_page_tells_what_is_said_of_each_fault():
     rows = dict(ROW.findall(page(PAGE).text))
     assert rows == {case.name: f"`{case.says}`" if case.says else "nothing" for case in CASES}
-
-
-def test_the_page_has_the_bounds_of_the_code():
-    for phrase in (
-        f"longer than {duration.MAX_DURATION_H:g} hours",
-        f"larger than {reader.MAX_BYTES // 2**20} MiB",
-        f"more than {chunks.MAX_EVENTS:,} events",
-        f"{chunks.MAX_TRACKS:,} tracks",
-        f"{chunks.MAX_CHUNKS:,} chunks",
-        f"the first {wrapper.JUNK_BYTES // 1024} kB",
-        f"{faults.MOST_KINDS} kinds",
-        f"{reader.MAX_REST_S} seconds",
-    ):
-        assert phrase in page(PAGE).flat, phrase
 
 
 @playable

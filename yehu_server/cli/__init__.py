@@ -1,4 +1,4 @@
-"""The command line. Each command has a module of its name."""
+"""The command line: a module for each command."""
 
 from __future__ import annotations
 

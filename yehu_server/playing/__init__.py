@@ -1,1 +1,1 @@
-"""What MIDI messages, mappings, presets and tunings mean: wishes of the player."""
+"""Mappings, tunings, presets, sections, the calibration and the practice, from files to tables."""

@@ -1,1 +1,1 @@
-"""Files of performances: Standard MIDI Files, captured sessions, gestures."""
+"""Files of performances: MIDI files, MusicXML, jianpu, captures, ensembles, gestures."""

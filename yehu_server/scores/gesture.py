@@ -26,25 +26,39 @@ MOST_BYTES = 16 * 2**20
 
 @dataclass(frozen=True)
 class Control:
-    """One control of a gesture: its column in the kernel's array, bounds, default and unit."""
+    """One control of a gesture: its column in the kernel's array, bounds, default, unit, meaning.
+
+    scripts/generate.py writes the table of docs/simulate.md from them.
+    """
 
     column: int
     lo: float
     hi: float
     default: float
     unit: str
+    doc: str
 
 
+# fmt: off
 CONTROLS = {
-    "bow_force": Control(layout.F_N, -50.0, 50.0, 0.0, "N"),
-    "bow_velocity": Control(layout.V_B, -10.0, 10.0, 0.0, "m/s"),
-    "bow_position": Control(layout.X_B, 0.0, 1.0, 0.255, "m"),
-    "bow_noise": Control(layout.TEXTURE, 0.0, 1.0, 0.0, "1"),
-    "pluck_force": Control(layout.F_PLUCK, -50.0, 50.0, 0.0, "N"),
-    "pluck_position": Control(layout.X_PLUCK, 0.0, 1.0, 0.2, "m"),
-    "finger_position": Control(layout.FINGER_CONTROLS, 0.0, 1.0, 0.1, "m"),
-    "press_force": Control(layout.FINGER_CONTROLS + 1, 0.0, 100.0, 0.0, "N"),
+    "bow_force": Control(layout.F_N, -50.0, 50.0, 0.0, "N",
+        "above zero on string 1 (F4), below on string 2 (C5), under 1 mN lifted"),
+    "bow_velocity": Control(layout.V_B, -10.0, 10.0, 0.0, "m/s",
+        "of the bow"),
+    "bow_position": Control(layout.X_B, 0.0, 1.0, 0.255, "m",
+        "from the restraining loop; kept one grid node off the bridge"),
+    "bow_noise": Control(layout.TEXTURE, 0.0, 1.0, 0.0, "1",
+        "how much friction varies along the bow's hair, as a fraction of it"),
+    "pluck_force": Control(layout.F_PLUCK, -50.0, 50.0, 0.0, "N",
+        "on a string, its sign choosing which as `bow_force` does; let go at 0"),
+    "pluck_position": Control(layout.X_PLUCK, 0.0, 1.0, 0.2, "m",
+        "from the restraining loop"),
+    "finger_position": Control(layout.FINGER_CONTROLS, 0.0, 1.0, 0.1, "m",
+        "from the restraining loop"),
+    "press_force": Control(layout.FINGER_CONTROLS + 1, 0.0, 100.0, 0.0, "N",
+        "of the finger; 0 lifts it off the strings"),
 }
+# fmt: on
 HAMMER_LIMIT = 1e4  # N
 
 

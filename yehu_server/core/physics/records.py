@@ -1,4 +1,4 @@
-"""Types of the model's records; written by scripts/records.py from layout.py.
+"""Types of the model's records; written by scripts/generate.py from layout.py.
 
 A record of an array of layout.MODEL or layout.STATE has these attributes in compiled code.
 docs/notation.md has their symbols and units.

@@ -101,7 +101,7 @@ def lost(rig: Any) -> int:
     state = carray(at(rig, memory.STATE_AT), (1,), STATE)[0]
     output = carray(at(rig, memory.OUTPUT_AT), (1,), OUTPUT)[0]
     mix = carray(at(rig, memory.RIG_BYTES), (1,), STAGE)[0]
-    return int(state.lost + output.unsound + mix.unsound)
+    return int(state.lost + output.invalid_samples + mix.invalid_samples)
 
 
 @native("int64(voidptr, int64, voidptr, int64)")

@@ -36,9 +36,7 @@ from urllib.request import urlopen
 import numpy as np
 import report
 import soundfile
-from load import CARD, SPAWN, send_load, sound_card
-from rich.console import Console
-from rich.table import Table
+from load import CARD, SPAWN, helper, loaded, sound_card
 from visitors import visit
 
 from yehu_server.core.engine.ensemble import Ensemble
@@ -46,7 +44,6 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import warm_up
 from yehu_server.live.audio.output import NULL, Output, OutputOptions
 
-COMMAND = [sys.executable, "-c", "from yehu_server.cli import main; raise SystemExit(main())"]
 STARTED_WITHIN_S, ENDED_WITHIN_S = 120.0, 60.0
 SETTLED_S = 8.0  # also what pages need is prepared by then
 SAMPLE_EVERY_S = 10.0
@@ -58,6 +55,7 @@ COUNTERS = (
     *("osc_messages", "osc_dropped", "osc_failures", "midi_messages", "midi_malformed"),
     *("http_failures", "http_unsent"),
 )
+TOLD = ("missed_deadlines", "late_callbacks", "underruns", "late_events", "applied_events")
 COMPARED_FRAMES = 1 << 20
 
 
@@ -114,21 +112,6 @@ async def _page(session: Any, port: int, paths: list[str], counts: list[int], i:
 
 
 @contextlib.contextmanager
-def helper(work: Any, *arguments: Any) -> Iterator[Any]:
-    """Run a function in another process; yield the pipe to it."""
-    here, there = SPAWN.Pipe()
-    process = SPAWN.Process(target=work, args=(*arguments, there), daemon=True)
-    process.start()
-    there.close()
-    try:
-        yield here
-    finally:
-        process.join(5.0)
-        process.kill()
-        process.join()
-
-
-@contextlib.contextmanager
 def visited(url: str | None) -> Iterator[None]:
     """Where there is a page, have it look, play and listen."""
     if url is None:
@@ -161,7 +144,7 @@ class Playing:
         words += ["--panel-port", "0"] if page else ["--no-panel"]
         self.lines: list[str] = []
         self.process = subprocess.Popen(  # noqa: S603 - our own command
-            [*COMMAND, "serve", *words], stderr=subprocess.PIPE, text=True
+            [*report.COMMAND, "serve", *words], stderr=subprocess.PIPE, text=True
         )
         threading.Thread(target=self._read, args=(self.process.stderr,), daemon=True).start()
         self.osc = int(self._said(r"OSC at [\d.]+:(\d+)"))
@@ -219,7 +202,7 @@ def replayed_equal(folder: Path) -> tuple[int, int]:
     """Replay the capture; return the frames recorded, and how many differ or are missing."""
     again = folder / "again.wav"
     words = ["replay", str(folder / "take.jsonl"), "-o", str(again), "--quiet"]
-    subprocess.run([*COMMAND, *words], check=True)  # noqa: S603
+    subprocess.run([*report.COMMAND, *words], check=True)  # noqa: S603
     with soundfile.SoundFile(folder / "take.wav") as take, soundfile.SoundFile(again) as other:
         frames, differing = take.frames, abs(take.frames - other.frames)
         while len(samples := take.read(COMPARED_FRAMES, dtype="float32")):
@@ -244,9 +227,11 @@ def play(
     with helper(play_idle, device, blocksize) as idle:
         idle.recv()
         playing = Playing(device, blocksize, folder, page=page, parts=parts)
-        with helper(listen, playing.http) as pages, visited(playing.page):
-            sender = SPAWN.Process(target=send_load, args=(playing.osc, parts), daemon=True)
-            sender.start()
+        with (
+            helper(listen, playing.http) as pages,
+            visited(playing.page),
+            loaded(playing.osc, parts),
+        ):
             time.sleep(SETTLED_S)
             idle.send(True)
             idle_before, before = idle.recv(), playing.status()
@@ -258,8 +243,6 @@ def play(
                     sys.exit("serve ended:\n" + "\n".join(playing.lines))
             idle.send(True)
             idle_after, after = idle.recv(), playing.status()
-            sender.kill()
-            sender.join()
             pages.send(None)
             told = pages.recv()
         code = playing.end()
@@ -285,41 +268,24 @@ def quarters(memory: list[list[float]]) -> list[float]:
     return [float(np.median([mb for _, mb in memory[a:b]])) for a, b in pairwise(edges) if b > a]
 
 
-def print_report(figures: dict[str, Any]) -> None:
-    """Print the figures."""
-    table = Table(title="callbacks", title_justify="left")
-    for column in ("", "missed", "late", "under-runs"):
-        table.add_column(column)
+def counts(figures: dict[str, Any]) -> dict[str, Any]:
+    """A row of the table: what the instrument missed, and beside it an idle stream."""
     idle, own = figures["idle_stream"], figures["instrument"]
-    table.add_row("idle stream", *(str(idle[what]) for what in CALLBACKS[1:]))
-    counts = ("missed_deadlines", "late_callbacks", "underruns")
-    table.add_row("the instrument", *(str(own[what]) for what in counts))
-    console = Console(width=100)
-    console.print(table)
-    console.print(", ".join(f"{what} {count}" for what, count in own.items()))
-    console.print(f"load {figures['load']:.3f}, worst {figures['worst_load']:.3f}")
+    row = {what.replace("_", " "): own[what] for what in TOLD}
+    return row | {f"idle: {what}".replace("_", " "): idle[what] for what in CALLBACKS[1:]}
+
+
+def tell(figures: dict[str, Any]) -> None:
+    """Print what is beside the table."""
+    print(", ".join(f"{what} {count}" for what, count in figures["instrument"].items()))
+    print(f"load {figures['load']:.3f}, worst {figures['worst_load']:.3f}")
     if None not in [mb for _, mb in figures["memory_mb"]]:
         shown = ", ".join(f"{mb:.0f}" for mb in quarters(figures["memory_mb"]))
-        console.print(f"memory, median of each quarter: {shown} MB")
-    console.print(f"told to {PAGES} pages: {sum(figures['told_to_pages'])} messages")
-    differing, frames = figures["replay_differs_in"], figures["recorded_frames"]
-    console.print(f"replay differs in {differing} of {frames} frames")
-
-
-def compare(rows: list[dict[str, Any]]) -> None:
-    """Print what pages cost: the counts of each turn, side by side."""
-    table = Table(title="in turns", title_justify="left")
-    told = ("missed_deadlines", "late_callbacks", "underruns", "late_events", "applied_events")
-    for column in ("", "idle late", "idle under-runs", *(what.replace("_", " ") for what in told)):
-        table.add_column(column)
-    for row in rows:
-        idle, own = row["idle_stream"], row["instrument"]
-        table.add_row(
-            "with a page" if row["page"] else "without",
-            *(str(idle[what]) for what in ("late_callbacks", "underruns")),
-            *(str(own[what]) for what in told),
-        )
-    Console(width=120).print(table)
+        print(f"memory, median of each quarter: {shown} MB")
+    print(f"told to {PAGES} pages: {sum(figures['told_to_pages'])} messages")
+    print(
+        f"replay differs in {figures['replay_differs_in']} of {figures['recorded_frames']} frames"
+    )
 
 
 def main() -> None:
@@ -349,9 +315,9 @@ def main() -> None:
                     parts=arguments.parts,
                 )
             rows.append({"page": page, **figures})
-            print_report(figures)
-    if arguments.page:
-        compare(rows)
+            tell(figures)
+    name = {False: "without a page", True: "with a page"}
+    report.show({f"{n}, {name[row['page']]}": counts(row) for n, row in enumerate(rows, 1)})
     report.save(
         arguments.save,
         rows if len(rows) > 1 else figures,

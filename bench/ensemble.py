@@ -9,15 +9,13 @@ of the instruments, one block of each in turn, as a mixer asks for them.
 
 from __future__ import annotations
 
+import argparse
 import os
-import statistics
 import threading
-import time
+from typing import Any
 
 import numpy as np
 import report
-from rich.console import Console
-from rich.table import Table
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
@@ -47,28 +45,26 @@ def play(instruments: list[Instrument], seconds: float) -> None:
             each.process(out)
 
 
-def pace(instruments: list[Instrument], threads: int) -> list[float]:
-    """Seconds of sound, of all instruments together, per second: one value for each run."""
+def pace(instruments: list[Instrument], threads: int) -> dict[str, Any]:
+    """Seconds of sound, of all instruments together, per second."""
     shares = [instruments[first::threads] for first in range(threads)]
-    paces = []
-    for _ in range(RUNS):
+
+    def play_all() -> None:
         workers = [
             threading.Thread(target=play, args=(share, SECONDS)) for share in shares if share
         ]
-        start = time.perf_counter()
         for worker in workers:
             worker.start()
         for worker in workers:
             worker.join()
-        paces.append(len(instruments) * SECONDS / (time.perf_counter() - start))
-    return paces
+
+    paces = [len(instruments) * SECONDS / seconds for seconds in report.timed(play_all, RUNS)]
+    return report.spread(paces, "in real time")
 
 
-def main() -> None:
-    """Measure and print."""
-    arguments = report.options(__doc__).parse_args()
+def measure(_: argparse.Namespace) -> dict[str, dict[str, Any]]:
     cores = os.cpu_count() or 1
-    figures: dict[str, list[float]] = {}
+    figures = {}
     for count in COUNTS:
         players = [instrument(number) for number in range(count)]
         figures[f"{count} instruments, one core"] = pace(players, 1)
@@ -78,15 +74,8 @@ def main() -> None:
         figures[f"{fingers} fingers pressed"] = pace([instrument(0, fingers=fingers)], 1)
     for rate in RATES:
         figures[f"{rate / 1e3:g} kHz"] = pace([instrument(0, rate)], 1)
-
-    table = Table("what", "instruments in real time", "from", "to")
-    for name, values in figures.items():
-        spread = (statistics.median(values), min(values), max(values))
-        table.add_row(name, *(f"{value:.1f}" for value in spread))
-    Console().print(table)
-    record = {name: {"median": statistics.median(v), "all": v} for name, v in figures.items()}
-    report.save(arguments.save, record)
+    return figures
 
 
 if __name__ == "__main__":
-    main()
+    report.run(__doc__, measure)

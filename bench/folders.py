@@ -21,11 +21,8 @@ from typing import Any
 
 import mido
 import report
-from rich.console import Console
-from rich.table import Table
 
 TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
-COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
 HERE = ("--host", "127.0.0.1", "--no-dashboard")
 NOTES = (65, 67, 69, 72, 74, 77, 79, 81)
 
@@ -76,7 +73,7 @@ def cpu_of(pid: int) -> float:
 
 def render(scores: Path, out: Path, *words: str, beside: tuple[int, ...] = ()) -> dict[str, Any]:
     """Render a folder; figures of the whole command, the processes `beside` it included."""
-    command = [sys.executable, "-c", COMMAND, "render", str(scores), "-o", str(out), "--quiet"]
+    command = [*report.COMMAND, "render", str(scores), "-o", str(out), "--quiet"]
     before = sum(map(cpu_of, beside))
     start = time.perf_counter()
     process = subprocess.Popen([*command, *words])  # noqa: S603 - our own
@@ -91,12 +88,11 @@ def render(scores: Path, out: Path, *words: str, beside: tuple[int, ...] = ()) -
     own = sum(watch.cpu_s.values())
     third = max(1, len(watch.megabytes) // 3)
     return {
-        "files": made,
-        "elapsed_s": elapsed,
-        "cpu_s": own + sum(map(cpu_of, beside)) - before,
-        "command_cpu_s": own,
-        "megabytes_early": max(watch.megabytes[:third]),
-        "megabytes_late": max(watch.megabytes[-third:]),
+        "files/s": made / elapsed,
+        "CPU ms a file": 1e3 * (own + sum(map(cpu_of, beside)) - before) / made,
+        "of the command": 1e3 * own / made,
+        "MB early": max(watch.megabytes[:third]),
+        "MB late": max(watch.megabytes[-third:]),
         "load": os.getloadavg()[0],
     }
 
@@ -177,21 +173,7 @@ def main() -> None:
             globals()["nothing"] = nothing
             with cluster(folder, 2) as (file, scheduler, _):
                 figures["an empty job"] = overhead(file, scheduler, arguments.overhead)
-    table = Table("", "files/s", "sound/s", "CPU ms a file", "MB early", "MB late", "load")
-    for name, found in figures.items():
-        if "files" in found:
-            pace = found["files"] / found["elapsed_s"]
-            row = [
-                f"{pace:.1f}",
-                f"{pace * arguments.seconds:.0f}",
-                f"{1e3 * found['cpu_s'] / found['files']:.1f}",
-                *(f"{found[key]:.0f}" for key in ("megabytes_early", "megabytes_late")),
-                f"{found['load']:.1f}",
-            ]
-            table.add_row(name, *row)
-        else:
-            table.add_row(name, ", ".join(f"{key} {value:.2f}" for key, value in found.items()))
-    Console(width=150).print(table)
+    report.show(figures)
     report.save(arguments.save, figures, files=arguments.files, seconds=arguments.seconds)
 
 

@@ -16,7 +16,6 @@ import os
 import random
 import re
 import socket
-import statistics
 import subprocess
 import sys
 import threading
@@ -26,9 +25,7 @@ from typing import Any
 
 import numpy as np
 import report
-from load import JACK, SPAWN, dummy_jack, midi_out, start
-from rich.console import Console
-from rich.table import Table
+from load import JACK, compute, dummy_jack, helper, midi_out, start
 
 from yehu_server.core.engine.mailbox import MIDI_INPUTS, SMALL_RING
 from yehu_server.core.midi.packing import PORT_AT, packed
@@ -160,12 +157,6 @@ class Witness:
         ]
 
 
-def compute() -> None:
-    """Keep Python busy."""
-    while True:
-        sum(number * number for number in range(1000))
-
-
 def run(kind: str, block: int, trials: int) -> dict[str, Any]:
     """One row of the table."""
     options = ServeOptions(
@@ -177,27 +168,25 @@ def run(kind: str, block: int, trials: int) -> dict[str, Any]:
     server = Server(options, lambda _line: None)
     witness = Witness(server, kind)
     server.start()
-    here, there = SPAWN.Pipe()
-    client = SPAWN.Process(target=measure, args=(kind, server.osc.port, trials, there))
-    client.start()
-    there.close()
     try:
-        latencies, xruns = here.recv()
+        with helper(measure, kind, server.osc.port, trials) as client:
+            latencies, xruns = client.recv()
     except EOFError:
         sys.exit("the JACK client ended before its time")
     finally:
-        client.join()
         shares = witness.shares()
         late = int(server.instrument.meters()["late_events"])
         server.stop()
+    if len(latencies) < 2 or len(shares) < 2:
+        sys.exit("nothing was heard")
+    share = report.quantiles(shares)
     return {
-        "heard": len(latencies),
-        "latency_ms": summary(latencies),
-        "share_ms": summary(shares),
-        "bound_ms": 2e3 * block / RATE + 0.5,
-        "within_bound": sum(s < 2e3 * block / RATE + 0.5 for s in shares) / max(1, len(shares)),
-        "late_events": late,
-        "device_ms": 1e3 * device_frames() / RATE,
+        "heard": f"{len(latencies)} of {trials}",
+        **report.quantiles(latencies),
+        **{f"own {what}": share[what] for what in ("median", "most", "jitter")},
+        "within 2 blocks + 0.5": sum(s < 2e3 * block / RATE + 0.5 for s in shares) / len(shares),
+        "device": 1e3 * device_frames() / RATE,
+        "late events": late,
         "xruns": xruns,
     }
 
@@ -209,20 +198,6 @@ def device_frames() -> int:
     return int(found[1]) if found else 0
 
 
-def summary(values: list[float]) -> dict[str, float]:
-    """Median, extremes and standard deviation."""
-    if len(values) < 2:
-        sys.exit("nothing was heard")
-    ordered = sorted(values)
-    return {
-        "median": statistics.median(ordered),
-        "least": ordered[0],
-        "p95": ordered[int(0.95 * len(ordered))],
-        "most": ordered[-1],
-        "jitter": statistics.stdev(ordered),
-    }
-
-
 def main() -> None:
     """Measure and print everything."""
     parser = report.options(__doc__)
@@ -230,28 +205,13 @@ def main() -> None:
     parser.add_argument("--busy", action="store_true", help="beside a thread that computes")
     arguments = parser.parse_args()
     if arguments.busy:
-        threading.Thread(target=compute, daemon=True).start()
-
+        compute()
     figures = {}
     for block in BLOCKS:
         with dummy_jack(block, RATE):
             for kind in ("OSC", "MIDI"):
                 figures[f"{kind}, blocks of {block}"] = run(kind, block, arguments.trials)
-
-    table = Table(title="ms; jitter is the standard deviation")
-    table.add_column("", no_wrap=True)
-    for column in (
-        *("heard", "median", "least", "95 %", "most", "jitter"),
-        *("own share", "jitter", "within 2 blocks + 0.5", "device"),
-    ):
-        table.add_column(column)
-    for name, figure in figures.items():
-        latency, share = figure["latency_ms"], figure["share_ms"]
-        row = [f"{latency[what]:.2f}" for what in ("median", "least", "p95", "most", "jitter")]
-        row += [f"{share['median']:.2f}", f"{share['jitter']:.2f}"]
-        row += [f"{100 * figure['within_bound']:.1f} %", f"+{figure['device_ms']:.2f}"]
-        table.add_row(name, f"{figure['heard']} of {arguments.trials}", *row)
-    Console(width=150).print(table)
+    report.show(figures, "ms; jitter is the standard deviation")
     report.save(arguments.save, figures, device=report.NO_CARD, trials=arguments.trials)
 
 

@@ -19,16 +19,13 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import threading
 import time
 from dataclasses import dataclass
 from typing import Any
 
 import report
-from endurance import PAGES, helper, listen
-from load import CARD, SPAWN, send_load, sound_card
-from rich.console import Console
-from rich.table import Table
+from endurance import listen
+from load import CARD, compute, helper, loaded, sound_card
 
 from yehu_server.core.engine.mailbox import MIDI_INPUTS, SERVER
 from yehu_server.core.engine.warming import warm_up
@@ -100,17 +97,11 @@ def serve(setting: Setting, pipe: Any) -> None:
     server = Server(options, lambda _line: None)
     server.start()
     if setting.is_busy:
-        threading.Thread(target=compute, daemon=True).start()
+        compute()
     pipe.send((server.osc.port, None if server.web is None else server.web.port))
     while (asked := pipe.recv()) is not None:
         pipe.send(counts(server, anew=asked))
     server.stop()
-
-
-def compute() -> None:
-    """Keep Python busy."""
-    while True:
-        sum(number * number for number in range(1000))
 
 
 # ---------------------------------------------------------------- one row
@@ -118,76 +109,38 @@ def compute() -> None:
 
 def run(setting: Setting, seconds: float) -> dict[str, Any]:
     """Play under load for some seconds; return the figures of a row."""
-    pipe, there = SPAWN.Pipe()
-    server = SPAWN.Process(target=serve, args=(setting, there))
-    server.start()
-    there.close()
-    port, http = pipe.recv()
-    load = SPAWN.Process(target=send_load, args=(port, setting.parts), daemon=True)
-    load.start()
-    listeners = contextlib.nullcontext() if http is None else helper(listen, http)
-
     told = [0]
-    try:
-        with listeners as pages:
+    with helper(serve, setting) as pipe:
+        port, http = pipe.recv()
+        listeners = contextlib.nullcontext() if http is None else helper(listen, http)
+        with loaded(port, setting.parts), listeners as pages:
             time.sleep(SETTLED_S)
             pipe.send(True)
-            before = pipe.recv()
-            started = time.monotonic()
+            before, started = pipe.recv(), time.monotonic()
             time.sleep(seconds)
             pipe.send(False)
-            after = pipe.recv()
-            lasted = time.monotonic() - started
+            after, lasted = pipe.recv(), time.monotonic() - started
             if pages is not None:
                 pages.send(None)
                 told = pages.recv()
-    finally:
-        load.kill()
         pipe.send(None)
-        server.join(10.0)
-        server.kill()
     passed = {what: after[what] - before[what] for what in after}
-    figures: dict[str, Any] = {
-        "block": setting.block,
-        "busy": setting.is_busy,
-        "parts": setting.parts,
-        "listeners": PAGES if setting.has_listeners else 0,
-        "handling_ms": setting.handling_ms,
-        "delay_ms": 1e3 * after["delay"] / RATE,
-        "dropped": passed["dropped"],
-        "late_callbacks": passed["late_callbacks"] / max(1, passed["callbacks"]),
-        "underruns": passed["underruns"] / max(1, passed["callbacks"]),
-        "told_to_listeners": sum(told),
-    }
+    callbacks = max(1, passed["callbacks"])
+    figures: dict[str, Any] = {"delay, ms": 1e3 * after["delay"] / RATE}
     for source in SOURCES:
-        figures[source] = {
-            "per_second": passed[f"{source} taken"] / lasted,
-            "late": passed[f"{source} late"] / max(1, passed[f"{source} taken"]),
-            "latest_ms": 1e3 * after[f"{source} latest"] / RATE,
-        }
-    return figures
+        taken = passed[f"{source} taken"]
+        figures[f"{source} a second"] = taken / lasted
+        figures[f"{source} % late"] = 100.0 * passed[f"{source} late"] / max(1, taken)
+        figures[f"{source} latest, ms"] = 1e3 * after[f"{source} latest"] / RATE
+    return figures | {
+        "dropped": passed["dropped"],
+        "% late callbacks": 100.0 * passed["late_callbacks"] / callbacks,
+        "% under-runs": 100.0 * passed["underruns"] / callbacks,
+        "told to listeners": sum(told),
+    }
 
 
 # ---------------------------------------------------------------- the whole
-
-
-def print_report(rows: list[dict[str, Any]]) -> None:
-    """Print the figures."""
-    table = Table(title="late events", title_justify="left")
-    columns = ("block", "Python", "handling (ms)", "delay (ms)")
-    of_sources = [f"{source}: {what}" for source in SOURCES for what in ("a second", "late", "ms")]
-    for column in (*columns, *of_sources, "dropped", "late callbacks", "under-runs"):
-        table.add_column(column)
-    for row in rows:
-        cells = [str(row["block"]), "busy" if row["busy"] else "idle"]
-        cells += [f"{row['handling_ms']:g}", f"{row['delay_ms']:.2f}"]
-        for source in SOURCES:
-            figures = row[source]
-            cells += [f"{figures['per_second']:.0f}", f"{figures['late']:.3%}"]
-            cells.append(f"{figures['latest_ms']:.2f}")
-        cells += [str(row["dropped"]), f"{row['late_callbacks']:.2%}", f"{row['underruns']:.2%}"]
-        table.add_row(*cells)
-    Console(width=160).print(table)
 
 
 def main() -> None:
@@ -203,7 +156,7 @@ def main() -> None:
     arguments = parser.parse_args()
     warm_up()  # compile before processes wait for each other
     device = arguments.audio_device or CARD
-    rows = []
+    rows = {}
     for block in arguments.blocks:
         with sound_card(arguments.audio_device, block):
             for handling_ms, is_busy in itertools.product(arguments.handling, (False, True)):
@@ -216,8 +169,9 @@ def main() -> None:
                     arguments.parts,
                     arguments.listeners,
                 )
-                rows.append(run(setting, arguments.seconds))
-    print_report(rows)
+                name = f"{block} frames, {'busy' if is_busy else 'idle'}, {handling_ms:g} ms"
+                rows[name] = run(setting, arguments.seconds)
+    report.show(rows, "late events, by the delay's handling part")
     report.save(
         arguments.save,
         rows,

@@ -14,6 +14,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -107,6 +108,43 @@ def send_load(port: int, parts: int = 1) -> None:
                     osc.send(pack(f"{prefix}/playing/pressure", chance.uniform(0.2, 0.6)))
             due += 0.005
             time.sleep(max(0.0, due - time.monotonic()))
+
+
+@contextlib.contextmanager
+def loaded(port: int, parts: int = 1) -> Iterator[None]:
+    """Within the block, another process sends the load."""
+    sender = SPAWN.Process(target=send_load, args=(port, parts), daemon=True)
+    sender.start()
+    try:
+        yield
+    finally:
+        sender.kill()
+        sender.join()
+
+
+@contextlib.contextmanager
+def helper(work: Any, *arguments: Any) -> Iterator[Any]:
+    """Run a function in another process; yield the pipe to it, which is its last argument."""
+    here, there = SPAWN.Pipe()
+    process = SPAWN.Process(target=work, args=(*arguments, there))
+    process.start()
+    there.close()
+    try:
+        yield here
+    finally:
+        process.join(10.0)
+        process.kill()
+        process.join()
+
+
+def compute() -> None:
+    """Keep Python busy, in a thread."""
+
+    def work() -> None:
+        while True:
+            sum(number * number for number in range(1000))
+
+    threading.Thread(target=work, daemon=True).start()
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ that of this thread, which leaves out most of what else the machine does.
 
 from __future__ import annotations
 
+import argparse
 import random
 import time
 from collections.abc import Callable, Sequence
@@ -74,7 +75,7 @@ class Player:
         return bool(meters["drained"] < self._first.posted or meters["waiting"] > 0)
 
 
-def measure(player: Player, kind: str, blocks: int) -> dict[str, float]:
+def costs(player: Player, kind: str, blocks: int) -> dict[str, float]:
     """Play some blocks with 1,000 messages of a kind each, and others between them."""
     chance = random.Random(1)  # noqa: S311 - for music, not secrets
     without, with_messages, lasted = [], [], 0
@@ -92,31 +93,20 @@ def measure(player: Player, kind: str, blocks: int) -> dict[str, float]:
             with_messages.append(max(times))
             lasted = max(lasted, len(times))
     return {
-        "median without (us)": 1e6 * float(np.median(without)),
-        "worst without (us)": 1e6 * max(without),
-        "median (us)": 1e6 * float(np.median(with_messages)),
-        "worst (us)": 1e6 * max(with_messages),
+        "us, median without": 1e6 * float(np.median(without)),
+        "worst without": 1e6 * max(without),
+        "median": 1e6 * float(np.median(with_messages)),
+        "worst": 1e6 * max(with_messages),
         "ratio of medians": float(np.median(with_messages) / np.median(without)),
         "blocks until all is done": lasted,
     }
 
 
-def main() -> None:
-    """Measure and print."""
-    parser = report.options(__doc__)
-    parser.add_argument("--blocks", type=int, default=200)
-    arguments = parser.parse_args()
-    player, figures = Player(), {}
-    print(f"a block has {1e6 * BLOCK / RATE:.0f} us; its CPU time, median and worst (us):")
-    for kind in KINDS:
-        found = figures[kind] = measure(player, kind, arguments.blocks)
-        usual, usual_worst, median, worst, ratio, lasted = found.values()
-        print(
-            f"{kind:15} {median:6.0f} {worst:6.0f}, without {usual:4.0f} {usual_worst:4.0f}, "
-            f"{ratio:5.1f} times as much, done in {lasted} blocks"
-        )
-    report.save(arguments.save, figures, blocks=arguments.blocks)
+def measure(arguments: argparse.Namespace) -> dict[str, dict[str, float]]:
+    print(f"a block has {1e6 * BLOCK / RATE:.0f} us; its CPU time:")
+    player = Player()
+    return {kind: costs(player, kind, arguments.blocks) for kind in KINDS}
 
 
 if __name__ == "__main__":
-    main()
+    report.run(__doc__, measure, blocks=(200, "with messages, of each kind"))

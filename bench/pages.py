@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 import report
-from load import CARD, SPAWN, send_load, sound_card
+from load import CARD, SPAWN, loaded, sound_card
 from visitors import PARAMETER, visit
 
 from yehu_server.core.engine.warming import warm_up
@@ -131,8 +131,9 @@ def to_ear(sent: Any, heard: Any, fulfilled: Any, rate: float) -> dict[str, Any]
         for value, frame in fulfilled
         if value in when and ends[0] <= frame < ends[-1]
     ]
+    shares = {"median": 0.5, "95 %": 0.95, "most": 1.0}
     return {
-        "to_ear_ms": [round(float(np.quantile(taken, share)), 2) for share in (0.5, 0.95, 1.0)],
+        **{f"to ear, ms, {name}": float(np.quantile(taken, at)) for name, at in shares.items()},
         "gaps": int(np.count_nonzero(times[1:] > behind[1:] + ends[:-1] / rate)),
     }
 
@@ -147,7 +148,7 @@ def main() -> None:
     parser.add_argument("--audio-device", help="see yehu-server devices (default: a dummy)")
     arguments = parser.parse_args()
     warm_up()
-    rows = []
+    rows: dict[str, dict[str, Any]] = {}
     card = None if arguments.audio_device == NULL else arguments.audio_device
     with sound_card(card, arguments.blocksize):
         options = ServeOptions(
@@ -158,18 +159,16 @@ def main() -> None:
         )
         server = Server(options, print)
         server.start()
-        load = SPAWN.Process(target=send_load, args=(server.osc.port,), daemon=True)
-        load.start()
         try:
-            for _ in range(arguments.turns):
-                for listeners in (None, arguments.listeners):
-                    row = turn(server, listeners, arguments.seconds)
-                    rows.append({"listeners": listeners} | row)
-                    print(rows[-1], flush=True)
+            with loaded(server.osc.port):
+                for number in range(arguments.turns):
+                    for listeners in (None, arguments.listeners):
+                        name = f"{number + 1}, {listeners or 'no'} listeners"
+                        rows[name] = turn(server, listeners, arguments.seconds)
         finally:
-            load.kill()
             server.skip_fade_out()
             server.stop()
+    report.show(rows)
     report.save(arguments.save, rows, device=arguments.audio_device or report.NO_CARD)
 
 

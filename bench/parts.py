@@ -20,13 +20,15 @@ import time
 from typing import Any
 
 import numpy as np
+import report
 
 from yehu_server.compile import jit
 from yehu_server.core.physics import finger, kernel, layout
 from yehu_server.core.physics.quantities import Quantities
 
-RATE = 44100.0
 FRAMES, RUNS, STEPPED = 4410, 300, 100
+SETTLED_S = 0.5
+VIBRATO_HZ, VIBRATO_M = 6.0, 1e-3
 SINGLE_STEP = 9  # PTRACE_SINGLESTEP
 
 # Number of fingers, of fingers that are down, bow force (N).
@@ -39,34 +41,52 @@ CASES = {
 }
 
 
-def controls(frames: int, fingers: int, down: int, force: float) -> Any:
-    """Controls, one row a sample: a bow that may be lifted, fingers down or near the loop."""
-    rows = np.zeros((frames, layout.control_columns(fingers)))
-    rows[:, [layout.F_N, layout.V_B, layout.X_B]] = force, 0.2, 0.26
-    # Keeps the strings that are not bowed in motion, clear of denormals.
-    rows[:, layout.F_HAMMER] = 1e-3 * np.random.default_rng(1).normal(size=frames)
-    for j in range(fingers):
-        at = layout.FINGER_CONTROLS + layout.CONTROLS_PER_FINGER * j
-        if j < down:
-            rows[:, at : at + 2] = 0.1 if down == 1 else 0.03 + 0.03 * j, 1.5
-        else:
-            rows[:, at] = 0.012
-    return rows
-
-
 class Kernel:
-    """The kernel after half a second of playing."""
+    """The kernel after half a second of playing.
 
-    def __init__(self, fingers: int, down: int, force: float) -> None:
-        self.playing = fingers, down, force
-        self.model = kernel.prepare(Quantities(), RATE, fingers)
+    Parameters
+    ----------
+    fingers, down : int
+        Number of fingers, and of those that are down; others are up, near the loop.
+    force : float
+        Of the bow (N).
+    vibrato : bool
+        Whether the fingers move.
+    """
+
+    def __init__(
+        self,
+        fingers: int,
+        down: int,
+        force: float,
+        *,
+        vibrato: bool = False,
+        rate: float = 44100.0,
+        is_idle: bool = False,
+    ) -> None:
+        self.rate, self.playing = rate, (fingers, down, force, vibrato, is_idle)
+        self.model = kernel.prepare(Quantities(), rate, fingers)
         self.state = kernel.at_rest(self.model)
-        self.advance(*self.rows(round(0.5 * RATE)))
+        self.advance(*self.rows(round(SETTLED_S * rate)))
 
     def rows(self, frames: int) -> tuple[Any, Any]:
-        """Controls, and room for probes."""
-        probes = np.zeros((frames, layout.probe_columns(self.playing[0])))
-        return controls(frames, *self.playing), probes
+        """Controls, one row a sample, and room for probes."""
+        fingers, down, force, vibrato, is_idle = self.playing
+        rows = np.zeros((frames, layout.control_columns(fingers)))
+        rows[:, [layout.F_N, layout.V_B, layout.X_B]] = force, 0.2 * (force > 0.0), 0.26
+        # Keeps the strings that are not bowed in motion, clear of denormals.
+        noise = 0.0 if is_idle else 1e-3
+        rows[:, layout.F_HAMMER] = noise * np.random.default_rng(1).normal(size=frames)
+        swing = np.sin(np.arange(frames) / self.rate * 2.0 * np.pi * VIBRATO_HZ)
+        for j in range(fingers):
+            at = layout.FINGER_CONTROLS + layout.CONTROLS_PER_FINGER * j
+            if j < down:
+                rows[:, at] = 0.1 if down == 1 else 0.03 + 0.03 * j
+                rows[:, at] += VIBRATO_M * swing * vibrato
+                rows[:, at + 1] = 1.5
+            else:
+                rows[:, at] = 0.012
+        return rows, np.zeros((frames, layout.probe_columns(fingers)))
 
     def advance(self, rows: Any, probes: Any) -> float:
         """Advance over rows of controls; return the seconds it took."""
@@ -109,7 +129,7 @@ class Kernel:
 
 
 def solve_friction(
-    free: Any, _compliance: Any, z: Any, _force: Any, tangent: Any, _bow: Any, _string: Any
+    free: Any, _mobility: Any, z: Any, _force: Any, _mu: Any, tangent: Any, _m: Any, _string: Any
 ) -> Any:
     """Friction: a linear one."""
     v_r = 0.5 * free
@@ -173,22 +193,25 @@ def main() -> None:
         leave_out(sys.argv[1])
         print(Kernel(*CASES["and a finger"]).fastest_ns()[0])
         return
-    print(f"{'':30}     ns  x real time  evaluations  instructions")
-    whole = 0.0
+    rows = {}
     for name, case in CASES.items():
         machine = Kernel(*case)
         ns, evaluations = machine.fastest_ns()
         instructions = machine.instructions() if sys.platform == "linux" else float("nan")
-        if name == "and a finger":
-            whole = ns
-        print(
-            f"{name:30} {ns:6.0f} {1e9 / RATE / ns:12.0f} {evaluations:12.2f} {instructions:13.0f}"
-        )
-    print("\nWith a finger, what it is faster by without")
+        rows[name] = {
+            "ns": ns,
+            "x real time": 1e9 / machine.rate / ns,
+            "evaluations": evaluations,
+            "instructions": instructions,
+        }
+    report.show(rows)
+    without = {}
     for name, (part, _) in PARTS.items():
         command = [sys.executable, __file__, name]
         run = subprocess.run(command, check=True, capture_output=True, text=True)  # noqa: S603
-        print(f"{name:30} {whole - float(run.stdout):6.0f}  {part.__doc__}")
+        faster = rows["and a finger"]["ns"] - float(run.stdout)
+        without[name] = {"ns": faster, "is": part.__doc__}
+    report.show(without, "With a finger, what it is faster by without")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Command line and result file of all benchmarks."""
+"""Command line, timing, table and result file of all benchmarks."""
 
 from __future__ import annotations
 
@@ -6,9 +6,17 @@ import argparse
 import json
 import os
 import platform
+import statistics
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
+from rich.table import Table
+
+COMMAND = [sys.executable, "-c", "from yehu_server.cli import main; raise SystemExit(main())"]
 NO_CARD = "JACK, dummy driver, no real-time rights"
 
 
@@ -31,6 +39,76 @@ def save(path: Path | None, figures: object, **conditions: Any) -> None:
     }
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+
+
+def run(
+    doc: str | None,
+    measure: Callable[[argparse.Namespace], Mapping[str, Mapping[str, Any]]],
+    **more: tuple[Any, str],
+) -> None:
+    """Parse the command line, measure, print a table and write the figures where wanted.
+
+    Parameters
+    ----------
+    measure : callable
+        Returns the rows of the table by their names, each of values by columns.
+    more : tuple
+        Options by name: the default, and what it is.
+    """
+    parser = options(doc or "")
+    for name, (default, about) in more.items():
+        told = f"{about} (default: {default})"
+        parser.add_argument(f"--{name}", type=type(default), default=default, help=told)
+    arguments = parser.parse_args()
+    figures = measure(arguments)
+    show(figures)
+    save(arguments.save, figures, **{name: getattr(arguments, name) for name in more})
+
+
+def show(rows: Mapping[str, Mapping[str, Any]], title: str | None = None) -> None:
+    """Print a table: numbers to four digits, and no lists."""
+    columns = dict.fromkeys(key for row in rows.values() for key in row)
+    shown = [
+        column
+        for column in columns
+        if not any(isinstance(row.get(column), list) for row in rows.values())
+    ]
+    table = Table("", *shown, title=title, title_justify="left")
+    for name, row in rows.items():
+        cells = [row.get(column, "") for column in shown]
+        table.add_row(name, *(f"{x:.4g}" if isinstance(x, float) else str(x) for x in cells))
+    Console(width=None if sys.stdout.isatty() else 160).print(table)
+
+
+def timed(work: Callable[[], object], runs: int) -> list[float]:
+    """Seconds of each run, after a first one that does not count."""
+    times = []
+    for _ in range(runs + 1):
+        start = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - start)
+    return times[1:]
+
+
+def spread(values: Sequence[float], unit: str = "") -> dict[str, Any]:
+    """Median and extremes of runs, and all of them."""
+    middle = statistics.median(values)
+    found = {"median": middle, "from": min(values), "to": max(values), "unit": unit}
+    return {**found, "all": list(values)}
+
+
+def quantiles(values: Sequence[float]) -> dict[str, float]:
+    """Median, extremes and standard deviation; NaN of nothing."""
+    if len(values) < 2:
+        return dict.fromkeys(("median", "least", "95 %", "most", "jitter"), float("nan"))
+    ordered = sorted(values)
+    return {
+        "median": statistics.median(ordered),
+        "least": ordered[0],
+        "95 %": ordered[int(0.95 * len(ordered))],
+        "most": ordered[-1],
+        "jitter": statistics.stdev(ordered),
+    }
 
 
 def processor() -> str:

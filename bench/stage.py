@@ -8,16 +8,14 @@ Noise stands for the instruments, which are not computed. Figures are the least 
 
 from __future__ import annotations
 
+import argparse
 import sys
-import time
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import report
-from rich.console import Console
-from rich.table import Table
 
 from yehu_server.core.engine.mixing import mix_block
 
@@ -35,21 +33,18 @@ def fastest_ns(parts: int, *, has_room: bool = True, **asked: Any) -> float:
     told = stages.told(FRAMES, **asked)
     rows = np.ascontiguousarray(np.broadcast_to(told, (parts, *told.shape)))
     out = np.zeros((FRAMES, 2), np.float32)
-    best = np.inf
-    for _ in range(RUNS):
-        start = time.perf_counter()
+
+    def mix() -> None:
         mix_block.call(
             stage.memory.ctypes.data, stage.frame, FRAMES, dry.ctypes.data, rows.ctypes.data,
             out.ctypes.data, out.ctypes.data, 0,
         )  # fmt: skip
-        best = min(best, time.perf_counter() - start)
         stage.frame += FRAMES
-    return 1e9 * best / FRAMES
+
+    return 1e9 * min(report.timed(mix, RUNS)) / FRAMES
 
 
-def main() -> None:
-    """Measure, show and save."""
-    arguments = report.options(__doc__ or "").parse_args()
+def measure(_: argparse.Namespace) -> dict[str, dict[str, float]]:
     whole = {parts: fastest_ns(parts) for parts in PARTS}
     figures = {
         "room": whole[1] - fastest_ns(1, level=0.0),
@@ -58,12 +53,8 @@ def main() -> None:
         "hall, one part": fastest_ns(1, size=25.0, decay=1.6, level=0.7),
         **{f"{parts} parts": figure for parts, figure in whole.items()},
     }
-    table = Table("", "ns a frame")
-    for name, figure in figures.items():
-        table.add_row(name, f"{figure:.1f}")
-    Console().print(table)
-    report.save(arguments.save, figures, rate=RATE)
+    return {name: {"ns a frame": figure} for name, figure in figures.items()}
 
 
 if __name__ == "__main__":
-    main()
+    report.run(__doc__, measure)

@@ -8,9 +8,8 @@ same controls, made in advance, without judging them. Times are medians of sever
 
 from __future__ import annotations
 
+import argparse
 import os
-import statistics
-import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -18,8 +17,6 @@ from typing import Any
 
 import numpy as np
 import report
-from rich.console import Console
-from rich.table import Table
 
 from yehu_server.core.physics import kernel, layout
 from yehu_server.lab.regimes.strokes import find
@@ -56,26 +53,19 @@ def advance(stroke: Any) -> None:
     kernel.advance(model, state, controls, probes, None)
 
 
-def paced(work: Callable[[], object], count: int) -> float:
-    """Strokes a second, the median of RUNS after one that does not count."""
-    work()
-    paces = []
-    for _ in range(RUNS):
-        start = time.perf_counter()
-        work()
-        paces.append(count / (time.perf_counter() - start))
-    return statistics.median(paces)
+def paced(work: Callable[[], object], count: int) -> dict[str, Any]:
+    """Strokes a second."""
+    return report.spread([count / seconds for seconds in report.timed(work, RUNS)], "a second")
 
 
-def main() -> None:
-    """Measure and print everything."""
-    arguments = report.options(__doc__ or "").parse_args()
+def measure(_: argparse.Namespace) -> dict[str, dict[str, Any]]:
     study = study_of(DATA)
     count, alone = study.coarse, kernel_strokes(study)
     index = np.stack(np.unravel_index(np.arange(count), study.shape), axis=1)
     strokes = study.bow.strokes(study.axes, index)
     cores = os.cpu_count() or 1
-    figures: dict[str, float] = {
+    print(f"strokes of 0.3 s at 44.1 kHz; load {os.getloadavg()[0]:.1f}")
+    figures = {
         "kernel alone, 1 thread": paced(lambda: deque(map(advance, alone), maxlen=0), count),
         "strokes judged, 1 thread": paced(lambda: find(*strokes), count),
     }
@@ -84,14 +74,8 @@ def main() -> None:
             lambda: list(pool.map(advance, alone)), count
         )
     figures[f"whole sweep, {cores} threads"] = paced(lambda: sweep(study, workers=cores), count)
-    table = Table(
-        "strokes of 0.3 s at 44.1 kHz", "a second", title=f"load {os.getloadavg()[0]:.1f}"
-    )
-    for name, pace in figures.items():
-        table.add_row(name, f"{pace:.0f}")
-    Console().print(table)
-    report.save(arguments.save, figures, load=os.getloadavg()[0])
+    return figures
 
 
 if __name__ == "__main__":
-    main()
+    report.run(__doc__, measure)

@@ -9,6 +9,7 @@ CPU time is that of this thread, which leaves out most of what else the machine 
 
 from __future__ import annotations
 
+import argparse
 import random
 import time
 
@@ -57,28 +58,18 @@ def play(instrument: Instrument, blocks: int) -> np.ndarray:
     return times
 
 
-def main() -> None:
-    """Measure and print."""
-    parser = report.options(__doc__)
-    parser.add_argument("--seconds", type=float, default=60.0)
-    arguments = parser.parse_args()
+def measure(arguments: argparse.Namespace) -> dict[str, dict[str, float]]:
     instrument = Instrument(InstrumentSpec(RATE))
     play(instrument, 100)
-    times = play(instrument, round(arguments.seconds * RATE / BLOCK))
-    deadline = BLOCK / RATE
-    figures = {
-        "mean": float(times.mean() / deadline),
-        "99.9 %": float(np.quantile(times, 0.999) / deadline),
-        "99.99 %": float(np.quantile(times, 0.9999) / deadline),
-        "worst": float(times.max() / deadline),
-    }
-    for name, share in figures.items():
-        print(f"{name:8} {100.0 * share:6.1f} % of the deadline of {1e3 * deadline:.2f} ms")
+    times = play(instrument, round(arguments.seconds * RATE / BLOCK)) / (BLOCK / RATE)
     print(
-        f"{instrument.lost_states} lost states, {instrument.unconverged_solves} unconverged solves"
+        f"of the deadline of {1e3 * BLOCK / RATE:.2f} ms; {instrument.lost_states} lost states, "
+        f"{instrument.unconverged_solves} unconverged solves"
     )
-    report.save(arguments.save, figures, seconds=arguments.seconds)
+    shares = {"mean": times.mean(), "worst": times.max()}
+    shares |= {f"{100 * share:g} %": np.quantile(times, share) for share in (0.999, 0.9999)}
+    return {name: {"share": float(share)} for name, share in shares.items()}
 
 
 if __name__ == "__main__":
-    main()
+    report.run(__doc__, measure, seconds=(60.0, "of playing"))

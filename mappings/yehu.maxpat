@@ -52,11 +52,27 @@
      "id": "obj-1",
      "maxclass": "newobj",
      "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16.0,
+      1130,
+      168,
+      22
+     ],
+     "outlettype": [],
+     "text": "udpsend 127.0.0.1 9000"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-2",
+     "maxclass": "newobj",
+     "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      16,
-      60.0,
+      16.0,
+      1160,
+      70,
       22
      ],
      "outlettype": [
@@ -67,32 +83,14 @@
    },
    {
     "box": {
-     "id": "obj-2",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      76,
-      77.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "metro 25000"
-    }
-   },
-   {
-    "box": {
      "id": "obj-3",
      "maxclass": "message",
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      46,
-      63.0,
+      110.0,
+      1160,
+      42,
       22
      ],
      "text": "1",
@@ -104,13 +102,31 @@
    {
     "box": {
      "id": "obj-4",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 1,
+     "patching_rect": [
+      176.0,
+      1160,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "metro 25000"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-5",
      "maxclass": "message",
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      106,
-      217.0,
+      291.0,
+      1160,
+      175,
       22
      ],
      "text": "/yehu/subscribe 60 7400",
@@ -121,30 +137,14 @@
    },
    {
     "box": {
-     "id": "obj-5",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      16,
-      176,
-      154.0,
-      22
-     ],
-     "outlettype": [],
-     "text": "udpsend 127.0.0.1 9000"
-    }
-   },
-   {
-    "box": {
      "id": "obj-6",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      250,
-      106,
-      70.0,
+      16.0,
+      1190,
+      84,
       22
      ],
      "outlettype": [
@@ -160,9 +160,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      360,
-      16,
-      84.0,
+      16.0,
+      1220,
+      98,
       22
      ],
      "outlettype": [
@@ -178,9 +178,9 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      360,
-      46,
-      60.0,
+      16.0,
+      1250,
+      49,
       22
      ],
      "outlettype": [
@@ -197,9 +197,9 @@
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      360,
-      76,
-      63.0,
+      89.0,
+      1250,
+      77,
       22
      ],
      "outlettype": [
@@ -215,9 +215,9 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      360,
-      106,
-      60.0,
+      190.0,
+      1250,
+      49,
       22
      ],
      "outlettype": [
@@ -234,9 +234,9 @@
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      500,
-      76,
-      63.0,
+      16.0,
+      1280,
+      42,
       22
      ],
      "text": "0",
@@ -248,31 +248,13 @@
    {
     "box": {
      "id": "obj-12",
-     "maxclass": "message",
-     "numinlets": 2,
-     "numoutlets": 1,
-     "patching_rect": [
-      500,
-      106,
-      63.0,
-      22
-     ],
-     "text": "1",
-     "outlettype": [
-      ""
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-13",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      500,
-      146,
-      60.0,
+      82.0,
+      1280,
+      70,
       22
      ],
      "outlettype": [
@@ -283,14 +265,48 @@
    },
    {
     "box": {
+     "id": "obj-13",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      176.0,
+      1280,
+      77,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.in"
+    }
+   },
+   {
+    "box": {
      "id": "obj-14",
+     "maxclass": "message",
+     "numinlets": 2,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      1310,
+      42,
+      22
+     ],
+     "text": "1",
+     "outlettype": [
+      ""
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-15",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      620,
-      106,
-      105.0,
+      16.0,
+      1340,
+      119,
       22
      ],
      "outlettype": [
@@ -301,30 +317,14 @@
    },
    {
     "box": {
-     "id": "obj-15",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      500,
-      176,
-      63.0,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.in"
-    }
-   },
-   {
-    "box": {
      "id": "obj-16",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      16,
-      560,
-      70.0,
+      16.0,
+      1370,
+      84,
       22
      ],
      "outlettype": [],
@@ -334,13 +334,83 @@
    {
     "box": {
      "id": "obj-17",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      20.0,
+      58.0,
+      552.0,
+      22
+     ],
+     "text": "string: pitch 65 to 89 MIDI across, press 0.3 to 6 N up",
+     "presentation": 1,
+     "presentation_rect": [
+      20.0,
+      58.0,
+      552.0,
+      22
+     ]
+    }
+   },
+   {
+    "box": {
+     "id": "obj-18",
+     "maxclass": "pictslider",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      20.0,
+      80.0,
+      552.0,
+      146.8
+     ],
+     "outlettype": [
+      "int",
+      "int"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      20.0,
+      80.0,
+      552.0,
+      146.8
+     ],
+     "varname": "string",
+     "leftvalue": 0,
+     "rightvalue": 1000,
+     "bottomvalue": 0,
+     "topvalue": 1000
+    }
+   },
+   {
+    "box": {
+     "id": "obj-19",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      500,
-      133.0,
+      16.0,
+      1400,
+      42,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "t f"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-20",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      82.0,
+      1400,
+      147,
       22
      ],
      "outlettype": [
@@ -351,84 +421,14 @@
    },
    {
     "box": {
-     "id": "obj-18",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      200,
-      500,
-      133.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/press"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-19",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      16,
-      230,
-      441.0,
-      22
-     ],
-     "text": "string: pitch 65 to 89 MIDI across, press 0.3 to 6 N up",
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      54,
-      552.0,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-20",
-     "maxclass": "pictslider",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      16,
-      256,
-      160.0,
-      120.0
-     ],
-     "outlettype": [
-      "int",
-      "int"
-     ],
-     "varname": "string",
-     "leftvalue": 0,
-     "rightvalue": 1000,
-     "bottomvalue": 0,
-     "topvalue": 1000,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      76,
-      552.0,
-      168
-     ]
-    }
-   },
-   {
-    "box": {
      "id": "obj-21",
      "maxclass": "newobj",
      "numinlets": 6,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      400,
-      168.0,
+      16.0,
+      1430,
+      182,
       22
      ],
      "outlettype": [
@@ -441,12 +441,48 @@
     "box": {
      "id": "obj-22",
      "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      1460,
+      42,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "t f"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-23",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      82.0,
+      1460,
+      147,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-24",
+     "maxclass": "newobj",
      "numinlets": 6,
      "numoutlets": 1,
      "patching_rect": [
-      216,
-      400,
-      154.0,
+      16.0,
+      1490,
+      168,
       22
      ],
      "outlettype": [
@@ -457,90 +493,54 @@
    },
    {
     "box": {
-     "id": "obj-23",
+     "id": "obj-25",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      584.0,
-      230,
-      420.0,
+      580.0,
+      58.0,
+      552.0,
       22
      ],
      "text": "bow: speed -0.6 to 0.6 m/s across, force 0 to 2 N up",
      "presentation": 1,
      "presentation_rect": [
-      584.0,
-      54,
+      580.0,
+      58.0,
       552.0,
       22
      ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-24",
-     "maxclass": "pictslider",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      584.0,
-      256,
-      160.0,
-      120.0
-     ],
-     "outlettype": [
-      "int",
-      "int"
-     ],
-     "varname": "bow",
-     "leftvalue": 0,
-     "rightvalue": 1000,
-     "bottomvalue": 0,
-     "topvalue": 1000,
-     "presentation": 1,
-     "presentation_rect": [
-      584.0,
-      76,
-      552.0,
-      168
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-25",
-     "maxclass": "newobj",
-     "numinlets": 6,
-     "numoutlets": 1,
-     "patching_rect": [
-      584.0,
-      400,
-      161.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "scale 0. 1000. -0.6 0.6"
     }
    },
    {
     "box": {
      "id": "obj-26",
-     "maxclass": "newobj",
-     "numinlets": 6,
-     "numoutlets": 1,
+     "maxclass": "pictslider",
+     "numinlets": 2,
+     "numoutlets": 2,
      "patching_rect": [
-      784.0,
-      400,
-      154.0,
-      22
+      580.0,
+      80.0,
+      552.0,
+      146.8
      ],
      "outlettype": [
-      ""
+      "int",
+      "int"
      ],
-     "text": "scale 0. 1000. 0.0 2.0"
+     "presentation": 1,
+     "presentation_rect": [
+      580.0,
+      80.0,
+      552.0,
+      146.8
+     ],
+     "varname": "bow",
+     "leftvalue": 0,
+     "rightvalue": 1000,
+     "bottomvalue": 0,
+     "topvalue": 1000
     }
    },
    {
@@ -550,9 +550,9 @@
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      600,
-      470,
-      63.0,
+      16.0,
+      1520,
+      77,
       22
      ],
      "outlettype": [
@@ -568,9 +568,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      600,
-      500,
-      119.0,
+      117.0,
+      1520,
+      133,
       22
      ],
      "outlettype": [
@@ -582,42 +582,78 @@
    {
     "box": {
      "id": "obj-29",
-     "maxclass": "kslider",
-     "numinlets": 2,
-     "numoutlets": 2,
+     "maxclass": "newobj",
+     "numinlets": 6,
+     "numoutlets": 1,
      "patching_rect": [
-      240,
-      590,
-      420.0,
-      60.0
+      16.0,
+      1550,
+      175,
+      22
      ],
      "outlettype": [
-      "int",
-      "int"
+      ""
      ],
-     "varname": "keys",
-     "mode": 2,
-     "offset": 60,
-     "range": 36,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      260,
-      1120,
-      60
-     ]
+     "text": "scale 0. 1000. -0.6 0.6"
     }
    },
    {
     "box": {
      "id": "obj-30",
      "maxclass": "newobj",
+     "numinlets": 6,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      1580,
+      168,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "scale 0. 1000. 0.0 2.0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-31",
+     "maxclass": "kslider",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      20.0,
+      234.8,
+      1112.0,
+      75.2
+     ],
+     "outlettype": [
+      "int",
+      "int"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      20.0,
+      234.8,
+      1112.0,
+      75.2
+     ],
+     "varname": "keys",
+     "mode": 2,
+     "offset": 60,
+     "range": 36
+    }
+   },
+   {
+    "box": {
+     "id": "obj-32",
+     "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      240,
-      660,
-      60.0,
+      16.0,
+      1610,
+      70,
       22
      ],
      "outlettype": [
@@ -628,14 +664,14 @@
    },
    {
     "box": {
-     "id": "obj-31",
+     "id": "obj-33",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      340,
-      660,
-      126.0,
+      110.0,
+      1610,
+      140,
       22
      ],
      "outlettype": [
@@ -646,14 +682,14 @@
    },
    {
     "box": {
-     "id": "obj-32",
+     "id": "obj-34",
      "maxclass": "message",
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      900,
-      500,
-      147.0,
+      16,
+      16,
+      120,
       22
      ],
      "text": "/yehu/bow 0 0",
@@ -671,14 +707,14 @@
    },
    {
     "box": {
-     "id": "obj-33",
+     "id": "obj-35",
      "maxclass": "message",
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      1060,
-      500,
-      147.0,
+      146,
+      16,
+      120,
       22
      ],
      "text": "/yehu/release",
@@ -696,14 +732,14 @@
    },
    {
     "box": {
-     "id": "obj-34",
+     "id": "obj-36",
      "maxclass": "message",
      "numinlets": 2,
      "numoutlets": 1,
      "patching_rect": [
-      1220,
-      500,
-      133.0,
+      276,
+      16,
+      120,
       22
      ],
      "text": "/yehu/panic",
@@ -721,42 +757,49 @@
    },
    {
     "box": {
-     "id": "obj-35",
+     "id": "obj-37",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      700,
-      105.0,
+      330,
+      224,
       22
      ],
      "text": "playing",
-     "fontface": 1,
      "presentation": 1,
      "presentation_rect": [
       16,
-      336,
+      330,
       224,
       22
-     ]
+     ],
+     "fontface": 1
     }
    },
    {
     "box": {
-     "id": "obj-36",
+     "id": "obj-38",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
-      730,
-      90.0,
-      48.0
+      16,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/dynamics",
      "parameter_enable": 1,
@@ -770,72 +813,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-37",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      106,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-38",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/dynamics"
+     }
     }
    },
    {
     "box": {
      "id": "obj-39",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      874,
-      84.0,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -845,9 +847,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      730,
-      63.0,
+      16.0,
+      1640,
+      77,
       22
      ],
      "outlettype": [
@@ -863,9 +865,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      800,
-      170.0,
+      117.0,
+      1640,
+      210,
       22
      ],
      "outlettype": [
@@ -882,9 +884,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      824,
-      77.0,
+      351.0,
+      1640,
+      91,
       22
      ],
      "outlettype": [
@@ -900,9 +902,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      756,
-      86.0,
+      16.0,
+      1670,
+      112,
       22
      ],
      "outlettype": [
@@ -914,18 +916,59 @@
    {
     "box": {
      "id": "obj-44",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      1670,
+      224,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/dynamics"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-45",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      400.0,
+      1670,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-46",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
-      730,
-      90.0,
-      48.0
+      128,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/speed",
      "parameter_enable": 1,
@@ -939,72 +982,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m/s"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-45",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      296,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0.03 to 0.6 m/s",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-46",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      206,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/speed"
+     }
     }
    },
    {
     "box": {
      "id": "obj-47",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
-      874,
-      84.0,
+      128,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.03 to 0.6 m/s",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -1014,9 +1016,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      730,
-      63.0,
+      16.0,
+      1700,
+      77,
       22
      ],
      "outlettype": [
@@ -1032,9 +1034,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
-      800,
-      170.0,
+      117.0,
+      1700,
+      189,
       22
      ],
      "outlettype": [
@@ -1051,9 +1053,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      824,
-      77.0,
+      330.0,
+      1700,
+      91,
       22
      ],
      "outlettype": [
@@ -1069,9 +1071,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      756,
-      86.0,
+      16.0,
+      1730,
+      126,
       22
      ],
      "outlettype": [
@@ -1083,18 +1085,59 @@
    {
     "box": {
      "id": "obj-52",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      1730,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/speed"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-53",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      1730,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-54",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      486,
-      730,
-      90.0,
-      48.0
+      240,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/velocity",
      "parameter_enable": 1,
@@ -1108,72 +1151,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-53",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      486,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-54",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      396,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/velocity"
+     }
     }
    },
    {
     "box": {
      "id": "obj-55",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      396,
-      874,
-      84.0,
+      240,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -1183,9 +1185,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      730,
-      63.0,
+      16.0,
+      1760,
+      77,
       22
      ],
      "outlettype": [
@@ -1201,9 +1203,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      396,
-      800,
-      170.0,
+      117.0,
+      1760,
+      210,
       22
      ],
      "outlettype": [
@@ -1220,9 +1222,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      824,
-      77.0,
+      351.0,
+      1760,
+      91,
       22
      ],
      "outlettype": [
@@ -1238,9 +1240,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      756,
-      86.0,
+      16.0,
+      1790,
+      133,
       22
      ],
      "outlettype": [
@@ -1252,18 +1254,59 @@
    {
     "box": {
      "id": "obj-60",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      1790,
+      224,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/velocity"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-61",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      421.0,
+      1790,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-62",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      676,
-      730,
-      90.0,
-      48.0
+      352,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/pressure",
      "parameter_enable": 1,
@@ -1277,72 +1320,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-61",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      676,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0.05 to 2",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-62",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      586,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/pressure"
+     }
     }
    },
    {
     "box": {
      "id": "obj-63",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      586,
-      874,
-      84.0,
+      352,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.05 to 2",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -1352,9 +1354,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      730,
-      63.0,
+      16.0,
+      1820,
+      77,
       22
      ],
      "outlettype": [
@@ -1370,9 +1372,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      586,
-      800,
-      170.0,
+      117.0,
+      1820,
+      210,
       22
      ],
      "outlettype": [
@@ -1389,9 +1391,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      824,
-      77.0,
+      351.0,
+      1820,
+      91,
       22
      ],
      "outlettype": [
@@ -1407,9 +1409,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      756,
-      86.0,
+      16.0,
+      1850,
+      126,
       22
      ],
      "outlettype": [
@@ -1421,18 +1423,59 @@
    {
     "box": {
      "id": "obj-68",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      1850,
+      224,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/pressure"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-69",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      414.0,
+      1850,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-70",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      866,
-      730,
-      90.0,
-      48.0
+      464,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/bow_position",
      "parameter_enable": 1,
@@ -1446,72 +1489,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-69",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      866,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0.05 to 0.3",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-70",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      776,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/bow_position"
+     }
     }
    },
    {
     "box": {
      "id": "obj-71",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      776,
-      874,
-      84.0,
+      464,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.05 to 0.3",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -1521,9 +1523,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      730,
-      63.0,
+      16.0,
+      1880,
+      77,
       22
      ],
      "outlettype": [
@@ -1539,9 +1541,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      776,
-      800,
-      170.0,
+      117.0,
+      1880,
+      238,
       22
      ],
      "outlettype": [
@@ -1558,9 +1560,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      824,
-      77.0,
+      379.0,
+      1880,
+      91,
       22
      ],
      "outlettype": [
@@ -1576,9 +1578,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      756,
-      86.0,
+      16.0,
+      1910,
+      133,
       22
      ],
      "outlettype": [
@@ -1590,18 +1592,59 @@
    {
     "box": {
      "id": "obj-76",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      1910,
+      252,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/bow_position"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-77",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      449.0,
+      1910,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-78",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1056,
-      730,
-      90.0,
-      48.0
+      576,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/tremolo",
      "parameter_enable": 1,
@@ -1615,72 +1658,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f 1/s"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-77",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1056,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 20 1/s",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-78",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      966,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/tremolo"
+     }
     }
    },
    {
     "box": {
      "id": "obj-79",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      966,
-      874,
-      84.0,
+      576,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 20 1/s",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -1690,9 +1692,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      730,
-      63.0,
+      16.0,
+      1940,
+      77,
       22
      ],
      "outlettype": [
@@ -1708,9 +1710,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      966,
-      800,
-      170.0,
+      117.0,
+      1940,
+      203,
       22
      ],
      "outlettype": [
@@ -1727,9 +1729,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      824,
-      77.0,
+      344.0,
+      1940,
+      91,
       22
      ],
      "outlettype": [
@@ -1745,9 +1747,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      756,
-      86.0,
+      16.0,
+      1970,
+      112,
       22
      ],
      "outlettype": [
@@ -1759,18 +1761,59 @@
    {
     "box": {
      "id": "obj-84",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      1970,
+      217,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/tremolo"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-85",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      1970,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-86",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1246,
-      730,
-      90.0,
-      48.0
+      688,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/pizzicato",
      "parameter_enable": 1,
@@ -1784,72 +1827,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-85",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1246,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-86",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1156,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/pizzicato"
+     }
     }
    },
    {
     "box": {
      "id": "obj-87",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      874,
-      84.0,
+      688,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -1859,9 +1861,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      730,
-      63.0,
+      16.0,
+      2000,
+      77,
       22
      ],
      "outlettype": [
@@ -1877,9 +1879,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      800,
-      170.0,
+      117.0,
+      2000,
+      217,
       22
      ],
      "outlettype": [
@@ -1896,9 +1898,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      824,
-      77.0,
+      358.0,
+      2000,
+      91,
       22
      ],
      "outlettype": [
@@ -1914,9 +1916,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      756,
-      86.0,
+      16.0,
+      2030,
+      112,
       22
      ],
      "outlettype": [
@@ -1928,18 +1930,59 @@
    {
     "box": {
      "id": "obj-92",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2030,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/pizzicato"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-93",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      2030,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-94",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      730,
-      90.0,
-      48.0
+      800,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/string",
      "parameter_enable": 1,
@@ -1953,72 +1996,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-93",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1436,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 2",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-94",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1346,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/string"
+     }
     }
    },
    {
     "box": {
      "id": "obj-95",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      874,
-      84.0,
+      800,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 2",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -2028,9 +2030,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      730,
-      63.0,
+      16.0,
+      2060,
+      77,
       22
      ],
      "outlettype": [
@@ -2046,9 +2048,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      800,
-      170.0,
+      117.0,
+      2060,
+      196,
       22
      ],
      "outlettype": [
@@ -2065,9 +2067,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      824,
-      77.0,
+      337.0,
+      2060,
+      91,
       22
      ],
      "outlettype": [
@@ -2083,9 +2085,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      756,
-      86.0,
+      16.0,
+      2090,
+      112,
       22
      ],
      "outlettype": [
@@ -2097,18 +2099,59 @@
    {
     "box": {
      "id": "obj-100",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2090,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/string"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-101",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      2090,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-102",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1626,
-      730,
-      90.0,
-      48.0
+      912,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/direction",
      "parameter_enable": 1,
@@ -2122,72 +2165,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      912,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-101",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1626,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "-1 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      912,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-102",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1536,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/direction"
+     }
     }
    },
    {
     "box": {
      "id": "obj-103",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1536,
-      874,
-      84.0,
+      912,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -2197,9 +2199,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      730,
-      63.0,
+      16.0,
+      2120,
+      77,
       22
      ],
      "outlettype": [
@@ -2215,9 +2217,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1536,
-      800,
-      170.0,
+      117.0,
+      2120,
+      217,
       22
      ],
      "outlettype": [
@@ -2234,9 +2236,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      824,
-      77.0,
+      358.0,
+      2120,
+      91,
       22
      ],
      "outlettype": [
@@ -2252,9 +2254,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      756,
-      86.0,
+      16.0,
+      2150,
+      112,
       22
      ],
      "outlettype": [
@@ -2266,18 +2268,59 @@
    {
     "box": {
      "id": "obj-108",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2150,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/direction"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-109",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      2150,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-110",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1816,
-      730,
-      90.0,
-      48.0
+      1024,
+      352,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      352,
+      104,
+      48
      ],
      "varname": "/playing/bow_length",
      "parameter_enable": 1,
@@ -2291,72 +2334,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      1024,
-      358,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-109",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1816,
-      780,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 2 m",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      1024,
-      408,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-110",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1726,
-      848,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/bow_length"
+     }
     }
    },
    {
     "box": {
      "id": "obj-111",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1726,
-      874,
-      84.0,
+      1024,
+      402,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 2 m",
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      402,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -2366,9 +2368,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      730,
-      63.0,
+      16.0,
+      2180,
+      77,
       22
      ],
      "outlettype": [
@@ -2384,9 +2386,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1726,
-      800,
-      170.0,
+      117.0,
+      2180,
+      224,
       22
      ],
      "outlettype": [
@@ -2403,9 +2405,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      824,
-      77.0,
+      365.0,
+      2180,
+      91,
       22
      ],
      "outlettype": [
@@ -2421,9 +2423,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      756,
-      86.0,
+      16.0,
+      2210,
+      126,
       22
      ],
      "outlettype": [
@@ -2435,18 +2437,59 @@
    {
     "box": {
      "id": "obj-116",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      2210,
+      238,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/bow_length"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-117",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      428.0,
+      2210,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-118",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
-      944,
-      90.0,
-      48.0
+      16,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/note_length",
      "parameter_enable": 1,
@@ -2460,72 +2503,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f s"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-117",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      106,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 60 s",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-118",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/note_length"
+     }
     }
    },
    {
     "box": {
      "id": "obj-119",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      1088,
-      84.0,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 60 s",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -2535,9 +2537,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      944,
-      63.0,
+      16.0,
+      2240,
+      77,
       22
      ],
      "outlettype": [
@@ -2553,9 +2555,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      1014,
-      170.0,
+      117.0,
+      2240,
+      231,
       22
      ],
      "outlettype": [
@@ -2572,9 +2574,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1038,
-      77.0,
+      372.0,
+      2240,
+      91,
       22
      ],
      "outlettype": [
@@ -2590,9 +2592,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      970,
-      86.0,
+      16.0,
+      2270,
+      112,
       22
      ],
      "outlettype": [
@@ -2604,18 +2606,59 @@
    {
     "box": {
      "id": "obj-124",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2270,
+      245,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/note_length"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-125",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      421.0,
+      2270,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-126",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
-      944,
-      90.0,
-      48.0
+      128,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/press",
      "parameter_enable": 1,
@@ -2629,72 +2672,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f N"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-125",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      296,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "0.3 to 6 N",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-126",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      206,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/press"
+     }
     }
    },
    {
     "box": {
      "id": "obj-127",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
-      1088,
-      84.0,
+      128,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.3 to 6 N",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -2704,9 +2706,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      944,
-      63.0,
+      16.0,
+      2300,
+      77,
       22
      ],
      "outlettype": [
@@ -2722,9 +2724,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
-      1014,
-      170.0,
+      117.0,
+      2300,
+      189,
       22
      ],
      "outlettype": [
@@ -2741,9 +2743,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1038,
-      77.0,
+      330.0,
+      2300,
+      91,
       22
      ],
      "outlettype": [
@@ -2759,9 +2761,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      970,
-      86.0,
+      16.0,
+      2330,
+      126,
       22
      ],
      "outlettype": [
@@ -2773,18 +2775,59 @@
    {
     "box": {
      "id": "obj-132",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      2330,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-133",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      2330,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-134",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      486,
-      944,
-      90.0,
-      48.0
+      240,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/vibrato",
      "parameter_enable": 1,
@@ -2798,72 +2841,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f cents"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-133",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      486,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 100 cents",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-134",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      396,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/vibrato"
+     }
     }
    },
    {
     "box": {
      "id": "obj-135",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      396,
-      1088,
-      84.0,
+      240,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 100 cents",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -2873,9 +2875,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      944,
-      63.0,
+      16.0,
+      2360,
+      77,
       22
      ],
      "outlettype": [
@@ -2891,9 +2893,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      396,
-      1014,
-      170.0,
+      117.0,
+      2360,
+      203,
       22
      ],
      "outlettype": [
@@ -2910,9 +2912,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1038,
-      77.0,
+      344.0,
+      2360,
+      91,
       22
      ],
      "outlettype": [
@@ -2928,9 +2930,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      970,
-      86.0,
+      16.0,
+      2390,
+      112,
       22
      ],
      "outlettype": [
@@ -2942,18 +2944,59 @@
    {
     "box": {
      "id": "obj-140",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2390,
+      217,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/vibrato"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-141",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      2390,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-142",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      676,
-      944,
-      90.0,
-      48.0
+      352,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/vibrato_press",
      "parameter_enable": 1,
@@ -2967,72 +3010,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-141",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      676,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-142",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      586,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/vibrato_press"
+     }
     }
    },
    {
     "box": {
      "id": "obj-143",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      586,
-      1088,
-      84.0,
+      352,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -3042,9 +3044,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      944,
-      63.0,
+      16.0,
+      2420,
+      77,
       22
      ],
      "outlettype": [
@@ -3060,9 +3062,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      586,
-      1014,
-      170.0,
+      117.0,
+      2420,
+      245,
       22
      ],
      "outlettype": [
@@ -3079,9 +3081,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1038,
-      77.0,
+      386.0,
+      2420,
+      91,
       22
      ],
      "outlettype": [
@@ -3097,9 +3099,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      970,
-      86.0,
+      16.0,
+      2450,
+      112,
       22
      ],
      "outlettype": [
@@ -3111,18 +3113,59 @@
    {
     "box": {
      "id": "obj-148",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2450,
+      259,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/vibrato_press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-149",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      435.0,
+      2450,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-150",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      866,
-      944,
-      90.0,
-      48.0
+      464,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/vibrato_rate",
      "parameter_enable": 1,
@@ -3136,72 +3179,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f Hz"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-149",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      866,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "2 to 10 Hz",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-150",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      776,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/vibrato_rate"
+     }
     }
    },
    {
     "box": {
      "id": "obj-151",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      776,
-      1088,
-      84.0,
+      464,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "2 to 10 Hz",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -3211,9 +3213,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      944,
-      63.0,
+      16.0,
+      2480,
+      77,
       22
      ],
      "outlettype": [
@@ -3229,9 +3231,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      776,
-      1014,
-      170.0,
+      117.0,
+      2480,
+      238,
       22
      ],
      "outlettype": [
@@ -3248,9 +3250,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1038,
-      77.0,
+      379.0,
+      2480,
+      91,
       22
      ],
      "outlettype": [
@@ -3266,9 +3268,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      970,
-      86.0,
+      16.0,
+      2510,
+      126,
       22
      ],
      "outlettype": [
@@ -3280,18 +3282,59 @@
    {
     "box": {
      "id": "obj-156",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      2510,
+      252,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/vibrato_rate"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-157",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      442.0,
+      2510,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-158",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1056,
-      944,
-      90.0,
-      48.0
+      576,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/vibrato_delay",
      "parameter_enable": 1,
@@ -3305,72 +3348,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-157",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1056,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 3000 ms",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-158",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      966,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/vibrato_delay"
+     }
     }
    },
    {
     "box": {
      "id": "obj-159",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      966,
-      1088,
-      84.0,
+      576,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 3000 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -3380,9 +3382,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      944,
-      63.0,
+      16.0,
+      2540,
+      77,
       22
      ],
      "outlettype": [
@@ -3398,9 +3400,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      966,
-      1014,
-      170.0,
+      117.0,
+      2540,
+      245,
       22
      ],
      "outlettype": [
@@ -3417,9 +3419,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1038,
-      77.0,
+      386.0,
+      2540,
+      91,
       22
      ],
      "outlettype": [
@@ -3435,9 +3437,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      970,
-      86.0,
+      16.0,
+      2570,
+      126,
       22
      ],
      "outlettype": [
@@ -3449,18 +3451,59 @@
    {
     "box": {
      "id": "obj-164",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      2570,
+      259,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/vibrato_delay"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-165",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      449.0,
+      2570,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-166",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1246,
-      944,
-      90.0,
-      48.0
+      688,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/bend",
      "parameter_enable": 1,
@@ -3474,72 +3517,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f semitones"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-165",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1246,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "-48 to 48 semitones",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-166",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1156,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/bend"
+     }
     }
    },
    {
     "box": {
      "id": "obj-167",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      1088,
-      84.0,
+      688,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-48 to 48 semitones",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -3549,9 +3551,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      944,
-      63.0,
+      16.0,
+      2600,
+      77,
       22
      ],
      "outlettype": [
@@ -3567,9 +3569,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      1014,
-      170.0,
+      117.0,
+      2600,
+      182,
       22
      ],
      "outlettype": [
@@ -3586,9 +3588,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1038,
-      77.0,
+      323.0,
+      2600,
+      91,
       22
      ],
      "outlettype": [
@@ -3604,9 +3606,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      970,
-      86.0,
+      16.0,
+      2630,
+      112,
       22
      ],
      "outlettype": [
@@ -3618,18 +3620,59 @@
    {
     "box": {
      "id": "obj-172",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2630,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/bend"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-173",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      2630,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-174",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      944,
-      90.0,
-      48.0
+      800,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/bend_range",
      "parameter_enable": 1,
@@ -3643,72 +3686,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f semitones"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-173",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1436,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 48 semitones",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-174",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1346,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/bend_range"
+     }
     }
    },
    {
     "box": {
      "id": "obj-175",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      1088,
-      84.0,
+      800,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 48 semitones",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -3718,9 +3720,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      944,
-      63.0,
+      16.0,
+      2660,
+      77,
       22
      ],
      "outlettype": [
@@ -3736,9 +3738,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      1014,
-      170.0,
+      117.0,
+      2660,
+      224,
       22
      ],
      "outlettype": [
@@ -3755,9 +3757,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1038,
-      77.0,
+      365.0,
+      2660,
+      91,
       22
      ],
      "outlettype": [
@@ -3773,9 +3775,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      970,
-      86.0,
+      16.0,
+      2690,
+      112,
       22
      ],
      "outlettype": [
@@ -3787,18 +3789,59 @@
    {
     "box": {
      "id": "obj-180",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2690,
+      238,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/bend_range"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-181",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      414.0,
+      2690,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-182",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1626,
-      944,
-      90.0,
-      48.0
+      912,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/volume",
      "parameter_enable": 1,
@@ -3812,72 +3855,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      912,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-181",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1626,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      912,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-182",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1536,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/volume"
+     }
     }
    },
    {
     "box": {
      "id": "obj-183",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1536,
-      1088,
-      84.0,
+      912,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -3887,9 +3889,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      944,
-      63.0,
+      16.0,
+      2720,
+      77,
       22
      ],
      "outlettype": [
@@ -3905,9 +3907,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1536,
-      1014,
-      170.0,
+      117.0,
+      2720,
+      196,
       22
      ],
      "outlettype": [
@@ -3924,9 +3926,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1038,
-      77.0,
+      337.0,
+      2720,
+      91,
       22
      ],
      "outlettype": [
@@ -3942,9 +3944,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      970,
-      86.0,
+      16.0,
+      2750,
+      112,
       22
      ],
      "outlettype": [
@@ -3956,18 +3958,59 @@
    {
     "box": {
      "id": "obj-188",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2750,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/volume"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-189",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      2750,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-190",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1816,
-      944,
-      90.0,
-      48.0
+      1024,
+      450,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      450,
+      104,
+      48
      ],
      "varname": "/playing/expression",
      "parameter_enable": 1,
@@ -3981,72 +4024,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      1024,
-      456,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-189",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1816,
-      994,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      1024,
-      506,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-190",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1726,
-      1062,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/expression"
+     }
     }
    },
    {
     "box": {
      "id": "obj-191",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1726,
-      1088,
-      84.0,
+      1024,
+      500,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      500,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -4056,9 +4058,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      944,
-      63.0,
+      16.0,
+      2780,
+      77,
       22
      ],
      "outlettype": [
@@ -4074,9 +4076,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1726,
-      1014,
-      170.0,
+      117.0,
+      2780,
+      224,
       22
      ],
      "outlettype": [
@@ -4093,9 +4095,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      1038,
-      77.0,
+      365.0,
+      2780,
+      91,
       22
      ],
      "outlettype": [
@@ -4111,9 +4113,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      970,
-      86.0,
+      16.0,
+      2810,
+      112,
       22
      ],
      "outlettype": [
@@ -4125,18 +4127,59 @@
    {
     "box": {
      "id": "obj-196",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2810,
+      238,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/expression"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-197",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      414.0,
+      2810,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-198",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
-      1158,
-      90.0,
-      48.0
+      16,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/assist",
      "parameter_enable": 1,
@@ -4150,72 +4193,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-197",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      106,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-198",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/assist"
+     }
     }
    },
    {
     "box": {
      "id": "obj-199",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      1302,
-      84.0,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -4225,9 +4227,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1158,
-      63.0,
+      16.0,
+      2840,
+      77,
       22
      ],
      "outlettype": [
@@ -4243,9 +4245,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      1228,
-      170.0,
+      117.0,
+      2840,
+      196,
       22
      ],
      "outlettype": [
@@ -4262,9 +4264,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1252,
-      77.0,
+      337.0,
+      2840,
+      91,
       22
      ],
      "outlettype": [
@@ -4280,9 +4282,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1184,
-      86.0,
+      16.0,
+      2870,
+      112,
       22
      ],
      "outlettype": [
@@ -4294,18 +4296,59 @@
    {
     "box": {
      "id": "obj-204",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2870,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/assist"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-205",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      2870,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-206",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
-      1158,
-      90.0,
-      48.0
+      128,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/variation",
      "parameter_enable": 1,
@@ -4319,72 +4362,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-205",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      296,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-206",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      206,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/variation"
+     }
     }
    },
    {
     "box": {
      "id": "obj-207",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
-      1302,
-      84.0,
+      128,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -4394,9 +4396,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1158,
-      63.0,
+      16.0,
+      2900,
+      77,
       22
      ],
      "outlettype": [
@@ -4412,9 +4414,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
-      1228,
-      170.0,
+      117.0,
+      2900,
+      217,
       22
      ],
      "outlettype": [
@@ -4431,9 +4433,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1252,
-      77.0,
+      358.0,
+      2900,
+      91,
       22
      ],
      "outlettype": [
@@ -4449,9 +4451,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1184,
-      86.0,
+      16.0,
+      2930,
+      133,
       22
      ],
      "outlettype": [
@@ -4463,18 +4465,59 @@
    {
     "box": {
      "id": "obj-212",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      2930,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/variation"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-213",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      428.0,
+      2930,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-214",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      486,
-      1158,
-      90.0,
-      48.0
+      240,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/listening",
      "parameter_enable": 1,
@@ -4488,72 +4531,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-213",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      486,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-214",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      396,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/listening"
+     }
     }
    },
    {
     "box": {
      "id": "obj-215",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      396,
-      1302,
-      84.0,
+      240,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -4563,9 +4565,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1158,
-      63.0,
+      16.0,
+      2960,
+      77,
       22
      ],
      "outlettype": [
@@ -4581,9 +4583,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      396,
-      1228,
-      170.0,
+      117.0,
+      2960,
+      217,
       22
      ],
      "outlettype": [
@@ -4600,9 +4602,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1252,
-      77.0,
+      358.0,
+      2960,
+      91,
       22
      ],
      "outlettype": [
@@ -4618,9 +4620,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1184,
-      86.0,
+      16.0,
+      2990,
+      112,
       22
      ],
      "outlettype": [
@@ -4632,18 +4634,59 @@
    {
     "box": {
      "id": "obj-220",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      2990,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/listening"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-221",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      2990,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-222",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      676,
-      1158,
-      90.0,
-      48.0
+      352,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/phrasing",
      "parameter_enable": 1,
@@ -4657,72 +4700,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-221",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      676,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-222",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      586,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/phrasing"
+     }
     }
    },
    {
     "box": {
      "id": "obj-223",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      586,
-      1302,
-      84.0,
+      352,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -4732,9 +4734,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1158,
-      63.0,
+      16.0,
+      3020,
+      77,
       22
      ],
      "outlettype": [
@@ -4750,9 +4752,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      586,
-      1228,
-      170.0,
+      117.0,
+      3020,
+      210,
       22
      ],
      "outlettype": [
@@ -4769,9 +4771,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1252,
-      77.0,
+      351.0,
+      3020,
+      91,
       22
      ],
      "outlettype": [
@@ -4787,9 +4789,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1184,
-      86.0,
+      16.0,
+      3050,
+      112,
       22
      ],
      "outlettype": [
@@ -4801,18 +4803,59 @@
    {
     "box": {
      "id": "obj-228",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3050,
+      224,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/phrasing"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-229",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      400.0,
+      3050,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-230",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      866,
-      1158,
-      90.0,
-      48.0
+      464,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/section",
      "parameter_enable": 1,
@@ -4826,72 +4869,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-229",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      866,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "1 to 16",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-230",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      776,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/section"
+     }
     }
    },
    {
     "box": {
      "id": "obj-231",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      776,
-      1302,
-      84.0,
+      464,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "1 to 16",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -4901,9 +4903,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1158,
-      63.0,
+      16.0,
+      3080,
+      77,
       22
      ],
      "outlettype": [
@@ -4919,9 +4921,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      776,
-      1228,
-      170.0,
+      117.0,
+      3080,
+      203,
       22
      ],
      "outlettype": [
@@ -4938,9 +4940,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1252,
-      77.0,
+      344.0,
+      3080,
+      91,
       22
      ],
      "outlettype": [
@@ -4956,9 +4958,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1184,
-      86.0,
+      16.0,
+      3110,
+      112,
       22
      ],
      "outlettype": [
@@ -4970,18 +4972,59 @@
    {
     "box": {
      "id": "obj-236",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3110,
+      217,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/section"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-237",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      3110,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-238",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1056,
-      1158,
-      90.0,
-      48.0
+      576,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/attack",
      "parameter_enable": 1,
@@ -4995,72 +5038,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-237",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1056,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "5 to 500 ms",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-238",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      966,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/attack"
+     }
     }
    },
    {
     "box": {
      "id": "obj-239",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      966,
-      1302,
-      84.0,
+      576,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "5 to 500 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -5070,9 +5072,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1158,
-      63.0,
+      16.0,
+      3140,
+      77,
       22
      ],
      "outlettype": [
@@ -5088,9 +5090,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      966,
-      1228,
-      170.0,
+      117.0,
+      3140,
+      196,
       22
      ],
      "outlettype": [
@@ -5107,9 +5109,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1252,
-      77.0,
+      337.0,
+      3140,
+      91,
       22
      ],
      "outlettype": [
@@ -5125,9 +5127,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1184,
-      86.0,
+      16.0,
+      3170,
+      119,
       22
      ],
      "outlettype": [
@@ -5139,18 +5141,59 @@
    {
     "box": {
      "id": "obj-244",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      159.0,
+      3170,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/attack"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-245",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      3170,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-246",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1246,
-      1158,
-      90.0,
-      48.0
+      688,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/release",
      "parameter_enable": 1,
@@ -5164,72 +5207,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-245",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1246,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "5 to 2000 ms",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-246",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1156,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/release"
+     }
     }
    },
    {
     "box": {
      "id": "obj-247",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      1302,
-      84.0,
+      688,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "5 to 2000 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -5239,9 +5241,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1158,
-      63.0,
+      16.0,
+      3200,
+      77,
       22
      ],
      "outlettype": [
@@ -5257,9 +5259,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      1228,
-      170.0,
+      117.0,
+      3200,
+      203,
       22
      ],
      "outlettype": [
@@ -5276,9 +5278,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1252,
-      77.0,
+      344.0,
+      3200,
+      91,
       22
      ],
      "outlettype": [
@@ -5294,9 +5296,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1184,
-      86.0,
+      16.0,
+      3230,
+      119,
       22
      ],
      "outlettype": [
@@ -5308,18 +5310,59 @@
    {
     "box": {
      "id": "obj-252",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      159.0,
+      3230,
+      217,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/release"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-253",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      400.0,
+      3230,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-254",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      1158,
-      90.0,
-      48.0
+      800,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/portamento",
      "parameter_enable": 1,
@@ -5333,72 +5376,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-253",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1436,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-254",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1346,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/portamento"
+     }
     }
    },
    {
     "box": {
      "id": "obj-255",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      1302,
-      84.0,
+      800,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -5408,9 +5410,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1158,
-      63.0,
+      16.0,
+      3260,
+      77,
       22
      ],
      "outlettype": [
@@ -5426,9 +5428,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      1228,
-      170.0,
+      117.0,
+      3260,
+      224,
       22
      ],
      "outlettype": [
@@ -5445,9 +5447,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1252,
-      77.0,
+      365.0,
+      3260,
+      91,
       22
      ],
      "outlettype": [
@@ -5463,9 +5465,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1184,
-      86.0,
+      16.0,
+      3290,
+      112,
       22
      ],
      "outlettype": [
@@ -5477,18 +5479,59 @@
    {
     "box": {
      "id": "obj-260",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3290,
+      238,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-261",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      414.0,
+      3290,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-262",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1626,
-      1158,
-      90.0,
-      48.0
+      912,
+      548,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      548,
+      104,
+      48
      ],
      "varname": "/playing/portamento_time",
      "parameter_enable": 1,
@@ -5502,72 +5545,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      912,
-      554,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-261",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1626,
-      1208,
-      90.0,
-      18.0
-     ],
-     "text": "5 to 2000 ms",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      912,
-      604,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-262",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1536,
-      1276,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/playing/portamento_time"
+     }
     }
    },
    {
     "box": {
      "id": "obj-263",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1536,
-      1302,
-      84.0,
+      912,
+      598,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "5 to 2000 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      598,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -5577,9 +5579,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1158,
-      63.0,
+      16.0,
+      3320,
+      77,
       22
      ],
      "outlettype": [
@@ -5595,9 +5597,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1536,
-      1228,
-      170.0,
+      117.0,
+      3320,
+      259,
       22
      ],
      "outlettype": [
@@ -5614,9 +5616,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1252,
-      77.0,
+      400.0,
+      3320,
+      91,
       22
      ],
      "outlettype": [
@@ -5632,9 +5634,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1184,
-      86.0,
+      16.0,
+      3350,
+      126,
       22
      ],
      "outlettype": [
@@ -5646,41 +5648,82 @@
    {
     "box": {
      "id": "obj-268",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      16,
-      1342,
-      77.0,
+      166.0,
+      3350,
+      273,
       22
      ],
-     "text": "bow",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      630,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
     }
    },
    {
     "box": {
      "id": "obj-269",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      463.0,
+      3350,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-270",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      624,
+      224,
+      22
+     ],
+     "text": "bow",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      624,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-271",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
-      1372,
-      90.0,
-      48.0
+      16,
+      646,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      646,
+      104,
+      48
      ],
      "varname": "/bow/speed",
      "parameter_enable": 1,
@@ -5694,72 +5737,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m/s"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      652,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-270",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      106,
-      1422,
-      90.0,
-      18.0
-     ],
-     "text": "-2 to 2 m/s",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      702,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-271",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      1490,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/speed"
+     }
     }
    },
    {
     "box": {
      "id": "obj-272",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      1516,
-      84.0,
+      696,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-2 to 2 m/s",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -5769,9 +5771,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1372,
-      63.0,
+      16.0,
+      3380,
+      77,
       22
      ],
      "outlettype": [
@@ -5787,9 +5789,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      1442,
-      170.0,
+      117.0,
+      3380,
+      161,
       22
      ],
      "outlettype": [
@@ -5806,9 +5808,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1466,
-      77.0,
+      302.0,
+      3380,
+      91,
       22
      ],
      "outlettype": [
@@ -5824,9 +5826,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1398,
-      86.0,
+      16.0,
+      3410,
+      112,
       22
      ],
      "outlettype": [
@@ -5838,18 +5840,59 @@
    {
     "box": {
      "id": "obj-277",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3410,
+      175,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/speed"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-278",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      351.0,
+      3410,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-279",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
-      1372,
-      90.0,
-      48.0
+      128,
+      646,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      646,
+      104,
+      48
      ],
      "varname": "/bow/side",
      "parameter_enable": 1,
@@ -5863,72 +5906,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      652,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-278",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      296,
-      1422,
-      90.0,
-      18.0
-     ],
-     "text": "-1 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      702,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-279",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      206,
-      1490,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/side"
+     }
     }
    },
    {
     "box": {
      "id": "obj-280",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
-      1516,
-      84.0,
+      128,
+      696,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -5938,9 +5940,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1372,
-      63.0,
+      16.0,
+      3440,
+      77,
       22
      ],
      "outlettype": [
@@ -5956,9 +5958,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
-      1442,
-      170.0,
+      117.0,
+      3440,
+      154,
       22
      ],
      "outlettype": [
@@ -5975,9 +5977,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1466,
-      77.0,
+      295.0,
+      3440,
+      91,
       22
      ],
      "outlettype": [
@@ -5993,9 +5995,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1398,
-      86.0,
+      16.0,
+      3470,
+      112,
       22
      ],
      "outlettype": [
@@ -6007,18 +6009,59 @@
    {
     "box": {
      "id": "obj-285",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3470,
+      168,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-286",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      344.0,
+      3470,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-287",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      486,
-      1372,
-      90.0,
-      48.0
+      240,
+      646,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      646,
+      104,
+      48
      ],
      "varname": "/bow/force",
      "parameter_enable": 1,
@@ -6032,72 +6075,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f N"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      652,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-286",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      486,
-      1422,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 5 N",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      702,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-287",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      396,
-      1490,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/force"
+     }
     }
    },
    {
     "box": {
      "id": "obj-288",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      396,
-      1516,
-      84.0,
+      240,
+      696,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 5 N",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -6107,9 +6109,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1372,
-      63.0,
+      16.0,
+      3500,
+      77,
       22
      ],
      "outlettype": [
@@ -6125,9 +6127,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      396,
-      1442,
-      170.0,
+      117.0,
+      3500,
+      161,
       22
      ],
      "outlettype": [
@@ -6144,9 +6146,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1466,
-      77.0,
+      302.0,
+      3500,
+      91,
       22
      ],
      "outlettype": [
@@ -6162,9 +6164,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1398,
-      86.0,
+      16.0,
+      3530,
+      126,
       22
      ],
      "outlettype": [
@@ -6176,18 +6178,59 @@
    {
     "box": {
      "id": "obj-293",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      3530,
+      175,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/force"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-294",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      365.0,
+      3530,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-295",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      676,
-      1372,
-      90.0,
-      48.0
+      352,
+      646,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      646,
+      104,
+      48
      ],
      "varname": "/bow/pressure",
      "parameter_enable": 1,
@@ -6201,72 +6244,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      652,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-294",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      676,
-      1422,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 12",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      702,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-295",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      586,
-      1490,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/pressure"
+     }
     }
    },
    {
     "box": {
      "id": "obj-296",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      586,
-      1516,
-      84.0,
+      352,
+      696,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 12",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -6276,9 +6278,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1372,
-      63.0,
+      16.0,
+      3560,
+      77,
       22
      ],
      "outlettype": [
@@ -6294,9 +6296,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      586,
-      1442,
-      170.0,
+      117.0,
+      3560,
+      182,
       22
      ],
      "outlettype": [
@@ -6313,9 +6315,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1466,
-      77.0,
+      323.0,
+      3560,
+      91,
       22
      ],
      "outlettype": [
@@ -6331,9 +6333,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1398,
-      86.0,
+      16.0,
+      3590,
+      126,
       22
      ],
      "outlettype": [
@@ -6345,18 +6347,59 @@
    {
     "box": {
      "id": "obj-301",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      3590,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/pressure"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-302",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      3590,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-303",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      866,
-      1372,
-      90.0,
-      48.0
+      464,
+      646,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      646,
+      104,
+      48
      ],
      "varname": "/bow/assist",
      "parameter_enable": 1,
@@ -6370,72 +6413,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      652,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-302",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      866,
-      1422,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      702,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-303",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      776,
-      1490,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/assist"
+     }
     }
    },
    {
     "box": {
      "id": "obj-304",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      776,
-      1516,
-      84.0,
+      464,
+      696,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -6445,9 +6447,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1372,
-      63.0,
+      16.0,
+      3620,
+      77,
       22
      ],
      "outlettype": [
@@ -6463,9 +6465,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      776,
-      1442,
-      170.0,
+      117.0,
+      3620,
+      168,
       22
      ],
      "outlettype": [
@@ -6482,9 +6484,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1466,
-      77.0,
+      309.0,
+      3620,
+      91,
       22
      ],
      "outlettype": [
@@ -6500,9 +6502,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1398,
-      86.0,
+      16.0,
+      3650,
+      112,
       22
      ],
      "outlettype": [
@@ -6514,18 +6516,59 @@
    {
     "box": {
      "id": "obj-309",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3650,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/assist"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-310",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      358.0,
+      3650,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-311",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1056,
-      1372,
-      90.0,
-      48.0
+      576,
+      646,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      646,
+      104,
+      48
      ],
      "varname": "/bow/position",
      "parameter_enable": 1,
@@ -6539,72 +6582,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      652,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-310",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1056,
-      1422,
-      90.0,
-      18.0
-     ],
-     "text": "0.04 to 0.5",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      702,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-311",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      966,
-      1490,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/position"
+     }
     }
    },
    {
     "box": {
      "id": "obj-312",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      966,
-      1516,
-      84.0,
+      576,
+      696,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.04 to 0.5",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -6614,9 +6616,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1372,
-      63.0,
+      16.0,
+      3680,
+      77,
       22
      ],
      "outlettype": [
@@ -6632,9 +6634,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      966,
-      1442,
-      170.0,
+      117.0,
+      3680,
+      182,
       22
      ],
      "outlettype": [
@@ -6651,9 +6653,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1466,
-      77.0,
+      323.0,
+      3680,
+      91,
       22
      ],
      "outlettype": [
@@ -6669,9 +6671,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1398,
-      86.0,
+      16.0,
+      3710,
+      133,
       22
      ],
      "outlettype": [
@@ -6683,18 +6685,59 @@
    {
     "box": {
      "id": "obj-317",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      3710,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/position"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-318",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      3710,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-319",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1246,
-      1372,
-      90.0,
-      48.0
+      688,
+      646,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      646,
+      104,
+      48
      ],
      "varname": "/bow/tremolo",
      "parameter_enable": 1,
@@ -6708,72 +6751,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f 1/s"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      652,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-318",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1246,
-      1422,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 20 1/s",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      702,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-319",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1156,
-      1490,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/tremolo"
+     }
     }
    },
    {
     "box": {
      "id": "obj-320",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      1516,
-      84.0,
+      688,
+      696,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 20 1/s",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -6783,9 +6785,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1372,
-      63.0,
+      16.0,
+      3740,
+      77,
       22
      ],
      "outlettype": [
@@ -6801,9 +6803,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      1442,
-      170.0,
+      117.0,
+      3740,
+      175,
       22
      ],
      "outlettype": [
@@ -6820,9 +6822,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1466,
-      77.0,
+      316.0,
+      3740,
+      91,
       22
      ],
      "outlettype": [
@@ -6838,9 +6840,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1398,
-      86.0,
+      16.0,
+      3770,
+      112,
       22
      ],
      "outlettype": [
@@ -6852,18 +6854,59 @@
    {
     "box": {
      "id": "obj-325",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3770,
+      189,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/tremolo"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-326",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      365.0,
+      3770,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-327",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      1372,
-      90.0,
-      48.0
+      800,
+      646,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      646,
+      104,
+      48
      ],
      "varname": "/bow/noise",
      "parameter_enable": 1,
@@ -6877,72 +6920,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      652,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-326",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1436,
-      1422,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      702,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-327",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1346,
-      1490,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/noise"
+     }
     }
    },
    {
     "box": {
      "id": "obj-328",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      1516,
-      84.0,
+      800,
+      696,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -6952,9 +6954,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1372,
-      63.0,
+      16.0,
+      3800,
+      77,
       22
      ],
      "outlettype": [
@@ -6970,9 +6972,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      1442,
-      170.0,
+      117.0,
+      3800,
+      161,
       22
      ],
      "outlettype": [
@@ -6989,9 +6991,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1466,
-      77.0,
+      302.0,
+      3800,
+      91,
       22
      ],
      "outlettype": [
@@ -7007,9 +7009,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1398,
-      86.0,
+      16.0,
+      3830,
+      140,
       22
      ],
      "outlettype": [
@@ -7021,41 +7023,82 @@
    {
     "box": {
      "id": "obj-333",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      16,
-      1556,
-      98.0,
+      180.0,
+      3830,
+      175,
       22
      ],
-     "text": "finger",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      728,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/noise"
     }
    },
    {
     "box": {
      "id": "obj-334",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      3830,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-335",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      722,
+      224,
+      22
+     ],
+     "text": "finger",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      722,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-336",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
-      1586,
-      90.0,
-      48.0
+      16,
+      744,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      744,
+      104,
+      48
      ],
      "varname": "/finger/1/position",
      "parameter_enable": 1,
@@ -7069,72 +7112,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      750,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-335",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      106,
-      1636,
-      90.0,
-      18.0
-     ],
-     "text": "0.008 to 0.28 m",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      800,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-336",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      1704,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/1/position"
+     }
     }
    },
    {
     "box": {
      "id": "obj-337",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      1730,
-      84.0,
+      794,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.008 to 0.28 m",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -7144,9 +7146,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1586,
-      63.0,
+      16.0,
+      3860,
+      77,
       22
      ],
      "outlettype": [
@@ -7162,9 +7164,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      1656,
-      170.0,
+      117.0,
+      3860,
+      217,
       22
      ],
      "outlettype": [
@@ -7181,9 +7183,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1680,
-      77.0,
+      358.0,
+      3860,
+      91,
       22
      ],
      "outlettype": [
@@ -7199,9 +7201,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1612,
-      86.0,
+      16.0,
+      3890,
+      133,
       22
      ],
      "outlettype": [
@@ -7213,18 +7215,59 @@
    {
     "box": {
      "id": "obj-342",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      3890,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/1/position"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-343",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      428.0,
+      3890,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-344",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
-      1586,
-      90.0,
-      48.0
+      128,
+      744,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      744,
+      104,
+      48
      ],
      "varname": "/finger/1/press",
      "parameter_enable": 1,
@@ -7238,72 +7281,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f N"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      750,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-343",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      296,
-      1636,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 10 N",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      800,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-344",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      206,
-      1704,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/1/press"
+     }
     }
    },
    {
     "box": {
      "id": "obj-345",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
-      1730,
-      84.0,
+      128,
+      794,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 10 N",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -7313,9 +7315,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1586,
-      63.0,
+      16.0,
+      3920,
+      77,
       22
      ],
      "outlettype": [
@@ -7331,9 +7333,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
-      1656,
-      170.0,
+      117.0,
+      3920,
+      196,
       22
      ],
      "outlettype": [
@@ -7350,9 +7352,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1680,
-      77.0,
+      337.0,
+      3920,
+      91,
       22
      ],
      "outlettype": [
@@ -7368,9 +7370,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1612,
-      86.0,
+      16.0,
+      3950,
+      112,
       22
      ],
      "outlettype": [
@@ -7382,18 +7384,59 @@
    {
     "box": {
      "id": "obj-350",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3950,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/1/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-351",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      3950,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-352",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      486,
-      1586,
-      90.0,
-      48.0
+      240,
+      744,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      744,
+      104,
+      48
      ],
      "varname": "/finger/2/position",
      "parameter_enable": 1,
@@ -7407,72 +7450,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      750,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-351",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      486,
-      1636,
-      90.0,
-      18.0
-     ],
-     "text": "0.008 to 0.28 m",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      800,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-352",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      396,
-      1704,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/2/position"
+     }
     }
    },
    {
     "box": {
      "id": "obj-353",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      396,
-      1730,
-      84.0,
+      240,
+      794,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.008 to 0.28 m",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -7482,9 +7484,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1586,
-      63.0,
+      16.0,
+      3980,
+      77,
       22
      ],
      "outlettype": [
@@ -7500,9 +7502,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      396,
-      1656,
-      170.0,
+      117.0,
+      3980,
+      217,
       22
      ],
      "outlettype": [
@@ -7519,9 +7521,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1680,
-      77.0,
+      358.0,
+      3980,
+      91,
       22
      ],
      "outlettype": [
@@ -7537,9 +7539,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1612,
-      86.0,
+      16.0,
+      4010,
+      133,
       22
      ],
      "outlettype": [
@@ -7551,18 +7553,59 @@
    {
     "box": {
      "id": "obj-358",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      4010,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/2/position"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-359",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      428.0,
+      4010,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-360",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      676,
-      1586,
-      90.0,
-      48.0
+      352,
+      744,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      744,
+      104,
+      48
      ],
      "varname": "/finger/2/press",
      "parameter_enable": 1,
@@ -7576,72 +7619,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f N"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      750,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-359",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      676,
-      1636,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 10 N",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      800,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-360",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      586,
-      1704,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/2/press"
+     }
     }
    },
    {
     "box": {
      "id": "obj-361",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      586,
-      1730,
-      84.0,
+      352,
+      794,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 10 N",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -7651,9 +7653,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1586,
-      63.0,
+      16.0,
+      4040,
+      77,
       22
      ],
      "outlettype": [
@@ -7669,9 +7671,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      586,
-      1656,
-      170.0,
+      117.0,
+      4040,
+      196,
       22
      ],
      "outlettype": [
@@ -7688,9 +7690,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1680,
-      77.0,
+      337.0,
+      4040,
+      91,
       22
      ],
      "outlettype": [
@@ -7706,9 +7708,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1612,
-      86.0,
+      16.0,
+      4070,
+      112,
       22
      ],
      "outlettype": [
@@ -7720,18 +7722,59 @@
    {
     "box": {
      "id": "obj-366",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4070,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/2/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-367",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      4070,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-368",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      866,
-      1586,
-      90.0,
-      48.0
+      464,
+      744,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      744,
+      104,
+      48
      ],
      "varname": "/finger/3/position",
      "parameter_enable": 1,
@@ -7745,72 +7788,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      750,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-367",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      866,
-      1636,
-      90.0,
-      18.0
-     ],
-     "text": "0.008 to 0.28 m",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      800,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-368",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      776,
-      1704,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/3/position"
+     }
     }
    },
    {
     "box": {
      "id": "obj-369",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      776,
-      1730,
-      84.0,
+      464,
+      794,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.008 to 0.28 m",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -7820,9 +7822,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1586,
-      63.0,
+      16.0,
+      4100,
+      77,
       22
      ],
      "outlettype": [
@@ -7838,9 +7840,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      776,
-      1656,
-      170.0,
+      117.0,
+      4100,
+      217,
       22
      ],
      "outlettype": [
@@ -7857,9 +7859,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1680,
-      77.0,
+      358.0,
+      4100,
+      91,
       22
      ],
      "outlettype": [
@@ -7875,9 +7877,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1612,
-      86.0,
+      16.0,
+      4130,
+      133,
       22
      ],
      "outlettype": [
@@ -7889,18 +7891,59 @@
    {
     "box": {
      "id": "obj-374",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      4130,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/3/position"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-375",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      428.0,
+      4130,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-376",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1056,
-      1586,
-      90.0,
-      48.0
+      576,
+      744,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      744,
+      104,
+      48
      ],
      "varname": "/finger/3/press",
      "parameter_enable": 1,
@@ -7914,72 +7957,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f N"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      750,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-375",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1056,
-      1636,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 10 N",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      800,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-376",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      966,
-      1704,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/3/press"
+     }
     }
    },
    {
     "box": {
      "id": "obj-377",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      966,
-      1730,
-      84.0,
+      576,
+      794,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 10 N",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -7989,9 +7991,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1586,
-      63.0,
+      16.0,
+      4160,
+      77,
       22
      ],
      "outlettype": [
@@ -8007,9 +8009,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      966,
-      1656,
-      170.0,
+      117.0,
+      4160,
+      196,
       22
      ],
      "outlettype": [
@@ -8026,9 +8028,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1680,
-      77.0,
+      337.0,
+      4160,
+      91,
       22
      ],
      "outlettype": [
@@ -8044,9 +8046,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1612,
-      86.0,
+      16.0,
+      4190,
+      112,
       22
      ],
      "outlettype": [
@@ -8058,18 +8060,59 @@
    {
     "box": {
      "id": "obj-382",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4190,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/3/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-383",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      4190,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-384",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1246,
-      1586,
-      90.0,
-      48.0
+      688,
+      744,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      744,
+      104,
+      48
      ],
      "varname": "/finger/4/position",
      "parameter_enable": 1,
@@ -8083,72 +8126,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      750,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-383",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1246,
-      1636,
-      90.0,
-      18.0
-     ],
-     "text": "0.008 to 0.28 m",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      800,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-384",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1156,
-      1704,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/4/position"
+     }
     }
    },
    {
     "box": {
      "id": "obj-385",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      1730,
-      84.0,
+      688,
+      794,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.008 to 0.28 m",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -8158,9 +8160,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1586,
-      63.0,
+      16.0,
+      4220,
+      77,
       22
      ],
      "outlettype": [
@@ -8176,9 +8178,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      1656,
-      170.0,
+      117.0,
+      4220,
+      217,
       22
      ],
      "outlettype": [
@@ -8195,9 +8197,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1680,
-      77.0,
+      358.0,
+      4220,
+      91,
       22
      ],
      "outlettype": [
@@ -8213,9 +8215,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1612,
-      86.0,
+      16.0,
+      4250,
+      133,
       22
      ],
      "outlettype": [
@@ -8227,18 +8229,59 @@
    {
     "box": {
      "id": "obj-390",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      4250,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/4/position"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-391",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      428.0,
+      4250,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-392",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      1586,
-      90.0,
-      48.0
+      800,
+      744,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      744,
+      104,
+      48
      ],
      "varname": "/finger/4/press",
      "parameter_enable": 1,
@@ -8252,72 +8295,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f N"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      750,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-391",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1436,
-      1636,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 10 N",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      800,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-392",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1346,
-      1704,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/finger/4/press"
+     }
     }
    },
    {
     "box": {
      "id": "obj-393",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      1730,
-      84.0,
+      800,
+      794,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 10 N",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -8327,9 +8329,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1586,
-      63.0,
+      16.0,
+      4280,
+      77,
       22
      ],
      "outlettype": [
@@ -8345,9 +8347,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      1656,
-      170.0,
+      117.0,
+      4280,
+      196,
       22
      ],
      "outlettype": [
@@ -8364,9 +8366,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1680,
-      77.0,
+      337.0,
+      4280,
+      91,
       22
      ],
      "outlettype": [
@@ -8382,9 +8384,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1612,
-      86.0,
+      16.0,
+      4310,
+      112,
       22
      ],
      "outlettype": [
@@ -8396,41 +8398,82 @@
    {
     "box": {
      "id": "obj-398",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      16,
-      1770,
-      105.0,
+      152.0,
+      4310,
+      210,
       22
      ],
-     "text": "vibrato",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      826,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/finger/4/press"
     }
    },
    {
     "box": {
      "id": "obj-399",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      4310,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-400",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      820,
+      224,
+      22
+     ],
+     "text": "vibrato",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      820,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-401",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
-      1800,
-      90.0,
-      48.0
+      16,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      842,
+      104,
+      48
      ],
      "varname": "/vibrato/depth",
      "parameter_enable": 1,
@@ -8444,72 +8487,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f cents"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-400",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      106,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 200 cents",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-401",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/depth"
+     }
     }
    },
    {
     "box": {
      "id": "obj-402",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      1944,
-      84.0,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 200 cents",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -8519,9 +8521,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1800,
-      63.0,
+      16.0,
+      4340,
+      77,
       22
      ],
      "outlettype": [
@@ -8537,9 +8539,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      1870,
-      170.0,
+      117.0,
+      4340,
+      189,
       22
      ],
      "outlettype": [
@@ -8556,9 +8558,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1894,
-      77.0,
+      330.0,
+      4340,
+      91,
       22
      ],
      "outlettype": [
@@ -8574,9 +8576,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      1826,
-      86.0,
+      16.0,
+      4370,
+      112,
       22
      ],
      "outlettype": [
@@ -8588,18 +8590,59 @@
    {
     "box": {
      "id": "obj-407",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4370,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/depth"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-408",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      4370,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-409",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
-      1800,
-      90.0,
-      48.0
+      128,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      842,
+      104,
+      48
      ],
      "varname": "/vibrato/press",
      "parameter_enable": 1,
@@ -8613,72 +8656,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-408",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      296,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-409",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      206,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/press"
+     }
     }
    },
    {
     "box": {
      "id": "obj-410",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
-      1944,
-      84.0,
+      128,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -8688,9 +8690,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1800,
-      63.0,
+      16.0,
+      4400,
+      77,
       22
      ],
      "outlettype": [
@@ -8706,9 +8708,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
-      1870,
-      170.0,
+      117.0,
+      4400,
+      189,
       22
      ],
      "outlettype": [
@@ -8725,9 +8727,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1894,
-      77.0,
+      330.0,
+      4400,
+      91,
       22
      ],
      "outlettype": [
@@ -8743,9 +8745,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      1826,
-      86.0,
+      16.0,
+      4430,
+      112,
       22
      ],
      "outlettype": [
@@ -8757,18 +8759,59 @@
    {
     "box": {
      "id": "obj-415",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4430,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/press"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-416",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      4430,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-417",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      486,
-      1800,
-      90.0,
-      48.0
+      240,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      842,
+      104,
+      48
      ],
      "varname": "/vibrato/rate",
      "parameter_enable": 1,
@@ -8782,72 +8825,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f Hz"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-416",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      486,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "0.5 to 12 Hz",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-417",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      396,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/rate"
+     }
     }
    },
    {
     "box": {
      "id": "obj-418",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      396,
-      1944,
-      84.0,
+      240,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.5 to 12 Hz",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -8857,9 +8859,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1800,
-      63.0,
+      16.0,
+      4460,
+      77,
       22
      ],
      "outlettype": [
@@ -8875,9 +8877,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      396,
-      1870,
-      170.0,
+      117.0,
+      4460,
+      182,
       22
      ],
      "outlettype": [
@@ -8894,9 +8896,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1894,
-      77.0,
+      323.0,
+      4460,
+      91,
       22
      ],
      "outlettype": [
@@ -8912,9 +8914,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      1826,
-      86.0,
+      16.0,
+      4490,
+      126,
       22
      ],
      "outlettype": [
@@ -8926,18 +8928,59 @@
    {
     "box": {
      "id": "obj-423",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      4490,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/rate"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-424",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      4490,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-425",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      676,
-      1800,
-      90.0,
-      48.0
+      352,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      842,
+      104,
+      48
      ],
      "varname": "/vibrato/onset",
      "parameter_enable": 1,
@@ -8951,72 +8994,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-424",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      676,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-425",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      586,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/onset"
+     }
     }
    },
    {
     "box": {
      "id": "obj-426",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      586,
-      1944,
-      84.0,
+      352,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -9026,9 +9028,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1800,
-      63.0,
+      16.0,
+      4520,
+      77,
       22
      ],
      "outlettype": [
@@ -9044,9 +9046,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      586,
-      1870,
-      170.0,
+      117.0,
+      4520,
+      189,
       22
      ],
      "outlettype": [
@@ -9063,9 +9065,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1894,
-      77.0,
+      330.0,
+      4520,
+      91,
       22
      ],
      "outlettype": [
@@ -9081,9 +9083,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      1826,
-      86.0,
+      16.0,
+      4550,
+      112,
       22
      ],
      "outlettype": [
@@ -9095,41 +9097,82 @@
    {
     "box": {
      "id": "obj-431",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      776,
-      1770,
-      91.0,
+      152.0,
+      4550,
+      203,
       22
      ],
-     "text": "pluck",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      826,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/onset"
     }
    },
    {
     "box": {
      "id": "obj-432",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      4550,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-433",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      464,
+      820,
+      224,
+      22
+     ],
+     "text": "pluck",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      820,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-434",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      866,
-      1800,
-      90.0,
-      48.0
+      464,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      842,
+      104,
+      48
      ],
      "varname": "/pluck/force",
      "parameter_enable": 1,
@@ -9143,72 +9186,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f N"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-433",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      866,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "-5 to 5 N",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-434",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      776,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/pluck/force"
+     }
     }
    },
    {
     "box": {
      "id": "obj-435",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      776,
-      1944,
-      84.0,
+      464,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-5 to 5 N",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -9218,9 +9220,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1800,
-      63.0,
+      16.0,
+      4580,
+      77,
       22
      ],
      "outlettype": [
@@ -9236,9 +9238,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      776,
-      1870,
-      170.0,
+      117.0,
+      4580,
+      175,
       22
      ],
      "outlettype": [
@@ -9255,9 +9257,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1894,
-      77.0,
+      316.0,
+      4580,
+      91,
       22
      ],
      "outlettype": [
@@ -9273,9 +9275,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      1826,
-      86.0,
+      16.0,
+      4610,
+      112,
       22
      ],
      "outlettype": [
@@ -9287,18 +9289,59 @@
    {
     "box": {
      "id": "obj-440",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4610,
+      189,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/pluck/force"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-441",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      365.0,
+      4610,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-442",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1056,
-      1800,
-      90.0,
-      48.0
+      576,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      842,
+      104,
+      48
      ],
      "varname": "/pluck/position",
      "parameter_enable": 1,
@@ -9312,72 +9355,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-441",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1056,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "0.05 to 0.9",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-442",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      966,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/pluck/position"
+     }
     }
    },
    {
     "box": {
      "id": "obj-443",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      966,
-      1944,
-      84.0,
+      576,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.05 to 0.9",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -9387,9 +9389,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1800,
-      63.0,
+      16.0,
+      4640,
+      77,
       22
      ],
      "outlettype": [
@@ -9405,9 +9407,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      966,
-      1870,
-      170.0,
+      117.0,
+      4640,
+      196,
       22
      ],
      "outlettype": [
@@ -9424,9 +9426,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1894,
-      77.0,
+      337.0,
+      4640,
+      91,
       22
      ],
      "outlettype": [
@@ -9442,9 +9444,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      1826,
-      86.0,
+      16.0,
+      4670,
+      126,
       22
      ],
      "outlettype": [
@@ -9456,41 +9458,82 @@
    {
     "box": {
      "id": "obj-448",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1770,
-      98.0,
+      166.0,
+      4670,
+      210,
       22
      ],
-     "text": "string",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      826,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/pluck/position"
     }
    },
    {
     "box": {
      "id": "obj-449",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      400.0,
+      4670,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-450",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      688,
+      820,
+      224,
+      22
+     ],
+     "text": "string",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      820,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-451",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1246,
-      1800,
-      90.0,
-      48.0
+      688,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      842,
+      104,
+      48
      ],
      "varname": "/string/inner/tuning",
      "parameter_enable": 1,
@@ -9504,72 +9547,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f cents"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-450",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1246,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "-200 to 40 cents",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-451",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1156,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/string/inner/tuning"
+     }
     }
    },
    {
     "box": {
      "id": "obj-452",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      1944,
-      84.0,
+      688,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-200 to 40 cents",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -9579,9 +9581,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1800,
-      63.0,
+      16.0,
+      4700,
+      77,
       22
      ],
      "outlettype": [
@@ -9597,9 +9599,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      1870,
-      170.0,
+      117.0,
+      4700,
+      231,
       22
      ],
      "outlettype": [
@@ -9616,9 +9618,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1894,
-      77.0,
+      372.0,
+      4700,
+      91,
       22
      ],
      "outlettype": [
@@ -9634,9 +9636,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      1826,
-      86.0,
+      16.0,
+      4730,
+      112,
       22
      ],
      "outlettype": [
@@ -9648,18 +9650,59 @@
    {
     "box": {
      "id": "obj-457",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4730,
+      245,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/inner/tuning"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-458",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      421.0,
+      4730,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-459",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      1800,
-      90.0,
-      48.0
+      800,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      842,
+      104,
+      48
      ],
      "varname": "/string/inner/loss",
      "parameter_enable": 1,
@@ -9673,72 +9716,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-458",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1436,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "0.25 to 4",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-459",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1346,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/string/inner/loss"
+     }
     }
    },
    {
     "box": {
      "id": "obj-460",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      1944,
-      84.0,
+      800,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.25 to 4",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -9748,9 +9750,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1800,
-      63.0,
+      16.0,
+      4760,
+      77,
       22
      ],
      "outlettype": [
@@ -9766,9 +9768,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      1870,
-      170.0,
+      117.0,
+      4760,
+      217,
       22
      ],
      "outlettype": [
@@ -9785,9 +9787,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1894,
-      77.0,
+      358.0,
+      4760,
+      91,
       22
      ],
      "outlettype": [
@@ -9803,9 +9805,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      1826,
-      86.0,
+      16.0,
+      4790,
+      112,
       22
      ],
      "outlettype": [
@@ -9817,18 +9819,59 @@
    {
     "box": {
      "id": "obj-465",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4790,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/inner/loss"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-466",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      4790,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-467",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1626,
-      1800,
-      90.0,
-      48.0
+      912,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      842,
+      104,
+      48
      ],
      "varname": "/string/outer/tuning",
      "parameter_enable": 1,
@@ -9842,72 +9885,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f cents"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      912,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-466",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1626,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "-200 to 40 cents",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      912,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-467",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1536,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/string/outer/tuning"
+     }
     }
    },
    {
     "box": {
      "id": "obj-468",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1536,
-      1944,
-      84.0,
+      912,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-200 to 40 cents",
+     "presentation": 1,
+     "presentation_rect": [
+      912,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -9917,9 +9919,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1800,
-      63.0,
+      16.0,
+      4820,
+      77,
       22
      ],
      "outlettype": [
@@ -9935,9 +9937,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1536,
-      1870,
-      170.0,
+      117.0,
+      4820,
+      231,
       22
      ],
      "outlettype": [
@@ -9954,9 +9956,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1894,
-      77.0,
+      372.0,
+      4820,
+      91,
       22
      ],
      "outlettype": [
@@ -9972,9 +9974,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1536,
-      1826,
-      86.0,
+      16.0,
+      4850,
+      112,
       22
      ],
      "outlettype": [
@@ -9986,18 +9988,59 @@
    {
     "box": {
      "id": "obj-473",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4850,
+      245,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/outer/tuning"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-474",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      421.0,
+      4850,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-475",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1816,
-      1800,
-      90.0,
-      48.0
+      1024,
+      842,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      842,
+      104,
+      48
      ],
      "varname": "/string/outer/loss",
      "parameter_enable": 1,
@@ -10011,72 +10054,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      1024,
-      848,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-474",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1816,
-      1850,
-      90.0,
-      18.0
-     ],
-     "text": "0.25 to 4",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      1024,
-      898,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-475",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1726,
-      1918,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/string/outer/loss"
+     }
     }
    },
    {
     "box": {
      "id": "obj-476",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1726,
-      1944,
-      84.0,
+      1024,
+      892,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.25 to 4",
+     "presentation": 1,
+     "presentation_rect": [
+      1024,
+      892,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -10086,9 +10088,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      1800,
-      63.0,
+      16.0,
+      4880,
+      77,
       22
      ],
      "outlettype": [
@@ -10104,9 +10106,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1726,
-      1870,
-      170.0,
+      117.0,
+      4880,
+      217,
       22
      ],
      "outlettype": [
@@ -10123,9 +10125,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      1894,
-      77.0,
+      358.0,
+      4880,
+      91,
       22
      ],
      "outlettype": [
@@ -10141,9 +10143,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1726,
-      1826,
-      86.0,
+      16.0,
+      4910,
+      112,
       22
      ],
      "outlettype": [
@@ -10155,41 +10157,82 @@
    {
     "box": {
      "id": "obj-481",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      16,
-      1984,
-      98.0,
+      152.0,
+      4910,
+      231,
       22
      ],
-     "text": "output",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      924,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/string/outer/loss"
     }
    },
    {
     "box": {
      "id": "obj-482",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      4910,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-483",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      918,
+      224,
+      22
+     ],
+     "text": "output",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      918,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-484",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
-      2014,
-      90.0,
-      48.0
+      16,
+      940,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      940,
+      104,
+      48
      ],
      "varname": "/output/gain",
      "parameter_enable": 1,
@@ -10203,72 +10246,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f dB"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      946,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-483",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      106,
-      2064,
-      90.0,
-      18.0
-     ],
-     "text": "-60 to 24 dB",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      996,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-484",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      2132,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/gain"
+     }
     }
    },
    {
     "box": {
      "id": "obj-485",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      2158,
-      84.0,
+      990,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-60 to 24 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -10278,9 +10280,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      2014,
-      63.0,
+      16.0,
+      4940,
+      77,
       22
      ],
      "outlettype": [
@@ -10296,9 +10298,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      2084,
-      170.0,
+      117.0,
+      4940,
+      175,
       22
      ],
      "outlettype": [
@@ -10315,9 +10317,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      2108,
-      77.0,
+      316.0,
+      4940,
+      91,
       22
      ],
      "outlettype": [
@@ -10333,9 +10335,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      2040,
-      86.0,
+      16.0,
+      4970,
+      112,
       22
      ],
      "outlettype": [
@@ -10347,18 +10349,59 @@
    {
     "box": {
      "id": "obj-490",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4970,
+      189,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/gain"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-491",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      365.0,
+      4970,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-492",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
-      2014,
-      90.0,
-      48.0
+      128,
+      940,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      940,
+      104,
+      48
      ],
      "varname": "/output/level",
      "parameter_enable": 1,
@@ -10372,72 +10415,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      946,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-491",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      296,
-      2064,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      996,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-492",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      206,
-      2132,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/level"
+     }
     }
    },
    {
     "box": {
      "id": "obj-493",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
-      2158,
-      84.0,
+      128,
+      990,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -10447,9 +10449,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      2014,
-      63.0,
+      16.0,
+      5000,
+      77,
       22
      ],
      "outlettype": [
@@ -10465,9 +10467,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
-      2084,
-      170.0,
+      117.0,
+      5000,
+      182,
       22
      ],
      "outlettype": [
@@ -10484,9 +10486,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      2108,
-      77.0,
+      323.0,
+      5000,
+      91,
       22
      ],
      "outlettype": [
@@ -10502,9 +10504,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      2040,
-      86.0,
+      16.0,
+      5030,
+      112,
       22
      ],
      "outlettype": [
@@ -10516,18 +10518,59 @@
    {
     "box": {
      "id": "obj-498",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5030,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-499",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      5030,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-500",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      486,
-      2014,
-      90.0,
-      48.0
+      240,
+      940,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      940,
+      104,
+      48
      ],
      "varname": "/output/balance",
      "parameter_enable": 1,
@@ -10541,72 +10584,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f dB"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      946,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-499",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      486,
-      2064,
-      90.0,
-      18.0
-     ],
-     "text": "-36 to 36 dB",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      996,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-500",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      396,
-      2132,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/balance"
+     }
     }
    },
    {
     "box": {
      "id": "obj-501",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      396,
-      2158,
-      84.0,
+      240,
+      990,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-36 to 36 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -10616,9 +10618,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      2014,
-      63.0,
+      16.0,
+      5060,
+      77,
       22
      ],
      "outlettype": [
@@ -10634,9 +10636,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      396,
-      2084,
-      170.0,
+      117.0,
+      5060,
+      196,
       22
      ],
      "outlettype": [
@@ -10653,9 +10655,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      2108,
-      77.0,
+      337.0,
+      5060,
+      91,
       22
      ],
      "outlettype": [
@@ -10671,9 +10673,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      2040,
-      86.0,
+      16.0,
+      5090,
+      112,
       22
      ],
      "outlettype": [
@@ -10685,18 +10687,59 @@
    {
     "box": {
      "id": "obj-506",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5090,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/balance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-507",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      5090,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-508",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      676,
-      2014,
-      90.0,
-      48.0
+      352,
+      940,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      940,
+      104,
+      48
      ],
      "varname": "/output/limiter",
      "parameter_enable": 1,
@@ -10710,72 +10753,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f dB"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      946,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-507",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      676,
-      2064,
-      90.0,
-      18.0
-     ],
-     "text": "-24 to 0 dB",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      996,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-508",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      586,
-      2132,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/limiter"
+     }
     }
    },
    {
     "box": {
      "id": "obj-509",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      586,
-      2158,
-      84.0,
+      352,
+      990,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-24 to 0 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -10785,9 +10787,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      2014,
-      63.0,
+      16.0,
+      5120,
+      77,
       22
      ],
      "outlettype": [
@@ -10803,9 +10805,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      586,
-      2084,
-      170.0,
+      117.0,
+      5120,
+      196,
       22
      ],
      "outlettype": [
@@ -10822,9 +10824,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      2108,
-      77.0,
+      337.0,
+      5120,
+      91,
       22
      ],
      "outlettype": [
@@ -10840,9 +10842,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      2040,
-      86.0,
+      16.0,
+      5150,
+      119,
       22
      ],
      "outlettype": [
@@ -10854,41 +10856,82 @@
    {
     "box": {
      "id": "obj-514",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      776,
-      1984,
-      84.0,
+      159.0,
+      5150,
+      210,
       22
      ],
-     "text": "body",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      924,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/limiter"
     }
    },
    {
     "box": {
      "id": "obj-515",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      5150,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-516",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      464,
+      918,
+      224,
+      22
+     ],
+     "text": "body",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      918,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-517",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      866,
-      2014,
-      90.0,
-      48.0
+      464,
+      940,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      940,
+      104,
+      48
      ],
      "varname": "/body/gain",
      "parameter_enable": 1,
@@ -10902,72 +10945,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f dB"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      946,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-516",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      866,
-      2064,
-      90.0,
-      18.0
-     ],
-     "text": "-24 to 24 dB",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      996,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-517",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      776,
-      2132,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/gain"
+     }
     }
    },
    {
     "box": {
      "id": "obj-518",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      776,
-      2158,
-      84.0,
+      464,
+      990,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-24 to 24 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -10977,9 +10979,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      2014,
-      63.0,
+      16.0,
+      5180,
+      77,
       22
      ],
      "outlettype": [
@@ -10995,9 +10997,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      776,
-      2084,
-      170.0,
+      117.0,
+      5180,
+      161,
       22
      ],
      "outlettype": [
@@ -11014,9 +11016,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      2108,
-      77.0,
+      302.0,
+      5180,
+      91,
       22
      ],
      "outlettype": [
@@ -11032,9 +11034,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      2040,
-      86.0,
+      16.0,
+      5210,
+      112,
       22
      ],
      "outlettype": [
@@ -11046,18 +11048,59 @@
    {
     "box": {
      "id": "obj-523",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5210,
+      175,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/gain"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-524",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      351.0,
+      5210,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-525",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1056,
-      2014,
-      90.0,
-      48.0
+      576,
+      940,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      940,
+      104,
+      48
      ],
      "varname": "/body/blend",
      "parameter_enable": 1,
@@ -11071,72 +11114,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      946,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-524",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1056,
-      2064,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      996,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-525",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      966,
-      2132,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/blend"
+     }
     }
    },
    {
     "box": {
      "id": "obj-526",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      966,
-      2158,
-      84.0,
+      576,
+      990,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -11146,9 +11148,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      2014,
-      63.0,
+      16.0,
+      5240,
+      77,
       22
      ],
      "outlettype": [
@@ -11164,9 +11166,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      966,
-      2084,
-      170.0,
+      117.0,
+      5240,
+      168,
       22
      ],
      "outlettype": [
@@ -11183,9 +11185,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      2108,
-      77.0,
+      309.0,
+      5240,
+      91,
       22
      ],
      "outlettype": [
@@ -11201,9 +11203,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      2040,
-      86.0,
+      16.0,
+      5270,
+      112,
       22
      ],
      "outlettype": [
@@ -11215,18 +11217,59 @@
    {
     "box": {
      "id": "obj-531",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5270,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/blend"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-532",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      358.0,
+      5270,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-533",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1246,
-      2014,
-      90.0,
-      48.0
+      688,
+      940,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      940,
+      104,
+      48
      ],
      "varname": "/body/width",
      "parameter_enable": 1,
@@ -11240,72 +11283,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      946,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-532",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1246,
-      2064,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      996,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-533",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1156,
-      2132,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/width"
+     }
     }
    },
    {
     "box": {
      "id": "obj-534",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      2158,
-      84.0,
+      688,
+      990,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -11315,9 +11317,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      2014,
-      63.0,
+      16.0,
+      5300,
+      77,
       22
      ],
      "outlettype": [
@@ -11333,9 +11335,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      2084,
-      170.0,
+      117.0,
+      5300,
+      168,
       22
      ],
      "outlettype": [
@@ -11352,9 +11354,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      2108,
-      77.0,
+      309.0,
+      5300,
+      91,
       22
      ],
      "outlettype": [
@@ -11370,9 +11372,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      2040,
-      86.0,
+      16.0,
+      5330,
+      126,
       22
      ],
      "outlettype": [
@@ -11384,18 +11386,59 @@
    {
     "box": {
      "id": "obj-539",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      5330,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-540",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      5330,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-541",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      2014,
-      90.0,
-      48.0
+      800,
+      940,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      940,
+      104,
+      48
      ],
      "varname": "/body/evenness",
      "parameter_enable": 1,
@@ -11409,72 +11452,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      946,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-540",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1436,
-      2064,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      996,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-541",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1346,
-      2132,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/evenness"
+     }
     }
    },
    {
     "box": {
      "id": "obj-542",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      2158,
-      84.0,
+      800,
+      990,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -11484,9 +11486,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2014,
-      63.0,
+      16.0,
+      5360,
+      77,
       22
      ],
      "outlettype": [
@@ -11502,9 +11504,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      2084,
-      170.0,
+      117.0,
+      5360,
+      189,
       22
      ],
      "outlettype": [
@@ -11521,9 +11523,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2108,
-      77.0,
+      330.0,
+      5360,
+      91,
       22
      ],
      "outlettype": [
@@ -11539,9 +11541,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2040,
-      86.0,
+      16.0,
+      5390,
+      126,
       22
      ],
      "outlettype": [
@@ -11553,41 +11555,82 @@
    {
     "box": {
      "id": "obj-547",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      16,
-      2198,
-      84.0,
+      166.0,
+      5390,
+      203,
       22
      ],
-     "text": "room",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      1022,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/evenness"
     }
    },
    {
     "box": {
      "id": "obj-548",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      5390,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-549",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      16,
+      1016,
+      224,
+      22
+     ],
+     "text": "room",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      1016,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-550",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      106,
-      2228,
-      90.0,
-      48.0
+      16,
+      1038,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      1038,
+      104,
+      48
      ],
      "varname": "/room/size",
      "parameter_enable": 1,
@@ -11601,72 +11644,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      1044,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-549",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      106,
-      2278,
-      90.0,
-      18.0
-     ],
-     "text": "2 to 40 m",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      16,
-      1094,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-550",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16,
-      2346,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/size"
+     }
     }
    },
    {
     "box": {
      "id": "obj-551",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       16,
-      2372,
-      84.0,
+      1088,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "2 to 40 m",
+     "presentation": 1,
+     "presentation_rect": [
+      16,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -11676,9 +11678,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      2228,
-      63.0,
+      16.0,
+      5420,
+      77,
       22
      ],
      "outlettype": [
@@ -11694,9 +11696,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      16,
-      2298,
-      170.0,
+      117.0,
+      5420,
+      161,
       22
      ],
      "outlettype": [
@@ -11713,9 +11715,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      2322,
-      77.0,
+      302.0,
+      5420,
+      91,
       22
      ],
      "outlettype": [
@@ -11731,9 +11733,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      16,
-      2254,
-      86.0,
+      16.0,
+      5450,
+      112,
       22
      ],
      "outlettype": [
@@ -11745,18 +11747,59 @@
    {
     "box": {
      "id": "obj-556",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5450,
+      175,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/size"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-557",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      351.0,
+      5450,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-558",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      296,
-      2228,
-      90.0,
-      48.0
+      128,
+      1038,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      1038,
+      104,
+      48
      ],
      "varname": "/room/decay",
      "parameter_enable": 1,
@@ -11770,72 +11813,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f s"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      1044,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-557",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      296,
-      2278,
-      90.0,
-      18.0
-     ],
-     "text": "0.1 to 10 s",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      1094,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-558",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      206,
-      2346,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/decay"
+     }
     }
    },
    {
     "box": {
      "id": "obj-559",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      206,
-      2372,
-      84.0,
+      128,
+      1088,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0.1 to 10 s",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -11845,9 +11847,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      2228,
-      63.0,
+      16.0,
+      5480,
+      77,
       22
      ],
      "outlettype": [
@@ -11863,9 +11865,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      206,
-      2298,
-      170.0,
+      117.0,
+      5480,
+      168,
       22
      ],
      "outlettype": [
@@ -11882,9 +11884,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      2322,
-      77.0,
+      309.0,
+      5480,
+      91,
       22
      ],
      "outlettype": [
@@ -11900,9 +11902,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      206,
-      2254,
-      86.0,
+      16.0,
+      5510,
+      126,
       22
      ],
      "outlettype": [
@@ -11914,18 +11916,59 @@
    {
     "box": {
      "id": "obj-564",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      5510,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/decay"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-565",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      5510,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-566",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      486,
-      2228,
-      90.0,
-      48.0
+      240,
+      1038,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1038,
+      104,
+      48
      ],
      "varname": "/room/damping",
      "parameter_enable": 1,
@@ -11939,72 +11982,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1044,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-565",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      486,
-      2278,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1094,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-566",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      396,
-      2346,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/damping"
+     }
     }
    },
    {
     "box": {
      "id": "obj-567",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      396,
-      2372,
-      84.0,
+      240,
+      1088,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -12014,9 +12016,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      2228,
-      63.0,
+      16.0,
+      5540,
+      77,
       22
      ],
      "outlettype": [
@@ -12032,9 +12034,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      396,
-      2298,
-      170.0,
+      117.0,
+      5540,
+      182,
       22
      ],
      "outlettype": [
@@ -12051,9 +12053,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      2322,
-      77.0,
+      323.0,
+      5540,
+      91,
       22
      ],
      "outlettype": [
@@ -12069,9 +12071,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      396,
-      2254,
-      86.0,
+      16.0,
+      5570,
+      126,
       22
      ],
      "outlettype": [
@@ -12083,18 +12085,59 @@
    {
     "box": {
      "id": "obj-572",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      5570,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-573",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      5570,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-574",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      676,
-      2228,
-      90.0,
-      48.0
+      352,
+      1038,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1038,
+      104,
+      48
      ],
      "varname": "/room/level",
      "parameter_enable": 1,
@@ -12108,72 +12151,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      1044,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-573",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      676,
-      2278,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      352,
-      1094,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-574",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      586,
-      2346,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/level"
+     }
     }
    },
    {
     "box": {
      "id": "obj-575",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      586,
-      2372,
-      84.0,
+      352,
+      1088,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -12183,9 +12185,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      2228,
-      63.0,
+      16.0,
+      5600,
+      77,
       22
      ],
      "outlettype": [
@@ -12201,9 +12203,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      586,
-      2298,
-      170.0,
+      117.0,
+      5600,
+      168,
       22
      ],
      "outlettype": [
@@ -12220,9 +12222,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      2322,
-      77.0,
+      309.0,
+      5600,
+      91,
       22
      ],
      "outlettype": [
@@ -12238,9 +12240,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      586,
-      2254,
-      86.0,
+      16.0,
+      5630,
+      133,
       22
      ],
      "outlettype": [
@@ -12252,18 +12254,59 @@
    {
     "box": {
      "id": "obj-580",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      173.0,
+      5630,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-581",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      5630,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-582",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      866,
-      2228,
-      90.0,
-      48.0
+      464,
+      1038,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      1038,
+      104,
+      48
      ],
      "varname": "/room/distance",
      "parameter_enable": 1,
@@ -12277,72 +12320,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f m"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      1044,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-581",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      866,
-      2278,
-      90.0,
-      18.0
-     ],
-     "text": "1 to 20 m",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      464,
-      1094,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-582",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      776,
-      2346,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/distance"
+     }
     }
    },
    {
     "box": {
      "id": "obj-583",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      776,
-      2372,
-      84.0,
+      464,
+      1088,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "1 to 20 m",
+     "presentation": 1,
+     "presentation_rect": [
+      464,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -12352,9 +12354,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      2228,
-      63.0,
+      16.0,
+      5660,
+      77,
       22
      ],
      "outlettype": [
@@ -12370,9 +12372,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      776,
-      2298,
-      170.0,
+      117.0,
+      5660,
+      189,
       22
      ],
      "outlettype": [
@@ -12389,9 +12391,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      2322,
-      77.0,
+      330.0,
+      5660,
+      91,
       22
      ],
      "outlettype": [
@@ -12407,9 +12409,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      776,
-      2254,
-      86.0,
+      16.0,
+      5690,
+      112,
       22
      ],
      "outlettype": [
@@ -12421,18 +12423,59 @@
    {
     "box": {
      "id": "obj-588",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5690,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/distance"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-589",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      379.0,
+      5690,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-590",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1056,
-      2228,
-      90.0,
-      48.0
+      576,
+      1038,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1038,
+      104,
+      48
      ],
      "varname": "/room/pan",
      "parameter_enable": 1,
@@ -12446,72 +12489,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      1044,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-589",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1056,
-      2278,
-      90.0,
-      18.0
-     ],
-     "text": "-1 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      1094,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-590",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      966,
-      2346,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/pan"
+     }
     }
    },
    {
     "box": {
      "id": "obj-591",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      966,
-      2372,
-      84.0,
+      576,
+      1088,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -12521,9 +12523,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      2228,
-      63.0,
+      16.0,
+      5720,
+      77,
       22
      ],
      "outlettype": [
@@ -12539,9 +12541,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      966,
-      2298,
-      170.0,
+      117.0,
+      5720,
+      154,
       22
      ],
      "outlettype": [
@@ -12558,9 +12560,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      2322,
-      77.0,
+      295.0,
+      5720,
+      91,
       22
      ],
      "outlettype": [
@@ -12576,9 +12578,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      966,
-      2254,
-      86.0,
+      16.0,
+      5750,
+      112,
       22
      ],
      "outlettype": [
@@ -12590,41 +12592,82 @@
    {
     "box": {
      "id": "obj-596",
-     "maxclass": "comment",
+     "maxclass": "newobj",
      "numinlets": 1,
-     "numoutlets": 0,
+     "numoutlets": 1,
      "patching_rect": [
-      1156,
-      2198,
-      98.0,
+      152.0,
+      5750,
+      168,
       22
      ],
-     "text": "engine",
-     "fontface": 1,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      1022,
-      224,
-      22
-     ]
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/pan"
     }
    },
    {
     "box": {
      "id": "obj-597",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      344.0,
+      5750,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-598",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      688,
+      1016,
+      224,
+      22
+     ],
+     "text": "engine",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      1016,
+      224,
+      22
+     ],
+     "fontface": 1
+    }
+   },
+   {
+    "box": {
+     "id": "obj-599",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1246,
-      2228,
-      90.0,
-      48.0
+      688,
+      1038,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      1038,
+      104,
+      48
      ],
      "varname": "/engine/calibration",
      "parameter_enable": 1,
@@ -12638,72 +12681,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      1044,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-598",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1246,
-      2278,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 1",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      688,
-      1094,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-599",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1156,
-      2346,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/engine/calibration"
+     }
     }
    },
    {
     "box": {
      "id": "obj-600",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1156,
-      2372,
-      84.0,
+      688,
+      1088,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -12713,9 +12715,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      2228,
-      63.0,
+      16.0,
+      5780,
+      77,
       22
      ],
      "outlettype": [
@@ -12731,9 +12733,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1156,
-      2298,
-      170.0,
+      117.0,
+      5780,
+      224,
       22
      ],
      "outlettype": [
@@ -12750,9 +12752,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      2322,
-      77.0,
+      365.0,
+      5780,
+      91,
       22
      ],
      "outlettype": [
@@ -12768,9 +12770,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1156,
-      2254,
-      86.0,
+      16.0,
+      5810,
+      112,
       22
      ],
      "outlettype": [
@@ -12782,18 +12784,59 @@
    {
     "box": {
      "id": "obj-605",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5810,
+      238,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/engine/calibration"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-606",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      414.0,
+      5810,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-607",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      1436,
-      2228,
-      90.0,
-      48.0
+      800,
+      1038,
+      104,
+      48
      ],
      "outlettype": [
       "int/float",
       "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      1038,
+      104,
+      48
      ],
      "varname": "/engine/seed",
      "parameter_enable": 1,
@@ -12807,72 +12850,31 @@
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
       }
-     },
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      1044,
-      104,
-      48
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-606",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      1436,
-      2278,
-      90.0,
-      18.0
-     ],
-     "text": "0 to 65535",
-     "textjustification": 1,
-     "fontsize": 9.0,
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      1094,
-      104,
-      22
-     ]
-    }
-   },
-   {
-    "box": {
-     "id": "obj-607",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      1346,
-      2346,
-      170.0,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/engine/seed"
+     }
     }
    },
    {
     "box": {
      "id": "obj-608",
-     "maxclass": "newobj",
+     "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      1346,
-      2372,
-      84.0,
+      800,
+      1088,
+      104,
       22
      ],
-     "outlettype": [],
-     "text": "s yehu.moved"
+     "text": "0 to 65535",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
     }
    },
    {
@@ -12882,9 +12884,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2228,
-      63.0,
+      16.0,
+      5840,
+      77,
       22
      ],
      "outlettype": [
@@ -12900,9 +12902,9 @@
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
-      1346,
-      2298,
-      170.0,
+      117.0,
+      5840,
+      175,
       22
      ],
      "outlettype": [
@@ -12919,9 +12921,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2322,
-      77.0,
+      316.0,
+      5840,
+      91,
       22
      ],
      "outlettype": [
@@ -12937,9 +12939,9 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      1346,
-      2254,
-      86.0,
+      16.0,
+      5870,
+      112,
       22
      ],
      "outlettype": [
@@ -12947,13 +12949,47 @@
      ],
      "text": "loadmess set 0"
     }
+   },
+   {
+    "box": {
+     "id": "obj-613",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5870,
+      189,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/engine/seed"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-614",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      365.0,
+      5870,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
    }
   ],
   "lines": [
    {
     "patchline": {
      "source": [
-      "obj-1",
+      "obj-2",
       0
      ],
      "destination": [
@@ -12967,19 +13003,6 @@
     "patchline": {
      "source": [
       "obj-3",
-      0
-     ],
-     "destination": [
-      "obj-2",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-2",
       0
      ],
      "destination": [
@@ -12997,6 +13020,19 @@
      ],
      "destination": [
       "obj-5",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-5",
+      0
+     ],
+     "destination": [
+      "obj-1",
       0
      ],
      "order": 0
@@ -13009,7 +13045,7 @@
       0
      ],
      "destination": [
-      "obj-5",
+      "obj-1",
       0
      ],
      "order": 0
@@ -13022,7 +13058,7 @@
       0
      ],
      "destination": [
-      "obj-5",
+      "obj-1",
       0
      ],
      "order": 0
@@ -13074,7 +13110,7 @@
       0
      ],
      "destination": [
-      "obj-4",
+      "obj-5",
       0
      ],
      "order": 0
@@ -13096,24 +13132,11 @@
    {
     "patchline": {
      "source": [
-      "obj-10",
-      1
-     ],
-     "destination": [
-      "obj-12",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
       "obj-11",
       0
      ],
      "destination": [
-      "obj-13",
+      "obj-12",
       0
      ],
      "order": 0
@@ -13127,6 +13150,19 @@
      ],
      "destination": [
       "obj-13",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-10",
+      1
+     ],
+     "destination": [
+      "obj-14",
       0
      ],
      "order": 0
@@ -13139,8 +13175,8 @@
       0
      ],
      "destination": [
-      "obj-13",
-      1
+      "obj-12",
+      0
      ],
      "order": 0
     }
@@ -13148,13 +13184,26 @@
    {
     "patchline": {
      "source": [
-      "obj-13",
-      0
-     ],
-     "destination": [
       "obj-15",
       0
      ],
+     "destination": [
+      "obj-12",
+      1
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-19",
+      0
+     ],
+     "destination": [
+      "obj-20",
+      0
+     ],
      "order": 0
     }
    },
@@ -13162,6 +13211,19 @@
     "patchline": {
      "source": [
       "obj-20",
+      0
+     ],
+     "destination": [
+      "obj-16",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-18",
       0
      ],
      "destination": [
@@ -13178,33 +13240,7 @@
       0
      ],
      "destination": [
-      "obj-17",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-17",
-      0
-     ],
-     "destination": [
-      "obj-16",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-20",
-      1
-     ],
-     "destination": [
-      "obj-22",
+      "obj-19",
       0
      ],
      "order": 0
@@ -13217,7 +13253,7 @@
       0
      ],
      "destination": [
-      "obj-18",
+      "obj-23",
       0
      ],
      "order": 0
@@ -13226,7 +13262,7 @@
    {
     "patchline": {
      "source": [
-      "obj-18",
+      "obj-23",
       0
      ],
      "destination": [
@@ -13239,51 +13275,25 @@
    {
     "patchline": {
      "source": [
+      "obj-18",
+      1
+     ],
+     "destination": [
+      "obj-24",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-24",
       0
      ],
      "destination": [
-      "obj-25",
+      "obj-22",
       0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-24",
-      1
-     ],
-     "destination": [
-      "obj-26",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-25",
-      0
-     ],
-     "destination": [
-      "obj-27",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-26",
-      0
-     ],
-     "destination": [
-      "obj-27",
-      1
      ],
      "order": 0
     }
@@ -13317,8 +13327,34 @@
    {
     "patchline": {
      "source": [
+      "obj-26",
+      0
+     ],
+     "destination": [
       "obj-29",
       0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-29",
+      0
+     ],
+     "destination": [
+      "obj-27",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-26",
+      1
      ],
      "destination": [
       "obj-30",
@@ -13330,25 +13366,12 @@
    {
     "patchline": {
      "source": [
-      "obj-29",
-      1
-     ],
-     "destination": [
-      "obj-30",
-      1
-     ],
-     "order": 1
-    }
-   },
-   {
-    "patchline": {
-     "source": [
       "obj-30",
       0
      ],
      "destination": [
-      "obj-31",
-      0
+      "obj-27",
+      1
      ],
      "order": 0
     }
@@ -13360,7 +13383,7 @@
       0
      ],
      "destination": [
-      "obj-16",
+      "obj-32",
       0
      ],
      "order": 0
@@ -13373,7 +13396,7 @@
       0
      ],
      "destination": [
-      "obj-16",
+      "obj-33",
       0
      ],
      "order": 0
@@ -13395,7 +13418,33 @@
    {
     "patchline": {
      "source": [
+      "obj-31",
+      1
+     ],
+     "destination": [
+      "obj-32",
+      1
+     ],
+     "order": 1
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-34",
+      0
+     ],
+     "destination": [
+      "obj-16",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-35",
       0
      ],
      "destination": [
@@ -13412,20 +13461,7 @@
       0
      ],
      "destination": [
-      "obj-38",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-38",
-      0
-     ],
-     "destination": [
-      "obj-39",
+      "obj-16",
       0
      ],
      "order": 0
@@ -13464,7 +13500,7 @@
       0
      ],
      "destination": [
-      "obj-36",
+      "obj-38",
       0
      ],
      "order": 0
@@ -13477,7 +13513,20 @@
       0
      ],
      "destination": [
-      "obj-36",
+      "obj-38",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-38",
+      0
+     ],
+     "destination": [
+      "obj-44",
       0
      ],
      "order": 0
@@ -13490,20 +13539,7 @@
       0
      ],
      "destination": [
-      "obj-46",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-46",
-      0
-     ],
-     "destination": [
-      "obj-47",
+      "obj-45",
       0
      ],
      "order": 0
@@ -13542,7 +13578,7 @@
       0
      ],
      "destination": [
-      "obj-44",
+      "obj-46",
       0
      ],
      "order": 0
@@ -13555,7 +13591,20 @@
       0
      ],
      "destination": [
-      "obj-44",
+      "obj-46",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-46",
+      0
+     ],
+     "destination": [
+      "obj-52",
       0
      ],
      "order": 0
@@ -13568,20 +13617,7 @@
       0
      ],
      "destination": [
-      "obj-54",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-54",
-      0
-     ],
-     "destination": [
-      "obj-55",
+      "obj-53",
       0
      ],
      "order": 0
@@ -13620,7 +13656,7 @@
       0
      ],
      "destination": [
-      "obj-52",
+      "obj-54",
       0
      ],
      "order": 0
@@ -13633,7 +13669,20 @@
       0
      ],
      "destination": [
-      "obj-52",
+      "obj-54",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-54",
+      0
+     ],
+     "destination": [
+      "obj-60",
       0
      ],
      "order": 0
@@ -13646,20 +13695,7 @@
       0
      ],
      "destination": [
-      "obj-62",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-62",
-      0
-     ],
-     "destination": [
-      "obj-63",
+      "obj-61",
       0
      ],
      "order": 0
@@ -13698,7 +13734,7 @@
       0
      ],
      "destination": [
-      "obj-60",
+      "obj-62",
       0
      ],
      "order": 0
@@ -13711,7 +13747,20 @@
       0
      ],
      "destination": [
-      "obj-60",
+      "obj-62",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-62",
+      0
+     ],
+     "destination": [
+      "obj-68",
       0
      ],
      "order": 0
@@ -13724,20 +13773,7 @@
       0
      ],
      "destination": [
-      "obj-70",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-70",
-      0
-     ],
-     "destination": [
-      "obj-71",
+      "obj-69",
       0
      ],
      "order": 0
@@ -13776,7 +13812,7 @@
       0
      ],
      "destination": [
-      "obj-68",
+      "obj-70",
       0
      ],
      "order": 0
@@ -13789,7 +13825,20 @@
       0
      ],
      "destination": [
-      "obj-68",
+      "obj-70",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-70",
+      0
+     ],
+     "destination": [
+      "obj-76",
       0
      ],
      "order": 0
@@ -13802,20 +13851,7 @@
       0
      ],
      "destination": [
-      "obj-78",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-78",
-      0
-     ],
-     "destination": [
-      "obj-79",
+      "obj-77",
       0
      ],
      "order": 0
@@ -13854,7 +13890,7 @@
       0
      ],
      "destination": [
-      "obj-76",
+      "obj-78",
       0
      ],
      "order": 0
@@ -13867,7 +13903,20 @@
       0
      ],
      "destination": [
-      "obj-76",
+      "obj-78",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-78",
+      0
+     ],
+     "destination": [
+      "obj-84",
       0
      ],
      "order": 0
@@ -13880,20 +13929,7 @@
       0
      ],
      "destination": [
-      "obj-86",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-86",
-      0
-     ],
-     "destination": [
-      "obj-87",
+      "obj-85",
       0
      ],
      "order": 0
@@ -13932,7 +13968,7 @@
       0
      ],
      "destination": [
-      "obj-84",
+      "obj-86",
       0
      ],
      "order": 0
@@ -13945,7 +13981,20 @@
       0
      ],
      "destination": [
-      "obj-84",
+      "obj-86",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-86",
+      0
+     ],
+     "destination": [
+      "obj-92",
       0
      ],
      "order": 0
@@ -13958,20 +14007,7 @@
       0
      ],
      "destination": [
-      "obj-94",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-94",
-      0
-     ],
-     "destination": [
-      "obj-95",
+      "obj-93",
       0
      ],
      "order": 0
@@ -14010,7 +14046,7 @@
       0
      ],
      "destination": [
-      "obj-92",
+      "obj-94",
       0
      ],
      "order": 0
@@ -14023,7 +14059,20 @@
       0
      ],
      "destination": [
-      "obj-92",
+      "obj-94",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-94",
+      0
+     ],
+     "destination": [
+      "obj-100",
       0
      ],
      "order": 0
@@ -14036,20 +14085,7 @@
       0
      ],
      "destination": [
-      "obj-102",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-102",
-      0
-     ],
-     "destination": [
-      "obj-103",
+      "obj-101",
       0
      ],
      "order": 0
@@ -14088,7 +14124,7 @@
       0
      ],
      "destination": [
-      "obj-100",
+      "obj-102",
       0
      ],
      "order": 0
@@ -14101,7 +14137,20 @@
       0
      ],
      "destination": [
-      "obj-100",
+      "obj-102",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-102",
+      0
+     ],
+     "destination": [
+      "obj-108",
       0
      ],
      "order": 0
@@ -14114,20 +14163,7 @@
       0
      ],
      "destination": [
-      "obj-110",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-110",
-      0
-     ],
-     "destination": [
-      "obj-111",
+      "obj-109",
       0
      ],
      "order": 0
@@ -14166,7 +14202,7 @@
       0
      ],
      "destination": [
-      "obj-108",
+      "obj-110",
       0
      ],
      "order": 0
@@ -14179,7 +14215,20 @@
       0
      ],
      "destination": [
-      "obj-108",
+      "obj-110",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-110",
+      0
+     ],
+     "destination": [
+      "obj-116",
       0
      ],
      "order": 0
@@ -14192,20 +14241,7 @@
       0
      ],
      "destination": [
-      "obj-118",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-118",
-      0
-     ],
-     "destination": [
-      "obj-119",
+      "obj-117",
       0
      ],
      "order": 0
@@ -14244,7 +14280,7 @@
       0
      ],
      "destination": [
-      "obj-116",
+      "obj-118",
       0
      ],
      "order": 0
@@ -14257,7 +14293,20 @@
       0
      ],
      "destination": [
-      "obj-116",
+      "obj-118",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-118",
+      0
+     ],
+     "destination": [
+      "obj-124",
       0
      ],
      "order": 0
@@ -14270,20 +14319,7 @@
       0
      ],
      "destination": [
-      "obj-126",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-126",
-      0
-     ],
-     "destination": [
-      "obj-127",
+      "obj-125",
       0
      ],
      "order": 0
@@ -14322,7 +14358,7 @@
       0
      ],
      "destination": [
-      "obj-124",
+      "obj-126",
       0
      ],
      "order": 0
@@ -14335,7 +14371,20 @@
       0
      ],
      "destination": [
-      "obj-124",
+      "obj-126",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-126",
+      0
+     ],
+     "destination": [
+      "obj-132",
       0
      ],
      "order": 0
@@ -14348,20 +14397,7 @@
       0
      ],
      "destination": [
-      "obj-134",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-134",
-      0
-     ],
-     "destination": [
-      "obj-135",
+      "obj-133",
       0
      ],
      "order": 0
@@ -14400,7 +14436,7 @@
       0
      ],
      "destination": [
-      "obj-132",
+      "obj-134",
       0
      ],
      "order": 0
@@ -14413,7 +14449,20 @@
       0
      ],
      "destination": [
-      "obj-132",
+      "obj-134",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-134",
+      0
+     ],
+     "destination": [
+      "obj-140",
       0
      ],
      "order": 0
@@ -14426,20 +14475,7 @@
       0
      ],
      "destination": [
-      "obj-142",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-142",
-      0
-     ],
-     "destination": [
-      "obj-143",
+      "obj-141",
       0
      ],
      "order": 0
@@ -14478,7 +14514,7 @@
       0
      ],
      "destination": [
-      "obj-140",
+      "obj-142",
       0
      ],
      "order": 0
@@ -14491,7 +14527,20 @@
       0
      ],
      "destination": [
-      "obj-140",
+      "obj-142",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-142",
+      0
+     ],
+     "destination": [
+      "obj-148",
       0
      ],
      "order": 0
@@ -14504,20 +14553,7 @@
       0
      ],
      "destination": [
-      "obj-150",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-150",
-      0
-     ],
-     "destination": [
-      "obj-151",
+      "obj-149",
       0
      ],
      "order": 0
@@ -14556,7 +14592,7 @@
       0
      ],
      "destination": [
-      "obj-148",
+      "obj-150",
       0
      ],
      "order": 0
@@ -14569,7 +14605,20 @@
       0
      ],
      "destination": [
-      "obj-148",
+      "obj-150",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-150",
+      0
+     ],
+     "destination": [
+      "obj-156",
       0
      ],
      "order": 0
@@ -14582,20 +14631,7 @@
       0
      ],
      "destination": [
-      "obj-158",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-158",
-      0
-     ],
-     "destination": [
-      "obj-159",
+      "obj-157",
       0
      ],
      "order": 0
@@ -14634,7 +14670,7 @@
       0
      ],
      "destination": [
-      "obj-156",
+      "obj-158",
       0
      ],
      "order": 0
@@ -14647,7 +14683,20 @@
       0
      ],
      "destination": [
-      "obj-156",
+      "obj-158",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-158",
+      0
+     ],
+     "destination": [
+      "obj-164",
       0
      ],
      "order": 0
@@ -14660,20 +14709,7 @@
       0
      ],
      "destination": [
-      "obj-166",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-166",
-      0
-     ],
-     "destination": [
-      "obj-167",
+      "obj-165",
       0
      ],
      "order": 0
@@ -14712,7 +14748,7 @@
       0
      ],
      "destination": [
-      "obj-164",
+      "obj-166",
       0
      ],
      "order": 0
@@ -14725,7 +14761,20 @@
       0
      ],
      "destination": [
-      "obj-164",
+      "obj-166",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-166",
+      0
+     ],
+     "destination": [
+      "obj-172",
       0
      ],
      "order": 0
@@ -14738,20 +14787,7 @@
       0
      ],
      "destination": [
-      "obj-174",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-174",
-      0
-     ],
-     "destination": [
-      "obj-175",
+      "obj-173",
       0
      ],
      "order": 0
@@ -14790,7 +14826,7 @@
       0
      ],
      "destination": [
-      "obj-172",
+      "obj-174",
       0
      ],
      "order": 0
@@ -14803,7 +14839,20 @@
       0
      ],
      "destination": [
-      "obj-172",
+      "obj-174",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-174",
+      0
+     ],
+     "destination": [
+      "obj-180",
       0
      ],
      "order": 0
@@ -14816,20 +14865,7 @@
       0
      ],
      "destination": [
-      "obj-182",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-182",
-      0
-     ],
-     "destination": [
-      "obj-183",
+      "obj-181",
       0
      ],
      "order": 0
@@ -14868,7 +14904,7 @@
       0
      ],
      "destination": [
-      "obj-180",
+      "obj-182",
       0
      ],
      "order": 0
@@ -14881,7 +14917,20 @@
       0
      ],
      "destination": [
-      "obj-180",
+      "obj-182",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-182",
+      0
+     ],
+     "destination": [
+      "obj-188",
       0
      ],
      "order": 0
@@ -14894,20 +14943,7 @@
       0
      ],
      "destination": [
-      "obj-190",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-190",
-      0
-     ],
-     "destination": [
-      "obj-191",
+      "obj-189",
       0
      ],
      "order": 0
@@ -14946,7 +14982,7 @@
       0
      ],
      "destination": [
-      "obj-188",
+      "obj-190",
       0
      ],
      "order": 0
@@ -14959,7 +14995,20 @@
       0
      ],
      "destination": [
-      "obj-188",
+      "obj-190",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-190",
+      0
+     ],
+     "destination": [
+      "obj-196",
       0
      ],
      "order": 0
@@ -14972,20 +15021,7 @@
       0
      ],
      "destination": [
-      "obj-198",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-198",
-      0
-     ],
-     "destination": [
-      "obj-199",
+      "obj-197",
       0
      ],
      "order": 0
@@ -15024,7 +15060,7 @@
       0
      ],
      "destination": [
-      "obj-196",
+      "obj-198",
       0
      ],
      "order": 0
@@ -15037,7 +15073,20 @@
       0
      ],
      "destination": [
-      "obj-196",
+      "obj-198",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-198",
+      0
+     ],
+     "destination": [
+      "obj-204",
       0
      ],
      "order": 0
@@ -15050,20 +15099,7 @@
       0
      ],
      "destination": [
-      "obj-206",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-206",
-      0
-     ],
-     "destination": [
-      "obj-207",
+      "obj-205",
       0
      ],
      "order": 0
@@ -15102,7 +15138,7 @@
       0
      ],
      "destination": [
-      "obj-204",
+      "obj-206",
       0
      ],
      "order": 0
@@ -15115,7 +15151,20 @@
       0
      ],
      "destination": [
-      "obj-204",
+      "obj-206",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-206",
+      0
+     ],
+     "destination": [
+      "obj-212",
       0
      ],
      "order": 0
@@ -15128,20 +15177,7 @@
       0
      ],
      "destination": [
-      "obj-214",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-214",
-      0
-     ],
-     "destination": [
-      "obj-215",
+      "obj-213",
       0
      ],
      "order": 0
@@ -15180,7 +15216,7 @@
       0
      ],
      "destination": [
-      "obj-212",
+      "obj-214",
       0
      ],
      "order": 0
@@ -15193,7 +15229,20 @@
       0
      ],
      "destination": [
-      "obj-212",
+      "obj-214",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-214",
+      0
+     ],
+     "destination": [
+      "obj-220",
       0
      ],
      "order": 0
@@ -15206,20 +15255,7 @@
       0
      ],
      "destination": [
-      "obj-222",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-222",
-      0
-     ],
-     "destination": [
-      "obj-223",
+      "obj-221",
       0
      ],
      "order": 0
@@ -15258,7 +15294,7 @@
       0
      ],
      "destination": [
-      "obj-220",
+      "obj-222",
       0
      ],
      "order": 0
@@ -15271,7 +15307,20 @@
       0
      ],
      "destination": [
-      "obj-220",
+      "obj-222",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-222",
+      0
+     ],
+     "destination": [
+      "obj-228",
       0
      ],
      "order": 0
@@ -15284,20 +15333,7 @@
       0
      ],
      "destination": [
-      "obj-230",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-230",
-      0
-     ],
-     "destination": [
-      "obj-231",
+      "obj-229",
       0
      ],
      "order": 0
@@ -15336,7 +15372,7 @@
       0
      ],
      "destination": [
-      "obj-228",
+      "obj-230",
       0
      ],
      "order": 0
@@ -15349,7 +15385,20 @@
       0
      ],
      "destination": [
-      "obj-228",
+      "obj-230",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-230",
+      0
+     ],
+     "destination": [
+      "obj-236",
       0
      ],
      "order": 0
@@ -15362,20 +15411,7 @@
       0
      ],
      "destination": [
-      "obj-238",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-238",
-      0
-     ],
-     "destination": [
-      "obj-239",
+      "obj-237",
       0
      ],
      "order": 0
@@ -15414,7 +15450,7 @@
       0
      ],
      "destination": [
-      "obj-236",
+      "obj-238",
       0
      ],
      "order": 0
@@ -15427,7 +15463,20 @@
       0
      ],
      "destination": [
-      "obj-236",
+      "obj-238",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-238",
+      0
+     ],
+     "destination": [
+      "obj-244",
       0
      ],
      "order": 0
@@ -15440,20 +15489,7 @@
       0
      ],
      "destination": [
-      "obj-246",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-246",
-      0
-     ],
-     "destination": [
-      "obj-247",
+      "obj-245",
       0
      ],
      "order": 0
@@ -15492,7 +15528,7 @@
       0
      ],
      "destination": [
-      "obj-244",
+      "obj-246",
       0
      ],
      "order": 0
@@ -15505,7 +15541,20 @@
       0
      ],
      "destination": [
-      "obj-244",
+      "obj-246",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-246",
+      0
+     ],
+     "destination": [
+      "obj-252",
       0
      ],
      "order": 0
@@ -15518,20 +15567,7 @@
       0
      ],
      "destination": [
-      "obj-254",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-254",
-      0
-     ],
-     "destination": [
-      "obj-255",
+      "obj-253",
       0
      ],
      "order": 0
@@ -15570,7 +15606,7 @@
       0
      ],
      "destination": [
-      "obj-252",
+      "obj-254",
       0
      ],
      "order": 0
@@ -15583,7 +15619,20 @@
       0
      ],
      "destination": [
-      "obj-252",
+      "obj-254",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-254",
+      0
+     ],
+     "destination": [
+      "obj-260",
       0
      ],
      "order": 0
@@ -15596,20 +15645,7 @@
       0
      ],
      "destination": [
-      "obj-262",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-262",
-      0
-     ],
-     "destination": [
-      "obj-263",
+      "obj-261",
       0
      ],
      "order": 0
@@ -15648,7 +15684,7 @@
       0
      ],
      "destination": [
-      "obj-260",
+      "obj-262",
       0
      ],
      "order": 0
@@ -15661,7 +15697,7 @@
       0
      ],
      "destination": [
-      "obj-260",
+      "obj-262",
       0
      ],
      "order": 0
@@ -15670,24 +15706,24 @@
    {
     "patchline": {
      "source": [
+      "obj-262",
+      0
+     ],
+     "destination": [
+      "obj-268",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-268",
+      0
+     ],
+     "destination": [
       "obj-269",
-      0
-     ],
-     "destination": [
-      "obj-271",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-271",
-      0
-     ],
-     "destination": [
-      "obj-272",
       0
      ],
      "order": 0
@@ -15726,7 +15762,7 @@
       0
      ],
      "destination": [
-      "obj-269",
+      "obj-271",
       0
      ],
      "order": 0
@@ -15739,7 +15775,20 @@
       0
      ],
      "destination": [
-      "obj-269",
+      "obj-271",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-271",
+      0
+     ],
+     "destination": [
+      "obj-277",
       0
      ],
      "order": 0
@@ -15752,20 +15801,7 @@
       0
      ],
      "destination": [
-      "obj-279",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-279",
-      0
-     ],
-     "destination": [
-      "obj-280",
+      "obj-278",
       0
      ],
      "order": 0
@@ -15804,7 +15840,7 @@
       0
      ],
      "destination": [
-      "obj-277",
+      "obj-279",
       0
      ],
      "order": 0
@@ -15817,7 +15853,20 @@
       0
      ],
      "destination": [
-      "obj-277",
+      "obj-279",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-279",
+      0
+     ],
+     "destination": [
+      "obj-285",
       0
      ],
      "order": 0
@@ -15830,20 +15879,7 @@
       0
      ],
      "destination": [
-      "obj-287",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-287",
-      0
-     ],
-     "destination": [
-      "obj-288",
+      "obj-286",
       0
      ],
      "order": 0
@@ -15882,7 +15918,7 @@
       0
      ],
      "destination": [
-      "obj-285",
+      "obj-287",
       0
      ],
      "order": 0
@@ -15895,7 +15931,20 @@
       0
      ],
      "destination": [
-      "obj-285",
+      "obj-287",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-287",
+      0
+     ],
+     "destination": [
+      "obj-293",
       0
      ],
      "order": 0
@@ -15908,20 +15957,7 @@
       0
      ],
      "destination": [
-      "obj-295",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-295",
-      0
-     ],
-     "destination": [
-      "obj-296",
+      "obj-294",
       0
      ],
      "order": 0
@@ -15960,7 +15996,7 @@
       0
      ],
      "destination": [
-      "obj-293",
+      "obj-295",
       0
      ],
      "order": 0
@@ -15973,7 +16009,20 @@
       0
      ],
      "destination": [
-      "obj-293",
+      "obj-295",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-295",
+      0
+     ],
+     "destination": [
+      "obj-301",
       0
      ],
      "order": 0
@@ -15986,20 +16035,7 @@
       0
      ],
      "destination": [
-      "obj-303",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-303",
-      0
-     ],
-     "destination": [
-      "obj-304",
+      "obj-302",
       0
      ],
      "order": 0
@@ -16038,7 +16074,7 @@
       0
      ],
      "destination": [
-      "obj-301",
+      "obj-303",
       0
      ],
      "order": 0
@@ -16051,7 +16087,20 @@
       0
      ],
      "destination": [
-      "obj-301",
+      "obj-303",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-303",
+      0
+     ],
+     "destination": [
+      "obj-309",
       0
      ],
      "order": 0
@@ -16064,20 +16113,7 @@
       0
      ],
      "destination": [
-      "obj-311",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-311",
-      0
-     ],
-     "destination": [
-      "obj-312",
+      "obj-310",
       0
      ],
      "order": 0
@@ -16116,7 +16152,7 @@
       0
      ],
      "destination": [
-      "obj-309",
+      "obj-311",
       0
      ],
      "order": 0
@@ -16129,7 +16165,20 @@
       0
      ],
      "destination": [
-      "obj-309",
+      "obj-311",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-311",
+      0
+     ],
+     "destination": [
+      "obj-317",
       0
      ],
      "order": 0
@@ -16142,20 +16191,7 @@
       0
      ],
      "destination": [
-      "obj-319",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-319",
-      0
-     ],
-     "destination": [
-      "obj-320",
+      "obj-318",
       0
      ],
      "order": 0
@@ -16194,7 +16230,7 @@
       0
      ],
      "destination": [
-      "obj-317",
+      "obj-319",
       0
      ],
      "order": 0
@@ -16207,7 +16243,20 @@
       0
      ],
      "destination": [
-      "obj-317",
+      "obj-319",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-319",
+      0
+     ],
+     "destination": [
+      "obj-325",
       0
      ],
      "order": 0
@@ -16220,20 +16269,7 @@
       0
      ],
      "destination": [
-      "obj-327",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-327",
-      0
-     ],
-     "destination": [
-      "obj-328",
+      "obj-326",
       0
      ],
      "order": 0
@@ -16272,7 +16308,7 @@
       0
      ],
      "destination": [
-      "obj-325",
+      "obj-327",
       0
      ],
      "order": 0
@@ -16285,7 +16321,7 @@
       0
      ],
      "destination": [
-      "obj-325",
+      "obj-327",
       0
      ],
      "order": 0
@@ -16294,24 +16330,24 @@
    {
     "patchline": {
      "source": [
+      "obj-327",
+      0
+     ],
+     "destination": [
+      "obj-333",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-333",
+      0
+     ],
+     "destination": [
       "obj-334",
-      0
-     ],
-     "destination": [
-      "obj-336",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-336",
-      0
-     ],
-     "destination": [
-      "obj-337",
       0
      ],
      "order": 0
@@ -16350,7 +16386,7 @@
       0
      ],
      "destination": [
-      "obj-334",
+      "obj-336",
       0
      ],
      "order": 0
@@ -16363,7 +16399,20 @@
       0
      ],
      "destination": [
-      "obj-334",
+      "obj-336",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-336",
+      0
+     ],
+     "destination": [
+      "obj-342",
       0
      ],
      "order": 0
@@ -16376,20 +16425,7 @@
       0
      ],
      "destination": [
-      "obj-344",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-344",
-      0
-     ],
-     "destination": [
-      "obj-345",
+      "obj-343",
       0
      ],
      "order": 0
@@ -16428,7 +16464,7 @@
       0
      ],
      "destination": [
-      "obj-342",
+      "obj-344",
       0
      ],
      "order": 0
@@ -16441,7 +16477,20 @@
       0
      ],
      "destination": [
-      "obj-342",
+      "obj-344",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-344",
+      0
+     ],
+     "destination": [
+      "obj-350",
       0
      ],
      "order": 0
@@ -16454,20 +16503,7 @@
       0
      ],
      "destination": [
-      "obj-352",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-352",
-      0
-     ],
-     "destination": [
-      "obj-353",
+      "obj-351",
       0
      ],
      "order": 0
@@ -16506,7 +16542,7 @@
       0
      ],
      "destination": [
-      "obj-350",
+      "obj-352",
       0
      ],
      "order": 0
@@ -16519,7 +16555,20 @@
       0
      ],
      "destination": [
-      "obj-350",
+      "obj-352",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-352",
+      0
+     ],
+     "destination": [
+      "obj-358",
       0
      ],
      "order": 0
@@ -16532,20 +16581,7 @@
       0
      ],
      "destination": [
-      "obj-360",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-360",
-      0
-     ],
-     "destination": [
-      "obj-361",
+      "obj-359",
       0
      ],
      "order": 0
@@ -16584,7 +16620,7 @@
       0
      ],
      "destination": [
-      "obj-358",
+      "obj-360",
       0
      ],
      "order": 0
@@ -16597,7 +16633,20 @@
       0
      ],
      "destination": [
-      "obj-358",
+      "obj-360",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-360",
+      0
+     ],
+     "destination": [
+      "obj-366",
       0
      ],
      "order": 0
@@ -16610,20 +16659,7 @@
       0
      ],
      "destination": [
-      "obj-368",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-368",
-      0
-     ],
-     "destination": [
-      "obj-369",
+      "obj-367",
       0
      ],
      "order": 0
@@ -16662,7 +16698,7 @@
       0
      ],
      "destination": [
-      "obj-366",
+      "obj-368",
       0
      ],
      "order": 0
@@ -16675,7 +16711,20 @@
       0
      ],
      "destination": [
-      "obj-366",
+      "obj-368",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-368",
+      0
+     ],
+     "destination": [
+      "obj-374",
       0
      ],
      "order": 0
@@ -16688,20 +16737,7 @@
       0
      ],
      "destination": [
-      "obj-376",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-376",
-      0
-     ],
-     "destination": [
-      "obj-377",
+      "obj-375",
       0
      ],
      "order": 0
@@ -16740,7 +16776,7 @@
       0
      ],
      "destination": [
-      "obj-374",
+      "obj-376",
       0
      ],
      "order": 0
@@ -16753,7 +16789,20 @@
       0
      ],
      "destination": [
-      "obj-374",
+      "obj-376",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-376",
+      0
+     ],
+     "destination": [
+      "obj-382",
       0
      ],
      "order": 0
@@ -16766,20 +16815,7 @@
       0
      ],
      "destination": [
-      "obj-384",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-384",
-      0
-     ],
-     "destination": [
-      "obj-385",
+      "obj-383",
       0
      ],
      "order": 0
@@ -16818,7 +16854,7 @@
       0
      ],
      "destination": [
-      "obj-382",
+      "obj-384",
       0
      ],
      "order": 0
@@ -16831,7 +16867,20 @@
       0
      ],
      "destination": [
-      "obj-382",
+      "obj-384",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-384",
+      0
+     ],
+     "destination": [
+      "obj-390",
       0
      ],
      "order": 0
@@ -16844,20 +16893,7 @@
       0
      ],
      "destination": [
-      "obj-392",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-392",
-      0
-     ],
-     "destination": [
-      "obj-393",
+      "obj-391",
       0
      ],
      "order": 0
@@ -16896,7 +16932,7 @@
       0
      ],
      "destination": [
-      "obj-390",
+      "obj-392",
       0
      ],
      "order": 0
@@ -16909,7 +16945,7 @@
       0
      ],
      "destination": [
-      "obj-390",
+      "obj-392",
       0
      ],
      "order": 0
@@ -16918,24 +16954,24 @@
    {
     "patchline": {
      "source": [
+      "obj-392",
+      0
+     ],
+     "destination": [
+      "obj-398",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-398",
+      0
+     ],
+     "destination": [
       "obj-399",
-      0
-     ],
-     "destination": [
-      "obj-401",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-401",
-      0
-     ],
-     "destination": [
-      "obj-402",
       0
      ],
      "order": 0
@@ -16974,7 +17010,7 @@
       0
      ],
      "destination": [
-      "obj-399",
+      "obj-401",
       0
      ],
      "order": 0
@@ -16987,7 +17023,20 @@
       0
      ],
      "destination": [
-      "obj-399",
+      "obj-401",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-401",
+      0
+     ],
+     "destination": [
+      "obj-407",
       0
      ],
      "order": 0
@@ -17000,20 +17049,7 @@
       0
      ],
      "destination": [
-      "obj-409",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-409",
-      0
-     ],
-     "destination": [
-      "obj-410",
+      "obj-408",
       0
      ],
      "order": 0
@@ -17052,7 +17088,7 @@
       0
      ],
      "destination": [
-      "obj-407",
+      "obj-409",
       0
      ],
      "order": 0
@@ -17065,7 +17101,20 @@
       0
      ],
      "destination": [
-      "obj-407",
+      "obj-409",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-409",
+      0
+     ],
+     "destination": [
+      "obj-415",
       0
      ],
      "order": 0
@@ -17078,20 +17127,7 @@
       0
      ],
      "destination": [
-      "obj-417",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-417",
-      0
-     ],
-     "destination": [
-      "obj-418",
+      "obj-416",
       0
      ],
      "order": 0
@@ -17130,7 +17166,7 @@
       0
      ],
      "destination": [
-      "obj-415",
+      "obj-417",
       0
      ],
      "order": 0
@@ -17143,7 +17179,20 @@
       0
      ],
      "destination": [
-      "obj-415",
+      "obj-417",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-417",
+      0
+     ],
+     "destination": [
+      "obj-423",
       0
      ],
      "order": 0
@@ -17156,20 +17205,7 @@
       0
      ],
      "destination": [
-      "obj-425",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-425",
-      0
-     ],
-     "destination": [
-      "obj-426",
+      "obj-424",
       0
      ],
      "order": 0
@@ -17208,7 +17244,7 @@
       0
      ],
      "destination": [
-      "obj-423",
+      "obj-425",
       0
      ],
      "order": 0
@@ -17221,7 +17257,7 @@
       0
      ],
      "destination": [
-      "obj-423",
+      "obj-425",
       0
      ],
      "order": 0
@@ -17230,24 +17266,24 @@
    {
     "patchline": {
      "source": [
+      "obj-425",
+      0
+     ],
+     "destination": [
+      "obj-431",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-431",
+      0
+     ],
+     "destination": [
       "obj-432",
-      0
-     ],
-     "destination": [
-      "obj-434",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-434",
-      0
-     ],
-     "destination": [
-      "obj-435",
       0
      ],
      "order": 0
@@ -17286,7 +17322,7 @@
       0
      ],
      "destination": [
-      "obj-432",
+      "obj-434",
       0
      ],
      "order": 0
@@ -17299,7 +17335,20 @@
       0
      ],
      "destination": [
-      "obj-432",
+      "obj-434",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-434",
+      0
+     ],
+     "destination": [
+      "obj-440",
       0
      ],
      "order": 0
@@ -17312,20 +17361,7 @@
       0
      ],
      "destination": [
-      "obj-442",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-442",
-      0
-     ],
-     "destination": [
-      "obj-443",
+      "obj-441",
       0
      ],
      "order": 0
@@ -17364,7 +17400,7 @@
       0
      ],
      "destination": [
-      "obj-440",
+      "obj-442",
       0
      ],
      "order": 0
@@ -17377,7 +17413,7 @@
       0
      ],
      "destination": [
-      "obj-440",
+      "obj-442",
       0
      ],
      "order": 0
@@ -17386,24 +17422,24 @@
    {
     "patchline": {
      "source": [
+      "obj-442",
+      0
+     ],
+     "destination": [
+      "obj-448",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-448",
+      0
+     ],
+     "destination": [
       "obj-449",
-      0
-     ],
-     "destination": [
-      "obj-451",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-451",
-      0
-     ],
-     "destination": [
-      "obj-452",
       0
      ],
      "order": 0
@@ -17442,7 +17478,7 @@
       0
      ],
      "destination": [
-      "obj-449",
+      "obj-451",
       0
      ],
      "order": 0
@@ -17455,7 +17491,20 @@
       0
      ],
      "destination": [
-      "obj-449",
+      "obj-451",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-451",
+      0
+     ],
+     "destination": [
+      "obj-457",
       0
      ],
      "order": 0
@@ -17468,20 +17517,7 @@
       0
      ],
      "destination": [
-      "obj-459",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-459",
-      0
-     ],
-     "destination": [
-      "obj-460",
+      "obj-458",
       0
      ],
      "order": 0
@@ -17520,7 +17556,7 @@
       0
      ],
      "destination": [
-      "obj-457",
+      "obj-459",
       0
      ],
      "order": 0
@@ -17533,7 +17569,20 @@
       0
      ],
      "destination": [
-      "obj-457",
+      "obj-459",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-459",
+      0
+     ],
+     "destination": [
+      "obj-465",
       0
      ],
      "order": 0
@@ -17546,20 +17595,7 @@
       0
      ],
      "destination": [
-      "obj-467",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-467",
-      0
-     ],
-     "destination": [
-      "obj-468",
+      "obj-466",
       0
      ],
      "order": 0
@@ -17598,7 +17634,7 @@
       0
      ],
      "destination": [
-      "obj-465",
+      "obj-467",
       0
      ],
      "order": 0
@@ -17611,7 +17647,20 @@
       0
      ],
      "destination": [
-      "obj-465",
+      "obj-467",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-467",
+      0
+     ],
+     "destination": [
+      "obj-473",
       0
      ],
      "order": 0
@@ -17624,20 +17673,7 @@
       0
      ],
      "destination": [
-      "obj-475",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-475",
-      0
-     ],
-     "destination": [
-      "obj-476",
+      "obj-474",
       0
      ],
      "order": 0
@@ -17676,7 +17712,7 @@
       0
      ],
      "destination": [
-      "obj-473",
+      "obj-475",
       0
      ],
      "order": 0
@@ -17689,7 +17725,7 @@
       0
      ],
      "destination": [
-      "obj-473",
+      "obj-475",
       0
      ],
      "order": 0
@@ -17698,24 +17734,24 @@
    {
     "patchline": {
      "source": [
+      "obj-475",
+      0
+     ],
+     "destination": [
+      "obj-481",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-481",
+      0
+     ],
+     "destination": [
       "obj-482",
-      0
-     ],
-     "destination": [
-      "obj-484",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-484",
-      0
-     ],
-     "destination": [
-      "obj-485",
       0
      ],
      "order": 0
@@ -17754,7 +17790,7 @@
       0
      ],
      "destination": [
-      "obj-482",
+      "obj-484",
       0
      ],
      "order": 0
@@ -17767,7 +17803,20 @@
       0
      ],
      "destination": [
-      "obj-482",
+      "obj-484",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-484",
+      0
+     ],
+     "destination": [
+      "obj-490",
       0
      ],
      "order": 0
@@ -17780,20 +17829,7 @@
       0
      ],
      "destination": [
-      "obj-492",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-492",
-      0
-     ],
-     "destination": [
-      "obj-493",
+      "obj-491",
       0
      ],
      "order": 0
@@ -17832,7 +17868,7 @@
       0
      ],
      "destination": [
-      "obj-490",
+      "obj-492",
       0
      ],
      "order": 0
@@ -17845,7 +17881,20 @@
       0
      ],
      "destination": [
-      "obj-490",
+      "obj-492",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-492",
+      0
+     ],
+     "destination": [
+      "obj-498",
       0
      ],
      "order": 0
@@ -17858,20 +17907,7 @@
       0
      ],
      "destination": [
-      "obj-500",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-500",
-      0
-     ],
-     "destination": [
-      "obj-501",
+      "obj-499",
       0
      ],
      "order": 0
@@ -17910,7 +17946,7 @@
       0
      ],
      "destination": [
-      "obj-498",
+      "obj-500",
       0
      ],
      "order": 0
@@ -17923,7 +17959,20 @@
       0
      ],
      "destination": [
-      "obj-498",
+      "obj-500",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-500",
+      0
+     ],
+     "destination": [
+      "obj-506",
       0
      ],
      "order": 0
@@ -17936,20 +17985,7 @@
       0
      ],
      "destination": [
-      "obj-508",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-508",
-      0
-     ],
-     "destination": [
-      "obj-509",
+      "obj-507",
       0
      ],
      "order": 0
@@ -17988,7 +18024,7 @@
       0
      ],
      "destination": [
-      "obj-506",
+      "obj-508",
       0
      ],
      "order": 0
@@ -18001,7 +18037,7 @@
       0
      ],
      "destination": [
-      "obj-506",
+      "obj-508",
       0
      ],
      "order": 0
@@ -18010,24 +18046,24 @@
    {
     "patchline": {
      "source": [
+      "obj-508",
+      0
+     ],
+     "destination": [
+      "obj-514",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-514",
+      0
+     ],
+     "destination": [
       "obj-515",
-      0
-     ],
-     "destination": [
-      "obj-517",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-517",
-      0
-     ],
-     "destination": [
-      "obj-518",
       0
      ],
      "order": 0
@@ -18066,7 +18102,7 @@
       0
      ],
      "destination": [
-      "obj-515",
+      "obj-517",
       0
      ],
      "order": 0
@@ -18079,7 +18115,20 @@
       0
      ],
      "destination": [
-      "obj-515",
+      "obj-517",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-517",
+      0
+     ],
+     "destination": [
+      "obj-523",
       0
      ],
      "order": 0
@@ -18092,20 +18141,7 @@
       0
      ],
      "destination": [
-      "obj-525",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-525",
-      0
-     ],
-     "destination": [
-      "obj-526",
+      "obj-524",
       0
      ],
      "order": 0
@@ -18144,7 +18180,7 @@
       0
      ],
      "destination": [
-      "obj-523",
+      "obj-525",
       0
      ],
      "order": 0
@@ -18157,7 +18193,20 @@
       0
      ],
      "destination": [
-      "obj-523",
+      "obj-525",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-525",
+      0
+     ],
+     "destination": [
+      "obj-531",
       0
      ],
      "order": 0
@@ -18170,20 +18219,7 @@
       0
      ],
      "destination": [
-      "obj-533",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-533",
-      0
-     ],
-     "destination": [
-      "obj-534",
+      "obj-532",
       0
      ],
      "order": 0
@@ -18222,7 +18258,7 @@
       0
      ],
      "destination": [
-      "obj-531",
+      "obj-533",
       0
      ],
      "order": 0
@@ -18235,7 +18271,20 @@
       0
      ],
      "destination": [
-      "obj-531",
+      "obj-533",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-533",
+      0
+     ],
+     "destination": [
+      "obj-539",
       0
      ],
      "order": 0
@@ -18248,20 +18297,7 @@
       0
      ],
      "destination": [
-      "obj-541",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-541",
-      0
-     ],
-     "destination": [
-      "obj-542",
+      "obj-540",
       0
      ],
      "order": 0
@@ -18300,7 +18336,7 @@
       0
      ],
      "destination": [
-      "obj-539",
+      "obj-541",
       0
      ],
      "order": 0
@@ -18313,7 +18349,7 @@
       0
      ],
      "destination": [
-      "obj-539",
+      "obj-541",
       0
      ],
      "order": 0
@@ -18322,24 +18358,24 @@
    {
     "patchline": {
      "source": [
+      "obj-541",
+      0
+     ],
+     "destination": [
+      "obj-547",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-547",
+      0
+     ],
+     "destination": [
       "obj-548",
-      0
-     ],
-     "destination": [
-      "obj-550",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-550",
-      0
-     ],
-     "destination": [
-      "obj-551",
       0
      ],
      "order": 0
@@ -18378,7 +18414,7 @@
       0
      ],
      "destination": [
-      "obj-548",
+      "obj-550",
       0
      ],
      "order": 0
@@ -18391,7 +18427,20 @@
       0
      ],
      "destination": [
-      "obj-548",
+      "obj-550",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-550",
+      0
+     ],
+     "destination": [
+      "obj-556",
       0
      ],
      "order": 0
@@ -18404,20 +18453,7 @@
       0
      ],
      "destination": [
-      "obj-558",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-558",
-      0
-     ],
-     "destination": [
-      "obj-559",
+      "obj-557",
       0
      ],
      "order": 0
@@ -18456,7 +18492,7 @@
       0
      ],
      "destination": [
-      "obj-556",
+      "obj-558",
       0
      ],
      "order": 0
@@ -18469,7 +18505,20 @@
       0
      ],
      "destination": [
-      "obj-556",
+      "obj-558",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-558",
+      0
+     ],
+     "destination": [
+      "obj-564",
       0
      ],
      "order": 0
@@ -18482,20 +18531,7 @@
       0
      ],
      "destination": [
-      "obj-566",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-566",
-      0
-     ],
-     "destination": [
-      "obj-567",
+      "obj-565",
       0
      ],
      "order": 0
@@ -18534,7 +18570,7 @@
       0
      ],
      "destination": [
-      "obj-564",
+      "obj-566",
       0
      ],
      "order": 0
@@ -18547,7 +18583,20 @@
       0
      ],
      "destination": [
-      "obj-564",
+      "obj-566",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-566",
+      0
+     ],
+     "destination": [
+      "obj-572",
       0
      ],
      "order": 0
@@ -18560,20 +18609,7 @@
       0
      ],
      "destination": [
-      "obj-574",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-574",
-      0
-     ],
-     "destination": [
-      "obj-575",
+      "obj-573",
       0
      ],
      "order": 0
@@ -18612,7 +18648,7 @@
       0
      ],
      "destination": [
-      "obj-572",
+      "obj-574",
       0
      ],
      "order": 0
@@ -18625,7 +18661,20 @@
       0
      ],
      "destination": [
-      "obj-572",
+      "obj-574",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-574",
+      0
+     ],
+     "destination": [
+      "obj-580",
       0
      ],
      "order": 0
@@ -18638,20 +18687,7 @@
       0
      ],
      "destination": [
-      "obj-582",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-582",
-      0
-     ],
-     "destination": [
-      "obj-583",
+      "obj-581",
       0
      ],
      "order": 0
@@ -18690,7 +18726,7 @@
       0
      ],
      "destination": [
-      "obj-580",
+      "obj-582",
       0
      ],
      "order": 0
@@ -18703,7 +18739,20 @@
       0
      ],
      "destination": [
-      "obj-580",
+      "obj-582",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-582",
+      0
+     ],
+     "destination": [
+      "obj-588",
       0
      ],
      "order": 0
@@ -18716,20 +18765,7 @@
       0
      ],
      "destination": [
-      "obj-590",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-590",
-      0
-     ],
-     "destination": [
-      "obj-591",
+      "obj-589",
       0
      ],
      "order": 0
@@ -18768,7 +18804,7 @@
       0
      ],
      "destination": [
-      "obj-588",
+      "obj-590",
       0
      ],
      "order": 0
@@ -18781,7 +18817,7 @@
       0
      ],
      "destination": [
-      "obj-588",
+      "obj-590",
       0
      ],
      "order": 0
@@ -18790,24 +18826,24 @@
    {
     "patchline": {
      "source": [
+      "obj-590",
+      0
+     ],
+     "destination": [
+      "obj-596",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-596",
+      0
+     ],
+     "destination": [
       "obj-597",
-      0
-     ],
-     "destination": [
-      "obj-599",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-599",
-      0
-     ],
-     "destination": [
-      "obj-600",
       0
      ],
      "order": 0
@@ -18846,7 +18882,7 @@
       0
      ],
      "destination": [
-      "obj-597",
+      "obj-599",
       0
      ],
      "order": 0
@@ -18859,7 +18895,20 @@
       0
      ],
      "destination": [
-      "obj-597",
+      "obj-599",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-599",
+      0
+     ],
+     "destination": [
+      "obj-605",
       0
      ],
      "order": 0
@@ -18872,20 +18921,7 @@
       0
      ],
      "destination": [
-      "obj-607",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-607",
-      0
-     ],
-     "destination": [
-      "obj-608",
+      "obj-606",
       0
      ],
      "order": 0
@@ -18924,7 +18960,7 @@
       0
      ],
      "destination": [
-      "obj-605",
+      "obj-607",
       0
      ],
      "order": 0
@@ -18937,7 +18973,33 @@
       0
      ],
      "destination": [
-      "obj-605",
+      "obj-607",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-607",
+      0
+     ],
+     "destination": [
+      "obj-613",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-613",
+      0
+     ],
+     "destination": [
+      "obj-614",
       0
      ],
      "order": 0

@@ -38,7 +38,7 @@ def tone(pitch, seconds, rate, random, step=1):
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize(("ringing", "most"), [(0.0, 0.4), (0.5, 1.5)])
 def test_the_pitch_of_a_short_note_is_heard_beside_a_fifth(rate, seconds, ringing, most):
-    from measures.overtones import overtones_off_by
+    from measures.intonation import overtones_off_by
 
     random = np.random.default_rng(1)
     for note in range(65, 90):
@@ -51,8 +51,7 @@ def test_the_pitch_of_a_short_note_is_heard_beside_a_fifth(rate, seconds, ringin
 
 @pytest.mark.parametrize("step", [2, 3])
 def test_a_short_note_in_a_higher_register_is_out_of_tune(step):
-    from measures.intonation import NONE
-    from measures.overtones import overtones_off_by
+    from measures.intonation import NONE, overtones_off_by
 
     random = np.random.default_rng(1)
     sound = tone(70.0, 0.0625, 44100.0, random, step)

@@ -24,7 +24,7 @@ import numpy as np
 
 from measures.intonation import NONE, off_by
 from measures.shares import Share, share_line
-from measures.take import NOTES, Setup, Sound, Take, in_parallel
+from measures.take import NOTES, Setup, Sound, held, in_parallel
 
 VELOCITIES = (50, 100)
 WHEELS = (None, 0, 127)
@@ -70,10 +70,8 @@ def _swing(
     setup: Setup, note: int, wheel: int | None, velocity: int, how: dict[str, Any]
 ) -> tuple[float, float]:
     """Hold a note; return amplitude (cents) and frequency (Hz) of its largest swing."""
-    take = Take(setup, **how)
-    take.wheel(wheel)
-    take.on(0.0, note, velocity)
-    return component(pitch_track(take.play(END_S), setup.rate, note))
+    sound, _ = held(setup, note, velocity, END_S, wheel, **how)
+    return component(pitch_track(sound, setup.rate, note))
 
 
 def _in_words(swing: tuple[float, float]) -> str:

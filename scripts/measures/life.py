@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import fftconvolve
 
 from measures.shares import Share, share_line
-from measures.take import NOTES, Setup, Take, in_parallel
+from measures.take import NOTES, Setup, held, in_parallel
 from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz
 
 Array = Any
@@ -76,11 +76,10 @@ def harmonics_to_noise(sound: Array, rate: float, frequency: float) -> float:
     return float(10.0 * np.log10(harmonics / rest))
 
 
-def held(setup: Setup, note: int, velocity: int) -> tuple[float, float, float]:
+def variation_of(setup: Setup, note: int, velocity: int) -> tuple[float, float, float]:
     """Return pitch deviation (cents), shimmer (per cent) and harmonics to noise (dB) of a note."""
-    take = Take(setup, settings={"/playing/bow_length": 0.0})
-    take.on(0.0, note, velocity)
-    sound = take.play(END_S)[round(FROM_S * setup.rate) :].astype(float)
+    whole, _ = held(setup, note, velocity, END_S, settings={"/playing/bow_length": 0.0})
+    sound = whole[round(FROM_S * setup.rate) :].astype(float)
     frequency = mean_frequency(sound, setup.rate, frequency_hz(note, 440.0))
     deviation = float(pitch_track(sound, setup.rate, frequency).std())
     at = (sound, setup.rate, frequency)
@@ -90,7 +89,7 @@ def held(setup: Setup, note: int, velocity: int) -> tuple[float, float, float]:
 def life(setup: Setup) -> list[Share]:
     """Print how much the steady part of each note varies; use it with ``--variation default``."""
     jobs = [(note, velocity) for note in NOTES for velocity in VELOCITIES]
-    found = np.array(in_parallel(setup, held, jobs))
+    found = np.array(in_parallel(setup, variation_of, jobs))
     table = found.reshape(len(NOTES), len(VELOCITIES), 3)
     print(f"at velocities {VELOCITIES}: pitch (cents), shimmer (%), harmonics to noise (dB)")
     for note, row in zip(NOTES, table, strict=True):

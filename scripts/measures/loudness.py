@@ -2,20 +2,66 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 
 from measures.shares import Share, share_line
-from measures.take import NOTES, Setup, in_parallel
-from measures.timbre import Timbre, timbre
+from measures.take import NOTES, Setup, Sound, held, in_parallel
 from yehu_server.params.table import find
-from yehu_server.playing.mapping import load, shipped_mappings
+from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
+from yehu_server.playing.pitch_and_level import a_weighted_db
 
+STEADY_S, END_S = 0.3, 0.8
+RMS_S = 0.01
 DYNAMICS = ((None, 80), (0, 80), (64, 110), (127, 127))  # wheel and velocity
 EVEN_DB = 2.0
 STRUCK = (1, 20, 50, 80, 110, 127)
 SOFT, MEDIUM, HARD = STRUCK.index(20), STRUCK.index(80), STRUCK.index(127)
 LEAST_RISE_DB, MOST_RISE_DB, LEAST_ABOVE_DB = 16.0, 24.0, 3.0
 LIMITER = 10.0 ** (find("/output/limiter").default / 20.0)  # amplitude above which it acts
+
+
+@dataclass(frozen=True)
+class Timbre:
+    """What a note sounds like."""
+
+    level_db: float  # A-weighted, from 0.3 s on
+    centroid_hz: float  # from 0.3 s on
+    attack_ms: float
+    peak: float  # largest sample
+
+
+def centroid_hz(sound: Sound, rate: float) -> float:
+    """Return the spectral centroid (Hz): the mean frequency, by power."""
+    heard = sound.astype(np.float64)
+    power = np.abs(np.fft.rfft(heard * np.hanning(len(heard)))) ** 2
+    return float((np.fft.rfftfreq(len(heard), 1.0 / rate) * power).sum() / power.sum())
+
+
+def attack_ms(sound: Sound, rate: float) -> float:
+    """Return the time (ms) to within 6 dB of the steady level: the middle of 10 ms of sound."""
+    window = round(RMS_S * rate)
+    energy = np.cumsum(np.concatenate(([0.0], sound.astype(np.float64) ** 2)))
+    level = np.sqrt((energy[window:] - energy[:-window]) / window)
+    steady = math.sqrt(float(np.mean(sound[round(STEADY_S * rate) :].astype(np.float64) ** 2)))
+    first = int(np.argmax(level >= 0.5 * steady))
+    return 1e3 * (first + 0.5 * window) / rate
+
+
+def timbre(
+    setup: Setup, note: int, wheel: int | None, velocity: int, mapping: str = DEFAULT
+) -> Timbre:
+    """Play a note and return what it sounds like."""
+    sound, _ = held(setup, note, velocity, END_S, wheel, mapping=mapping)
+    steady = sound[round(STEADY_S * setup.rate) :]
+    return Timbre(
+        a_weighted_db(steady, setup.rate),
+        centroid_hz(steady, setup.rate),
+        attack_ms(sound, setup.rate),
+        float(np.abs(sound).max()),
+    )
 
 
 def evenness(setup: Setup) -> list[Share]:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from measures.overtones import overtones_off_by
+from measures.intonation import overtones_off_by
 from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Sound, Take, calibrated, in_parallel
 from yehu_server.core.physics.quantities import Quantities

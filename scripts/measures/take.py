@@ -157,6 +157,16 @@ class Take:
         return self.finger_m() <= find("/finger/1/position").lo
 
 
+def held(
+    setup: Setup, note: float, velocity: int, seconds: float, wheel: int | None = None, **how: Any
+) -> tuple[Sound, Take]:
+    """Play a note alone, with the mod wheel at a place; `how` is as of `Take`."""
+    take = Take(setup, **how)
+    take.wheel(wheel)
+    take.on(0.0, note, velocity)
+    return take.play(seconds), take
+
+
 def in_parallel(setup: Setup, work: Callable[..., Any], jobs: Iterable[Sequence[Any]]) -> list[Any]:
     """Run jobs in threads, each with a setup of its own, and return their results.
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from measures.intonation import bound
-from measures.overtones import overtones_off_by
+from measures.intonation import bound, overtones_off_by
 from measures.shares import Share, share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
 

@@ -3,7 +3,7 @@
 A note is slurred to the next unless that repeats it. Separate notes have no rest between them.
 
 The second half of a sixteenth is 62 ms at 120 quarters a minute, and 43 ms at 172. There what rings
-of the notes before is part of the sound, so the pitch is that of the harmonics (`overtones`). On
+of the notes before is part of the sound, so the pitch is that of the harmonics (`intonation`). On
 sawtooth waves of 65 to 89 at 44.1, 48 and 96 kHz, with noise 40 dB below, its error is 0.4 cents at
 most; beside a fifth above, 6 dB below the note, 1.5 cents (tests/test_measures.py).
 """
@@ -14,16 +14,15 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from make_shi_bei_jiu import make_notes
+from tunes.shi_bei_jiu import make_notes
 
-from measures.intonation import bound, in_words
-from measures.overtones import overtones_off_by
-from measures.shares import Share, share_line
+from measures.intonation import judged, overtones_off_by
+from measures.shares import Share
 from measures.take import Setup, Take, in_parallel
 
 SIXTEENTHS_S = (0.125, 0.087)
 OVERLAP_S = 0.01
-FILE = Path(__file__).with_name("tunes.toml")
+FILE = Path(__file__).parents[1] / "tunes" / "fast.toml"
 
 
 @dataclass(frozen=True)
@@ -82,7 +81,7 @@ def _errors(setup: Setup, notes: list[Note], slot_s: float, is_slurred: bool) ->
 
 
 def tunes(setup: Setup) -> list[Share]:
-    """Print the notes of each tune that are out of tune: number, pitch and error (cents)."""
+    """Print the notes of each tune that are out of tune: pitch, number and error (cents)."""
     ways = [
         (name, notes, slot_s, is_slurred)
         for name, notes in all_tunes().items()
@@ -92,11 +91,7 @@ def tunes(setup: Setup) -> list[Share]:
     found = in_parallel(setup, _errors, [way[1:] for way in ways])
     parts = []
     for (name, notes, slot_s, is_slurred), errors in zip(ways, found, strict=True):
-        right = [abs(e) <= bound(note.pitch) for note, e in zip(notes, errors, strict=True)]
-        words = [
-            f"{i} {note.pitch} {in_words(e)}"
-            for i, (note, e) in enumerate(zip(notes, errors, strict=True), start=1)
-        ]
         how = "slurred" if is_slurred else "separate"
-        parts.append(share_line(f"{name}, {1e3 * slot_s:.0f} ms, {how}", right, words))
+        cases = [(note.pitch, number) for number, note in enumerate(notes, start=1)]
+        parts.append(judged(f"{name}, {1e3 * slot_s:.0f} ms, {how}", cases, errors))
     return parts

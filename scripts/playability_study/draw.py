@@ -8,6 +8,7 @@ It writes figures to docs/figures, and the tables into the page; or figures alon
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,7 @@ from yehu_server.playing.pitch_and_level import note_name
 
 ROOT = Path(__file__).resolve().parents[2]
 BLUE, RED = "#1f5fa8", "#c03a2b"
+ACROSS = 8
 Array = Any
 
 
@@ -46,53 +48,50 @@ def panel(axes: Any, maps: Maps, i: int, cells: Array, **options: Any) -> Any:
     return image
 
 
-def tiles(count: int, across: int) -> tuple[Any, Any]:
-    """A figure with a panel for each map."""
-    down = -(-count // across)
+def of_all_notes(strings: list[Maps], x: str, draw: Callable[[Any, Maps, int], Any]) -> Any:
+    """Draw a map of every note on both strings; return the figure, the panels and an image."""
+    every = [(k, maps, i) for k, maps in enumerate(strings) for i in range(len(maps.notes))]
+    down = -(-len(every) // ACROSS)
     figure, panels = plt.subplots(
-        down, across, figsize=(2.15 * across, 2.05 * down + 0.7), sharex=True, sharey=True,
+        down, ACROSS, figsize=(2.15 * ACROSS, 2.05 * down + 0.7), sharex=True, sharey=True,
         layout="constrained",
     )  # fmt: skip
-    for axes in panels.flat[count:]:
+    image: Any = None
+    for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
+        image = draw(axes, maps, i)
+        axes.set_title(named(maps.notes[i], k), fontsize=8, pad=2)
+    for axes in panels.flat[len(every) :]:
         axes.set_visible(False)
-    return figure, panels
-
-
-def label_tiles(panels: Any, x: str) -> None:
-    """Name the axes of the outer panels."""
     for axes in panels[:, 0]:
         axes.set_ylabel(LABELS["force"], fontsize=8)
     for axes in panels[-1]:
-        axes.set_xlabel(x, fontsize=8)
+        axes.set_xlabel(LABELS[x], fontsize=8)
+    return figure, panels, image
 
 
 def regimes(strings: list[Maps], target: Path) -> None:
     """Draw Schelleng's diagram of every note on both strings."""
-    every = [(k, maps, i) for k, maps in enumerate(strings) for i in range(len(maps.notes))]
-    figure, panels = tiles(len(every), 8)
     names = strings[0].facts["regimes"]
-    for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
-        panel(axes, maps, i, maps.regime[i], **regime_colours(names))
-        axes.set_title(named(maps.notes[i], k), fontsize=8, pad=2)
+    figure, *_ = of_all_notes(
+        strings,
+        "position",
+        lambda axes, maps, i: panel(axes, maps, i, maps.regime[i], **regime_colours(names)),
+    )
     occurring = np.concatenate([np.unique(maps.regime) for maps in strings])
     handles = [*regime_patches(names, occurring), *limit_lines()]
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
-    label_tiles(panels, LABELS["position"])
     save(figure, target / "playability_schelleng.png")
 
 
 def onsets(strings: list[Maps], target: Path) -> None:
     """Draw Guettler's diagram of every note on both strings."""
-    every = [(k, maps, i) for k, maps in enumerate(strings) for i in range(len(maps.notes))]
-    figure, panels = tiles(len(every), 8)
-    image: Any = None
-    for axes, (k, maps, i) in zip(panels.flat, every, strict=False):
+
+    def draw(axes: Any, maps: Maps, i: int) -> Any:
         shown = np.where(maps.periods[i] == NEVER, np.nan, maps.periods[i])
-        image = panel(axes, maps, i, shown, **PERIOD_COLOURS)
-        axes.set_title(named(maps.notes[i], k), fontsize=8, pad=2)
-    label = f"{PERIODS}; grey: never"
-    figure.colorbar(image, ax=panels, label=label, aspect=50, pad=0.01)
-    label_tiles(panels, LABELS["acceleration"])
+        return panel(axes, maps, i, shown, **PERIOD_COLOURS)
+
+    figure, panels, image = of_all_notes(strings, "acceleration", draw)
+    figure.colorbar(image, ax=panels, label=f"{PERIODS}; grey: never", aspect=50, pad=0.01)
     save(figure, target / "playability_guettler.png")
 
 

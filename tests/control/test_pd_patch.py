@@ -12,7 +12,7 @@ import time
 import pytest
 
 from yehu_server.params.table import TABLE
-from yehu_server.surfaces import puredata
+from yehu_server.surfaces import layout, puredata
 
 PD = shutil.which("pd") or shutil.which("puredata")
 pytestmark = pytest.mark.skipif(not PD, reason="Pure Data is not here")
@@ -128,26 +128,26 @@ def test_a_key_begins_before_the_last_one_ends(hall, patience, desk, monkeypatch
             return call(note, *words, **named)
 
         monkeypatch.setattr(hall.player, name, hear)
-    desk.move(puredata.KEY, 2)
-    desk.move(puredata.KEY, 4)
+    desk.move(layout.local(puredata.KEY), 2)
+    desk.move(layout.local(puredata.KEY), 4)
     patience(lambda: ("note_off", 67.0) in heard, "the end of G4")
     assert heard[-2:] == [("note_on", 69.0), ("note_off", 67.0)]
 
 
 def test_keys_end_and_panic(hall, patience, desk):
-    desk.move(puredata.KEY, 2)
+    desk.move(layout.local(puredata.KEY), 2)
     patience(lambda: hall.player.pitch == 67.0, "G4")
-    desk.move(puredata.KEY, 4)
+    desk.move(layout.local(puredata.KEY), 4)
     patience(lambda: hall.player.pitch == 69.0, "A4")
-    desk.move(puredata.END, "bang")
+    desk.move(layout.local(puredata.END), "bang")
     patience(lambda: hall.player.pitch is None, "its end")
-    desk.move(puredata.KEY, 4)
+    desk.move(layout.local(puredata.KEY), 4)
     patience(lambda: hall.player.pitch == 69.0, "the same key again")
-    desk.move(puredata.PANIC, "bang")
+    desk.move(layout.local(puredata.PANIC), "bang")
     patience(lambda: hall.player.pitch is None, "panic")
     desk.move("/yehu/bow/speed", 0.2)
     patience(lambda: hall.player.value("/bow/speed") == pytest.approx(0.2), "the bow")
-    desk.move(puredata.LIFT, "bang")
+    desk.move(layout.local(puredata.LIFT), "bang")
     patience(lambda: hall.player.value("/bow/speed") == 0.0, "the bow lifted")
-    desk.move(puredata.RELEASE, "bang")
+    desk.move(layout.local(puredata.RELEASE), "bang")
     assert hall.is_well()

@@ -12,7 +12,7 @@ def along(axis: Axis, unit: float) -> float:
 def test_one_hand_on_the_string_and_one_on_the_bow_sound_until_the_bow_is_lifted(hall, patience):
     client = hall.client()
     client.tell("/pitch", along(STRING_PITCH, 0.15))
-    client.tell("/press", along(STRING_PRESS, STRING_PRESS.at))
+    client.tell("/press", STRING_PRESS.start)
     client.tell("/bow", along(BOW_SPEED, 0.7), along(BOW_FORCE, 0.25))
     patience(lambda: hall.level() > 0.01, "sound")
     client.tell("/bow", along(BOW_SPEED, 0.5), along(BOW_FORCE, 0.0))
@@ -22,6 +22,6 @@ def test_one_hand_on_the_string_and_one_on_the_bow_sound_until_the_bow_is_lifted
 
 def test_the_pads_begin_with_a_bow_at_rest(hall):
     client = hall.client()
-    client.tell("/bow", along(BOW_SPEED, BOW_SPEED.at), along(BOW_FORCE, BOW_FORCE.at))
+    client.tell("/bow", BOW_SPEED.start, BOW_FORCE.start)
     hall.settle()
     assert hall.level() < 1e-6

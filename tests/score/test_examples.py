@@ -25,10 +25,9 @@ def messages(score: Score, kind: str) -> list:
 
 
 def test_making_shi_bei_jiu_again_gives_the_shipped_bytes(tmp_path):
-    again = tmp_path / "again.mid"
-    script = ROOT / "scripts" / "make_shi_bei_jiu.py"
-    subprocess.run([sys.executable, script, again], check=True)
-    assert again.read_bytes() == TUNE.read_bytes()
+    script = ROOT / "scripts" / "make_examples.py"
+    subprocess.run([sys.executable, script, TUNE.stem, "-o", tmp_path], check=True)
+    assert (tmp_path / TUNE.name).read_bytes() == TUNE.read_bytes()
 
 
 def test_shi_bei_jiu_stays_within_the_yehu(tune):

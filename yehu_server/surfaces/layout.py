@@ -1,4 +1,4 @@
-"""What all surfaces share: parameters in groups, pads, keys, addresses, and the subscription."""
+"""The layout of all surfaces: pads, keys and buttons with their places; parameters in groups."""
 
 from __future__ import annotations
 
@@ -6,22 +6,35 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from yehu_server.core.player.fingering import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.live.osc.call_table import CALLS
 from yehu_server.live.part_addresses import group as group_of_part
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE, UNIT, find
-from yehu_server.playing.pitch_and_level import note_name
 
 FIRST_GROUP = "playing"  # used most
-BLACK = (1, 3, 6, 8, 10)
-
 VELOCITY = 90
 # A subscription outlives one message that UDP loses.
 SUBSCRIBED_S, SUBSCRIBE_EVERY_S = 60, 25
 # The pad's strongest bow force; the fader of /bow/force has the whole range.
 HARDEST_N = 2.0
+
+
+class Frame(NamedTuple):
+    """A place and a size: of a page, of what is on it, or as shares of a page."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    def on(self, page: Frame, gap: float = 0.0) -> Frame:
+        """The frame on a page of which this one has the shares, with a gap around it."""
+        x, y = page.x + self.x * page.width, page.y + self.y * page.height
+        width, height = self.width * page.width, self.height * page.height
+        return Frame(x + gap, y + gap, width - 2 * gap, height - 2 * gap)
 
 
 @dataclass(frozen=True)
@@ -42,35 +55,31 @@ class Axis:
     start: float
     unit: str
 
-    @property
-    def at(self) -> float:
-        """The pad's first position, 0 to 1."""
-        return (self.start - self.lo) / (self.hi - self.lo)
-
-    @property
-    def text(self) -> str:
-        """The axis' label."""
-        return f"{self.name} {self.lo:g} to {self.hi:g} {self.unit}"
-
 
 @dataclass(frozen=True)
-class Key:
-    """One key of the note strip."""
+class Pad:
+    """A pad with an axis across and one upwards.
 
-    note: int
+    Attributes
+    ----------
+    calls : tuple
+        The calls that it makes, each with the numbers of the axes that are its arguments.
+    lifted : str
+        The call that is made with zeros when the hand leaves the pad.
+    """
+
+    name: str
+    axes: tuple[Axis, Axis]
+    frame: Frame
+    calls: tuple[tuple[str, tuple[int, ...]], ...]
+    lifted: str = ""
 
     @property
-    def name(self) -> str:
-        """The note's name, such as F#4."""
-        return note_name(self.note)
+    def title(self) -> str:
+        """The pad's label."""
+        x, y = (f"{each.name} {each.lo:g} to {each.hi:g} {each.unit}" for each in self.axes)
+        return f"{self.name}: {x} across, {y} up"
 
-    @property
-    def is_black(self) -> bool:
-        """Whether it is a black key of a piano."""
-        return self.note % 12 in BLACK
-
-
-KEYS = tuple(Key(note) for note in range(LOWEST_NOTE, HIGHEST_NOTE + 1))
 
 _FASTEST = find("/playing/speed").hi
 _PRESS = find("/playing/press")
@@ -78,6 +87,24 @@ BOW_SPEED = Axis("speed", -_FASTEST, _FASTEST, 0.0, "m/s")
 BOW_FORCE = Axis("force", 0.0, HARDEST_N, 0.0, "N")
 STRING_PITCH = Axis("pitch", LOWEST_NOTE, HIGHEST_NOTE, LOWEST_NOTE, "MIDI")
 STRING_PRESS = Axis("press", _PRESS.lo, _PRESS.hi, _PRESS.default, _PRESS.unit)
+
+STRING = Pad(
+    "string",
+    (STRING_PITCH, STRING_PRESS),
+    Frame(0.0, 0.0, 0.5, 0.68),
+    (("/pitch", (0,)), ("/press", (1,))),
+)
+BOW = Pad(
+    "bow",
+    (BOW_SPEED, BOW_FORCE),
+    Frame(0.5, 0.0, 0.5, 0.68),
+    (("/bow", (0, 1)),),
+    lifted="/bow",
+)
+PADS = (STRING, BOW)
+KEYS = range(LOWEST_NOTE, HIGHEST_NOTE + 1)  # MIDI notes
+KEYS_FRAME = Frame(0.0, 0.68, 1.0, 0.32)
+BUTTONS = ("release", "panic")  # calls without arguments
 
 
 def groups(table: Iterable[Param] = TABLE) -> list[Group]:
@@ -130,6 +157,11 @@ def subscriptions(form: str = "") -> list[str]:
 def named(name: str) -> str:
     """Put the part behind a name: ``yehu part 2``."""
     return name if _part.get() == ALL else f"{name} part {_part.get()}"
+
+
+def local(name: str) -> str:
+    """A name within a program, which the patch of another part does not have: ``yehu.out``."""
+    return f"{named('yehu').replace(' ', '.')}.{name}"
 
 
 def port_from(first: int) -> int:

@@ -11,118 +11,89 @@ from typing import Any
 from yehu_server.live.addresses import Address
 from yehu_server.params.spec import Curve, Param
 from yehu_server.surfaces import layout
-from yehu_server.surfaces.layout import Axis, Group, full
+from yehu_server.surfaces.layout import Frame, Pad, full
 
 FORMAT = "1.30.1"  # the version of Open Stage Control whose sessions these are
 COLUMNS = 8
 DECIMALS = 5
-SENDING = {"address", "onCreate", "onTouch", "onValue"}  # what makes a widget send
+HANDS, BUTTONS = Frame(0, 0, 100, 90), Frame(0, 90, 100, 10)  # per cent of a tab
 
 Widget = dict[str, Any]
 
 
 def make(server: Address) -> bytes:
     """Write the session as JSON."""
-    host, port = server
+    speaks = {"target": [f"{server[0]}:{server[1]}"]}
+    send = "; ".join(f"send('{to}', {layout.SUBSCRIBED_S})" for to in layout.subscriptions())
+    again = f"setInterval(() => {{ {send} }}, {1000 * layout.SUBSCRIBE_EVERY_S})"
+    tabs: dict[str, tuple[list[Widget], Widget]] = {"hands": (_hands(), {})}
+    for group in layout.groups():
+        grid = {"layout": "grid", "gridTemplate": COLUMNS}
+        tabs[group.name] = ([_fader(param) for param in group.params], grid)
     root = {
         "type": "root",
         "id": "root",
-        "onCreate": _subscribing(),
-        "tabs": [_hands(), *(_tab(group) for group in layout.groups())],
+        "onCreate": f"{send}\n{again}",
+        **speaks,
+        "tabs": [
+            {"type": "tab", "id": name, "label": name, **style}
+            | {"widgets": [widget | speaks for widget in widgets]}
+            for name, (widgets, style) in tabs.items()
+        ],
     }
-    for widget in _walk(root):
-        if SENDING & widget.keys():
-            widget["target"] = [f"{host}:{port}"]
-    session = {
-        "createdWith": "Open Stage Control",
-        "version": FORMAT,
-        "type": "session",
-        "content": root,
-    }
-    return (json.dumps(session, indent=1) + "\n").encode("utf-8")
+    about = {"createdWith": "Open Stage Control", "version": FORMAT, "type": "session"}
+    return (json.dumps({**about, "content": root}, indent=1) + "\n").encode("utf-8")
 
 
-def _walk(widget: Widget) -> list[Widget]:
-    inside = [*widget.get("tabs", ()), *widget.get("widgets", ())]
-    return [widget, *(found for child in inside for found in _walk(child))]
+def _placed(frame: Frame, page: Frame) -> Widget:
+    place = frame.on(page, 1)
+    names = ("left", "top", "width", "height")
+    return {name: f"{share:g}%" for name, share in zip(names, place, strict=True)}
 
 
-def _subscribing() -> str:
-    send = "; ".join(f"send('{to}', {layout.SUBSCRIBED_S})" for to in layout.subscriptions())
-    return f"{send}\nsetInterval(() => {{ {send} }}, {1000 * layout.SUBSCRIBE_EVERY_S})"
-
-
-def _hands() -> Widget:
-    """Add two pads and keys."""
-    pitch, press, bow, note = map(full, ("/pitch", "/press", "/bow", "/note"))
-    string = _pad("string", layout.STRING_PITCH, layout.STRING_PRESS, "1%") | {
-        "bypass": True,
-        "onValue": f"send('{pitch}', value[0])\nsend('{press}', value[1])",
-    }
-    hair = _pad("bow", layout.BOW_SPEED, layout.BOW_FORCE, "51%") | {
-        "address": bow,
-        "onTouch": f"if (event.type === 'stop') send('{bow}', 0, 0)",
-    }
+def _hands() -> list[Widget]:
+    """Return two pads, keys and buttons."""
+    pads = [_pad(pad) | _placed(pad.frame, HANDS) for pad in layout.PADS]
     keys = {
         "type": "keyboard",
         "id": "keys",
-        "left": "1%",
-        "top": "62%",
-        "width": "98%",
-        "height": "27%",
-        "address": note,
-        "start": layout.KEYS[0].note,
+        **_placed(layout.KEYS_FRAME, HANDS),
+        "address": full("/note"),
+        "start": layout.KEYS[0],
         "keys": len(layout.KEYS),
         "on": layout.VELOCITY,
         "off": 0,
     }
+    width = 1 / len(layout.BUTTONS)
     buttons = [
-        {
-            "type": "button",
-            "id": name,
-            "label": name,
-            "mode": "momentary",
-            "left": left,
-            "top": "91%",
-            "width": "48%",
-            "height": "8%",
-            "address": full(f"/{name}"),
-        }
-        for name, left in (("release", "1%"), ("panic", "51%"))
+        {"type": "button", "id": name, "label": name, "mode": "momentary"}
+        | _placed(Frame(place * width, 0, width, 1), BUTTONS)
+        | {"address": full(f"/{name}")}
+        for place, name in enumerate(layout.BUTTONS)
     ]
-    return {
-        "type": "tab",
-        "id": "hands",
-        "label": "hands",
-        "widgets": [string, hair, keys, *buttons],
-    }
+    return [*pads, keys, *buttons]
 
 
-def _pad(name: str, x: Axis, y: Axis, left: str) -> Widget:
+def _pad(pad: Pad) -> Widget:
+    x, y = pad.axes
+    (call, _), *others = pad.calls
+    if others:
+        sending = [f"send('{full(to)}', value[{of[0]}])" for to, of in pad.calls]
+        sends = {"bypass": True, "onValue": "\n".join(sending)}
+    else:
+        sends = {"address": full(call)}
+    if pad.lifted:
+        sends["onTouch"] = f"if (event.type === 'stop') send('{full(pad.lifted)}', 0, 0)"
     return {
         "type": "xy",
-        "id": f"{name} pad",  # two widgets of one id would move each other
-        "html": f"{name}: {x.text} across, {y.text} up",
-        "left": left,
-        "top": "1%",
-        "width": "48%",
-        "height": "60%",
+        "id": f"{pad.name} pad",  # two widgets of one id would move each other
+        "html": pad.title,
         "snap": True,
         "rangeX": {"min": x.lo, "max": x.hi},
         "rangeY": {"min": y.lo, "max": y.hi},
         "default": [x.start, y.start],
         "decimals": DECIMALS,
-    }
-
-
-def _tab(group: Group) -> Widget:
-    return {
-        "type": "tab",
-        "id": group.name,
-        "label": group.name,
-        "layout": "grid",
-        "gridTemplate": COLUMNS,
-        "widgets": [_fader(param) for param in group.params],
+        **sends,
     }
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import uuid
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import py2tosc
@@ -28,19 +28,20 @@ from py2tosc import (
 from yehu_server.live.addresses import Address
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import UNIT
+from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.surfaces import layout
-from yehu_server.surfaces.layout import Axis, Group, Key, full
+from yehu_server.surfaces.layout import Axis, Frame, Group, Pad, full
 
 WIDTH, HEIGHT = 1024, 768
 BAR, TABS, GAP = 52, 44, 8
 COLUMNS, ROWS = 8, 2  # of faders on a page
 LINE = 20  # a label's height
-PAGE = (WIDTH, HEIGHT - BAR - TABS)
-KEYS_HEIGHT = 190
+PAGE = Frame(0, TABS, WIDTH, HEIGHT - BAR - TABS)
+ON_PAGE = PAGE._replace(y=0)  # of what is on a page, in its own frame
 
-WOOD, DARK, STRING, HAIR, IVORY, EBONY, ALARM = (
-    "#b5763a", "#2b2622", "#d8c69a", "#8fb8c4", "#e8e0cf", "#3a3530", "#b03a2e",
-)  # fmt: skip
+WOOD, DARK, IVORY, EBONY = "#b5763a", "#2b2622", "#e8e0cf", "#3a3530"
+COLOURS = {"string": "#d8c69a", "bow": "#8fb8c4", "release": WOOD, "panic": "#b03a2e"}
+PLAIN: dict[str, Any] = {"outline": False, "background": False}
 
 SUBSCRIBE = """\
 local subscribed = nil
@@ -123,104 +124,95 @@ def _identify(control: Control, path: str) -> None:
         _identify(child, f"{path}/{child.get('name')}")
 
 
-# -- parts of all pages ---------------------------------------------------------------------------
+# -- pads, keys and buttons ------------------------------------------------------------------------
 
 
 def _bar() -> Iterator[Control]:
+    """Return the title and the buttons, which are above all pages."""
     frame = (GAP, GAP, 500, BAR - 2 * GAP)
     yield _label("title", frame, layout.named("yehu"), text_size=22, text_align_h=1)
-    for place, (call, colour) in enumerate((("/release", WOOD), ("/panic", ALARM))):
-        name = call.strip("/")
-        x = WIDTH - (2 - place) * (150 + GAP)
-        press = _message(call, [], [Trigger("x", TriggerCondition.RISE)])
-        yield py2tosc.button(
-            name=name, frame=(x, GAP, 150, BAR - 2 * GAP), color=colour, messages=[press]
-        )
-        yield _label(f"{name} label", (x, GAP, 150, BAR - 2 * GAP), name, text_size=16)
-
-
-# -- the page of pads and keys----------------------------------------------------------------------
+    for place, name in enumerate(layout.BUTTONS):
+        x = WIDTH - (len(layout.BUTTONS) - place) * (150 + GAP)
+        frame = (x, GAP, 150, BAR - 2 * GAP)
+        press = _message(f"/{name}", [], [Trigger("x", TriggerCondition.RISE)])
+        yield py2tosc.button(name=name, frame=frame, color=COLOURS[name], messages=[press])
+        yield _label(f"{name} label", frame, name, text_size=16)
 
 
 def _hands() -> Control:
-    """Add two pads and keys."""
-    width, height = PAGE
-    pad_height = height - KEYS_HEIGHT - 2 * LINE - 4 * GAP
-    half = (width - 3 * GAP) / 2
-    anywhere = [Trigger("x"), Trigger("y")]
-    pitch = _message("/pitch", [_scaled("x", layout.STRING_PITCH)], anywhere[:1])
-    press = _message("/press", [_scaled("y", layout.STRING_PRESS)], anywhere[1:])
-    touched = Trigger("touch", TriggerCondition.RISE)
-    draw = _message(
-        "/bow",
-        [_scaled("x", layout.BOW_SPEED), _scaled("y", layout.BOW_FORCE)],
-        [*anywhere, touched],
-    )
-    lift = _message(
-        "/bow", [_constant(0.0), _constant(0.0)], [Trigger("touch", TriggerCondition.FALL)]
-    )
-    children: list[Control] = []
-    for place, (name, colour, axes, messages) in enumerate(
-        (
-            ("string", STRING, (layout.STRING_PITCH, layout.STRING_PRESS), [pitch, press]),
-            ("bow", HAIR, (layout.BOW_SPEED, layout.BOW_FORCE), [draw, lift]),
-        )
-    ):
-        x = GAP + place * (half + GAP)
-        values = [Value("x", default=axes[0].at), Value("y", default=axes[1].at), Value("touch")]
-        text = f"{name}: {axes[0].text} across, {axes[1].text} up"
-        children += [
-            _label(f"{name} label", (x, GAP, half, LINE), text),
-            py2tosc.xy(
+    """Return the page of two pads and keys."""
+    children = [control for pad in layout.PADS for control in _pad(pad)]
+    keys = layout.KEYS_FRAME.on(ON_PAGE, GAP)
+    step, height = keys.width / len(layout.KEYS), keys.height - LINE
+    velocity = Partial(PartialType.VALUE, Conversion.FLOAT, "x", 0.0, layout.VELOCITY)
+    for place, note in enumerate(layout.KEYS):  # each sends 0 when it is released
+        x, name = keys.x + place * step, note_name(note)
+        press = _message("/note", [_constant(note), velocity], [Trigger("x")])
+        children.append(
+            py2tosc.button(
                 name=name,
-                frame=(x, GAP + LINE, half, pad_height),
-                color=colour,
-                values=values,
-                messages=messages,
-            ),
-        ]
-    top = height - KEYS_HEIGHT - LINE - GAP
-    step = (width - 2 * GAP) / len(layout.KEYS)
-    for place, key in enumerate(layout.KEYS):
-        children += _key(key, GAP + place * step, top, step - 2)
+                frame=(x, keys.y, step - 2, height),
+                color=EBONY if "#" in name else IVORY,
+                messages=[press],
+            )
+        )
+        beneath = (x, keys.y + height, step - 2, LINE)
+        children.append(_label(f"{name} label", beneath, name, text_size=11))
     return _page("hands", children)
 
 
-def _key(key: Key, x: float, top: float, width: float) -> Iterator[Control]:
-    """Add a key, which sends its velocity when pressed and 0 when released."""
-    velocity = Partial(PartialType.VALUE, Conversion.FLOAT, "x", 0.0, layout.VELOCITY)
-    yield py2tosc.button(
-        name=key.name,
-        frame=(x, top, width, KEYS_HEIGHT),
-        color=EBONY if key.is_black else IVORY,
-        messages=[_message("/note", [_constant(key.note), velocity], [Trigger("x")])],
+def _pad(pad: Pad) -> Iterator[Control]:
+    touched, left = (
+        Trigger("touch", way) for way in (TriggerCondition.RISE, TriggerCondition.FALL)
     )
-    frame = (x, top + KEYS_HEIGHT, width, LINE)
-    yield _label(f"{key.name} label", frame, key.name, text_size=11)
+    messages = []
+    for call, numbers in pad.calls:
+        arguments = [_scaled("xy"[number], pad.axes[number]) for number in numbers]
+        moved = [Trigger("xy"[number]) for number in numbers]
+        messages.append(_message(call, arguments, [*moved, touched] if pad.lifted else moved))
+    if pad.lifted:
+        messages.append(_message(pad.lifted, [_constant(0.0)] * 2, [left]))
+    starts = [
+        Value(key, default=(axis.start - axis.lo) / (axis.hi - axis.lo))
+        for key, axis in zip("xy", pad.axes, strict=True)
+    ]
+    x, y, width, height = pad.frame.on(ON_PAGE, GAP)
+    yield _label(f"{pad.name} label", (x, y, width, LINE), pad.title)
+    yield py2tosc.xy(
+        name=pad.name,
+        frame=(x, y + LINE, width, height - LINE),
+        color=COLOURS[pad.name],
+        values=[*starts, Value("touch")],
+        messages=messages,
+    )
 
 
 # -- faders --------------------------------------------------------------------------------------
 
 
 def _pages(group: Group) -> Iterator[Control]:
+    """Return the pages of a group's faders, which are in rows from the top left."""
     size = COLUMNS * ROWS
     for start in range(0, len(group.params), size):
+        params = group.params[start : start + size]
         number = f" {start // size + 1}" if len(group.params) > size else ""
-        yield _page(group.name + number, _strips(group.params[start : start + size]))
+        rows = 1 if len(params) <= COLUMNS else ROWS
+        yield _page(
+            group.name + number,
+            [
+                _strip(
+                    param,
+                    Frame(
+                        place % COLUMNS / COLUMNS, place // COLUMNS / rows, 1 / COLUMNS, 1 / rows
+                    ).on(ON_PAGE),
+                )
+                for place, param in enumerate(params)
+            ],
+        )
 
 
-def _strips(params: Sequence[Param]) -> list[Control]:
-    """Add faders in rows, from the top left."""
-    rows = 1 if len(params) <= COLUMNS else ROWS
-    width, height = PAGE[0] / COLUMNS, PAGE[1] / rows
-    return [
-        _strip(param, (place % COLUMNS * width, place // COLUMNS * height, width, height))
-        for place, param in enumerate(params)
-    ]
-
-
-def _strip(param: Param, frame: tuple[float, float, float, float]) -> Control:
-    """Add name, fader, value and range of one parameter."""
+def _strip(param: Param, frame: Frame) -> Control:
+    """Return name, fader, value and range of one parameter."""
     *_, width, height = frame
     inner = width - 2 * GAP
     script = SHOW.format(lo=param.lo, hi=param.hi, formula=FORMULAS[param.curve])
@@ -238,8 +230,7 @@ def _strip(param: Param, frame: tuple[float, float, float, float]) -> Control:
     return py2tosc.group(
         name=param.address,
         frame=frame,
-        outline=False,
-        background=False,
+        **PLAIN,
         children=[
             _label("name", (0, GAP, width, LINE), layout.label(param)),
             fader,
@@ -255,7 +246,7 @@ def _strip(param: Param, frame: tuple[float, float, float, float]) -> Control:
 def _page(name: str, children: list[Control]) -> Control:
     return py2tosc.group(
         name=name,
-        frame=(0, TABS, *PAGE),
+        frame=PAGE,
         outline=False,
         color=DARK,
         tab_label=name,
@@ -270,9 +261,7 @@ def _page(name: str, children: list[Control]) -> Control:
 def _label(name: str, frame: tuple[float, ...], text: str, **style: Any) -> Control:
     values = [Value("text", default=text), Value("touch")]
     style = {"text_size": 12, **style}
-    return py2tosc.label(
-        name=name, frame=frame, values=values, background=False, outline=False, **style
-    )
+    return py2tosc.label(name=name, frame=frame, values=values, **PLAIN, **style)
 
 
 def _message(

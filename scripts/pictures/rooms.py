@@ -1,9 +1,4 @@
-"""Draw how the rooms of the presets answer: reflections, decay, and the spectrum of the tail.
-
-    .venv/bin/python scripts/room_pictures.py [FOLDER]
-
-It writes rooms.png to FOLDER (default: docs/figures).
-"""
+"""How the rooms of the presets answer: reflections, decay, and the spectrum of the tail."""
 
 from __future__ import annotations
 
@@ -12,16 +7,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-
-mpl.use("Agg")
-
 import matplotlib.pyplot as plt
 import numpy as np
 
+from pictures.saving import ROOT, levels, save
 from yehu_server.playing.preset_folders import Presets
 
-ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 acoustics: Any = import_module("acoustics")
 stages: Any = import_module("stages")
@@ -38,9 +29,7 @@ def heard(name: str) -> tuple[dict[str, float], Any, Any]:
     return asked, *stages.response(RATE, 1.2 * asked["decay"] + 0.1, **asked)
 
 
-def main() -> None:
-    """Draw."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "figures"
+def draw_all(figures: Path, _sounds: Path) -> None:
     figure, rows = plt.subplots(len(NAMES), 3, figsize=(12.0, 8.0), layout="constrained")
     for axes, name in zip(rows, NAMES, strict=True):
         asked, direct, room = heard(name)
@@ -50,8 +39,8 @@ def main() -> None:
         axes[0].set(xlim=(-2.0, 120.0), ylim=(-0.5, 0.8), xlabel="ms", ylabel=name)
         for centre, colour in BANDS:
             left = acoustics.energy_left(acoustics.octave(room, RATE, centre))
-            curve = 10.0 * np.log10(np.maximum(left / left[0], 1e-12))
-            axes[1].plot(at, curve, color=colour, lw=1.0, label=f"{centre:g} Hz")
+            label = f"{centre:g} Hz"
+            axes[1].plot(at, levels(left / left[0]), color=colour, lw=1.0, label=label)
         axes[1].set(xlim=(0.0, 1.2 * asked["decay"]), ylim=(-70.0, 3.0), xlabel="s", ylabel="dB")
         axes[1].legend(fontsize=8)
         axes[2].specgram(
@@ -61,8 +50,4 @@ def main() -> None:
     rows[0][0].set_title("an impulse, left ear")
     rows[0][1].set_title("what is left of the sound")
     rows[0][2].set_title("spectrogram of the room")
-    figure.savefig(folder / "rooms.png", dpi=110)
-
-
-if __name__ == "__main__":
-    main()
+    save(figure, figures / "rooms.png", dpi=110)

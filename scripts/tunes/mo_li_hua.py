@@ -1,27 +1,22 @@
-"""Write examples/mo_li_hua.mid: the traditional tune "Mo Li Hua" for four yehus, in heterophony.
-
-    python scripts/make_mo_li_hua.py [OUT]
+"""The traditional tune "Mo Li Hua" for four yehus, in heterophony.
 
 One tune, as ensembles of Chinese fiddles play it: each player at the same time in a way of their
 own. The first plays it plainly. The second adds flowers (jia hua): notes of the scale between
 those of the tune. The third plays its bones (jian zi): what falls on the beats. The fourth plays
 it an octave higher where the instrument reaches, and slides into long notes. The notes of the
-tune are those that are sung in Jiangsu; all else follows fixed rules: each run writes the same
-bytes.
+tune are those that are sung in Jiangsu; all else follows fixed rules.
 """
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 
-from make_shi_bei_jiu import QUARTER, track
-from mido import Message, MetaMessage, MidiFile, MidiTrack, bpm2tempo
+from mido import MidiFile
 
-OUT = Path(__file__).resolve().parent.parent / "examples" / "mo_li_hua.mid"
+from tunes.midi import QUARTER, Event, bend, parameter, score, stroke
+
 BPM = 76
 RITARDANDO = ((4, 70), (3, 64), (2, 56))  # beats before the end, tempo from there
 
@@ -151,64 +146,35 @@ def slurred(notes: list[Note], at: int) -> bool:
     return same_beat and not note.is_last and after.pitch != note.pitch
 
 
-def messages(notes: list[Note], channel: int, *, slides: bool) -> list[tuple[int, Message]]:
+def messages(notes: list[Note], channel: int, *, slides: bool) -> list[Event]:
     """Return the messages of a part, with their ticks."""
-    found: list[tuple[int, Message]] = []
-    for control, value in ((101, 0), (100, 0), (6, 2), (38, 0), (101, 127), (100, 127)):
-        change = Message("control_change", channel=channel, control=control, value=value)
-        found.append((0, change))
+    found = parameter(0, BEND_RANGE_CENTS // 100, channel)
     for number, note in enumerate(notes):
         if slides and note.length >= QUARTER and note.pitch > LOWEST:
             for tick in range(0, SLIDE + 1, 10):
                 cents = -SLIDE_CENTS * (1.0 - tick / SLIDE) ** 2
-                pitch = round(cents / BEND_RANGE_CENTS * 8192)
-                found.append(
-                    (note.start + tick, Message("pitchwheel", channel=channel, pitch=pitch))
-                )
+                found.append((note.start + tick, bend(cents, BEND_RANGE_CENTS, channel)))
         air = -OVERLAP if slurred(notes, number) else BREATH if note.is_last else AIR
         velocity = VELOCITY + (ACCENT if note.start % BAR == 0 else 0)
-        key = {"channel": channel, "note": note.pitch}
-        found.append((note.start, Message("note_on", velocity=velocity, **key)))
-        found.append((note.end - air, Message("note_off", velocity=64, **key)))
+        found += stroke(note.pitch, velocity, note.start, note.end - air, channel)
     return sorted(found, key=lambda event: (event[0], event[1].type == "note_on"))
 
 
 Way = Callable[[list[Note]], list[Note]]
-PARTS: tuple[tuple[str, Way, bool], ...] = (
-    ("plain", plain, False),
-    ("flowers", flowers, False),
-    ("bones", bones, True),
-    ("octave", octave, True),
-)
+PARTS: dict[str, tuple[Way, bool]] = {
+    "plain": (plain, False),
+    "flowers": (flowers, False),
+    "bones": (bones, True),
+    "octave": (octave, True),
+}
 
 
-def conductor(ticks: int) -> MidiTrack:
-    """Return the track of tempo and metre."""
-    slowing = [(ticks - QUARTER * beats, bpm2tempo(bpm)) for beats, bpm in RITARDANDO]
-    return track(
-        "Mo Li Hua",
-        [
-            (0, MetaMessage("text", text="Jasmine flower, traditional")),
-            (0, MetaMessage("time_signature", numerator=2, denominator=4)),
-            (0, MetaMessage("key_signature", key="Bb")),
-            *(
-                (tick, MetaMessage("set_tempo", tempo=t))
-                for tick, t in [(0, bpm2tempo(BPM)), *slowing]
-            ),
-        ],
-    )
-
-
-def make_file() -> MidiFile:
+def mo_li_hua() -> MidiFile:
     notes = tune()
-    file = MidiFile(type=1, ticks_per_beat=QUARTER)
-    file.tracks.append(conductor(notes[-1].end))
-    for channel, (name, way, slides) in enumerate(PARTS):
-        file.tracks.append(track(name, messages(way(notes), channel, slides=slides)))
-    return file
-
-
-if __name__ == "__main__":
-    words = argparse.ArgumentParser(description="Write the tune Mo Li Hua for four yehus.")
-    words.add_argument("out", nargs="?", default=OUT, help="default: examples/mo_li_hua.mid")
-    make_file().save(words.parse_args().out)
+    slowing = [(notes[-1].end - QUARTER * beats, float(bpm)) for beats, bpm in RITARDANDO]
+    parts = {
+        name: messages(way(notes), channel, slides=slides)
+        for channel, (name, (way, slides)) in enumerate(PARTS.items())
+    }
+    about = "Jasmine flower, traditional"
+    return score("Mo Li Hua", about, "Bb", [(0, float(BPM)), *slowing], parts)

@@ -1,6 +1,4 @@
-"""Draw where the model can be bowed, and the forces by which the player bows it.
-
-    .venv/bin/python scripts/schelleng_map.py [-o OUT.png] [--note F4 C5] [--rate HZ]
+"""Where the model can be bowed, and the forces by which the player bows it.
 
 A stopped note on each string is bowed with forces over bow positions at three speeds, and over bow
 speeds. The rule of docs/sweep.md names the regimes; the lines are Schelleng's limits of the force.
@@ -8,15 +6,14 @@ speeds. The rule of docs/sweep.md names the regimes; the lines are Schelleng's l
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from figures import save
 from matplotlib.lines import Line2D
 
+from pictures.saving import save
 from yehu_server.core.controls.hands import FAST, FAST_SHARE
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.schelleng import upper_limit
@@ -32,8 +29,6 @@ from yehu_server.core.player.bowing import (
     recipe_value,
     share,
 )
-from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES
-from yehu_server.errors import ParameterError, YehuError
 from yehu_server.lab.plot.axes import LABELS
 from yehu_server.lab.plot.cells import limit_lines, regime_patches
 from yehu_server.lab.plot.maps import map_of
@@ -48,7 +43,9 @@ from yehu_server.playing.practice_files import shipped_practice
 
 Array = Any
 
-NAMES = ("F4", "C5")  # of the strings
+RATE = 44100.0
+STOPPED = {"F4": 70, "C5": 77}  # the note that is bowed on each string
+NAMES = tuple(STOPPED)
 FORCES = {"from": 0.03, "to": 5.0, "steps": 13, "spread": "log"}  # N
 BETAS = {"from": 0.04, "to": 0.4, "steps": 13, "spread": "log"}
 SPEEDS = {"from": 0.03, "to": 0.6, "steps": 13, "spread": "log"}  # m/s
@@ -61,11 +58,11 @@ HALVED = 2  # times a step is, where regimes meet
 class Player:
     """How the player bows one note on one string of the tuned instrument."""
 
-    def __init__(self, rate: float, string: int, note: int) -> None:
-        tuned = calibration_for(rate).tuned(Quantities())
+    def __init__(self, string: int, note: int) -> None:
+        tuned = calibration_for(RATE).tuned(Quantities())
         silk, bow = tuned.strings[string], tuned.bow
         self.string, self.note = string, note
-        self.bowing = shipped_practice(rate)
+        self.bowing = shipped_practice(RATE)
         self.impedance = float(np.sqrt(silk.T * silk.rho_A))
         self.grip = bow.mu_S - bow.mu_C
 
@@ -82,7 +79,7 @@ class Player:
         return (usual + fast) * highest
 
 
-def bowed(rate: float, player: Player, vary: dict[str, Any]) -> Result:
+def bowed(player: Player, vary: dict[str, Any]) -> Result:
     """Bow the note in all combinations."""
     press = max(find("/playing/press").default, player.recipe(LEAST_PRESS))
     stroke = {"string": player.string + 1, "note": player.note, "press": press}
@@ -90,7 +87,7 @@ def bowed(rate: float, player: Player, vary: dict[str, Any]) -> Result:
     return sweep(
         study_of(
             {
-                "sample_rate": rate,
+                "sample_rate": RATE,
                 "duration": 0.4,
                 "stroke": STROKE | stroke,
                 "vary": {"force": FORCES} | vary,
@@ -115,10 +112,10 @@ def draw(axes: Any, found: Result, x: str, at: dict[str, int]) -> None:
     print(f"{axes.get_title():16} per cent: {', '.join(words)}")
 
 
-def draw_note(panels: Any, player: Player, rate: float) -> list[Result]:
+def draw_note(panels: Any, player: Player) -> list[Result]:
     """Draw the maps of one note: a row."""
     title = f"{note_name(player.note)} on {NAMES[player.string]}"
-    places = bowed(rate, player, {"speed": list(THREE), "position": BETAS})
+    places = bowed(player, {"speed": list(THREE), "position": BETAS})
     for i, speed in enumerate(THREE):
         panels[i].set_title(f"{title}, {speed:g} m/s")
         draw(panels[i], places, "position", {"speed": i})
@@ -126,7 +123,7 @@ def draw_note(panels: Any, player: Player, rate: float) -> list[Result]:
             beta = USUAL_BETA * player.recipe(DISTANCE_FACTOR)
             ends = [float(player.force(speed, beta, wish)) for wish in (LIGHT, FIRM)]
             panels[i].plot([beta, beta], ends, color="k", lw=2.5, marker="_", ms=9, mew=2.5)
-    speeds = bowed(rate, player, {"position": [USUAL_BETA], "speed": SPEEDS})
+    speeds = bowed(player, {"position": [USUAL_BETA], "speed": SPEEDS})
     panels[-1].set_title(f"{title}, β = {USUAL_BETA:g}")
     draw(panels[-1], speeds, "speed", {"position": 0})
     if player.recipe(DISTANCE_FACTOR) == 1.0:
@@ -138,21 +135,15 @@ def draw_note(panels: Any, player: Player, rate: float) -> list[Result]:
     return [places, speeds]
 
 
-def schelleng_picture(arguments: argparse.Namespace) -> None:
+def draw_all(figures: Path, _sounds: Path) -> None:
     """Bow both notes, print how often there was each regime, and write the picture."""
-    for string, note, lowest, highest in zip(
-        NAMES, arguments.note, OPEN_NOTES, [max(each) for each in PITCHES], strict=True
-    ):
-        if not lowest < note <= highest:
-            raise ParameterError(f"{string} string: stopped notes are {lowest + 1} to {highest}")
-    rate = float(arguments.rate)
     size = (16, 4.2 * len(NAMES) + 1.2)
     figure, panels = plt.subplots(
         len(NAMES), len(THREE) + 1, figsize=size, sharey=True, layout="constrained"
     )
     found: list[Result] = []
-    for i, (row, note) in enumerate(zip(panels, arguments.note, strict=True)):
-        found += draw_note(row, Player(rate, i, note), rate)
+    for i, (row, note) in enumerate(zip(panels, STOPPED.values(), strict=True)):
+        found += draw_note(row, Player(i, note))
     occurring = np.concatenate([np.unique(each.grid("regime")) for each in found])
     lines = [
         Line2D([], [], marker="|", ms=13, mew=2.5, color="k", ls="", label="the player's forces"),
@@ -160,27 +151,4 @@ def schelleng_picture(arguments: argparse.Namespace) -> None:
     ]
     handles = [*regime_patches(found[0].regimes, occurring), *limit_lines(), *lines]
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
-    save(figure, arguments.output or Path("schelleng.png"))
-
-
-def main() -> None:
-    """Parse the command line and draw the picture."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("-o", "--output", type=Path, metavar="OUT.png")
-    parser.add_argument("--rate", type=int, default=44100, metavar="HZ")
-    parser.add_argument(
-        "--note",
-        nargs=2,
-        type=int,
-        default=(70, 77),
-        metavar=NAMES,
-        help="MIDI note of the stopped note on each string (default: 70 77)",
-    )
-    try:
-        schelleng_picture(parser.parse_args())
-    except YehuError as error:
-        parser.exit(2, f"{parser.prog}: {error}\n")
-
-
-if __name__ == "__main__":
-    main()
+    save(figure, figures / "schelleng.png")

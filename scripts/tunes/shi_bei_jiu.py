@@ -1,24 +1,19 @@
-"""Write examples/shi_bei_jiu.mid: the traditional tune "Shi Bei Jiu", phrased for a yehu.
+"""The traditional tune "Shi Bei Jiu", phrased for a yehu.
 
-    python scripts/make_shi_bei_jiu.py [OUT]
-
-The notes were transcribed from a performance, one every 0.125 s. This script adds bowing,
-dynamics, slides and vibrato, chosen by ear and following fixed rules: each run writes the same
-bytes.
+The notes were transcribed from a performance, one every 0.125 s. Bowing, dynamics, slides and
+vibrato were chosen by ear and follow fixed rules.
 """
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 
-from mido import Message, MetaMessage, MidiFile, MidiTrack, bpm2tempo
+from mido import Message, MidiFile
 
-OUT = Path(__file__).resolve().parent.parent / "examples" / "shi_bei_jiu.mid"
+from tunes.midi import QUARTER, Event, bend, control, parameter, score, stroke
 
 # Each number is the MIDI note of a slot, each line a bar of 2/4, each paragraph a phrase; 0
 # prolongs the note before it. The yehu's open strings are 65 (F4) and 72 (C5). Leaps between 69
@@ -62,7 +57,6 @@ PHRASES = """
 72 74 72 69 72 74 72 67
 """
 
-QUARTER = 480  # ticks
 SLOT = QUARTER // 4  # a sixteenth: 0.125 s at 120 bpm
 BEAT, BAR = 4, 8  # slots
 FINAL = 13  # slots of the last note: one, and a bar and a half more
@@ -156,33 +150,23 @@ def slur(phrase: list[Note]) -> None:
         )
 
 
-def tempo_changes(slots: int) -> list[tuple[int, int]]:
-    """Return tempo changes: tick, and microseconds for each quarter note."""
-    slowing = [((slots - left) * SLOT, bpm2tempo(bpm)) for left, bpm in RITARDANDO]
-    return [(0, bpm2tempo(120)), *slowing]
-
-
-def bend(cents: float) -> Message:
-    return Message("pitchwheel", pitch=round(cents / BEND_RANGE_CENTS * 8192))
-
-
-def bends(note: Note, tempos: list[tuple[int, int]]) -> Iterator[tuple[int, Message]]:
+def bends(note: Note, tempos: list[tuple[int, float]]) -> Iterator[Event]:
     """Return pitch bends: a slide into the note, then vibrato if it is long."""
     depth, slide = (50.0, 84) if note.held else (35.0, 60)  # cents, ticks
     for tick in range(0, slide, 12):
-        yield note.start + tick, bend(-depth * (1.0 - tick / slide) ** 2)
-    yield note.start + slide, bend(0.0)
+        yield note.start + tick, bend(-depth * (1.0 - tick / slide) ** 2, BEND_RANGE_CENTS)
+    yield note.start + slide, bend(0.0, BEND_RANGE_CENTS)
     if not note.held:
         return
-    seconds_per_tick = [tempo for tick, tempo in tempos if tick <= note.start][-1] / QUARTER / 1e6
+    bpm = [bpm for tick, bpm in tempos if tick <= note.start][-1]
     for tick in range(slide + 12, note.shaped_end - note.start, 12):
         widening = min((tick - slide) / QUARTER * 2.0, 1.0)
-        turn = math.sin(2.0 * math.pi * VIBRATO_HZ * (tick - slide) * seconds_per_tick)
-        yield note.start + tick, bend(VIBRATO_CENTS * widening * turn)
-    yield note.shaped_end, bend(0.0)
+        turn = math.sin(2.0 * math.pi * VIBRATO_HZ * (tick - slide) * 60.0 / bpm / QUARTER)
+        yield note.start + tick, bend(VIBRATO_CENTS * widening * turn, BEND_RANGE_CENTS)
+    yield note.shaped_end, bend(0.0, BEND_RANGE_CENTS)
 
 
-def swell(note: Note) -> Iterator[tuple[int, Message]]:
+def swell(note: Note) -> Iterator[Event]:
     """Return aftertouch that rises to the middle of a note and falls to 0 at its end."""
     length = note.shaped_end - note.start
     for tick in range(0, length, 24):
@@ -193,65 +177,30 @@ def swell(note: Note) -> Iterator[tuple[int, Message]]:
     yield note.shaped_end, Message("aftertouch", value=0)
 
 
-def bow_speed(notes: list[Note]) -> Iterator[tuple[int, Message]]:
+def bow_speed(notes: list[Note]) -> Iterator[Event]:
     """Return CC 1, which rises and falls with each phrase and falls on the last note."""
     for note in notes:
-        yield note.start, Message("control_change", control=1, value=round(56 + 40 * note.arch))
+        yield note.start, control(1, round(56 + 40 * note.arch))
     last = notes[-1]
     for slot in range(1, last.slots):
         value = round((56 + 40 * last.arch) * (1.0 - 0.6 * (slot / last.slots) ** 2))
-        yield last.start + slot * SLOT, Message("control_change", control=1, value=value)
+        yield last.start + slot * SLOT, control(1, value)
 
 
-def setup() -> Iterator[tuple[int, Message]]:
-    """Set the bend range to two semitones (RPN 0), then deselect the RPN."""
-    for control, value in ((101, 0), (100, 0), (6, 2), (38, 0), (101, 127), (100, 127)):
-        yield 0, Message("control_change", control=control, value=value)
-    yield 0, bend(0.0)
-
-
-def performance(notes: list[Note], tempos: list[tuple[int, int]]) -> list[tuple[int, Message]]:
-    """Return all messages with their ticks; at the same tick, controls precede notes."""
-    events = [*setup(), *bow_speed(notes)]
+def shi_bei_jiu() -> MidiFile:
+    notes = make_notes()
+    slots = sum(map(len, read_phrases()))
+    tempos = [(0, 120.0), *((SLOT * (slots - left), float(bpm)) for left, bpm in RITARDANDO)]
+    # At the same tick, controls precede notes.
+    events = [*parameter(0, BEND_RANGE_CENTS // 100), (0, bend(0.0, BEND_RANGE_CENTS))]
+    events += bow_speed(notes)
     for note in notes:
         if note.held or (note.opens_phrase and note.pitch > LOWEST):
             events += bends(note, tempos)
         if note.held:
             events += swell(note)
     for note in notes:
-        events.append((note.start, Message("note_on", note=note.pitch, velocity=note.velocity)))
-        events.append((note.end, Message("note_off", note=note.pitch, velocity=64)))
-    return sorted(events, key=lambda event: event[0])
-
-
-def track(
-    name: str, events: list[tuple[int, Message]] | list[tuple[int, MetaMessage]]
-) -> MidiTrack:
-    """Return a track made of messages at absolute ticks."""
-    written = MidiTrack([MetaMessage("track_name", name=name)])
-    now = 0
-    for tick, message in events:
-        written.append(message.copy(time=tick - now))
-        now = tick
-    return written
-
-
-def make_file() -> MidiFile:
-    notes = make_notes()
-    tempos = tempo_changes(slots=sum(map(len, read_phrases())))
-    conductor = [
-        (0, MetaMessage("text", text="Ten cups of wine, traditional")),
-        (0, MetaMessage("time_signature", numerator=2, denominator=4)),
-        (0, MetaMessage("key_signature", key="F")),
-        *((tick, MetaMessage("set_tempo", tempo=tempo)) for tick, tempo in tempos),
-    ]
-    file = MidiFile(type=1, ticks_per_beat=QUARTER)
-    file.tracks.append(track("Shi Bei Jiu", conductor))
-    file.tracks.append(track("Yehu", performance(notes, tempos)))
-    return file
-
-
-if __name__ == "__main__":
-    words = argparse.ArgumentParser(description="Write the tune Shi Bei Jiu as a MIDI file.")
-    words.add_argument("out", nargs="?", default=OUT, help="default: examples/shi_bei_jiu.mid")
-    make_file().save(words.parse_args().out)
+        events += stroke(note.pitch, note.velocity, note.start, note.end)
+    events.sort(key=lambda event: event[0])
+    about = "Ten cups of wine, traditional"
+    return score("Shi Bei Jiu", about, "F", tempos, {"Yehu": events})

@@ -1,0 +1,1 @@
+"""What `scripts/figures.py` draws, one subject a file."""

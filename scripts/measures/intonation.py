@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from measures.shares import Share, told
+from measures.shares import Share, share_line
 from measures.take import Sound
 from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
@@ -86,7 +86,7 @@ def judged(
     both = list(zip(cases, errors, strict=True))
     right = [abs(error) <= bound(case[0], stopped) for case, error in both]
     words = [f"{'/'.join(f'{x:g}' for x in case)} {in_words(error)}" for case, error in both]
-    return told(what, right, words, counts=counts)
+    return share_line(what, right, words, counts=counts)
 
 
 def overtones_off_by(

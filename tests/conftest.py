@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -19,8 +20,18 @@ settings.register_profile("yehu", deadline=None, derandomize=True, database=None
 settings.load_profile("yehu")
 
 
+CHANGED_S = 60.0  # how long tests of a change begin
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--all", action="store_true", help="also run the tests that are marked slow")
+    parser.addoption(
+        "--changed",
+        nargs="?",
+        const="HEAD",
+        metavar="REVISION",
+        help="run what a change since then can reach, nearest first, for a minute",
+    )
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -28,6 +39,26 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if item.get_closest_marker("slow"):
                 item.add_marker(pytest.mark.skip(reason="slow: run with --all"))
+    if revision := config.getoption("--changed"):
+        from changed import changed_files, distances
+
+        near = distances(changed_files(revision), {item.path for item in items})
+        config.hook.pytest_deselected(items=[item for item in items if item.path not in near])
+        items[:] = sorted(
+            (item for item in items if item.path in near), key=lambda item: near[item.path]
+        )
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _began() -> float:
+    return time.monotonic()
+
+
+@pytest.fixture(autouse=True)
+def _within_a_minute(request, _began) -> None:
+    """Skip what comes after a minute, where a minute is asked for."""
+    if request.config.getoption("--changed") and time.monotonic() > _began + CHANGED_S:
+        pytest.skip("the minute of --changed is over")
 
 
 @pytest.fixture(scope="session")

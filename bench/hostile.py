@@ -15,18 +15,21 @@ import contextlib
 import itertools
 import socket
 import statistics
-import struct
 import threading
 import time
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 import report
-from attacks import HOST, HOSTILE, KINDS, message, text
+from attacks import HOST, HOSTILE, KINDS
 from load import SPAWN, dummy_jack, midi_out
+from rich.console import Console
+from rich.table import Table
 
 from yehu_server.core.engine.mailbox import MIDI_INPUTS
+from yehu_server.live.osc.packets import pack, unpack
 
 RATE, PERIOD = 48000, 256
 EVERY_S = 0.01  # between a note and the next
@@ -155,31 +158,29 @@ class Playing:
         self._threads[2].join()
         self._socket.close()
 
+    def _paced(self) -> Iterator[int]:
+        """Count, every EVERY_S, while it plays."""
+        began = time.monotonic()
+        for number in itertools.takewhile(lambda _: self._is_playing, itertools.count()):
+            yield number
+            time.sleep(max(0.0, began + (number + 1) * EVERY_S - time.monotonic()))
+
     def _play(self) -> None:
-        due = time.monotonic()
-        for number in itertools.count():
-            if not self._is_playing:
-                return
+        for number in self._paced():
             steps, pitch = divmod(number, PITCHES)
             note = float(LOWEST + pitch), 1.0 + steps % 127
-            self._socket.send(message("/yehu/note", *note))
+            self._socket.send(pack("/yehu/note", *note))
             if self.notes:
-                self._socket.send(message("/yehu/note/off", self.notes[-1][0]))
+                self._socket.send(pack("/yehu/note/off", self.notes[-1][0]))
             self.notes.append(note)
             self._sent[number] = time.monotonic()
-            self._socket.send(text("/yehu/ping") + text(",i") + struct.pack(">i", number))
-            due += EVERY_S
-            time.sleep(max(0.0, due - time.monotonic()))
+            self._socket.send(pack("/yehu/ping", number))
 
     def _play_midi(self) -> None:
-        due = time.monotonic()
-        while self._midi is not None and self._is_playing:
-            key = LOWEST + self.midi_notes % PITCHES
-            self._midi.send_message([0x90, key, 90])
-            self._midi.send_message([0x80, LOWEST + (self.midi_notes - 1) % PITCHES, 0])
-            self.midi_notes += 1
-            due += EVERY_S
-            time.sleep(max(0.0, due - time.monotonic()))
+        for number in self._paced() if self._midi is not None else ():
+            self._midi.send_message([0x90, LOWEST + number % PITCHES, 90])
+            self._midi.send_message([0x80, LOWEST + (number - 1) % PITCHES, 0])
+            self.midi_notes = number + 1
 
     def _hear(self) -> None:
         while not self._ending.is_set():
@@ -187,8 +188,9 @@ class Playing:
                 packet = self._socket.recv(1 << 16)
             except OSError:
                 continue
-            if packet.startswith(b"/yehu/pong"):
-                (number,) = struct.unpack(">i", packet[-4:])
+            (message,) = unpack(packet)
+            if message.address == "/yehu/pong":
+                (number,) = message.arguments
                 self.pings_s.append(time.monotonic() - self._sent.pop(number))
 
 
@@ -260,45 +262,26 @@ def measured(name: str, seconds: float, served: Served, output: Any = None) -> F
 
 def main() -> None:
     """Measure and print everything."""
-    from rich.console import Console
-    from rich.table import Table
-
     parser = report.options(__doc__)
     parser.add_argument("--seconds", type=float, default=10.0, help="of each (default: 10)")
     parser.add_argument("--kind", nargs="*", choices=KINDS, help="(default: all)")
     arguments = parser.parse_args()
-    console = Console(width=150)
-    table = Table()
-    columns = ["MIDI notes", "lost", "dropped", "late", "latest ms"]
-    columns += ["OSC notes", "lost", "hostile notes", "pings unanswered", "ping ms, median"]
-    for column in (
-        "",
-        *columns,
-        "99 %",
-        "worst",
-        "memory +MB",
-        "kept +MB",
-        "dropped by the system",
-    ):
-        table.add_column(column)
+    table = Table("")
+    for field in fields(Figures):
+        table.add_column(field.name.replace("_", " "), overflow="fold")
     figures = {}
     for name in arguments.kind or KINDS:
         with dummy_jack(PERIOD, RATE):
             served, output = Served(has_midi=True), midi_out("player")
             try:
                 time.sleep(FOUND_S)
-                got = figures[name] = measured(name, arguments.seconds, served, output)
+                got = figures[name] = asdict(measured(name, arguments.seconds, served, output))
             finally:
                 served.stop()
                 output.close_port()
-        cells = [
-            f"{cell:.1f}" if isinstance(cell, float) else str(cell) for cell in vars(got).values()
-        ]
-        console.print(name, *cells)
-        table.add_row(name.replace("_", " "), *cells)
-    console.print(table)
-    record = {name: asdict(got) for name, got in figures.items()}
-    report.save(arguments.save, record, seconds=arguments.seconds)
+        table.add_row(name, *(f"{value:.1f}".removesuffix(".0") for value in got.values()))
+    Console(width=150).print(table)
+    report.save(arguments.save, figures, seconds=arguments.seconds)
 
 
 if __name__ == "__main__":

@@ -154,7 +154,7 @@ def test_messages_of_a_bundle_are_heard_at_one_frame_and_in_order(stage, wire):
 
 
 def test_when_too_much_waits_it_is_told_and_the_rest_plays(stage, wire, monkeypatch):
-    monkeypatch.setattr(stage.handler._schedule, "_quota", MemoryQuota(20 * (OVERHEAD_BYTES + 28)))
+    monkeypatch.setattr(stage.handler._schedule, "_quota", MemoryQuota(13 * (OVERHEAD_BYTES + 28)))
     later = stage.clock.time() + 0.1
     for number in range(12):
         packet = wire.message("/yehu/bow/position", 0.1 + 0.01 * number)

@@ -82,7 +82,7 @@ def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(hall, wire, pat
             if number % 50 == 49:
                 with contextlib.suppress(AssertionError):
                     sender.all(0.001)
-        patience(lambda: not hall.ports._backlog, "all to be handled")
+        patience(lambda: not hall.ports._queue, "all to be handled")
         listener.sync()
         if Path("/proc/self/statm").exists():
             sizes.append(resident_bytes())

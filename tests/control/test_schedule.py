@@ -9,14 +9,16 @@ from types import SimpleNamespace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from wire import Ear
 
 from yehu_server.live.osc import schedule
-from yehu_server.live.osc.limits import OVERHEAD_BYTES
+from yehu_server.live.osc.limits import LITTLE_BYTES, OVERHEAD_BYTES
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 
 RATE = 48000
 MANY = 1 << 20
 MS = RATE // 1000
+ME, OTHER = Ear(1), Ear(2)
 
 
 # ---------------------------------------------------------------- waiting
@@ -24,11 +26,11 @@ MS = RATE // 1000
 
 @given(st.lists(st.floats(0.0, 100.0)))
 def test_things_are_handed_out_once_in_order_of_their_times(due):
-    waiting: Schedule[int, str] = Schedule()
+    waiting: Schedule[int] = Schedule()
     for number, moment in enumerate(due):
-        assert waiting.add(moment, number, "me")
+        assert waiting.add(moment, number, ME)
     assert len(waiting) == len(due)
-    in_order = sorted((moment, number, "me") for number, moment in enumerate(due))
+    in_order = sorted((moment, number, ME) for number, moment in enumerate(due))
     assert waiting.due(3) == in_order[:3]  # and no more at once
     assert waiting.due(MANY) == in_order[3:]
     assert not waiting
@@ -36,39 +38,40 @@ def test_things_are_handed_out_once_in_order_of_their_times(due):
 
 
 def test_nothing_is_handed_out_before_its_time(still_time):
-    waiting: Schedule[str, str] = Schedule()
+    waiting: Schedule[str] = Schedule()
     now = still_time.time()
     assert waiting.wait_s() is None
-    waiting.add(now + 2.0, "second", "me")
-    waiting.add(now + 1.0, "first", "me")
+    waiting.add(now + 2.0, "second", ME)
+    waiting.add(now + 1.0, "first", ME)
     assert waiting.wait_s() == pytest.approx(1.0 - AHEAD_S)
     assert waiting.due(MANY) == []
     still_time.now += 1.0 - AHEAD_S + 1e-4
-    assert waiting.due(MANY) == [(now + 1.0, "first", "me")]
+    assert waiting.due(MANY) == [(now + 1.0, "first", ME)]
     assert waiting.wait_s() == pytest.approx(1.0, abs=0.01)
     still_time.now += 5.0
     assert waiting.wait_s() == 0.0
-    assert waiting.due(MANY) == [(now + 2.0, "second", "me")]
+    assert waiting.due(MANY) == [(now + 2.0, "second", ME)]
 
 
 def test_there_is_room_for_so_much_half_of_it_for_one_and_again_when_it_is_gone():
-    waiting: Schedule[int, str] = Schedule(most_bytes=8 * 300)
-    size = 300 - OVERHEAD_BYTES
-    said = [waiting.add(0.0, number, sender, size) for sender in "ab" for number in range(5)]
-    assert said == [True, True, True, True, False, True, True, False, False, False]
+    waiting: Schedule[int] = Schedule(most_bytes=8 * LITTLE_BYTES)
+    size = LITTLE_BYTES - OVERHEAD_BYTES + 1
+    said = [waiting.add(0.0, number, peer, size) for peer in (ME, OTHER) for number in range(4)]
+    assert said == [True, True, True, False, True, True, False, False]
     waiting.due(2)
-    assert waiting.add(0.0, 5, "b", size)
+    assert waiting.add(0.0, 5, OTHER, size)
     waiting.clear()
-    assert waiting.add(0.0, 6, "a", size)
-    assert waiting.due(MANY) == [(0.0, 6, "a")]
+    assert waiting.add(0.0, 6, ME, size)
+    assert waiting.due(MANY) == [(0.0, 6, ME)]
 
 
 def test_sixty_thousand_notes_wait_thirty_thousand_of_one_sender(wire):
-    waiting: Schedule[int, int] = Schedule()
+    waiting: Schedule[int] = Schedule()
     note = len(wire.message("/yehu/note", 67.0, 90.0))
-    for sender in range(40):
-        count = sum(waiting.add(0.0, number, sender, note) for number in range(40_000))
-        assert sender > 0 or count > 30_000
+    for host in range(40):
+        peer = Ear(1, f"192.0.2.{host}")
+        count = sum(waiting.add(0.0, number, peer, note) for number in range(40_000))
+        assert host > 0 or count > 30_000
     assert 60_000 < len(waiting) < 80_000
 
 

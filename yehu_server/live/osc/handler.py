@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator, Sequence
 from collections.abc import Mapping as Values
 
 from yehu_server.errors import YehuError
-from yehu_server.live.osc.backlog import Backlog
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.context import Act, CallContext, ServerServices
+from yehu_server.live.osc.fair_queue import FairQueue
 from yehu_server.live.osc.names import fitting, near, parameter_of, readable, value_at
 from yehu_server.live.osc.packets import Message, PacketError, answer, pack, steps, unpack
 from yehu_server.live.osc.part_calls import PartCalls, port_of, within_an_hour
@@ -60,8 +60,8 @@ class OscHandler:
         self._services = services
         self.counts = Counts()
         self.clients = Clients(self._values, PREFIX, self._states)
-        self._schedule: Schedule[bytes, Peer] = Schedule()
-        self._due: Backlog[bytes] = Backlog(self._act_on_due, lambda _peer: None)
+        self._schedule: Schedule[bytes] = Schedule()
+        self._due: FairQueue[bytes] = FairQueue(self._act_on_due)
         self._tags = TagClock(players[0])
         self._arrivals = Arrivals(players[0].frame_of, players[0].instrument.rate)
         context = CallContext(
@@ -146,14 +146,14 @@ class OscHandler:
 
     def _act_on_due(self, packet: bytes, peer: Peer, frame: int) -> Iterator[None]:
         (message,) = unpack(packet)
-        return self._act(message, peer, frame)
+        yield from self._act(message, peer, frame)
 
     def tick(self) -> None:
         """See `sockets.Handler`."""
         # Early enough to be there when the device asks for their frames.
         self._schedule.ahead_s = AHEAD_S + self._players[0].delay / self._players[0].instrument.rate
         for due_s, packet, peer in self._schedule.due(DUE_AT_ONCE):
-            self._due.add(packet, peer, self._tags.frame_at(due_s), len(packet), is_due=True)
+            self._due.add(packet, peer, self._tags.frame_at(due_s), len(packet), always=True)
         self._due.work()
         self.clients.flush()
 

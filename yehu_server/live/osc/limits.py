@@ -3,48 +3,62 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Protocol
 
 OVERHEAD_BYTES = 256  # memory for a stored packet beside its own bytes
+LITTLE_BYTES = 4 << 10  # for which a peer finds room beside greedy ones
+
+
+class Owner(Protocol):
+    """A peer that memory is kept for."""
+
+    @property
+    def host(self) -> str:
+        """IP address of its host."""
 
 
 class MemoryQuota:
-    """A number of bytes for all owners: each may hold at most as much as is still free.
+    """A number of bytes for all peers: how much each may hold depends on how much is free.
 
-    A single owner gets half of it, two get a third each; there is always some for another one.
+    A peer alone gets half of it, and the peers of one host together two thirds. A peer that holds
+    little finds room beside many of its own host that hold all they can: they get four fifths
+    then. There is always some for another host.
     """
 
     def __init__(self, most_bytes: int) -> None:
         self._most_bytes = most_bytes
-        self._owned: dict[Any, int] = {}
+        self._by_peer: dict[Owner, int] = {}
+        self._by_host: dict[str, int] = {}
         self.taken_bytes = 0
 
-    def of(self, owner: Any) -> int:
-        """Bytes that an owner holds; any thread may call."""
-        return self._owned.get(owner, 0)
+    def of(self, peer: Owner) -> int:
+        """Bytes that a peer holds; any thread may call."""
+        return self._by_peer.get(peer, 0)
 
-    def take(self, owner: Any, size: int, *, is_due: bool = False) -> bool:
-        """Take bytes for an owner; return whether there were enough (with `is_due` always)."""
-        owned = self._owned.get(owner, 0) + size
-        if not is_due and owned > self._most_bytes - self.taken_bytes:
-            return False
-        self._owned[owner] = owned
+    def take(self, peer: Owner, size: int, *, always: bool = False) -> bool:
+        """Take bytes for a peer; return whether there were enough (with `always` there are)."""
+        of_peer, of_host = self.of(peer) + size, self._by_host.get(peer.host, 0) + size
+        free = self._most_bytes - self.taken_bytes - size
+        fits = of_host <= 4 * free if of_peer <= LITTLE_BYTES else of_peer + of_host <= 2 * free
+        if fits or always:
+            self._add(peer, size)
+        return fits or always
+
+    def give_back(self, peer: Owner, size: int) -> None:
+        """Give back bytes of a peer."""
+        self._add(peer, -size)
+
+    def _add(self, peer: Owner, size: int) -> None:
         self.taken_bytes += size
-        return True
+        _count(self._by_peer, peer, size)
+        _count(self._by_host, peer.host, size)
 
-    def give_back(self, owner: Any, size: int) -> None:
-        """Give back bytes of an owner."""
-        self.taken_bytes -= size
-        left = self._owned[owner] - size
-        if left:
-            self._owned[owner] = left
-        else:
-            del self._owned[owner]
 
-    def clear(self) -> None:
-        """Give back all bytes."""
-        self._owned.clear()
-        self.taken_bytes = 0
+def _count(held: dict[Any, int], owner: object, size: int) -> None:
+    """Add to what an owner holds; one that holds nothing is not kept."""
+    held[owner] = held.get(owner, 0) + size
+    if not held[owner]:
+        del held[owner]
 
 
 class TokenBucket:

@@ -1,8 +1,9 @@
 """The peers that send OSC, and how each is answered: by datagram, or over a connection.
 
-Answers are limited. A sender of datagrams gets so many bytes a second, and another host twice as
-many for all of its ports, since a small request may have large answers, and its address may be
-forged; a connection gets what its other end reads.
+Answers are limited, since a small request may have large ones. Each port of this machine that
+sends datagrams has a token bucket of bytes; another host, whose address may be forged, has one for
+all of its ports, and all other hosts share a larger one. A connection gets what its other end
+reads.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import selectors
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -19,8 +20,8 @@ from yehu_server.live.osc.framing import Framing
 from yehu_server.live.osc.limits import TokenBucket
 
 MOST_UNSENT_BYTES = 1 << 18  # waiting for one peer
-ANSWERED_AT_ONCE_BYTES, ANSWERED_BYTES_A_SECOND = 1 << 17, 1 << 17
-SENDERS_OF_A_HOST = 2  # that are answered in full; of this machine, all
+ANSWERED_BYTES = 1 << 17  # to a port, at once and a second
+TO_A_HOST, TO_ALL_HOSTS = 2, 16  # times as much
 
 
 class Peer(Protocol):
@@ -70,19 +71,19 @@ class WebTraffic:
     web_sockets: int = 0  # open now
 
 
-def answers(senders: int = 1) -> TokenBucket:
-    """The bytes of answers to as many senders of datagrams, taken together."""
-    return TokenBucket(senders * ANSWERED_BYTES_A_SECOND, senders * ANSWERED_AT_ONCE_BYTES)
+def answer_bytes(times: int = 1) -> TokenBucket:
+    """The bytes of answers to a port, or to several together."""
+    return TokenBucket(times * ANSWERED_BYTES, times * ANSWERED_BYTES)
 
 
 @dataclass(frozen=True)
 class UdpPeer:
-    """A sender of datagrams; what it is sent counts for all of its `allowances`."""
+    """A sender of datagrams; bytes that it is sent are taken from each of its buckets."""
 
     socket: socket.socket = field(compare=False)
     address: Address
     traffic: Traffic = field(compare=False)
-    allowances: tuple[TokenBucket, ...] = field(default_factory=lambda: (answers(),), compare=False)
+    buckets: Sequence[TokenBucket] = field(compare=False)
 
     @property
     def name(self) -> str:
@@ -98,15 +99,15 @@ class UdpPeer:
     def takes_more(self) -> bool:
         """See `Peer`."""
         now = time.monotonic()
-        return all(allowance.left(now) > 0.0 for allowance in self.allowances)
+        return all(bucket.left(now) > 0.0 for bucket in self.buckets)
 
     def send(self, packet: bytes) -> None:
         """See `Peer`."""
         if not self.takes_more:
             self.traffic.unsent += 1
             return
-        for allowance in self.allowances:
-            allowance.spend(len(packet))
+        for bucket in self.buckets:
+            bucket.spend(len(packet))
         try:
             self.socket.sendto(packet, self.address)
         except OSError:
@@ -115,7 +116,7 @@ class UdpPeer:
     def at(self, port: int) -> UdpPeer:
         """See `Peer`; bytes sent there count for this peer too."""
         address = (self.address[0], port, *self.address[2:])
-        return UdpPeer(self.socket, address, self.traffic, self.allowances)
+        return UdpPeer(self.socket, address, self.traffic, self.buckets)
 
 
 class TcpPeer:

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from yehu_server.live.osc.limits import OVERHEAD_BYTES, MemoryQuota
+from yehu_server.live.osc.peers import Peer
 from yehu_server.playing.live_player import LivePlayer
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
@@ -22,9 +23,7 @@ TOGETHER_NS, TRIES = 100_000, 10
 STRAY_S = 0.001
 MOST_BYTES = 20 << 20  # some 65,000 notes, half as many of one sender
 
-
 T = TypeVar("T")
-Sender = TypeVar("Sender")
 
 
 def both_clocks() -> tuple[float, int]:
@@ -58,7 +57,7 @@ class TagClock:
         return self._anchor[1]
 
 
-class Schedule(Generic[T, Sender]):
+class Schedule(Generic[T]):
     """Things that wait for their time.
 
     Parameters
@@ -66,37 +65,37 @@ class Schedule(Generic[T, Sender]):
     ahead_s : float
         How long before its time a thing is due.
     most_bytes : int
-        Limit on the size of all of them; one sender may have half of it.
+        Limit on the size of all of them; see `MemoryQuota` for what one peer gets.
     """
 
     def __init__(self, ahead_s: float = AHEAD_S, most_bytes: int = MOST_BYTES) -> None:
         self.ahead_s = ahead_s
         self._quota = MemoryQuota(most_bytes)
         self._order = itertools.count()
-        self._waiting: list[tuple[float, int, T, Sender, int]] = []
+        self._waiting: list[tuple[float, int, T, Peer, int]] = []
 
     def __len__(self) -> int:
         return len(self._waiting)
 
-    def add(self, due_s: float, thing: T, sender: Sender, size: int = 0) -> bool:
+    def add(self, due_s: float, thing: T, peer: Peer, size: int = 0) -> bool:
         """Keep a thing of some size (bytes) until its time (s since 1970).
 
         Returns whether there was room.
         """
         size += OVERHEAD_BYTES
-        if not self._quota.take(sender, size):
+        if not self._quota.take(peer, size):
             return False
-        heapq.heappush(self._waiting, (due_s, next(self._order), thing, sender, size))
+        heapq.heappush(self._waiting, (due_s, next(self._order), thing, peer, size))
         return True
 
-    def due(self, most: int) -> list[tuple[float, T, Sender]]:
-        """Remove and return what is due now, at most so many, each with its time and sender."""
-        ready: list[tuple[float, T, Sender]] = []
+    def due(self, most: int) -> list[tuple[float, T, Peer]]:
+        """Remove and return what is due now, at most so many, each with its time and peer."""
+        ready: list[tuple[float, T, Peer]] = []
         horizon = time.time() + self.ahead_s
         while self._waiting and self._waiting[0][0] <= horizon and len(ready) < most:
-            due_s, _, thing, sender, size = heapq.heappop(self._waiting)
-            self._quota.give_back(sender, size)
-            ready.append((due_s, thing, sender))
+            due_s, _, thing, peer, size = heapq.heappop(self._waiting)
+            self._quota.give_back(peer, size)
+            ready.append((due_s, thing, peer))
         return ready
 
     def wait_s(self) -> float | None:
@@ -109,9 +108,9 @@ class Schedule(Generic[T, Sender]):
         """Drop some things."""
         remaining = []
         for entry in self._waiting:
-            _, _, thing, sender, size = entry
+            _, _, thing, peer, size = entry
             if which(thing):
-                self._quota.give_back(sender, size)
+                self._quota.give_back(peer, size)
             else:
                 remaining.append(entry)
         self._waiting = remaining
@@ -119,5 +118,4 @@ class Schedule(Generic[T, Sender]):
 
     def clear(self) -> None:
         """Drop everything."""
-        self._waiting.clear()
-        self._quota.clear()
+        self.drop(lambda _thing: True)

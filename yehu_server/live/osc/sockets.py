@@ -18,15 +18,23 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import Protocol
 
 from yehu_server.live.addresses import Address, Allowed, is_here
-from yehu_server.live.osc.backlog import Backlog
 from yehu_server.live.osc.datagrams import datagrams
+from yehu_server.live.osc.fair_queue import FairQueue
 from yehu_server.live.osc.framing import FramingError
-from yehu_server.live.osc.limits import TokenBucket
 from yehu_server.live.osc.listening import DATAGRAM_BYTES, open_both, widen
-from yehu_server.live.osc.peers import SENDERS_OF_A_HOST, Peer, TcpPeer, Traffic, UdpPeer, answers
+from yehu_server.live.osc.peers import (
+    TO_A_HOST,
+    TO_ALL_HOSTS,
+    Peer,
+    TcpPeer,
+    Traffic,
+    UdpPeer,
+    answer_bytes,
+)
 
 log = logging.getLogger(__name__)
 
@@ -76,13 +84,14 @@ class OscPorts:
         self.traffic = Traffic()
         self._allowed = allowed
         self._handler = handler
-        self._backlog: Backlog[bytes] = Backlog(self._handle, self._end)
+        self._queue: FairQueue[bytes | None] = FairQueue(self._handle)  # None: it hung up
         self._has_more = False  # whether the UDP socket was not emptied
         self._handled_ns = 0
         self._accept_from = math.inf  # monotonic s
         self._warned = 0.0  # monotonic s
-        self._peers: dict[Address, UdpPeer] = {}
-        self._hosts: dict[str, TokenBucket] = {}
+        self._peer = lru_cache(MOST_PEERS)(self._new_peer)
+        self._to_all = answer_bytes(TO_ALL_HOSTS)
+        self._to_host = lru_cache(MOST_PEERS)(lambda _host: answer_bytes(TO_A_HOST))
         self._streams: set[TcpPeer] = set()
         self._selector = selectors.DefaultSelector()
         self._udp, self._tcp = open_both(host, port)
@@ -123,13 +132,13 @@ class OscPorts:
 
         def take_in() -> None:
             self.traffic.packets += 1
-            self._backlog.add(packet, peer, arrived_ns, len(packet), is_due=True)
+            self._queue.add(packet, peer, arrived_ns, len(packet), always=True)
 
         self.call_soon(take_in)
 
     def leave(self, peer: Peer) -> None:
         """Drop a WebSocket's peer once its packets are handled; any thread may call."""
-        self.call_soon(lambda: self._backlog.add(None, peer, 0))
+        self.call_soon(lambda: self._queue.add(None, peer, 0, always=True))
 
     def call_soon(self, action: Callable[[], object]) -> None:
         """Call a function in the thread that serves; any thread may call."""
@@ -153,12 +162,12 @@ class OscPorts:
         handler_wait_s = self._handler.wait_s()
         wait = LONGEST_WAIT_S if handler_wait_s is None else min(handler_wait_s, LONGEST_WAIT_S)
         self._has_more = False
-        for key, events in self._selector.select(0.0 if self._backlog else wait):
+        for key, events in self._selector.select(0.0 if self._queue else wait):
             self._serve(key, events)
         now_ns = time.monotonic_ns()
-        # Empty the socket's small buffer first: the backlog has more room.
+        # Empty the socket's small buffer first: the queue has more room.
         if not self._has_more or now_ns - self._handled_ns > READ_FOR_NS:
-            self._backlog.work()
+            self._queue.work()
             self._handled_ns = time.monotonic_ns()
         self._handler.tick()
         now = time.monotonic()
@@ -168,10 +177,12 @@ class OscPorts:
 
     def is_behind(self, peer: Peer) -> bool:
         """Whether a WebSocket's peer should wait before it sends more; any thread may call."""
-        return len(self._calls) >= MOST_ASKED or self._backlog.bytes_of(peer) >= BEHIND_BYTES
+        return len(self._calls) >= MOST_ASKED or self._queue.bytes_of(peer) >= BEHIND_BYTES
 
-    def _handle(self, data: bytes, peer: Peer, arrived_ns: int) -> Iterator[None]:
-        """The steps that handle a packet, or a part of a stream."""
+    def _handle(self, data: bytes | None, peer: Peer, arrived_ns: int) -> Iterator[None]:
+        """The steps that handle a packet, or a part of a stream, or that its peer hung up."""
+        if data is None:
+            return self._end(peer)
         if isinstance(peer, TcpPeer):
             return self._handle_stream(data, peer, arrived_ns)
         return self._handler.handle(data, peer, arrived_ns)
@@ -203,11 +214,12 @@ class OscPorts:
         )
         self._warned = now
 
-    def _end(self, peer: Peer) -> None:
+    def _end(self, peer: Peer) -> Iterator[None]:
         """Drop a peer that hung up, once all of its packets are handled."""
         if isinstance(peer, TcpPeer):
             peer.finish()
         self._handler.gone(peer)
+        yield
 
     def _serve(self, key: selectors.SelectorKey, events: int) -> None:
         if key.fileobj is self._udp:
@@ -242,29 +254,15 @@ class OscPorts:
             else:
                 self.traffic.refused += 1
 
-    def _peer(self, address: Address) -> UdpPeer:
-        peer = self._peers.get(address)
-        if peer is None:
-            if len(self._peers) >= MOST_PEERS:
-                del self._peers[next(iter(self._peers))]
-            allowances: tuple[TokenBucket, ...] = (answers(),)
-            if not is_here(address[0]):
-                allowances += (self._answers_to(address[0]),)
-            peer = self._peers[address] = UdpPeer(self._udp, address, self.traffic, allowances)
-        return peer
-
-    def _answers_to(self, host: str) -> TokenBucket:
-        """The bytes of answers to all ports of another host."""
-        if host not in self._hosts:
-            if len(self._hosts) >= MOST_PEERS:
-                del self._hosts[next(iter(self._hosts))]
-            self._hosts[host] = answers(SENDERS_OF_A_HOST)
-        return self._hosts[host]
+    def _new_peer(self, address: Address) -> UdpPeer:
+        host = address[0]
+        buckets = [answer_bytes()] if is_here(host) else [self._to_host(host), self._to_all]
+        return UdpPeer(self._udp, address, self.traffic, buckets)
 
     def _enqueue(self, packet: bytes, peer: Peer, arrived_ns: int) -> None:
         self.traffic.packets += 1
         is_short = len(packet) <= DATAGRAM_BYTES  # the kernel drops longer ones on Linux only
-        if not (is_short and self._backlog.add(packet, peer, arrived_ns, len(packet))):
+        if not (is_short and self._queue.add(packet, peer, arrived_ns, len(packet))):
             self.traffic.excess += 1
 
     # -- TCP -----------------------------------------------------------------------------------
@@ -289,30 +287,27 @@ class OscPorts:
 
     def _has_place(self, host: str) -> bool:
         """Whether there is room for one more connection; ends a silent one for it."""
-        open_ = [peer for peer in self._streams if not peer.is_finished]
-        of_host = [peer for peer in open_ if peer.host == host]
+        among = [peer for peer in self._streams if not peer.is_finished]
+        of_host = [peer for peer in among if peer.host == host]
         if len(of_host) >= MOST_OF_A_HOST:
-            silent = self._longest_silent(of_host)
-        elif len(open_) >= MOST_CONNECTIONS:
-            silent = self._longest_silent(open_)
-        else:
+            among = of_host
+        elif len(among) < MOST_CONNECTIONS:
             return True
+        silent = min(
+            filter(self._is_silent, among), key=lambda one: one.last_packet_s, default=None
+        )
         if silent is not None:
             self._warn(f"{silent.name}: closed for another connection, as it was silent for long")
             silent.cut_off()
         return silent is not None
 
-    def _longest_silent(self, peers: list[TcpPeer]) -> TcpPeer | None:
-        """The connection that has sent nothing for longest, if that was too long."""
-        now = time.monotonic()
-        silent = [
-            peer
-            for peer in peers
-            if now - peer.last_packet_s > (QUIET_S if peer.has_sent_packet else SPEAKS_WITHIN_S)
-            and not peer.has_pending_packets
-            and not self._handler.is_subscribed(peer)
-        ]
-        return min(silent, key=lambda peer: peer.last_packet_s, default=None)
+    def _is_silent(self, peer: TcpPeer) -> bool:
+        """Whether a connection has sent nothing for too long."""
+        longest_s = QUIET_S if peer.has_sent_packet else SPEAKS_WITHIN_S
+        is_quiet = (
+            time.monotonic() - peer.last_packet_s > longest_s and not peer.has_pending_packets
+        )
+        return is_quiet and not self._handler.is_subscribed(peer)
 
     def _read_stream(self, peer: TcpPeer) -> None:
         if peer.has_pending_packets:  # the sender waits; nothing is lost
@@ -325,7 +320,7 @@ class OscPorts:
             data = b""
         if data:
             peer.has_pending_packets = True
-            self._backlog.add(data, peer, time.monotonic_ns(), len(data), is_due=True)
+            self._queue.add(data, peer, time.monotonic_ns(), len(data), always=True)
         else:
             self.drain_and_close(peer)
 
@@ -333,7 +328,7 @@ class OscPorts:
         """Read no more from a peer; its packets are still handled and answered."""
         peer.reads = False
         self.watch(peer)
-        self._backlog.add(None, peer, 0)
+        self._queue.add(None, peer, 0, always=True)
 
     def watch(self, peer: TcpPeer) -> None:
         """Let the selector wait for the peer's events; close the connection if it has none."""

@@ -198,7 +198,7 @@ MOVE = "from yehu_server.core.player.ownership import move"
         f"{ROWS_OF} SPEED as FAST\ncontrols.value[FAST]",
         f"{ROWS_OF} FINGER_POSITION\nc.remaining[FINGER_POSITION[n]]",
         f"{SLOTS_OF} SPEED\np.value[SPEED]",
-        f"{SLOTS_OF} ASSIST\nm.kept[ASSIST] = 1",
+        f"{SLOTS_OF} ASSIST\nm.is_held[ASSIST] = 1",
         "from yehu_server.core.controls import slots\np.value[slots.TREMOLO]",
         "from yehu_server.core.player import rows\nc.value[rows.TREMOLO]",
         "VOLUME, PAN = ROW['/playing/volume'], ROW['/room/pan']\nc.target[PAN]",

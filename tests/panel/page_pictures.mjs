@@ -2,7 +2,7 @@
 
 const web = new URL("../../web/", import.meta.url);
 const { Stroboscope } = await import(new URL("pictures/stroboscope.js", web));
-const { RestShape } = await import(new URL("pictures/rest.js", web));
+const { RestShape } = await import(new URL("pictures/rest_shape.js", web));
 const { Limits } = await import(new URL("pictures/limits.js", web));
 const { regimeOf, soundingPitch } = await import(new URL("pictures/regime.js", web));
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 HERE = Path(__file__).parent
-MODULE = HERE.parents[1] / "web" / "sound" / "listened.js"
+MODULE = HERE.parents[1] / "web" / "sound" / "jitter_buffer.js"
 AIM = 512  # frames
 
 
@@ -22,7 +22,12 @@ def heard(node, tmp_path_factory, everything) -> dict[str, Any]:
     for file in (MODULE, MODULE.with_name("kernel.js")):
         shutil.copy(file, folder)
     seconds = "600" if everything else "120"
-    command = [node, str(HERE / "listened.test.mjs"), str(folder / "listened.js"), seconds]
+    command = [
+        node,
+        str(HERE / "jitter_buffer.test.mjs"),
+        str(folder / "jitter_buffer.js"),
+        seconds,
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
     found: dict[str, Any] = json.loads(done.stdout)
     return found

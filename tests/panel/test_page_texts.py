@@ -81,7 +81,9 @@ def test_every_key_that_the_page_names_is_there(texts) -> None:
         *WEB.glob("pictures/*.js"),
         WEB / "index.html",
     ]
-    named = re.compile(r"\bsay\(\s*[\"']([^\"'$]+)[\"']|data-(?:text|label|hint)=\"([^\"]+)\"")
+    named = re.compile(
+        r"\btranslate\(\s*[\"']([^\"'$]+)[\"']|data-(?:text|label|hint)=\"([^\"]+)\""
+    )
     keys = {one or other for file in sources for one, other in named.findall(file.read_text())}
     assert len(keys) > 50
     assert keys - set(texts["en"]) == set()

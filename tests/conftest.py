@@ -21,6 +21,7 @@ settings.load_profile("yehu")
 
 
 CHANGED_S = 60.0  # how long tests of a change begin
+NEED_THE_PAGE = {"ahead", "documentation", "panel"}  # folders; it is compiled beside the others
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -39,6 +40,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if item.get_closest_marker("slow"):
                 item.add_marker(pytest.mark.skip(reason="slow: run with --all"))
+    items.sort(key=lambda item: item.path.parent.name in NEED_THE_PAGE)
     if revision := config.getoption("--changed"):
         from changed import changed_files, distances
 

@@ -108,6 +108,7 @@ def test_one_core_makes_the_same_bytes_as_two(made, command, tmp_path):
     assert files(tmp_path / "one") == files(made / "out")
 
 
+@pytest.mark.slow
 def test_a_larger_data_set_begins_alike_and_only_the_rest_is_made(made, command, tmp_path):
     words = ("dataset", made / "d.toml", "-o", tmp_path / "some")
     command(*words, "--count", 16)
@@ -118,6 +119,7 @@ def test_a_larger_data_set_begins_alike_and_only_the_rest_is_made(made, command,
     assert lines(tmp_path / "some")[:16] == few
 
 
+@pytest.mark.slow
 def test_another_seed_makes_other_sounds(made, command, tmp_path):
     (tmp_path / "d.toml").write_text(TEXT.replace("seed = 5", "seed = 6"))
     command("dataset", tmp_path / "d.toml", "-o", tmp_path / "out", "--count", 4)
@@ -171,6 +173,7 @@ def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum)
 # ---------------------------------------------------------------- on a cluster
 
 
+@pytest.mark.slow
 def test_a_cluster_makes_the_same_bytes(made, command, tmp_path):
     pytest.importorskip("distributed")
     cluster_worker.identity.cache_clear()

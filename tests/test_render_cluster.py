@@ -67,6 +67,7 @@ def alone(songs, command) -> dict[str, bytes]:
 # ---------------------------------------------------------------- a real cluster
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_changes_nothing_of_the_results(songs, alone, tmp_path):
     tune(songs / "in" / "0" / "long.mid", 70, seconds=20.0)
     with cluster_in(tmp_path) as processes:
@@ -89,6 +90,7 @@ def test_a_worker_that_is_killed_changes_nothing_of_the_results(songs, alone, tm
     assert not list((songs / "out").rglob("*.part"))
 
 
+@pytest.mark.slow
 def test_the_same_command_goes_on_without_the_cluster(songs, alone, tmp_path, command):
     words = ("render", songs / "in", "-o", songs / "out", *DRY)
     with cluster_in(tmp_path, 1) as processes:

@@ -9,6 +9,8 @@ from clusters import cluster_in
 
 from yehu_server.rendering import cluster_worker
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("distributed")
 
 BOWED = {"duration": 0.1, "controls": {"bow_force": 0.5, "bow_velocity": 0.2}}

@@ -31,6 +31,7 @@ KINDS = [
     "subscriptions",
     "due_never",
 ]
+USUAL = ("web_page", "small_of_the_players_host")  # the others with --all
 # On Linux the system drops these, and only these, before they take room.
 TOO_LONG = ("datagrams_of_many", "questions") if sys.platform == "linux" else ()
 
@@ -42,7 +43,9 @@ def served() -> Iterator[Served]:
     served.stop()
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind not in USUAL)) for kind in KINDS]
+)
 def test_beside_a_hostile_sender_a_player_loses_no_note(served, kind, monkeypatch):
     monkeypatch.setattr(hostile, "RECOVERS_S", RECOVERS_S)
     figures = measured(kind, SECONDS, served)

@@ -334,6 +334,7 @@ def test_what_one_said_last_is_done_before_it_is_forgotten(web_house, connect, p
     patience(lambda: not clients._clients, "nobody is left")
 
 
+@pytest.mark.slow
 def test_twenty_who_come_and_go_at_random_leave_nothing_behind(web_house, port, patience):
     chance = random.Random(7)
     ending = time.monotonic() + 2.5

@@ -17,6 +17,7 @@ from yehu_server.errors import YehuError
 from yehu_server.rendering import cluster as clusters
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.cluster import Cluster, scheduler_address
+from yehu_server.util.processes import machine_lock
 
 pytest.importorskip("distributed")
 
@@ -71,6 +72,7 @@ def test_tasks_are_taken_as_workers_are_free(processes):
         assert len(list(events)) == 199
 
 
+@pytest.mark.slow
 def test_a_job_whose_worker_dies_is_done_by_another(own, tmp_path):
     own.add_worker()
     own.add_worker()
@@ -87,6 +89,7 @@ def workers_of(processes: Processes) -> int:
     return processes.log.read_text().count("Registered to")
 
 
+@pytest.mark.slow
 def test_a_job_that_kills_every_worker_is_given_up(tmp_path):
     few = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}
     with cluster_in(tmp_path, 2, **few) as processes:
@@ -102,6 +105,7 @@ def test_a_job_that_raises_is_told(processes):
     assert event.died.startswith("ended by TypeError")
 
 
+@pytest.mark.slow
 def test_what_is_set_up_is_set_up_once_in_each_process_and_by_one_at_a_time(own, tmp_path):
     own.add_worker()
     own.add_worker()
@@ -117,6 +121,7 @@ def test_what_is_set_up_is_set_up_once_in_each_process_and_by_one_at_a_time(own,
     assert times[0][1] <= times[1][0]
 
 
+@pytest.mark.slow
 def test_a_worker_that_comes_later_works_too(own):
     own.add_worker()
     with Cluster(str(own.file)) as cluster:
@@ -144,6 +149,7 @@ def copy(tmp_path) -> Path:
     return other.parent
 
 
+@pytest.mark.slow
 def test_a_worker_of_another_version_is_refused_in_one_line(own, copy):
     own.add_worker(PYTHONPATH=str(copy))
     with pytest.raises(YehuError, match=r"tcp://.* has yehu-server .*: install the same") as error:
@@ -151,6 +157,7 @@ def test_a_worker_of_another_version_is_refused_in_one_line(own, copy):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.slow
 def test_a_worker_of_another_version_that_comes_later_is_refused(own, copy):
     own.add_worker()
     with Cluster(str(own.file)) as cluster:
@@ -161,6 +168,7 @@ def test_a_worker_of_another_version_that_comes_later_is_refused(own, copy):
             list(events)
 
 
+@pytest.mark.slow
 def test_workers_without_the_package_are_told(own, tmp_path):
     (tmp_path / "yehu_server").mkdir()
     (tmp_path / "yehu_server" / "__init__.py").touch()
@@ -169,6 +177,7 @@ def test_workers_without_the_package_are_told(own, tmp_path):
         Cluster(str(own.file)).__enter__()
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_workers_is_told(own, monkeypatch):
     monkeypatch.setattr(clusters, "CONNECT_S", 1.0)
     with pytest.raises(YehuError, match="the scheduler has no workers"):
@@ -181,6 +190,7 @@ def test_no_scheduler_is_told(monkeypatch):
         Cluster("127.0.0.1:9").__enter__()
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_lost_is_told(own, monkeypatch):
     monkeypatch.setattr(clusters, "CONNECT_S", 1.0)
     own.add_worker()
@@ -227,16 +237,17 @@ def test_a_file_that_is_no_schedulers_is_refused(tmp_path):
         scheduler_address(str(tmp_path / "none.json"))
 
 
+@pytest.mark.slow
 def test_a_lock_keeps_processes_apart(tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
     program = (
         "import sys; from pathlib import Path\n"
-        "from yehu_server.rendering.cluster_worker import machine_lock\n"
+        "from yehu_server.util.processes import machine_lock\n"
         "Path(sys.argv[1], 'wants').touch()\n"
         "with machine_lock(): Path(sys.argv[1], 'has').touch()"
     )
-    with cluster_worker.machine_lock():
+    with machine_lock():
         other = subprocess.Popen([sys.executable, "-c", program, str(tmp_path)])
         wait_until((tmp_path / "wants").exists)
         time.sleep(0.2)

@@ -185,6 +185,8 @@ def test_an_event_is_heard_one_block_and_a_millisecond_after_its_arrival(jackd, 
 STEPS = """
 import socket, sys, time
 from yehu_server.live.osc.packets import pack
+
+pytestmark = pytest.mark.slow
 osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 osc.connect(("127.0.0.1", int(sys.argv[1])))
 for step in range(500):

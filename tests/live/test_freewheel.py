@@ -18,7 +18,7 @@ from yehu_server.playing.style import Style
 RATE = 48000
 FIRST = 20 * RATE  # by then the device has taken over
 FRAMES = 4 * RATE
-BLOCKS = [64, 333, *(pytest.param(block, marks=pytest.mark.slow) for block in (100, 128, 1024))]
+BLOCKS = [64, *(pytest.param(block, marks=pytest.mark.slow) for block in (100, 128, 333, 1024))]
 STYLE = Style(mapping=load("keyboard"), seed=3)
 
 

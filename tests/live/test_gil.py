@@ -103,6 +103,8 @@ from yehu_server.live.audio.stream import Stream
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.spec import InstrumentSpec
 
+pytestmark = pytest.mark.slow
+
 memory = SharedMemory()
 stage = Ensemble(
     [InstrumentSpec({RATE:.1f})], channels=1, memory=memory.buffer

@@ -14,7 +14,7 @@ import soundfile
 from yehu_server.scores.capture import read_capture
 
 
-@pytest.mark.parametrize("name", ["take.wav", "take.flac"])
+@pytest.mark.parametrize("name", ["take.wav", pytest.param("take.flac", marks=pytest.mark.slow)])
 def test_a_kill_leaves_takes_that_can_be_opened_and_a_capture_that_can_be_read(
     silent, tmp_path, until, name
 ):
@@ -40,6 +40,7 @@ def sound_of(path: Path) -> np.ndarray:
         return np.zeros(0, np.float32)
 
 
+@pytest.mark.slow
 def test_ctrl_c_again_and_again_keeps_the_take(silent, tmp_path):
     take, capture = tmp_path / "take.wav", tmp_path / "take.jsonl"
     server = silent("--record", take, "--capture", capture, "--set", "/playing/release=2000")
@@ -55,6 +56,7 @@ def test_ctrl_c_again_and_again_keeps_the_take(silent, tmp_path):
     assert not any("Traceback" in line or "nothing written" in line for line in server.lines)
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_told_by_the_exit_code(silent, tmp_path):
     take = tmp_path / "take.wav"
     server = silent("--record", take)

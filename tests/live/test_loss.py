@@ -71,9 +71,8 @@ def wait_for_frames(osc, frames: int) -> dict:
     raise AssertionError(f"only {status['frame'] - start} of {frames} frames were played")
 
 
-@pytest.mark.parametrize(
-    "number", [pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGKILL]
-)
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.slow
 def test_without_its_audio_server_it_says_so_and_plays_on(
     number, jackd, serve, recorder, tmp_path, until
 ):
@@ -117,6 +116,7 @@ def test_without_its_audio_server_it_says_so_and_plays_on(
     np.testing.assert_array_equal(again, recorded)
 
 
+@pytest.mark.slow
 def test_it_outlives_an_audio_server_that_dies_again_and_again(jackd, serve, tmp_path):
     jackd.start()
     server, osc = begun(serve, tmp_path)
@@ -133,6 +133,7 @@ def test_it_outlives_an_audio_server_that_dies_again_and_again(jackd, serve, tmp
     np.testing.assert_array_equal(again, recorded)
 
 
+@pytest.mark.slow
 def test_it_ends_cleanly_while_its_audio_server_is_gone(jackd, serve, tmp_path):
     jackd.start()
     server, osc = begun(serve, tmp_path)
@@ -143,6 +144,7 @@ def test_it_ends_cleanly_while_its_audio_server_is_gone(jackd, serve, tmp_path):
     assert peak(soundfile.read(tmp_path / "take.wav")[0]) > SOUNDS
 
 
+@pytest.mark.slow
 def test_an_audio_server_that_hangs_is_left_and_taken_up_again(jackd, serve, tmp_path):
     jackd.start()
     server, osc = begun(serve, tmp_path)
@@ -174,6 +176,7 @@ def test_an_audio_process_that_crashes_is_replaced(jackd, serve, tmp_path):
     assert server.end() == 0
 
 
+@pytest.mark.slow
 def test_a_server_that_starts_before_its_audio_server_takes_it_up_when_it_comes(
     jackd, serve, tmp_path
 ):
@@ -298,7 +301,7 @@ def test_a_note_goes_on_where_the_audio_process_dies_between_two_blocks(stopped,
     assert it.keys == (0, 0)
 
 
-@pytest.mark.parametrize("end", ["note_off", "panic"])
+@pytest.mark.parametrize("end", ["note_off", pytest.param("panic", marks=pytest.mark.slow)])
 def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopped, until, end):
     it = stopped(in_block=True)
     it.player.note_on(72.0, 90.0, frame=it.player.frame_of())
@@ -343,7 +346,7 @@ def finger(instrument: Instrument, wishes: WishPoster) -> None:
     wishes.note_off(Key(0, 67), frame=frame + 3000)
 
 
-@pytest.mark.parametrize("play", [bow, finger])
+@pytest.mark.parametrize("play", [bow, pytest.param(finger, marks=pytest.mark.slow)])
 def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path, play):
     memory = SharedMemory()
     style = Style(seed=3)

@@ -321,6 +321,7 @@ def test_only_the_ports_asked_for_are_opened_and_one_of_our_own_is_there(
     heard.plays(67.0, sender, "send piano 90 43 60")
 
 
+@pytest.mark.slow
 def test_a_keyboard_that_promised_to_speak_and_is_silent_is_let_go(keys):
     heard, keyboard = keys
     keyboard.tell("send keyboard fe")
@@ -399,6 +400,7 @@ def test_bytes_of_any_kind_over_the_wire_stop_nothing(keys, until):
     reason="RtMidi takes all that comes over JACK for part of a system exclusive until its F7 "
     "comes, with ignore_types or without"
 )
+@pytest.mark.slow
 def test_a_system_exclusive_that_is_cut_short_makes_nobody_deaf(keys):
     heard, keyboard = keys
     keyboard.tell("send keyboard f0 7e")
@@ -626,6 +628,7 @@ def plays_on(osc, program: Program) -> bool:
     return osc.status()["note"] > 68.0
 
 
+@pytest.mark.slow
 def test_without_a_midi_system_it_is_useful_and_one_that_comes_is_found(
     jackd, serve, sender, until
 ):
@@ -644,6 +647,7 @@ def test_without_a_midi_system_it_is_useful_and_one_that_comes_is_found(
     assert server.end() == 0
 
 
+@pytest.mark.slow
 def test_when_the_midi_system_dies_osc_plays_on_and_midi_comes_back(jackd, serve, until, tmp_path):
     jackd.start(PERIOD)
     first = Program(SENDER, jackd.environment)

@@ -13,6 +13,8 @@ import pytest
 
 from yehu_server.live.osc.packets import pack
 
+pytestmark = pytest.mark.slow
+
 DEVICE = "system, JACK Audio Connection Kit"
 if not hasattr(resource, "prlimit"):
     pytest.skip("another process's limits are Linux's", allow_module_level=True)

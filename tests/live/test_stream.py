@@ -26,6 +26,8 @@ RATE = 48000
 DEVICE = "system, JACK Audio Connection Kit"
 TRIES = 4
 
+slow = pytest.mark.slow
+
 
 def first_sound(samples: np.ndarray) -> int:
     return int(np.flatnonzero(samples)[0])
@@ -62,7 +64,7 @@ def files(folder: Path) -> tuple[object, ...]:
 # ---------------------------------------------------------------- what is heard
 
 
-@pytest.mark.parametrize(("channels", "block"), [(1, 128), (6, 100)])
+@pytest.mark.parametrize(("channels", "block"), [(1, 128), pytest.param(6, 100, marks=slow)])
 def test_the_device_gets_what_is_recorded_on_every_channel(
     channels, block, jackd, serve, recorder, tmp_path
 ):
@@ -103,6 +105,7 @@ def test_the_device_gets_what_is_recorded_on_every_channel(
     np.testing.assert_array_equal(replayed(tmp_path), played)
 
 
+@pytest.mark.slow
 def test_it_plays_at_the_devices_own_rate_on_no_more_channels_than_it_has(jackd, serve, tmp_path):
     jackd.start(512, rate=44100, channels=2)
     server = serve("--midi-api", "none", "--channels", 8, *files(tmp_path))
@@ -118,7 +121,14 @@ def test_it_plays_at_the_devices_own_rate_on_no_more_channels_than_it_has(jackd,
 # ---------------------------------------------------------------- how it ends
 
 
-@pytest.mark.parametrize("number", [None, signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize(
+    "number",
+    [
+        pytest.param(None, marks=pytest.mark.slow),
+        signal.SIGTERM,
+        pytest.param(signal.SIGINT, marks=pytest.mark.slow),
+    ],
+)
 def test_however_it_ends_notes_are_ended_and_files_are_whole(number, jackd, serve, tmp_path):
     jackd.start(512)
     words = ("--duration", 0.8) if number is None else ()
@@ -216,6 +226,7 @@ def refused_rate(jackd, tmp_path_factory) -> tuple[int, list[str], list[Path]]:
     return run.returncode, run.stderr.splitlines(), list(folder.iterdir())
 
 
+@pytest.mark.slow
 def test_a_rate_the_named_device_does_not_have_is_refused(refused_rate):
     code, (*_, line), _ = refused_rate
     assert code == 2
@@ -232,6 +243,7 @@ def test_where_the_named_device_cannot_be_opened_no_file_is_left(refused_rate):
     assert left == []
 
 
+@pytest.mark.slow
 def test_a_rate_the_default_device_does_not_have_is_said_and_played_in_silence(jackd, serve):
     jackd.start(512)
     server = serve("--rate", 44100, "--midi-api", "none", "--duration", 1.0)
@@ -244,7 +256,7 @@ def test_a_rate_the_default_device_does_not_have_is_said_and_played_in_silence(j
     assert server.wait() == 0
 
 
-@pytest.mark.parametrize("kind", [socket.SOCK_DGRAM, socket.SOCK_STREAM])
+@pytest.mark.parametrize("kind", [socket.SOCK_DGRAM, pytest.param(socket.SOCK_STREAM, marks=slow)])
 def test_a_port_that_is_taken_is_refused(kind, jackd, tmp_path):
     jackd.start(512)
     with socket.socket(socket.AF_INET, kind) as other:

@@ -18,6 +18,8 @@ from yehu_server.playing.learn import Learner
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.mapping_file import mapping_file_from, read_mapping_file, toml_of
 
+pytestmark = pytest.mark.slow
+
 STREAMS = 600
 CONTROLS = (1, 2, 6, 7, 11, 33, 34, 38, 39, 64, 74, 98, 99, 100, 101, 119, 121)
 

@@ -9,7 +9,10 @@ from panel.browser import drive, missing, served
 
 from yehu_server.params.table import TABLE
 
-pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(missing() is not None, reason=str(missing())),
+]
 
 PICTURES = {"strings", "tuner", "level", "schelleng", "spectrum", "bow", "fingerboard"}
 LIVELY = 10  # drawings in a second; 60 on a free machine

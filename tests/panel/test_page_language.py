@@ -8,7 +8,10 @@ from typing import Any
 import pytest
 from panel.browser import drive, missing, served
 
-pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(missing() is not None, reason=str(missing())),
+]
 
 # What every language writes with Latin letters, or that is no word.
 LATIN = re.compile(

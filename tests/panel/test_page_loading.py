@@ -11,6 +11,8 @@ from panel.browser import drive, missing, served
 
 from yehu_server.live.page.site import Site
 
+pytestmark = pytest.mark.slow
+
 in_browser = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
 

@@ -10,6 +10,7 @@ from yehu_server.ahead.link import page_linker
 from yehu_server.ahead.source_hash import section_of, sources_hash
 from yehu_server.compile.jit import data_folder
 from yehu_server.errors import YehuError
+from yehu_server.util.processes import machine_lock
 
 log = logging.getLogger(__name__)
 
@@ -28,13 +29,23 @@ def page_module() -> Path:
         Where it cannot be built.
     """
     folder = data_folder() / f"page-{sources_hash()}"
+    if found := _found(folder):
+        return found
+    if page_linker() is None:
+        raise YehuError("nothing is built for pages, and there is no wasm-ld; Debian's lld has it")
+    with machine_lock("-page"):  # who waits finds it then
+        if found := _found(folder):
+            return found
+        log.warning("compiling the instrument for pages; it takes a minute, once")
+        return build("wasm", folder)[0]
+
+
+def _found(folder: Path) -> Path | None:
+    """The module of the present sources, as shipped or in a folder."""
     for path in (SHIPPED, folder / PAGE_FILE):
         if path.is_file() and _made(path)[-1:] == [sources_hash()]:
             return path
-    if page_linker() is None:
-        raise YehuError("nothing is built for pages, and there is no wasm-ld; Debian's lld has it")
-    log.warning("compiling the instrument for pages; it takes a minute, once")
-    return build("wasm", folder)[0]
+    return None
 
 
 def shipped_version() -> str:

@@ -5,23 +5,18 @@ Nothing heavy is imported here: the scheduler loads it too.
 
 from __future__ import annotations
 
-import contextlib
-import os
 import pickle
 import platform
-import tempfile
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from yehu_server.rendering.workers import Perform
 from yehu_server.util import PACKAGE, __version__
+from yehu_server.util.processes import machine_lock
 from yehu_server.util.source_key import key_of
-
-LOCK = "yehu-server-{user}.lock"
 
 _turn = threading.Lock()  # threads of one process take turns: warnings are gathered by process
 _set_up: set[bytes] = set()  # of this process
@@ -104,25 +99,3 @@ def packed_setup(setup: Callable[[], object] | None) -> bytes:
 
 def _tell_nobody(_done: float, _total: float) -> None:
     pass
-
-
-@contextlib.contextmanager
-def machine_lock() -> Iterator[None]:
-    """Hold a lock of this machine's, as long as a block lasts.
-
-    What the first process compiles and keeps, the others find.
-    """
-    user = os.getuid() if hasattr(os, "getuid") else 0
-    path = Path(tempfile.gettempdir()) / LOCK.format(user=user)
-    with contextlib.ExitStack() as stack:
-        try:
-            import fcntl
-
-            flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
-            file = os.open(path, flags, 0o600)
-            stack.callback(os.close, file)
-            fcntl.flock(file, fcntl.LOCK_EX)
-            stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # also where a fork has the file
-        except (ImportError, OSError):  # each compiles for itself then
-            pass
-        yield

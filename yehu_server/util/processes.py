@@ -1,4 +1,4 @@
-"""Helper processes: started, spoken with, and started again when they end.
+"""Helper processes: started, spoken with, and started again when they end; a lock for all.
 
 PortAudio and RtMidi may hang or crash when the sound server under them dies. Each runs in a
 process of its own and exchanges lines of JSON: orders in, events out. The process ends when its
@@ -13,10 +13,12 @@ import logging
 import os
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from pathlib import Path
 from typing import IO, Any
 
 from yehu_server.util.retry import Backoff, run_forever
@@ -264,3 +266,25 @@ class Supervisor:
             gone.set()
         else:
             self._on_event(event)
+
+
+@contextlib.contextmanager
+def machine_lock(name: str = "") -> Iterator[None]:
+    """Hold a lock of this user's on this machine, as long as a block lasts.
+
+    What the first process compiles and stores, the others find.
+    """
+    user = os.getuid() if hasattr(os, "getuid") else 0
+    path = Path(tempfile.gettempdir()) / f"yehu-server-{user}{name}.lock"
+    with contextlib.ExitStack() as stack:
+        try:
+            import fcntl
+
+            flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+            file = os.open(path, flags, 0o600)
+            stack.callback(os.close, file)
+            fcntl.flock(file, fcntl.LOCK_EX)
+            stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # also where a fork has the file
+        except (ImportError, OSError):  # each compiles for itself then
+            pass
+        yield

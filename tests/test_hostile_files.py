@@ -16,7 +16,7 @@ from yehu_server.scores.capture import read_capture
 from yehu_server.scores.gesture import read_gesture
 from yehu_server.scores.musicxml.reader import read_musicxml
 from yehu_server.scores.smf.reader import read_score
-from yehu_server.util.documents import MOST_DEPTH, parse_json, parse_toml
+from yehu_server.util.parsing import MOST_DEPTH, parse_json, parse_toml
 
 SERVE = _parser().parse_args(["serve"]).command
 READERS = {
@@ -57,7 +57,7 @@ def test_a_hostile_text_is_refused(tmp_path, name, content):
     path.write_bytes(CONTENTS[content])
     with pytest.raises(YehuError) as error:
         READERS[name](path)
-    assert str(error.value).startswith((str(path), f"body file {path}"))
+    assert str(error.value).startswith(str(path))
 
 
 @pytest.mark.parametrize("name", READERS)

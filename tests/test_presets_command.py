@@ -30,7 +30,7 @@ def test_presets_are_listed_with_their_programs(command, own):
     assert code == 0
     assert [line.split()[0] for line in out.splitlines()] == sorted([*SHIPPED.names(), "mine"])
     assert "your own: wild" in out
-    assert "bad: version 9 is newer" in err
+    assert "bad:1: version: 9 is newer" in err
     rows = json.loads(command("presets", "list", "--json", "--presets", own)[1])
     assert rows["mine"] == {"program": None, "about": "wild", "own": True}
     assert rows["tremolo"]["own"] is False
@@ -57,7 +57,7 @@ def test_files_are_checked(command, tmp_path):
     path.write_text(HEAD + '[values]\n"/playing/vibrato" = 500\n')
     code, out, err = command("presets", "check", path)
     assert (code, out) == (2, "")
-    assert f"{path}: /playing/vibrato: 500 is not within 0 to 100 cents" in err
+    assert f"{path}:3: values: /playing/vibrato: 500 is not within 0 to 100 cents" in err
     right = tmp_path / "right.toml"
     right.write_text(HEAD)
     code, out, err = command("presets", "check", path, right, tmp_path / "missing.toml")
@@ -73,8 +73,11 @@ def test_all_that_is_wrong_with_each_file_is_told(command, tmp_path):
     code, out, err = command("presets", "check", first, second)
     assert (code, out) == (2, "")
     lines = err.splitlines()
-    assert [line.split(": ")[1] for line in lines] == [str(first)] * 6 + [str(second)] * 2
-    for what in ("'who'", "about", "program", "500 is not", "/bow/speed is moved", "volume"):
+    assert [line.split(": ")[1] for line in lines] == [
+        *(f"{first}:{number}" for number in (2, 3, 4, 6, 7, 8)),
+        *(f"{second}:{number}" for number in (2, 3)),
+    ]
+    for what in ("who", "about", "program", "500 is not", "/bow/speed: is moved", "volume"):
         assert any(what in line for line in lines[:6]), what
 
 

@@ -115,7 +115,7 @@ def test_an_earlier_result_is_replaced_only_when_asked(study, tmp_path, capsys):
     ("words", "wrong"),
     [
         (["--vary", "bow_force=99"], "bow_force: 99.0 is not within"),
-        (["--vary", "bow_farce=1"], "unknown name 'bow_farce'"),
+        (["--vary", "bow_farce=1"], "bow_farce: unknown entry"),
         (["--vary", "bow_force=1:2"], "expected numbers"),
         ([], "nothing is varied"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from yehu_server.util.documents import MOST_KEY_PARTS, parse_toml
+from yehu_server.util.parsing import MOST_KEY_PARTS, parse_toml
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ the command line can print the message and leave with exit code 2.
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Collection
 
 
 class YehuError(Exception):
@@ -55,6 +56,17 @@ class OutputError(YehuError):
 
 class MeasurementError(YehuError):
     """A measurement of a body that cannot be read, or cannot be what it is said to be."""
+
+
+LONGEST_WORD = 100  # characters looked at for a similar one, which takes time by their square
+
+
+def did_you_mean(word: object, known: Collection[str], least: float = 0.6) -> str:
+    """A hint at the known word that is most like one, if there is one that is as like as that."""
+    import difflib  # takes some milliseconds
+
+    found = difflib.get_close_matches(str(word)[:LONGEST_WORD], known, n=1, cutoff=least)
+    return f"; did you mean {found[0]}?" if found else ""
 
 
 FIRST, LAST = 600, 400  # characters kept of a long line; the reason may be at either end

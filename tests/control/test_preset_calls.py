@@ -156,7 +156,7 @@ def test_presets_are_listed_and_a_broken_one_is_told(stage, own):
     assert rest["/presets"] == [len(rows)]
     address, reason = rest["/error"]
     assert address == "/yehu/preset/list"
-    assert reason.startswith("bad: version 9 is newer")
+    assert reason.startswith("bad:1: version: 9 is newer")
 
 
 def test_unknown_addresses_of_a_file_are_told_and_the_rest_is_set(stage, own):

@@ -7,12 +7,13 @@ import pytest
 
 from yehu_server.errors import ParameterError
 from yehu_server.lab.dataset.draws import chance, read_distribution
+from yehu_server.util.documents import Fields
 
 MANY = 4000
 
 
 def drawn(entry) -> np.ndarray:
-    draw = read_distribution(entry, "x")
+    draw = read_distribution(entry)
     return np.array([draw.value(chance(1, number, "x")) for number in range(MANY)])
 
 
@@ -101,4 +102,4 @@ def test_normal_draws_stay_within_their_ends():
 )
 def test_what_is_no_draw_is_refused_by_its_name(entry):
     with pytest.raises(ParameterError, match=r"^here"):
-        read_distribution(entry, "here")
+        Fields({"here": entry}).read("here", read_distribution, None)

@@ -16,7 +16,7 @@ from panel.streams import FREE
 from yehu_server.playing import learn
 from yehu_server.playing.learn import Learner
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
-from yehu_server.playing.mapping_file import mapping_file_from, read_mapping_file, toml_of
+from yehu_server.playing.mapping_file import read_mapping_file
 
 pytestmark = pytest.mark.slow
 
@@ -98,7 +98,7 @@ def test_the_page_learns_what_the_server_learns(node, page, settings):
         assert told["sources"] == sources, given
         assert [*map(placeless, told["binds"])] == rows_of(mapping), given
         own = Path(given["name"])
-        contents = mapping_file_from(own, toml_of(own, told["file"]))
+        contents = read_mapping_file(own, told["file"])
         if path.exists():
             kept = read_mapping_file(path)
             assert contents == kept

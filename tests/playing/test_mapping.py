@@ -240,7 +240,7 @@ def test_what_is_held_begins_elsewhere(read, player):
     ("text", "reason"),
     [
         ("start = 3\n", "start: expected a table"),
-        ('[start]\n"/playing/dynamic" = 0.4\n', "start: unknown parameter"),
+        ('[start]\n"/playing/dynamic" = 0.4\n', "start: /playing/dynamic: unknown parameter"),
         ('[start]\n"/playing/dynamics" = 4.0\n', "not within 0 to 1"),
         ('[start]\n"/playing/dynamics" = "soft"\n', "expected a number"),
         ('[start]\n"/bow/speed" = 0.1\n', "moved by the player"),

@@ -172,7 +172,7 @@ def test_a_change_that_says_the_same_is_no_change(watch, path):
 def test_a_wrong_file_is_refused_once_and_read_again_when_it_is_right(watch, path):
     path.write_text(BIND.format(1000))
     watch.look()
-    with pytest.raises(MappingError, match=r"mine\.toml:2: bind 1: unknown source"):
+    with pytest.raises(MappingError, match=r"mine\.toml:2: bind 1: source: unknown source"):
         watch.look()
     assert settled(watch) is None
     path.write_text(BIND.format(77))

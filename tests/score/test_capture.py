@@ -218,7 +218,7 @@ def test_lost_wishes_and_another_build_are_told(tmp_path, write):
     [
         ("", "not a capture"),
         ("{}", "not a capture"),
-        ("[1]", "not a capture"),
+        ("[1]", "expected a table"),
         ("\xff\xfe", "not a capture"),
         ('{"format": "yehu-server capture", "version": 99}', "version 99"),
     ],

@@ -92,8 +92,8 @@ def test_an_open_string_has_no_finger():
     ("vary", "wrong"),
     [
         ({"bow_force": [0.1, 99.0]}, "bow_force: 99.0 is not within"),
-        ({"bow_farce": [1.0]}, "unknown name 'bow_farce'"),
-        ({"instrument.bow.nothing": [1.0]}, "unknown quantity 'nothing'"),
+        ({"bow_farce": [1.0]}, "bow_farce: unknown entry"),
+        ({"instrument.bow.nothing": [1.0]}, "nothing: unknown entry"),
         ({"duration.x": [1.0]}, "no such entry"),
         ({"duration": [0.01]}, "too short to judge"),
         ({"bow_acceleration": [0.0]}, "bow_acceleration: 0.0 is not within"),

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import Parser
-from yehu_server.errors import ParameterError
-from yehu_server.playing.toml_lines import lines_of
-from yehu_server.util.documents import parse_toml
-from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text
+from yehu_server.errors import ParameterError, did_you_mean
+from yehu_server.util.documents import Document
+from yehu_server.util.values import brief, flag
 
 NOT_IN_FILES = {"--config": "cannot name another", "--help": "cannot ask for help"}
 MOST_VALUES = 1000  # of one option
-LONGEST_NAME = 100  # characters looked at for a similar one
 
 
 def add_config(group: Any, command: Parser) -> None:
@@ -58,21 +55,9 @@ def read_config(path: Path, command: Parser) -> argparse.Namespace:
     ParameterError
         Naming file and line.
     """
-    try:
-        text = read_text(path, MAX_SETTINGS_BYTES)
-        data = parse_toml(text)
-    except OSError as error:
-        raise ParameterError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise ParameterError(f"{path}: not a TOML file ({error})") from error
     namespace = argparse.Namespace()
-    for name, value in data.items():
-        try:
-            _set(command, namespace, name, value)
-        except ParameterError as error:
-            line = lines_of(text).get((name,))
-            where = path if line is None else f"{path}:{line}"
-            raise ParameterError(f"{where}: {error}") from error
+    document = Document(path, "a TOML file").read(path)
+    document.toml().each(lambda name, value: _set(command, namespace, name, value))
     return namespace
 
 
@@ -83,9 +68,8 @@ def _set(command: Parser, namespace: argparse.Namespace, name: str, value: Any) 
         raise ParameterError(f"a config file {NOT_IN_FILES[option]}")
     action = command.option(option)
     if action is None:
-        near = difflib.get_close_matches(option[:LONGEST_NAME], command.options, n=1)
-        hint = f"; did you mean {near[0].removeprefix('--')}?" if near else ""
-        raise ParameterError(f"unknown option {name!r}{hint}")
+        known = [other.removeprefix("--") for other in command.options]
+        raise ParameterError(f"unknown option{did_you_mean(name, known)}")
     if action.nargs == 0:
         _set_flag(command, namespace, action, option, value)
         return
@@ -93,11 +77,11 @@ def _set(command: Parser, namespace: argparse.Namespace, name: str, value: Any) 
     if isinstance(value, list):
         values = value
     elif isinstance(value, dict):  # such as [set]
-        values = [f"{key}={_text(name, entry)}" for key, entry in value.items()]
+        values = [f"{key}={_text(entry)}" for key, entry in value.items()]
     if len(values) > MOST_VALUES:
-        raise ParameterError(f"{name}: more than {MOST_VALUES} values")
+        raise ParameterError(f"more than {MOST_VALUES} values")
     for each in values:
-        action(command, namespace, _converted(action, name, _text(name, each)), option)
+        action(command, namespace, _converted(action, _text(each)), option)
 
 
 def _set_flag(
@@ -107,9 +91,7 @@ def _set_flag(
     option: str,
     value: Any,
 ) -> None:
-    if not isinstance(value, bool):
-        raise ParameterError(f"{option[2:]}: expected true or false, got {value!r}")
-    if not value:  # the opposite, where there is one; else the option is not given
+    if not flag(value):  # the opposite, where there is one; else the option is not given
         opposite = isinstance(action, argparse.BooleanOptionalAction)
         others = [other for other in action.option_strings if other != option]
         option = others[0] if opposite else ""
@@ -117,20 +99,21 @@ def _set_flag(
         action(command, namespace, [], option)
 
 
-def _text(name: str, value: Any) -> str:
+def _text(value: Any) -> str:
     """A value as the command line would have it."""
     if isinstance(value, str | int | float) and not isinstance(value, bool):
         return str(value)
-    raise ParameterError(f"{name}: expected text or a number, got {value!r}")
+    raise ParameterError(f"expected text or a number, got {brief(value)}")
 
 
-def _converted(action: argparse.Action, name: str, text: str) -> Any:
+def _converted(action: argparse.Action, text: str) -> Any:
     """A value converted and checked as argparse does."""
     try:
         value = action.type(text) if callable(action.type) else text
     except (argparse.ArgumentTypeError, ValueError) as error:
-        raise ParameterError(f"{name}: {error}") from error
+        raise ParameterError(str(error)) from error
     if action.choices is not None and value not in action.choices:
-        choices = ", ".join(map(str, action.choices))
-        raise ParameterError(f"{name}: {text!r} is none of {choices}")
+        known = list(map(str, action.choices))
+        hint = did_you_mean(text, known)
+        raise ParameterError(f"{brief(text)} is not one of {', '.join(known)}{hint}")
     return value

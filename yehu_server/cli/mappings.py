@@ -171,15 +171,14 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _convert(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.mapping import find_file, with_bases
-    from yehu_server.playing.mapping_file import json_of, mapping_file_from, text_of, toml_of
+    from yehu_server.playing.mapping_file import mapping_file_of_json, read_mapping_file, text_of
     from yehu_server.playing.mapping_writer import as_toml, canonical
     from yehu_server.util.files import anything, nothing, replacing
 
     path = find_file(arguments.mapping, user_first=True)
     text = text_of(path)
     is_json = text.lstrip().startswith("{")  # no TOML does
-    data = json_of(path, text) if is_json else toml_of(path, text)
-    contents = mapping_file_from(path, data, "" if is_json else text)
+    contents = (mapping_file_of_json if is_json else read_mapping_file)(path, text)
     with_bases(path, contents)  # raises where a base is wrong
     if arguments.output is not None and contents.name == path.stem:
         contents = replace(contents, name=arguments.output.stem)

@@ -5,18 +5,18 @@ The format is described in presets/README.md.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
-from yehu_server.errors import ParameterError, PresetError
+from yehu_server.errors import ParameterError, PresetError, did_you_mean
 from yehu_server.params.table import BY_ADDRESS, TABLE
-from yehu_server.util.documents import parse_toml
+from yehu_server.util.documents import MOST_ERRORS, Document
+from yehu_server.util.values import whole, words
 
 VERSION = 1
-ENTRIES = ("version", "about", "program", "values")
-PROGRAMS = range(1, 129)  # MIDI programs, counted from 1
+PROGRAMS = 128  # of MIDI, counted from 1
 MOST_REMARKS = 10
 # A preset may have all parameters except those that the player moves as notes sound.
 POSSIBLE = {param.address: param for param in TABLE if not param.owned}
@@ -47,78 +47,51 @@ class Preset:
         """Warnings about the unknown addresses of a file, a line each."""
         lines = []
         for address in self.unknown[:MOST_REMARKS]:
-            near = difflib.get_close_matches(address[:100], POSSIBLE, n=1, cutoff=0.6)
-            hint = f"; did you mean {near[0]}?" if near else ""
+            hint = did_you_mean(address, POSSIBLE)
             lines.append(f"{self.name}: unknown parameter {address!r}, left out{hint}")
         if len(self.unknown) > MOST_REMARKS:
             lines.append(f"{self.name}: and {len(self.unknown) - MOST_REMARKS} more")
         return lines
 
 
-def parse(text: str, name: str) -> Preset:
-    """Read the text of a preset file.
+def document_of(name: Path | str, text: str = "") -> Document:
+    """A preset file, whose text is known or will be read."""
+    return Document(name, "a preset file", PresetError, text=text, most_errors=MOST_ERRORS)
+
+
+def preset_from(document: Document, name: str) -> Preset:
+    """Check and convert the entries of a preset file.
 
     Raises
     ------
     PresetError
         Where it is no preset, is of a newer version, or has wrong values; it names all of them.
     """
-    try:
-        data = parse_toml(text)
-    except ValueError as error:
-        raise PresetError(f"not a preset file ({error})") from error
-    _check_version(data)
-    wrong = [
-        f"unknown entry {entry!r} (known: {', '.join(ENTRIES)})"
-        for entry in data
-        if entry not in ENTRIES
-    ]
-    about = data.get("about", "")
-    if not isinstance(about, str):
-        wrong.append(f"about: expected a line of text, got {about!r}")
-    program = data.get("program")
-    if program is not None and (type(program) is not int or program not in PROGRAMS):
-        wrong.append(f"program: expected a MIDI program, 1 to 128, got {program!r}")
-    entries = data.get("values", {})
-    if not isinstance(entries, dict):
-        wrong.append("values: expected a table of addresses and values")
-        entries = {}
-    values = {}
-    for address in filter(_has, entries):
-        try:
-            values[address] = _value(address, entries[address])
-        except PresetError as error:
-            wrong.append(str(error))
-    if wrong:
-        raise PresetError(*wrong)
-    unknown = tuple(address for address in entries if not _has(address))
-    return Preset(name, values, " ".join(about.split()), program, unknown)
-
-
-def _check_version(data: Mapping[str, Any]) -> None:
-    version = data.get("version")
+    table = document.toml()
+    version = table.data.get("version")
     if type(version) is not int or version < 1:
-        raise PresetError(f"not a preset file: it has no line version = {VERSION}")
-    if version > VERSION:
-        reason = f"version {version} is newer than this program, which reads up to {VERSION}"
-        raise PresetError(reason)
+        table.wrong("version", f"not a preset file: it has no line version = {VERSION}")
+    elif version > VERSION:
+        reason = f"{version} is newer than this program, which reads up to {VERSION}"
+        table.wrong("version", reason)
+    document.finish()
+    about = table.read("about", words, "")
+    program = table.read("program", whole, None, 1, PROGRAMS)
+    found = table.table("values").each(_value)
+    table.only("version")
+    document.finish()
+    values = {address: value for address, value in found.items() if value is not None}
+    unknown = tuple(address for address in found if address not in values)
+    return Preset(name, values, about, program, unknown)
 
 
-def _has(address: str) -> bool:
-    return address in BY_ADDRESS
-
-
-def _value(address: str, value: Any) -> float:
+def _value(address: str, value: Any) -> float | None:
+    """A value of a parameter; None for one that the table does not have."""
+    if address not in BY_ADDRESS:
+        return None
     if address not in POSSIBLE:
-        raise PresetError(f"{address} is moved by the player as notes sound; no preset may have it")
-    param = POSSIBLE[address]
-    try:
-        accepted = param.accept(value)
-    except ParameterError as error:
-        raise PresetError(str(error)) from error
-    if accepted != value:
-        raise PresetError(f"{address}: {value} is not within {param.range_text}")
-    return accepted
+        raise ParameterError("is moved by the player as notes sound; no preset may have it")
+    return POSSIBLE[address].within(value)
 
 
 def morph(one: Preset, other: Preset, amount: float) -> dict[str, float]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 from yehu_server.errors import ParameterError
+from yehu_server.util.values import number
 
 TURNED_ON = 0.5  # a switch is on from here
 
@@ -78,15 +80,20 @@ class Param:
         ParameterError
             Where the value is no finite number.
         """
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ParameterError(f"{self.address}: expected a number, got {value!r}")
         try:
-            number = float(value)
-        except OverflowError:
-            number = math.inf
-        if not math.isfinite(number):
-            raise ParameterError(f"{self.address}: {number} is not finite")
-        return min(max(number, self.lo), self.hi)
+            return min(max(number(value), self.lo), self.hi)
+        except ParameterError as error:
+            raise ParameterError(f"{self.address}: {error}") from None
+
+    def within(self, value: Any) -> float:
+        """A value within the range.
+
+        Raises
+        ------
+        ParameterError
+            Where it is none, without the address.
+        """
+        return number(value, self.lo, self.hi, self.unit)
 
     @property
     def range_text(self) -> str:

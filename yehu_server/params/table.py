@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from yehu_server.errors import ParameterError
+from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.params.spec import Curve, Param, Place
 
 PREFIX = "/yehu"  # before every address, in OSC and OSCQuery
@@ -341,12 +341,9 @@ def find(address: str) -> Param:
     try:
         return BY_ADDRESS[address]
     except KeyError:
-        import difflib
-
         # An address that ends in this name comes before one that is merely similar.
         near = [known for known in BY_ADDRESS if known.endswith(f"/{address.lstrip('/')}")]
-        near = near or difflib.get_close_matches(address, BY_ADDRESS, n=1, cutoff=0.4)
-        hint = f"; did you mean {near[0]}?" if near else ""
+        hint = did_you_mean(near[0] if near else address, BY_ADDRESS, 0.4)
         raise ParameterError(f"unknown parameter {address!r}{hint}") from None
 
 

@@ -18,7 +18,7 @@ from platformdirs import user_config_path
 from yehu_server.core.midi.tables import MOST_BINDS, MOST_POINTS
 from yehu_server.errors import MappingError
 from yehu_server.playing.binds import Bind, Breakpoints, override_key
-from yehu_server.playing.mapping_file import FileErrors, MappingFile, read_mapping_file, text_of
+from yehu_server.playing.mapping_file import MappingFile, document_of, read_mapping_file
 from yehu_server.playing.sources import is_address
 from yehu_server.util.files import shipped_folder
 
@@ -145,14 +145,14 @@ def with_bases(path: Path, contents: MappingFile) -> Mapping:
     """
     layers, files = [contents], [path]
     while (base := layers[-1].base) is not None:
-        errors = FileErrors(files[-1], text_of(files[-1]))
+        table = document_of(files[-1]).read(files[-1]).toml()
         below = _named(base, files[-1]) if _is_name(base) else None
         if below is None:
-            errors.add(("base",), f"base: {_unknown(base)}")
+            table.wrong("base", _unknown(base))
         elif any(_is_same(below, file) for file in files):
             chain = ", ".join(file.stem for file in (*files, below))
-            errors.add(("base",), f"base: the bases go round in a circle ({chain})")
-        errors.raise_all()
+            table.wrong("base", f"the bases go round in a circle ({chain})")
+        table.document.finish()
         assert below is not None  # noqa: S101 - or the line before has raised
         files.append(below)
         layers.append(read_mapping_file(below))

@@ -14,7 +14,7 @@ from tomlkit.items import AoT
 from yehu_server.errors import MappingError
 from yehu_server.params.table import find
 from yehu_server.playing.binds import Bind, Breakpoints
-from yehu_server.playing.mapping_file import MappingFile, mapping_file_from, toml_of
+from yehu_server.playing.mapping_file import MappingFile, read_mapping_file
 
 
 def entries_of(bind: Bind) -> dict[str, Any]:
@@ -78,8 +78,7 @@ def canonical(contents: MappingFile, text: str) -> str:
                 if name in table and table[name] != value:
                     table[name] = value
         changed = tomlkit.dumps(document)
-        path = Path(contents.name)
-        if mapping_file_from(path, toml_of(path, changed)) == contents:
+        if read_mapping_file(Path(contents.name), changed) == contents:
             return changed
     except (TOMLKitError, MappingError, ValueError, RecursionError):
         pass
@@ -109,8 +108,7 @@ def edited(contents: MappingFile, text: str, dropped: Sequence[Bind], added: Seq
         if not binds:
             del document["bind"]
         changed = tomlkit.dumps(document)
-        path = Path(contents.name)
-        if mapping_file_from(path, toml_of(path, changed)) == wanted:
+        if read_mapping_file(Path(contents.name), changed) == wanted:
             return changed
     except (TOMLKitError, MappingError, ValueError, TypeError, RecursionError):
         pass

@@ -14,8 +14,8 @@ import numpy as np
 from yehu_server.core.player.bowing import FIRST, LAST, PLACES, RECIPE, default_recipes
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
-from yehu_server.util.documents import parse_json
 from yehu_server.util.files import read_text, replacing
+from yehu_server.util.parsing import parse_json
 
 Array = Any
 

@@ -12,7 +12,7 @@ from platformdirs import user_config_path
 from tomlkit.exceptions import TOMLKitError
 
 from yehu_server.errors import OutputError, PresetError
-from yehu_server.params.preset_file import SAVED, VERSION, Preset, parse
+from yehu_server.params.preset_file import SAVED, VERSION, Preset, document_of, preset_from
 from yehu_server.util.files import PLAIN_NAME, inside, read_text, shipped_folder, write_text
 
 ENDING = ".toml"
@@ -35,15 +35,7 @@ def read_preset(path: Path, name: str | None = None) -> Preset:
     PresetError
         Naming the file, or `name`.
     """
-    try:
-        return parse(read_text(path, MOST_BYTES), name or path.stem)
-    except UnicodeDecodeError as error:
-        raise PresetError(f"{name or path}: not a preset file ({error})") from error
-    except (OSError, ValueError) as error:  # a path may have a NUL
-        reason = error.strerror if isinstance(error, OSError) else None
-        raise PresetError(f"{name or path}: {reason or error}") from error
-    except PresetError as error:
-        raise PresetError(*(f"{name or path}: {what}" for what in (error, *error.more))) from error
+    return preset_from(document_of(name or path).read(path, MOST_BYTES), name or path.stem)
 
 
 def is_name(name_or_path: str) -> bool:

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.player.wishes import WISH
-from yehu_server.errors import ParameterError, ScoreError
+from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_format import (
     FORMAT,
     VERSION,
-    Fields,
+    WishRow,
     build,
     frames_of,
     from_line,
@@ -26,6 +26,7 @@ from yehu_server.scores.capture_format import (
     ramp_of,
 )
 from yehu_server.scores.capture_header import SessionStart, read_header
+from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import read_lines
 
 MOST_BYTES = 1 << 30
@@ -75,7 +76,7 @@ def read_capture(path: Path) -> Capture:
     try:
         capture = _header(path, next(lines, ""))
         chunks: list[tuple[Any, Any]] = []
-        wishes: list[Fields] = []
+        wishes: list[WishRow] = []
         players: list[int] = []
         for number, line in enumerate(lines, start=2):
             try:
@@ -120,22 +121,19 @@ _WRONG = (
 
 
 def _header(path: Path, line: str) -> Capture:
-    try:
-        header = json.loads(line)
-        if header["format"] != FORMAT:
-            raise ScoreError(f"{path}: not a capture")
-        version = header["version"]
-        if version not in range(1, VERSION + 1) or type(version) is not int:
-            raise ScoreError(f"{path}: version {version!r} of the format is not known")
-        beginning = read_header(header, version)
-        return Capture(beginning, dict(header["build"]), version)
-    except ParameterError as error:
-        raise ScoreError(f"{path}: {error}") from error
-    except _WRONG as error:
-        raise ScoreError(f"{path}: not a capture") from error
+    table = Document(path, "a capture", ScoreError, text=line).json()
+    if table.data.get("format") != FORMAT:
+        raise ScoreError(f"{path}: not a capture")
+    version = table.data.get("version")
+    if version not in range(1, VERSION + 1) or type(version) is not int:
+        raise ScoreError(f"{path}: version {version!r} of the format is not known")
+    with table.at():
+        beginning = read_header(table, version)
+        built = dict(table.need("build", Fields).data)
+    return Capture(beginning, built, version)
 
 
-def _take(entry: Any, capture: Capture, wishes: list[Fields], players: list[int]) -> None:
+def _take(entry: Any, capture: Capture, wishes: list[WishRow], players: list[int]) -> None:
     if isinstance(entry, list):
         player = 0
         if capture.version == 1:

@@ -37,7 +37,7 @@ INDICES = {address: slot for slot, address in ADDRESSES.items()}
 ROWS = {param.address: row for row, param in enumerate(TABLE)}
 NUMBERS = {name: kind for kind, name in enumerate(KINDS)}
 
-Fields = tuple[int, int, int, float, float]  # of a wish
+WishRow = tuple[int, int, int, float, float]  # of a wish
 
 
 def build() -> dict[str, str]:
@@ -71,7 +71,7 @@ def as_line(wish: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for
     return [*line, value, other] if kind == DRAW else line
 
 
-def from_line(line: list[Any]) -> Fields:
+def from_line(line: list[Any]) -> WishRow:
     """The fields of a wish, from its JSON value without the player.
 
     Raises

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
@@ -13,7 +12,6 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import (
     Body,
@@ -28,7 +26,10 @@ from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import as_data, read_calibration
-from yehu_server.scores.capture_format import FORMAT, VERSION, build, frames_of
+from yehu_server.scores.capture_format import FORMAT, MOST_FRAMES, VERSION, build
+from yehu_server.scores.gesture import sample_rate
+from yehu_server.util.documents import Fields
+from yehu_server.util.values import brief, choice, flag, number, whole
 
 LOWEST_A4, HIGHEST_A4 = 1.0, 20000.0  # Hz
 
@@ -67,7 +68,7 @@ def header_of(beginning: SessionStart) -> dict[str, Any]:
         "rate": beginning.rate,
         "room": beginning.has_room,
         "build": build(),
-        "players": [_as_data(start, starts[:number]) for number, start in enumerate(starts)],
+        "players": [_as_data(start, starts[:place]) for place, start in enumerate(starts)],
     }
 
 
@@ -75,13 +76,13 @@ def _as_data(start: InstrumentSpec, before: Sequence[InstrumentSpec]) -> dict[st
     """The JSON values of a player; what an earlier player has too is given as its number."""
     calibration: Any = None if start.calibration is None else as_data(start.calibration)
     bowing: Any = start.bowing.tolist()
-    for number, other in enumerate(before, start=1):
+    for place, other in enumerate(before, start=1):
         if other.calibration is not None and other.calibration == start.calibration:
-            calibration = number
+            calibration = place
             break
-    for number, other in enumerate(before, start=1):
+    for place, other in enumerate(before, start=1):
         if np.array_equal(other.bowing, start.bowing):
-            bowing = number
+            bowing = place
             break
     return {
         "seed": start.seed,
@@ -111,55 +112,49 @@ def _changes(own: Any, usual: Any) -> dict[str, Any]:
 # ---------------------------------------------------------------- reading
 
 
-def read_header(header: Any, version: int) -> SessionStart:
+def read_header(table: Fields, version: int) -> SessionStart:
     """What a session starts from, by the first line of its capture.
 
     Raises
     ------
-    ParameterError
-        Where a value is out of range.
-    ValueError, TypeError, KeyError, IndexError, AttributeError, OverflowError
-        Where it is none.
+    YehuError
+        That of the document, or ParameterError, where a value is missing, none or out of range.
     """
-    rate = float(header["rate"])
-    check_rate(rate)
+    rate = table.need("rate", sample_rate)
     if version < VERSION:
-        tuned = _tuned(header["tensions"])
-        start = _start(header, rate, tuned, []) if version > 1 else _first(header, rate, tuned)
-        return SessionStart((start,), bool(header.get("room", False)))
-    entries, starts = header["players"], list[InstrumentSpec]()
-    if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_PARTS:
-        raise ParameterError(f"expected 1 to {MOST_PARTS} players")
-    for entry in entries:
-        starts.append(_start(entry, rate, _quantities(entry["quantities"]), starts))
-    if type(header["room"]) is not bool:
-        raise ValueError("room")
-    return SessionStart(tuple(starts), header["room"])
-
-
-def _first(header: Any, rate: float, quantities: Quantities) -> InstrumentSpec:
-    """The start of a session of version 1, which has no player."""
-    return InstrumentSpec(rate, quantities, start_values=_values(header["values"]))
+        quantities = table.need("tensions", _tuned)
+        if version == 1:  # which has no player
+            values = table.need("values", _values)
+            start = InstrumentSpec(rate, quantities, start_values=values)
+        else:
+            start = _start(table, rate, quantities, [])
+        return SessionStart((start,), bool(table.data.get("room", False)))
+    starts = list[InstrumentSpec]()
+    for entry in table.tables("players", 1, MOST_PARTS):
+        starts.append(_start(entry, rate, entry.need("quantities", _quantities), starts))
+    return SessionStart(tuple(starts), table.need("room", flag))
 
 
 def _tuned(tensions: Any) -> Quantities:
-    first, second = map(float, tensions)
+    first, second = _floats(tensions, 2)
     return override(Quantities(), {"string_1": {"T": first}, "string_2": {"T": second}})
 
 
 def _start(
-    entry: Any, rate: float, quantities: Quantities, before: Sequence[InstrumentSpec]
+    table: Fields, rate: float, quantities: Quantities, before: Sequence[InstrumentSpec]
 ) -> InstrumentSpec:
     """The start of a player, some of which come before."""
     return InstrumentSpec(
         rate,
         quantities,
-        seed=frames_of(entry["seed"]),
-        open_strings=OpenStrings(entry["open_strings"]),
-        calibration=_calibration(entry["calibration"], before),
-        bowing=_bowing(entry["bowing"], before),
-        start_values=_values(entry["values"]),
-        body=frames_of(entry.get("body", 0)),
+        seed=table.need("seed", whole, 0, MOST_FRAMES),
+        open_strings=OpenStrings(
+            table.need("open_strings", choice, [each.value for each in OpenStrings])
+        ),
+        calibration=table.need("calibration", _calibration, before),
+        bowing=table.need("bowing", _bowing, before),
+        start_values=table.need("values", _values),
+        body=table.read("body", whole, 0, 0, MOST_FRAMES),
     )
 
 
@@ -167,70 +162,64 @@ def _calibration(data: Any, before: Sequence[InstrumentSpec]) -> Calibration | N
     if data is None:
         return None
     if type(data) is int:
-        return before[_number(data) - 1].calibration
-    a4 = float(data["a4"])
-    if not LOWEST_A4 <= a4 <= HIGHEST_A4:
-        raise ValueError("a4")
+        return before[whole(data, 1, len(before)) - 1].calibration
+    a4 = Fields(data).need("a4", number, LOWEST_A4, HIGHEST_A4)
     return read_calibration(data, Quantities(), a4)
 
 
 def _bowing(data: Any, before: Sequence[InstrumentSpec]) -> Any:
     if type(data) is int:
-        return before[_number(data) - 1].bowing
-    bowing = np.array(data, np.float64)
+        return before[whole(data, 1, len(before)) - 1].bowing
+    try:
+        bowing = np.array(data, np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ParameterError(f"expected numbers, got {brief(data)}") from None
     if bowing.ndim == 3:  # of captures made when both strings were bowed by one table
         bowing = np.stack([bowing] * STRINGS)
     if bowing.shape != default_recipes().shape or not np.all(np.isfinite(bowing)):
-        raise ValueError("bowing")
+        raise ParameterError("expected finite numbers for each string, place and note")
     return bowing
 
 
-def _number(data: int) -> int:
-    if not 1 <= data <= MOST_PARTS:
-        raise ValueError("a player that is not there")
-    return data
-
-
-def _values(values: Mapping[str, float]) -> dict[str, float]:
+def _values(data: Any) -> dict[str, float]:
     """Values of parameters, by address; raises ParameterError where one is unknown or outside."""
-    for address, value in values.items():
-        param = find(address)
-        if param.accept(value) != value:
-            raise ParameterError(f"{address}: {value} is not within {param.range_text}")
-    return dict(values)
+    return Fields(data).each(lambda address, value: find(address).within(value))
 
 
-def _quantities(changes: Any) -> Quantities:
-    """Quantities by what differs from the measured ones; raises ParameterError, ValueError."""
-    others = {name: value for name, value in changes.items() if name != "body"}
-    quantities = override(Quantities(), others)
+def _quantities(data: Any) -> Quantities:
+    """Quantities by what differs from the measured ones."""
+    changes = Fields(data).data
+    quantities = override(
+        Quantities(), {name: value for name, value in changes.items() if name != "body"}
+    )
     if "body" not in changes:
         return quantities
-    return replace(quantities, body=_body(changes["body"]))
+    return replace(quantities, body=_body(Fields(changes["body"], place="body")))
 
 
-def _body(data: Any) -> Body:
+def _body(table: Fields) -> Body:
     """A body with as many modes as the measured one, which is passive and stable."""
     usual = measured_body()
     body = Body(
-        frequency_hz=_floats(data["frequency_hz"], len(usual.frequency_hz)),
-        mass=_floats(data["mass"], len(usual.mass)),
-        damping=_floats(data["damping"], len(usual.damping)),
+        frequency_hz=table.need("frequency_hz", _floats, len(usual.frequency_hz)),
+        mass=table.need("mass", _floats, len(usual.mass)),
+        damping=table.need("damping", _floats, len(usual.damping)),
         radiation_rate=usual.radiation_rate,
-        sections=tuple(_section(data["sections"][number]) for number in range(len(usual.sections))),
-        direct_gain=_floats([data["direct_gain"]], 1)[0],
+        sections=table.need("sections", _sections, len(usual.sections)),
+        direct_gain=table.need("direct_gain", number),
     )
     check_body(body)
     return body
 
 
-def _section(data: Any) -> tuple[float, float, float, float]:
-    b0, b1, a1, a2 = _floats(data, 4)
-    return b0, b1, a1, a2
+def _sections(data: Any, count: int) -> tuple[tuple[float, float, float, float], ...]:
+    if not isinstance(data, list) or len(data) < count:
+        raise ParameterError(f"expected {count} lists of [b0, b1, a1, a2], got {brief(data)}")
+    rows = (_floats(row, 4) for row in data[:count])
+    return tuple((b0, b1, a1, a2) for b0, b1, a1, a2 in rows)
 
 
 def _floats(data: Any, count: int) -> tuple[float, ...]:
-    numbers = tuple(map(float, data))
-    if len(numbers) != count or not all(map(math.isfinite, numbers)):
-        raise ValueError(f"expected {count} numbers")
-    return numbers
+    if not isinstance(data, list) or len(data) != count:
+        raise ParameterError(f"expected {count} numbers, got {brief(data)}")
+    return tuple(map(number, data))

@@ -5,29 +5,20 @@ The format is described in docs/ensemble.md.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from yehu_server.core.engine.rig import MOST_PARTS
-from yehu_server.errors import EnsembleError, ParameterError
+from yehu_server.errors import EnsembleError
+from yehu_server.params.table import find
 from yehu_server.playing import mapping_entries as entries
-from yehu_server.playing.mapping_file import FileErrors
-from yehu_server.util.documents import parse_toml
-from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text
+from yehu_server.playing.sources import CHANNELS
+from yehu_server.util.documents import MOST_ERRORS, Document, Fields
+from yehu_server.util.values import line, whole
 
-ENTRIES = ("about", "room", "part")
 ROOM_ENTRIES = ("size", "decay", "damping", "level")
-PART_ENTRIES = (
-    "name", "channel", "track", "preset", "mapping", "instrument", "section", "seed", "pan",
-    "distance", "gain", "set",
-)  # fmt: skip
-CHANNELS = 16
-_LINE = re.compile(r"\(at line ([0-9]+)")
 
-T = TypeVar("T")
 Values = tuple[tuple[str, float], ...]  # addresses and values
 
 
@@ -83,124 +74,58 @@ def read_ensemble(path: Path) -> EnsembleFile:
     EnsembleError
         Naming file and line; its `more` are further errors.
     """
-    try:
-        text = read_text(path, MAX_SETTINGS_BYTES)
-        data = parse_toml(text)
-    except OSError as error:
-        raise EnsembleError(f"{path}: {error.strerror}") from error
-    except ValueError as error:  # not UTF-8, or not TOML
-        found = _LINE.search(str(error))
-        line = f":{found[1]}" if found else ""
-        raise EnsembleError(f"{path}{line}: not an ensemble file ({error})") from error
-    errors = FileErrors(path, text, EnsembleError)
-    for name in data:
-        if name not in ENTRIES:
-            errors.add((name,), f"unknown entry {name!r} (known: {', '.join(ENTRIES)})")
-    room = data.get("room", {})
+    document = Document(path, "an ensemble file", EnsembleError, most_errors=MOST_ERRORS)
+    table = document.read(path).toml()
+    table.read("about", str, "")
+    room = table.data.get("room", {})
     ensemble = EnsembleFile(
         path,
-        parts=_parts(data.get("part"), path, errors),
-        room=() if isinstance(room, str) else _room(room, errors),
+        parts=tuple(_part(part, path.parent) for part in table.tables("part", 1, MOST_PARTS)),
+        room=() if isinstance(room, str) else _room(table.table("room")),
         room_name=room if isinstance(room, str) else None,
-        room_where=errors.where(("room",)),
+        room_where=document.where(("room",)),
     )
-    errors.raise_all()
+    table.only("room")
+    document.finish()
     return ensemble
 
 
-def _room(table: Any, errors: FileErrors) -> Values:
-    if not isinstance(table, dict):
-        errors.add(("room",), "room: expected a table, or the name of a preset")
-        return ()
-    values = []
-    for name, value in table.items():
-        if name not in ROOM_ENTRIES:
-            known = ", ".join(ROOM_ENTRIES)
-            errors.add(("room", name), f"room: unknown entry {name!r} (known: {known})")
-            continue
-        try:
-            values.append((f"/room/{name}", entries.start(f"/room/{name}", value)))
-        except ParameterError as error:
-            errors.add(("room", name), f"room: {error}")
-    if table and "size" not in table:
-        errors.add(("room",), "room: needs a size in metres")
+def _room(table: Fields) -> Values:
+    values = [
+        (f"/room/{name}", table.read(name, find(f"/room/{name}").within, 0.0))
+        for name in ROOM_ENTRIES
+        if name in table.data
+    ]
+    table.only(*ROOM_ENTRIES)
+    if table.data and "size" not in table.data:
+        table.wrong("", "needs a size in metres")
     return tuple(values)
 
 
-def _parts(tables: Any, path: Path, errors: FileErrors) -> tuple[PartEntry, ...]:
-    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
-        errors.add(("part",), "write each part as [[part]]")
-        return ()
-    if not 1 <= len(tables) <= MOST_PARTS:
-        key = ("part", MOST_PARTS)
-        errors.add(key, f"{len(tables)} parts: a stage has room for 1 to {MOST_PARTS}")
-        return ()
-    return tuple(_part(table, index, path, errors) for index, table in enumerate(tables))
-
-
-def _part(table: dict[str, Any], index: int, path: Path, errors: FileErrors) -> PartEntry:
-    def add(name: str, reason: str) -> None:
-        errors.add(("part", index, name), f"part {index + 1}: {reason}")
-
-    def read(name: str, reader: Callable[[Any], T], default: T) -> T:
-        if name not in table:
-            return default
-        try:
-            return reader(table[name])
-        except ParameterError as error:
-            add(name, str(error))
-            return default
-
-    for name in table:
-        if name not in PART_ENTRIES:
-            add(name, f"unknown entry {name!r} (known: {', '.join(PART_ENTRIES)})")
-    if "channel" not in table and "track" not in table:
-        add("", "needs a channel or a track")
-    instrument = read("instrument", entries.line_of_text("instrument"), None)
-    mapping = read("mapping", entries.line_of_text("mapping"), None)
-    preset = read("preset", entries.line_of_text("preset"), None)
-    channel = read("channel", _whole("channel", 1, CHANNELS), None)
-    return PartEntry(
-        errors.where(("part", index)),
-        name=read("name", entries.line_of_text("name"), None),
+def _part(table: Fields, folder: Path) -> PartEntry:
+    if not {"channel", "track"} & table.data.keys():
+        table.wrong("", "needs a channel or a track")
+    channel = table.read("channel", whole, None, 1, CHANNELS)
+    part = PartEntry(
+        table.where(),
+        name=table.read("name", line, None),
         channel=None if channel is None else channel - 1,
-        track=read("track", _whole("track", 1, 65535), None),
-        preset=_beside(path, preset),
-        mapping=_beside(path, mapping),
-        instrument=None if instrument is None else path.parent / instrument,
-        section=read("section", _whole("section", 1, MOST_PARTS), None),
-        seed=read("seed", _whole("seed", 0, 65535), None),
-        pan=read("pan", lambda value: entries.start("/room/pan", value), None),
-        distance=read("distance", lambda value: entries.start("/room/distance", value), None),
-        gain_db=read("gain", lambda value: entries.start("/output/gain", value), 0.0),
-        settings=_settings(table.get("set", {}), add),
+        track=table.read("track", whole, None, 1, 65535),
+        preset=table.read("preset", _beside, None, folder),
+        mapping=table.read("mapping", _beside, None, folder),
+        instrument=table.read("instrument", lambda value: folder / line(value), None),
+        section=table.read("section", whole, None, 1, MOST_PARTS),
+        seed=table.read("seed", whole, None, 0, 65535),
+        pan=table.read("pan", find("/room/pan").within, None),
+        distance=table.read("distance", find("/room/distance").within, None),
+        gain_db=table.read("gain", find("/output/gain").within, 0.0),
+        settings=entries.settings(table.table("set")),
     )
+    table.only()
+    return part
 
 
-def _settings(table: Any, add: Callable[[str, str], None]) -> Values:
-    if not isinstance(table, dict):
-        add("set", "set: expected a table of addresses and values")
-        return ()
-    values = []
-    for address, value in table.items():
-        try:
-            values.append((address, entries.start(address, value)))
-        except ParameterError as error:
-            add("set", f"set: {error}")
-    return tuple(values)
-
-
-def _whole(name: str, lo: int, hi: int) -> Callable[[Any], Any]:
-    def read(value: Any) -> int:
-        if type(value) is not int or not lo <= value <= hi:
-            raise ParameterError(f"{name}: expected {lo} to {hi}, got {value!r:.40}")
-        return value
-
-    return read
-
-
-def _beside(path: Path, name: str | None) -> str | None:
+def _beside(value: Any, folder: Path) -> str:
     """A name as it is; a file's path as from the folder of the ensemble file."""
-    if name is None or not name.endswith((".toml", ".json")):
-        return name
-    return str(path.parent / name)
+    name = line(value)
+    return str(folder / name) if name.endswith((".toml", ".json")) else name

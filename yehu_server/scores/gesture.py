@@ -14,8 +14,8 @@ from yehu_server.core.physics import layout
 from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, ScoreError
-from yehu_server.util.documents import parse_json
-from yehu_server.util.files import read_text
+from yehu_server.util.documents import Document, Fields
+from yehu_server.util.values import brief, number
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Curve = tuple[tuple[float, float], ...]
@@ -113,20 +113,8 @@ def read_gesture(path: Path) -> Gesture:
     ParameterError
         Where an entry is wrong.
     """
-    try:
-        text = read_text(path, MOST_BYTES)
-    except OSError as error:
-        raise ScoreError(f"{path}: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise ScoreError(f"{path}: not a gesture file (not text)") from error
-    try:
-        data = parse_json(text)
-    except ValueError as error:
-        raise ScoreError(f"{path}: not a gesture file ({error})") from error
-    try:
-        return gesture_from(data, path.parent)
-    except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+    document = Document(path, "a gesture file", unreadable=ScoreError).read(path, MOST_BYTES)
+    return gesture_from(document.json(), path.parent)
 
 
 def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
@@ -137,86 +125,73 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
     ParameterError
         Where an entry is wrong.
     """
-    known = ("sample_rate", "duration", "instrument", "controls", "pluck", "hammer")
-    data = _names(data, "gesture", known)
-    rate = _number(data.get("sample_rate", 44100.0), "sample_rate")
-    check_rate(rate)
-    duration = _number(data.get("duration", 1.0), "duration")
-    if not 1.0 / rate <= duration <= MAX_DURATION_S:
-        raise ParameterError(f"duration: {duration} s is not within one sample to 1 hour")
-    quantities = override(Quantities(), data.get("instrument", {}), folder)
+    table = Fields.of(data, "gesture")
+    rate = table.read("sample_rate", sample_rate, 44100.0)
+    duration = table.read("duration", number, 1.0, 1.0 / rate, MAX_DURATION_S, "s")
+    quantities = override(Quantities(), table.table("instrument"), folder)
+    controls = table.table("controls")
     curves = {
-        name: _curve(value, name, CONTROLS[name].lo, CONTROLS[name].hi, CONTROLS[name].unit)
-        for name, value in _names(data.get("controls", {}), "controls", tuple(CONTROLS)).items()
+        name: controls.read(name, _curve, (), control.lo, control.hi, control.unit)
+        for name, control in CONTROLS.items()
+        if name in controls.data
     }
+    controls.only(*CONTROLS)
     shortest = min(string.L for string in quantities.strings)
     ends = (("bow_position", quantities.bridge_x, "bridge"), ("finger_position", shortest, "stub"))
     for name, end, what in ends:
-        _stays_within(curves.get(name, ((0.0, CONTROLS[name].default),)), name, end, what)
-    pluck = None
-    if data.get("pluck") is not None:
-        fields = _names(data["pluck"], "pluck", ("string", "position", "amplitude"))
-        pluck = Pluck(
-            string=int(_number(fields.get("string", 1), "pluck.string")),
-            position=_number(fields.get("position", 0.1), "pluck.position"),
-            amplitude=_number(fields.get("amplitude", 0.001), "pluck.amplitude"),
-        )
-        if fields.get("string", 1) not in (1, 2):
-            raise ParameterError(f"pluck.string: 1 or 2, not {fields['string']!r}")
-        if not 0.0 < pluck.position < shortest or pluck.position == quantities.bridge_x:
-            raise ParameterError(f"pluck.position: {pluck.position} m is not on the free string")
-        if not abs(pluck.amplitude) <= 0.1:
-            raise ParameterError(f"pluck.amplitude: {pluck.amplitude} m is beyond 0.1 m")
+        with controls.at(name):
+            _stays_within(curves.get(name, ((0.0, CONTROLS[name].default),)), end, what)
+    has_pluck, has_hammer = (table.data.get(name) is not None for name in ("pluck", "hammer"))
+    pluck = _pluck(table.table("pluck"), quantities.bridge_x, shortest) if has_pluck else None
     hammer: Curve = ()
-    if data.get("hammer") is not None:
-        hammer = _curve(data["hammer"], "hammer", -HAMMER_LIMIT, HAMMER_LIMIT, "N")
-    return Gesture(rate, duration, quantities, curves, pluck, hammer, data)
+    if has_hammer:
+        hammer = table.read("hammer", _curve, (), -HAMMER_LIMIT, HAMMER_LIMIT, "N")
+    table.only("pluck", "hammer")
+    return Gesture(rate, duration, quantities, curves, pluck, hammer, table.data)
 
 
-def _names(value: Any, where: str, known: tuple[str, ...]) -> Mapping[str, Any]:
-    if not isinstance(value, dict):
-        raise ParameterError(f"{where}: expected names and values in braces")
-    for name in value:
-        if name not in known:
-            raise ParameterError(f"{where}: unknown name {name!r} (known: {', '.join(known)})")
-    return value
+def sample_rate(value: Any) -> float:
+    """A sample rate (Hz) that the model runs at; raises ParameterError."""
+    rate = number(value)
+    check_rate(rate)
+    return rate
 
 
-def _number(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ParameterError(f"{where}: expected a number, got {value!r}")
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise ParameterError(f"{where}: {value} is not finite")
-    return number
+def _pluck(table: Fields, bridge: float, shortest: float) -> Pluck:
+    pluck = Pluck(
+        string=int(table.read("string", number, 1, 1, 2)),
+        position=table.read("position", number, 0.1, 0.0, shortest, "m"),
+        amplitude=table.read("amplitude", number, 0.001, -0.1, 0.1, "m"),
+    )
+    table.only()
+    if pluck.string != table.data.get("string", 1):
+        table.wrong("string", f"expected 1 or 2, got {table.data['string']}")
+    if pluck.position in (0.0, bridge, shortest):
+        table.wrong("position", f"{pluck.position} m is not on the free string")
+    return pluck
 
 
-def _curve(value: Any, where: str, lo: float, hi: float, unit: str) -> Curve:
+def _curve(value: Any, lo: float, hi: float, unit: str) -> Curve:
     if isinstance(value, int | float) and not isinstance(value, bool):
         value = [[0.0, value]]
     if not isinstance(value, list) or not value:
-        raise ParameterError(f"{where}: expected a list of [time, value] pairs")
+        raise ParameterError(f"expected a list of [time, value] pairs, got {brief(value)}")
     points = []
     last = -math.inf
     for point in value:
         if not isinstance(point, list) or len(point) != 2:
-            raise ParameterError(f"{where}: expected [time, value], got {point!r}")
-        time, level = _number(point[0], where), _number(point[1], where)
+            raise ParameterError(f"expected [time, value], got {brief(point)}")
+        time, level = number(point[0]), number(point[1], lo, hi, unit)
         if time < last:
-            raise ParameterError(f"{where}: times must not go back ({time} s after {last} s)")
-        if not lo <= level <= hi:
-            raise ParameterError(f"{where}: {level} is not within {lo:g} to {hi:g} {unit}")
+            raise ParameterError(f"times must not go back ({time} s after {last} s)")
         points.append((time, level))
         last = time
     return tuple(points)
 
 
-def _stays_within(curve: Curve, name: str, end: float, what: str) -> None:
+def _stays_within(curve: Curve, end: float, what: str) -> None:
     for _, position in curve:
         if not 0.0 < position < end:
             raise ParameterError(
-                f"{name}: {position} m is not between the loop (0) and the {what} ({end} m)"
+                f"{position} m is not between the loop (0) and the {what} ({end} m)"
             )

@@ -1,66 +1,242 @@
-"""Parse TOML and JSON of users, refusing values that are not safe to process and print."""
+"""Read TOML and JSON of users, and refuse what is wrong in one form of error.
+
+That is ``FILE:LINE: PLACE: REASON``, such as ``mine.toml:7: bind 1: span: expected ...``. The line
+is that of an entry in TOML; what a program gives has no file.
+"""
 
 from __future__ import annotations
 
-import json
 import re
-import tomllib
-from typing import Any
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
-MOST_DEPTH = 32
-MOST_INTEGER_BITS = 8192  # Python prints no integers of more than 4,300 digits
-# tomllib takes time by the square of a key's parts: 20 s for one of 64 kB.
-MOST_KEY_PARTS = 16
-_LONG_KEY = re.compile(
-    r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
-    f"{{{MOST_KEY_PARTS}}}",
-    re.ASCII,
-)
+from yehu_server.errors import ParameterError, YehuError, did_you_mean
+from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, why
+from yehu_server.util.parsing import KeyPath, line_at, lines_of, parse_json, parse_toml
+from yehu_server.util.values import brief
+
+MOST_ERRORS = 50  # a hint at a similar name takes milliseconds each
+MANY = sys.maxsize
+_LINE = re.compile(r"\bline ([0-9]+)")
+_DOTTED = re.compile(r"[\w.-]+")
+
+T = TypeVar("T")
+D = TypeVar("D")
+P = ParamSpec("P")
 
 
-def parse_toml(text: str) -> dict[str, Any]:
-    """Parse a TOML text.
+@dataclass(eq=False)
+class Document:
+    """A text of a user, and the errors found in it.
 
-    Raises
-    ------
-    ValueError
-        With the line where that is known.
+    Attributes
+    ----------
+    name : Path or str
+        What errors begin with.
+    what : str
+        What it should be, such as "a mapping file".
+    error : type
+        Of errors in entries; all of them are raised as one, up to `most_errors`.
+    unreadable : type, optional
+        Of errors in what is no such document at all, if that is another.
     """
-    if _LONG_KEY.search(text):
-        raise ValueError(f"a key has more than {MOST_KEY_PARTS} parts")
-    try:
-        return dict(_checked(tomllib.loads(text)))
-    except RecursionError:
-        raise ValueError("nested too deeply") from None
+
+    name: Path | str = ""
+    what: str = "a document"
+    error: type[YehuError] = ParameterError
+    unreadable: type[YehuError] | None = None
+    text: str = ""
+    most_errors: int = 1
+    raised: YehuError | None = None
+    _found: list[tuple[int, str]] = field(default_factory=list)
+    _lines: dict[KeyPath, int] | None = field(default_factory=dict)
+
+    def read(self, path: Path, most_bytes: int = MAX_SETTINGS_BYTES) -> Document:
+        """Read the text of a file; raises the error of the document where that cannot be."""
+        try:
+            self.text = read_text(path, most_bytes)
+        except OSError as error:
+            raise self._unreadable(f"{self.name}: {why(error)}") from error
+        except ValueError as error:  # not UTF-8, or a path with a NUL
+            raise self._not(error) from error
+        return self
+
+    def toml(self) -> Fields:
+        """Parse the text as TOML; raises the error of the document where it is none."""
+        try:
+            data = parse_toml(self.text)
+        except ValueError as error:
+            raise self._not(error) from error
+        self._lines = None
+        return Fields(data, self)
+
+    def json(self) -> Fields:
+        """Parse the text as a JSON object; raises the error of the document where it is none."""
+        try:
+            return Fields(parse_json(self.text), self)
+        except ValueError as error:
+            raise self._not(error) from error
+
+    @property
+    def _unreadable(self) -> type[YehuError]:
+        return self.unreadable or self.error
+
+    def _not(self, error: ValueError) -> YehuError:
+        found = _LINE.search(str(error))
+        line = f":{found[1]}" if found else ""
+        return self._unreadable(f"{self.name}{line}: not {self.what} ({error})")
+
+    def _line(self, key: KeyPath) -> int | None:
+        if self._lines is None:
+            self._lines = lines_of(self.text)
+        return line_at(self._lines, key)
+
+    def where(self, key: KeyPath) -> str:
+        """The document, and the line of an entry if it has one."""
+        line = self._line(key)
+        return str(self.name) if line is None else f"{self.name}:{line}"
+
+    def add(self, key: KeyPath, reason: str) -> None:
+        """Add an error in an entry; raises all of them where they are as many as may be."""
+        where = self.where(key)
+        self._found.append((self._line(key) or 0, f"{where}: {reason}" if where else reason))
+        if len(self._found) >= self.most_errors:
+            self.finish()
+
+    def finish(self) -> None:
+        """Raise what was added, by line, as one error; return if nothing was."""
+        if self._found:
+            lines = [what for _, what in sorted(self._found, key=lambda one: one[0])]
+            self._found = []
+            self.raised = self.error(*lines)
+            raise self.raised
 
 
-def parse_json(text: str) -> Any:
-    """Parse a JSON text.
+class Fields:
+    """A table of a document.
 
-    Raises
-    ------
-    ValueError
-        Where it is not JSON, or refused.
+    What is wrong is an error of the document. So a reader goes on with its default, unless the
+    document raises its errors at once.
+
+    Parameters
+    ----------
+    data : mapping
+        Its entries.
+    document : Document, optional
+        By default one without a name, that raises ParameterError.
+    place : str
+        Where in the document it is, for errors.
+    key : tuple
+        The same, for its line.
     """
-    try:
-        return _checked(json.loads(text))
-    except RecursionError:
-        raise ValueError("nested too deeply") from None
 
+    def __init__(
+        self, data: Any, document: Document | None = None, place: str = "", key: KeyPath = ()
+    ) -> None:
+        self.document = document or Document()
+        self.place = place
+        self.key = key
+        self._known: dict[str, None] = {}
+        self.is_table = isinstance(data, Mapping)
+        self.data: Mapping[str, Any] = data if self.is_table else {}
+        if not self.is_table:
+            self.wrong("", f"expected a table of names and values, got {brief(data)}")
 
-def _checked(value: Any) -> Any:
-    """Refuse what Python parses but cannot print: deep nesting, and integers of many digits."""
-    level = [value]
-    for _ in range(MOST_DEPTH):
-        inner: list[Any] = []
-        for entry in level:
-            if isinstance(entry, dict):
-                inner += entry.values()
-            elif isinstance(entry, list):
-                inner += entry
-            elif isinstance(entry, int) and entry.bit_length() > MOST_INTEGER_BITS:
-                raise ValueError("a number has too many digits")
-        if not inner:
-            return value
-        level = inner
-    raise ValueError("nested too deeply")
+    @staticmethod
+    def of(data: Any, place: str = "") -> Fields:
+        """A table that is one already, or of data that come from no file."""
+        return data if isinstance(data, Fields) else Fields(data, place=place)
+
+    def wrong(self, name: str, reason: str) -> None:
+        """Add an error in an entry, or in all of the table where the name is empty."""
+        place = self._place(name)
+        key = (*self.key, name) if name else self.key
+        self.document.add(key, f"{place}: {reason}" if place else reason)
+
+    def _place(self, name: str) -> str:
+        shown = brief(name, str if str(name).isprintable() else repr)
+        if not self.place or not name:
+            return self.place or shown
+        dotted = f"{self.place}.{shown}"
+        return dotted if _DOTTED.fullmatch(dotted) else f"{self.place}: {shown}"
+
+    def where(self) -> str:
+        """The document, and the line of the table if it has one."""
+        return self.document.where(self.key)
+
+    @contextmanager
+    def at(self, name: str = "") -> Iterator[None]:
+        """Make a ParameterError that has no place yet one in an entry; see `wrong`."""
+        try:
+            yield
+        except ParameterError as error:
+            if error is self.document.raised:
+                raise
+            self.wrong(name, str(error))
+
+    def read(
+        self,
+        name: str,
+        reader: Callable[Concatenate[Any, P], T],
+        default: D,
+        *args: P.args,
+        **kwargs: P.kwargs,
+    ) -> T | D:
+        """Convert an entry by a reader, which raises ParameterError."""
+        self._known[name] = None
+        if name in self.data:
+            with self.at(name):
+                return reader(self.data[name], *args, **kwargs)
+        return default
+
+    def need(
+        self, name: str, reader: Callable[Concatenate[Any, P], T], *args: P.args, **kwargs: P.kwargs
+    ) -> T:
+        """`read` what has to be there, of a document that raises its errors at once."""
+        if name not in self.data:
+            self.wrong(name, "missing")
+        return cast("T", self.read(name, reader, None, *args, **kwargs))
+
+    def each(self, reader: Callable[[str, Any], T]) -> dict[str, T]:
+        """Convert all entries of a table of any names by a reader."""
+        found: dict[str, T] = {}
+        for name, value in self.data.items():
+            with self.at(name):
+                found[name] = reader(name, value)
+        return found
+
+    def table(self, name: str) -> Fields:
+        """A table within this one, empty where there is none."""
+        self._known[name] = None
+        return Fields(self.data.get(name, {}), self.document, self._place(name), (*self.key, name))
+
+    def tables(self, name: str, least: int = 0, most: int = MANY) -> list[Fields]:
+        """The tables of an array of so many, each written as ``[[name]]``."""
+        self._known[name] = None
+        found = self.data.get(name, [])
+        place, key = self._place(name), (*self.key, name)
+        if not isinstance(found, list):
+            self.wrong(name, f"write each as [[{name}]]")
+        elif not least <= len(found) <= most:
+            upto = "or more" if most == MANY else f"to {most}"
+            reason = f"{place}: expected {least} {upto} of [[{name}]], got {len(found)}"
+            self.document.add((*key, most), reason)
+        else:
+            tables = [
+                Fields(each, self.document, f"{place} {number + 1}", (*key, number))
+                for number, each in enumerate(found)
+            ]
+            return [table for table in tables if table.is_table]
+        return []
+
+    def only(self, *others: str) -> None:
+        """Refuse entries that neither were read nor are others of a name."""
+        for name in self.data:
+            if name not in self._known and name not in others:
+                known = (*self._known, *others)
+                hint = did_you_mean(name, known)
+                self.wrong(name, f"unknown entry{hint} (known: {', '.join(known)})")

@@ -24,11 +24,9 @@ from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping, with_bases
 from yehu_server.playing.mapping_file import (
     MappingFile,
-    json_of,
-    mapping_file_from,
+    mapping_file_of_json,
     read_mapping_file,
     text_of,
-    toml_of,
 )
 from yehu_server.playing.mapping_writer import as_toml, canonical, edited
 from yehu_server.playing.preset_folders import Presets, read_preset
@@ -232,9 +230,9 @@ def check(contents: MappingFile, path: Path, text: str) -> None:
     if len(text) > MOST_WRITTEN:
         return
     for again in (as_toml(contents), canonical(contents, text), edited(contents, text, [], [])):
-        assert meant(mapping_file_from(path, toml_of(path, again))) == meant(contents)
+        assert meant(read_mapping_file(path, again)) == meant(contents)
     less = edited(contents, text, contents.binds[:1], contents.binds[:1])
-    assert set(mapping_file_from(path, toml_of(path, less)).binds) == set(contents.binds)
+    assert set(read_mapping_file(path, less).binds) == set(contents.binds)
     with contextlib.suppress(MappingError):  # of its base
         mapping = with_bases(path, contents)
         assert all(math.isfinite(value) for _, value in mapping.start)
@@ -268,5 +266,5 @@ def mapping_json(data: bytes) -> None:
     """JSON as ``mappings show`` prints it is a mapping under the same law."""
     path = written(data, "mapping.json")
     text = text_of(path)
-    contents = mapping_file_from(path, json_of(path, text))
+    contents = mapping_file_of_json(path, text)
     check(contents, path, as_toml(contents))

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from yehu_server.errors import ParameterError
-from yehu_server.util.documents import parse_json, parse_toml
-from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text
+from yehu_server.util.documents import Document, Fields
+from yehu_server.util.values import brief, number
+from yehu_server.util.values import choice as chosen
 
 BODY_FILE = Path(__file__).with_name("body.json")
 
@@ -128,30 +129,27 @@ def read_body(path: Path = BODY_FILE) -> Body:
     ParameterError
         When it is missing, malformed, or not passive or stable.
     """
-    try:
-        data = parse_json(read_text(path, MAX_SETTINGS_BYTES))
-        modes = data["bridge_modes"]
-        radiation = data["radiation"]
-        body = Body(
-            frequency_hz=tuple(float(mode["frequency_hz"]) for mode in modes),
-            mass=tuple(float(mode["mass_kg"]) for mode in modes),
-            damping=tuple(float(mode["damping_kg_per_s"]) for mode in modes),
-            radiation_rate=float(radiation["sample_rate_hz"]),
-            sections=tuple(
-                (float(b0), float(b1), float(a1), float(a2))
-                for b0, b1, a1, a2 in radiation["sections"]
-            ),
-            direct_gain=float(radiation["direct_gain"]),
-        )
-    except OSError as error:
-        raise ParameterError(f"body file {path}: {error.strerror}") from error
-    except (ValueError, KeyError, TypeError, OverflowError) as error:
-        raise ParameterError(f"body file {path}: not a body file ({error!r})") from error
-    try:
+    table = Document(path, "a body file").read(path).json()
+    radiation = table.table("radiation")
+    modes = table.tables("bridge_modes", 1)
+    body = Body(
+        frequency_hz=tuple(mode.need("frequency_hz", number) for mode in modes),
+        mass=tuple(mode.need("mass_kg", number) for mode in modes),
+        damping=tuple(mode.need("damping_kg_per_s", number) for mode in modes),
+        radiation_rate=radiation.need("sample_rate_hz", number),
+        sections=radiation.need("sections", _sections),
+        direct_gain=radiation.need("direct_gain", number),
+    )
+    with table.at():
         check_body(body)
-    except ParameterError as error:
-        raise ParameterError(f"body file {path}: {error}") from error
     return body
+
+
+def _sections(value: Any) -> tuple[tuple[float, float, float, float], ...]:
+    try:
+        return tuple((number(b0), number(b1), number(a1), number(a2)) for b0, b1, a1, a2 in value)
+    except (TypeError, ValueError):
+        raise ParameterError(f"expected lists of [b0, b1, a1, a2], got {brief(value)}") from None
 
 
 def check_body(body: Body) -> None:
@@ -226,7 +224,9 @@ class Quantities:
         return (self.string_1, self.string_2)
 
 
-def override(base: Quantities, changes: Mapping[str, Any], folder: Path = Path()) -> Quantities:
+def override(
+    base: Quantities, changes: Mapping[str, Any] | Fields, folder: Path = Path()
+) -> Quantities:
     """Return `base` with some quantities replaced.
 
     Parameters
@@ -243,60 +243,38 @@ def override(base: Quantities, changes: Mapping[str, Any], folder: Path = Path()
     ParameterError
         For an unknown name, a wrong type, a value out of bounds.
     """
-    return cast("Quantities", _override_section(base, changes, "instrument", folder))
+    table = Fields.of(changes, "instrument")
+    with table.at():
+        found: Quantities = _override(base, table, folder)
+    return found
 
 
-def _override_section(base: Any, changes: Mapping[str, Any], section: str, folder: Path) -> Any:
-    if not isinstance(changes, Mapping):
-        raise ParameterError(f"{section}: expected names and values, got {changes!r}")
-    known = {item.name: item for item in fields(base)}
+def _override(base: Any, table: Fields, folder: Path) -> Any:
     values: dict[str, Any] = {}
-    for name, value in changes.items():
-        item = known.get(name)
-        if item is None:
-            raise ParameterError(
-                f"{section}: unknown quantity {name!r} (known: {', '.join(known)})"
-            )
+    for item in fields(base):
+        name = item.name
+        if name not in table.data:
+            continue
         if name == "body":
-            values[name] = read_body(folder / str(value))
+            values[name] = table.read(name, lambda value: read_body(folder / str(value)), None)
         elif "choices" in item.metadata:
-            values[name] = _chosen(f"{section}.{name}", item, value)
+            values[name] = table.read(name, chosen, None, item.metadata["choices"])
         elif "unit" in item.metadata:
-            values[name] = _checked(f"{section}.{name}", item, value)
+            values[name] = table.read(name, _checked, None, item)
         else:
-            values[name] = _override_section(getattr(base, name), value, name, folder)
+            values[name] = _override(getattr(base, name), table.table(name), folder)
+    table.only(*(item.name for item in fields(base)))
     return replace(base, **values)
 
 
-def _checked(name: str, item: Any, value: Any) -> Any:
-    default = item.default if item.default is not MISSING else 0.0
-    if isinstance(default, tuple):
-        if not isinstance(value, list | tuple) or len(value) != len(default):
-            raise ParameterError(f"{name}: expected {len(default)} numbers, got {value!r}")
-        return tuple(_number(name, item, entry) for entry in value)
-    return _number(name, item, value)
-
-
-def _chosen(name: str, item: Any, value: Any) -> str:
-    choices = item.metadata["choices"]
-    if value not in choices:
-        raise ParameterError(f"{name}: {value!r} is not one of {', '.join(choices)}")
-    return str(value)
-
-
-def _number(name: str, item: Any, value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ParameterError(f"{name}: expected a number, got {value!r}")
+def _checked(value: Any, item: Any) -> Any:
     lo, hi, unit = item.metadata["lo"], item.metadata["hi"], item.metadata["unit"]
-    unit = "" if unit == "1" else f" {unit}"
-    if not lo <= value <= hi:  # also refuses NaN
-        raise ParameterError(f"{name}: {_short(value)} is not within {lo:g} to {hi:g}{unit}")
-    return float(value)
-
-
-def _short(value: float) -> str:
-    text = str(value)
-    return text if len(text) < 30 else f"{text[:12]}..."
+    if not isinstance(item.default, tuple):
+        return number(value, lo, hi, unit)
+    count = len(item.default)
+    if not isinstance(value, list | tuple) or len(value) != count:
+        raise ParameterError(f"expected {count} numbers, got {brief(value)}")
+    return tuple(number(entry, lo, hi, unit) for entry in value)
 
 
 def read_quantities(path: Path) -> Quantities:
@@ -307,13 +285,6 @@ def read_quantities(path: Path) -> Quantities:
     ParameterError
         Naming the file.
     """
-    try:
-        text = read_text(path, MAX_SETTINGS_BYTES)
-        data = parse_json(text) if path.suffix == ".json" else parse_toml(text)
-        return override(Quantities(), data, path.parent)
-    except OSError as error:
-        raise ParameterError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise ParameterError(f"{path}: not an instrument file ({error})") from error
-    except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+    document = Document(path, "an instrument file").read(path)
+    table = document.json() if path.suffix == ".json" else document.toml()
+    return override(Quantities(), table, path.parent)

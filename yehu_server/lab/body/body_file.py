@@ -21,8 +21,8 @@ from yehu_server.lab.body.curve import Curve
 from yehu_server.lab.body.measurement import Measurement
 from yehu_server.lab.body.modes import Modes
 from yehu_server.util import __version__
-from yehu_server.util.documents import parse_json, parse_toml
-from yehu_server.util.files import MAX_SETTINGS_BYTES, check_target, read_text, replacing, why
+from yehu_server.util.documents import Document
+from yehu_server.util.files import check_target, replacing
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Complexes = np.ndarray[Any, np.dtype[np.complex128]]
@@ -175,17 +175,16 @@ def check_targets(target: Path, *, overwrite: bool = False) -> None:
 def is_ours(path: Path) -> bool:
     """Whether a file is one that `save` wrote."""
     try:
-        data = parse_json(read_text(path, MAX_SETTINGS_BYTES))
-    except (OSError, ValueError):
+        return _document(path).json().data.get("format") == FORMAT
+    except MeasurementError:
         return False
-    return isinstance(data, dict) and data.get("format") == FORMAT
 
 
 def names_body(target: Path, body_file: Path) -> bool:
     """Whether an instrument file names a body file."""
     try:
-        named = parse_toml(read_text(target, MAX_SETTINGS_BYTES)).get("body")
-    except (OSError, ValueError):
+        named = _document(target).toml().data.get("body")
+    except MeasurementError:
         return False
     return isinstance(named, str) and (target.parent / named).resolve() == body_file.resolve()
 
@@ -231,18 +230,12 @@ def read_fit(path: Path) -> Fit:
     MeasurementError
         Where the file cannot, or what was measured.
     """
-    data: Any = {}
-    try:
-        if path.suffix.lower() == ".toml":
-            named = parse_toml(read_text(path, MAX_SETTINGS_BYTES)).get("body")
-            if named is None:
-                return _bare(measured_body())
-            path = path.parent / str(named)
-        data = parse_json(read_text(path, MAX_SETTINGS_BYTES))
-    except OSError as error:
-        raise MeasurementError(f"{path}: {why(error)}") from error
-    except ValueError as error:
-        raise MeasurementError(f"{path}: not an instrument or body file ({error})") from error
+    if path.suffix.lower() == ".toml":
+        named = _document(path).toml().data.get("body")
+        if named is None:
+            return _bare(measured_body())
+        path = path.parent / str(named)
+    data: Any = _document(path).json().data
     fitted = _bare(read_body(path))
     if "measured" not in data or "fit" not in data:
         return fitted
@@ -264,6 +257,10 @@ def read_fit(path: Path) -> Fit:
         )
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
         raise MeasurementError(f"{path}: what was measured cannot be read ({error!r})") from error
+
+
+def _document(path: Path) -> Document:
+    return Document(path, "an instrument or body file", MeasurementError).read(path)
 
 
 def _bare(body: Body) -> Fit:

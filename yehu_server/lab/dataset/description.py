@@ -9,17 +9,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.quantities import Quantities, override
-from yehu_server.errors import ParameterError, YehuError
-from yehu_server.lab.dataset.draws import Distribution, chance, number, read_distribution, shares_of
+from yehu_server.errors import ParameterError, did_you_mean
+from yehu_server.lab.dataset.draws import (
+    Between,
+    Distribution,
+    chance,
+    read_distribution,
+    shares_of,
+)
 from yehu_server.params.table import find
 from yehu_server.playing.calibration import calibration_key
-from yehu_server.scores.gesture import CONTROLS
-from yehu_server.util.documents import parse_toml
-from yehu_server.util.files import MAX_SETTINGS_BYTES, PLAIN_NAME, read_text, why
+from yehu_server.scores.gesture import CONTROLS, sample_rate
+from yehu_server.util.documents import Document, Fields
+from yehu_server.util.files import PLAIN_NAME
+from yehu_server.util.values import choice, choices, number, whole
 
-ENTRIES = ("about", "kind", "count", "seed", "sample_rate", "split", "draw", "keep", "instrument")
 A4 = 440.0  # Hz
 KINDS = ("strokes", "notes")
 MOST_SOUNDS = 10_000_000
@@ -121,18 +126,11 @@ def read_description(path: Path) -> Description:
     ParameterError
         Naming the file and the entry.
     """
-    try:
-        data = parse_toml(read_text(path, MAX_SETTINGS_BYTES))
-        return description_of(data, path.parent)
-    except OSError as error:
-        raise ParameterError(f"{path}: {why(error)}") from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path}: is not text") from error
-    except (ValueError, YehuError) as error:
-        raise ParameterError(f"{path}: {error}") from error
+    document = Document(path, "a description of a data set").read(path)
+    return description_of(document.toml(), path.parent)
 
 
-def description_of(data: Mapping[str, Any], folder: Path = Path()) -> Description:
+def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> Description:
     """Check the data of a description, which is in a folder.
 
     Raises
@@ -140,49 +138,49 @@ def description_of(data: Mapping[str, Any], folder: Path = Path()) -> Descriptio
     ParameterError
         Naming the entry.
     """
-    _known(data, "", ENTRIES)
-    kind = data.get("kind", "strokes")
-    if kind not in KINDS:
-        raise ParameterError(f"kind: {' or '.join(KINDS)}, not {kind!r}")
-    rate = number(data.get("sample_rate", 44100), "sample_rate")
-    check_rate(rate)
-    keep = _table(data, "keep")
-    _known(keep, "keep.", ("every", "signals"))
-    signals = keep.get("signals", [])
-    if not isinstance(signals, list) or not all(each in SIGNALS for each in signals):
-        raise ParameterError(f"keep.signals: a list of {', '.join(SIGNALS)}")
-    quantities = override(Quantities(), _table(data, "instrument"), folder)
-    count = _whole(data.get("count", 100), "count", 1, MOST_SOUNDS)
-    seed = _whole(data.get("seed", 0), "seed", 0, 2**63 - 1)
+    table = Fields.of(data)
+    kind = table.read("kind", choice, KINDS[0], KINDS)
+    rate = table.read("sample_rate", sample_rate, 44100.0)
+    keep = table.table("keep")
+    quantities = override(Quantities(), table.table("instrument"), folder)
     body = calibration_key(rate, quantities, A4)  # files that are named may change
-    text = json.dumps({**data, "count": 0, "about": ""}, sort_keys=True, default=str)
-    return Description(
+    text = json.dumps({**table.data, "count": 0, "about": ""}, sort_keys=True, default=str)
+    description = Description(
         kind=kind,
-        count=count,
-        seed=seed,
+        count=table.read("count", whole, 100, 1, MOST_SOUNDS),
+        seed=table.read("seed", whole, 0, 0, 2**63 - 1),
         rate=rate,
-        draws=_draws(_table(data, "draw"), kind),
-        splits=_splits(_table(data, "split") or {"train": 1.0}),
-        every=_whole(keep.get("every", 64), "keep.every", 1, 1 << 20),
-        signals=tuple(signals),
+        draws=_draws(table.table("draw"), kind),
+        splits=_splits(table.table("split")),
+        every=keep.read("every", whole, 64, 1, 1 << 20),
+        signals=tuple(keep.read("signals", choices, [], SIGNALS)),
         quantities=quantities,
         key=hashlib.sha256(f"{text}{body}".encode()).hexdigest(),
     )
+    keep.only()
+    table.only("about")
+    return description
 
 
-def _draws(entries: Mapping[str, Any], kind: str) -> dict[str, Distribution]:
+def _draws(table: Fields, kind: str) -> dict[str, Distribution]:
     known = STROKES if kind == "strokes" else NOTES
-    defaults = {name: default for name, (default, _, _) in known.items() if default is not None}
-    draws: dict[str, Distribution] = {}
-    for name, entry in {**defaults, **entries}.items():
-        draw = read_distribution(entry, f"draw.{name}")
+    draws: dict[str, Distribution] = {
+        name: Between(default, default)
+        for name, (default, _, _) in known.items()
+        if default is not None
+    }
+
+    def draw(name: str, entry: Any) -> Distribution:
         lo, hi = _bounds(name, kind, known)
-        if not lo <= draw.ends[0] <= draw.ends[1] <= hi:
-            raise ParameterError(f"draw.{name}: within {lo:g} to {hi:g}")
-        if name in COUNTS and not draw.is_whole:
-            raise ParameterError(f'draw.{name}: whole numbers only, such as spacing = "whole"')
-        draws[name] = draw
-    return draws
+        found = read_distribution(entry)
+        least, most = found.ends
+        if not lo <= least <= most <= hi:
+            raise ParameterError(f"{least:g} to {most:g} is not within {lo:g} to {hi:g}")
+        if name in COUNTS and not found.is_whole:
+            raise ParameterError('whole numbers only, such as spacing = "whole"')
+        return found
+
+    return draws | table.each(draw)
 
 
 def _bounds(
@@ -201,33 +199,19 @@ def _bounds(
         param = find(name)
         return param.lo, param.hi
     more = ", or an address of /playing" if kind == "notes" else ""
-    raise ParameterError(f"draw: unknown name {name!r} (known: {', '.join(known)}{more})")
+    hint = did_you_mean(name, known)
+    raise ParameterError(f"unknown entry{hint} (known: {', '.join(known)}{more})")
 
 
-def _splits(entries: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
-    for name in entries:
+def _splits(table: Fields) -> tuple[tuple[str, float], ...]:
+    if not table.data:
+        return (("train", 1.0),)
+    for name in table.data:
         if not PLAIN_NAME.fullmatch(name):
-            raise ParameterError(f"split: {name!r} is no plain name for a folder")
-    if len({name.casefold() for name in entries}) < len(entries):
-        raise ParameterError("split: names that differ in more than capitals")
-    weights = [number(value, f"split.{name}") for name, value in entries.items()]
-    return tuple(zip(entries, shares_of(weights, "split"), strict=True))
-
-
-def _known(table: Mapping[str, Any], where: str, names: tuple[str, ...]) -> None:
-    for name in table:
-        if name not in names:
-            raise ParameterError(f"{where}{name}: unknown name (known: {', '.join(names)})")
-
-
-def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    table = data.get(name, {})
-    if not isinstance(table, dict):
-        raise ParameterError(f"{name}: expected a table")
-    return table
-
-
-def _whole(value: Any, where: str, lo: int, hi: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not lo <= value <= hi:
-        raise ParameterError(f"{where}: a whole number from {lo} to {hi}, not {value!r}")
-    return value
+            table.wrong(name, "is no plain name for a folder")
+    if len({name.casefold() for name in table.data}) < len(table.data):
+        table.wrong("", "names that differ in no more than capitals")
+    weights = table.each(lambda _, value: number(value))
+    with table.at():
+        shares = shares_of(list(weights.values()))
+    return tuple(zip(weights, shares, strict=True))

@@ -10,13 +10,14 @@ from __future__ import annotations
 import bisect
 import hashlib
 import itertools
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any, Protocol
 
 from yehu_server.errors import ParameterError
+from yehu_server.util.documents import Fields
+from yehu_server.util.values import choice, number
 
 MOST_CHOICES = 1000
 
@@ -142,59 +143,67 @@ class Normal:
         return False
 
 
-def read_distribution(entry: Any, where: str) -> Distribution:
+def read_distribution(entry: Any) -> Distribution:
     """Read how a value is drawn: a number, or a table as docs/dataset.md describes.
 
     Raises
     ------
     ParameterError
-        Naming the entry.
+        Where it is none of them.
     """
     if not isinstance(entry, Mapping):
-        value = number(entry, where)
+        value = number(entry)
         return UniformReal(value, value)
-    names = set(entry)
-    if names <= {"choose", "weights"} and "choose" in names:
-        return _choice(entry, where)
-    if names == {"mean", "deviation", "from", "to"}:
-        mean, deviation, lo, hi = (number(entry[name], f"{where}.{name}") for name in NORMAL)
-        if not (deviation > 0.0 and lo < hi):
-            raise ParameterError(f"{where}: deviation above 0, and from below to")
-        if not NormalDist(mean, deviation).cdf(hi) > NormalDist(mean, deviation).cdf(lo):
-            raise ParameterError(f"{where}: nothing is drawn so far from the mean")
-        return Normal(mean, deviation, lo, hi)
+    table, names = Fields(entry), entry.keys()
+    if "choose" in names and names <= {"choose", "weights"}:
+        values = table.need("choose", numbers)
+        return Choice(tuple(values), table.read("weights", _weights, _even(values), len(values)))
+    if names == set(NORMAL):
+        return _normal(*(table.need(name, number) for name in NORMAL))
     if not {"from", "to"} <= names <= {"from", "to", "spacing"}:
         raise ParameterError(
-            f"{where}: expected a number, {{from, to}}, {{from, to, spacing}}, {{choose}}, "
+            "expected a number, {from, to}, {from, to, spacing}, {choose}, "
             "{choose, weights} or {mean, deviation, from, to}"
         )
-    lo, hi = number(entry["from"], f"{where}.from"), number(entry["to"], f"{where}.to")
-    if lo > hi:
-        raise ParameterError(f"{where}: from is above to")
-    spacing = entry.get("spacing", "even")
-    if spacing == "whole":
-        if lo != int(lo) or hi != int(hi):
-            raise ParameterError(f"{where}: from and to are whole numbers")
-        return UniformInteger(int(lo), int(hi))
-    if spacing not in ("even", "ratio"):
-        raise ParameterError(f"{where}.spacing: even, ratio or whole")
-    if spacing == "ratio" and lo <= 0.0:
-        raise ParameterError(f"{where}: by ratio, from is above 0")
-    return UniformReal(lo, hi, by_ratio=spacing == "ratio")
+    spacing = table.read("spacing", choice, "even", ("even", "ratio", "whole"))
+    return _between(table.need("from", number), table.need("to", number), spacing)
 
 
 NORMAL = ("mean", "deviation", "from", "to")
 
 
-def _choice(entry: Mapping[str, Any], where: str) -> Choice:
-    values = numbers(entry["choose"], f"{where}.choose")
-    weights = numbers(entry.get("weights", [1.0] * len(values)), f"{where}.weights")
-    if len(weights) != len(values):
-        raise ParameterError(f"{where}.weights: as many as are to choose from")
-    return Choice(tuple(values), shares_of(weights, f"{where}.weights"))
+def _normal(mean: float, deviation: float, lo: float, hi: float) -> Normal:
+    if not (deviation > 0.0 and lo < hi):
+        raise ParameterError("deviation above 0, and from below to")
+    if not NormalDist(mean, deviation).cdf(hi) > NormalDist(mean, deviation).cdf(lo):
+        raise ParameterError("nothing is drawn so far from the mean")
+    return Normal(mean, deviation, lo, hi)
 
 
-def shares_of(weights: Sequence[float], where: str) -> tuple[float, ...]:
+def _between(lo: float, hi: float, spacing: str) -> UniformReal | UniformInteger:
+    if lo > hi:
+        raise ParameterError("from is above to")
+    if spacing == "whole":
+        if lo != int(lo) or hi != int(hi):
+            raise ParameterError("from and to are whole numbers")
+        return UniformInteger(int(lo), int(hi))
+    if spacing == "ratio" and lo <= 0.0:
+        raise ParameterError("by ratio, from is above 0")
+    return UniformReal(lo, hi, by_ratio=spacing == "ratio")
+
+
+def _even(values: Sequence[float]) -> tuple[float, ...]:
+    return shares_of([1.0] * len(values))
+
+
+def _weights(value: Any, count: int) -> tuple[float, ...]:
+    weights = numbers(value)
+    if len(weights) != count:
+        raise ParameterError("as many as are to choose from")
+    return shares_of(weights)
+
+
+def shares_of(weights: Sequence[float]) -> tuple[float, ...]:
     """Sums of weights, the last of which is 1.
 
     Raises
@@ -203,30 +212,11 @@ def shares_of(weights: Sequence[float], where: str) -> tuple[float, ...]:
         Where they are no weights.
     """
     if min(weights) < 0.0 or not sum(weights) > 0.0:
-        raise ParameterError(f"{where}: numbers from 0, not all of them 0")
+        raise ParameterError("numbers from 0, not all of them 0")
     return tuple(total / sum(weights) for total in itertools.accumulate(weights))
 
 
-def number(value: Any, where: str) -> float:
-    """A finite number.
-
-    Raises
-    ------
-    ParameterError
-        Where it is none.
-    """
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ParameterError(f"{where}: expected a number, got {value!r}")
-    try:
-        found = float(value)
-    except OverflowError:
-        found = math.inf
-    if not abs(found) < math.inf:
-        raise ParameterError(f"{where}: {value} is not finite")
-    return found
-
-
-def numbers(value: Any, where: str) -> list[float]:
+def numbers(value: Any) -> list[float]:
     """A list of numbers, not empty.
 
     Raises
@@ -235,5 +225,5 @@ def numbers(value: Any, where: str) -> list[float]:
         Where it is none.
     """
     if not isinstance(value, list) or not 0 < len(value) <= MOST_CHOICES:
-        raise ParameterError(f"{where}: expected a list of 1 to {MOST_CHOICES} numbers")
-    return [number(each, where) for each in value]
+        raise ParameterError(f"expected a list of 1 to {MOST_CHOICES} numbers")
+    return [number(each) for each in value]

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.errors import ParameterError
+from yehu_server.util.documents import Fields
+from yehu_server.util.values import brief, choice, number, whole
 
 Array = Any
 
@@ -62,14 +64,12 @@ def spread_axis(name: str, first: float, last: float, steps: int, spread: str) -
     ParameterError
         Where these are none.
     """
-    if not 2 <= steps <= MOST_VALUES:
-        raise ParameterError(f"{name}: {steps} steps: 2 to {MOST_VALUES} are possible")
-    if spread not in SPREADS:
-        raise ParameterError(f"{name}: spread {spread!r} is not one of {', '.join(SPREADS)}")
+    whole(steps, 2, MOST_VALUES)
+    choice(spread, SPREADS)
     if not (math.isfinite(first) and math.isfinite(last)):
-        raise ParameterError(f"{name}: {first} to {last} is not finite")
+        raise ParameterError(f"{first} to {last} is not finite")
     if spread == "log" and first * last <= 0.0:
-        raise ParameterError(f"{name}: a log spread from {first:g} to {last:g} is impossible")
+        raise ParameterError(f"a log spread from {first:g} to {last:g} is impossible")
     part = np.arange(steps) / (steps - 1)
     values = first * (last / first) ** part if spread == "log" else first + (last - first) * part
     values[-1] = last
@@ -95,6 +95,8 @@ def axis_of(text: str) -> Axis:
             spread = parts[3] if len(parts) == 4 else "linear"
             return spread_axis(name, float(parts[0]), float(parts[1]), int(parts[2]), spread)
         return Axis(name, tuple(_value(value) for value in values.split(",")))
+    except ParameterError as error:
+        raise ParameterError(f"{name}: {error}") from error
     except ValueError:
         raise ParameterError(f"{text!r}: expected numbers after {name}=") from None
 
@@ -115,31 +117,12 @@ def axis_from(name: str, entry: Any) -> Axis:
     """
     if isinstance(entry, list):
         if not 1 <= len(entry) <= MOST_VALUES:
-            raise ParameterError(f"vary {name}: expected 1 to {MOST_VALUES} values")
-        return Axis(name, tuple(_entry(name, value) for value in entry))
+            raise ParameterError(f"expected 1 to {MOST_VALUES} values")
+        return Axis(name, tuple(x if isinstance(x, str) else number(x) for x in entry))
     if not isinstance(entry, Mapping):
-        raise ParameterError(f"vary {name}: expected a list, or from, to and steps")
-    for key in entry:
-        if key not in {"from", "to", "steps", "spread"}:
-            raise ParameterError(
-                f"vary {name}: unknown name {key!r} (known: from, to, steps, spread)"
-            )
-    try:
-        first, last, steps = entry["from"], entry["to"], entry["steps"]
-    except KeyError as error:
-        raise ParameterError(f"vary {name}: {error.args[0]} is missing") from None
-    if isinstance(steps, bool) or not isinstance(steps, int):
-        raise ParameterError(f"vary {name}: steps: expected a whole number, got {steps!r}")
-    numbers = [_entry(name, value) for value in (first, last)]
-    if not all(isinstance(number, float) for number in numbers):
-        raise ParameterError(f"vary {name}: from and to: expected numbers")
-    spread = str(entry.get("spread", "linear"))
-    return spread_axis(name, float(numbers[0]), float(numbers[1]), steps, spread)
-
-
-def _entry(name: str, value: Any) -> Value:
-    if isinstance(value, str):
-        return value
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ParameterError(f"vary {name}: expected numbers, got {value!r}")
-    return float(value)
+        raise ParameterError(f"expected a list, or from, to and steps, got {brief(entry)}")
+    table = Fields(entry)
+    table.only("from", "to", "steps", "spread")
+    first, last = table.need("from", number), table.need("to", number)
+    steps = table.need("steps", whole, 2, MOST_VALUES)
+    return spread_axis(name, first, last, steps, table.read("spread", choice, "linear", SPREADS))

@@ -21,6 +21,7 @@ from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curve
 from yehu_server.lab.sweeps.axes import Axis, Value
 from yehu_server.lab.sweeps.notes import distinct
 from yehu_server.scores.gesture import CONTROLS, Gesture, gesture_from
+from yehu_server.util.documents import Fields
 
 Array = Any
 
@@ -47,7 +48,7 @@ class GestureBow:
     folder: Path
 
     @classmethod
-    def of(cls, data: Mapping[str, Any], folder: Path) -> GestureBow:
+    def of(cls, table: Fields, folder: Path) -> GestureBow:
         """Read the entries of a study.
 
         Raises
@@ -56,10 +57,11 @@ class GestureBow:
             Where one is wrong.
         """
         for name in BESIDE:
-            if name in data:
-                raise ParameterError(f"{name}: belongs into the gesture")
-        gesture_from(data["gesture"], folder)
-        return cls(data["gesture"], folder)
+            if name in table.data:
+                table.wrong(name, "belongs into the gesture")
+        gesture = table.table("gesture")
+        gesture_from(gesture, folder)
+        return cls(gesture.data, folder)
 
     def check(self, axes: Sequence[Axis]) -> None:
         """Refuse axes that are none, or out of bounds.

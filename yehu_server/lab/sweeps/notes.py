@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, TEXTURE, V_B, X_B
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.calibration import (
@@ -22,12 +21,14 @@ from yehu_server.core.player.calibration import (
     frequency_hz,
     wave_speed,
 )
-from yehu_server.errors import ParameterError
+from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.lab.regimes.judge import check_length
 from yehu_server.lab.regimes.strokes import STROKE, ControlCurves, control_curves_of, prepared
 from yehu_server.lab.sweeps.axes import Axis
 from yehu_server.playing.calibration_store import calibration_for
-from yehu_server.scores.gesture import CONTROLS, Gesture
+from yehu_server.scores.gesture import CONTROLS, Gesture, sample_rate
+from yehu_server.util.documents import Fields
+from yehu_server.util.values import brief, number
 
 Array = Any
 
@@ -91,7 +92,7 @@ class NoteBow:
     folder: Path
 
     @classmethod
-    def of(cls, data: Mapping[str, Any], folder: Path) -> NoteBow:
+    def of(cls, table: Fields, folder: Path) -> NoteBow:
         """Read the entries of a study.
 
         Raises
@@ -99,20 +100,15 @@ class NoteBow:
         ParameterError
             Where one is wrong.
         """
-        rate = _number(data.get("sample_rate", 44100), "sample_rate")
-        check_rate(rate)
-        duration = _number(data.get("duration", 0.3), "duration")
-        if not BOW_MOVES < duration <= LONGEST:
-            raise ParameterError(f"duration: {duration} s is not within {BOW_MOVES} to {LONGEST} s")
-        stroke = data.get("stroke", {})
-        if not isinstance(stroke, Mapping):
-            raise ParameterError("stroke: expected a table of values")
-        for name, value in stroke.items():
-            _check(name, value)
-        fixed = {name: entry.default for name, entry in ENTRIES.items()} | dict(stroke)
-        instrument = data.get("instrument", {})
+        rate = table.read("sample_rate", sample_rate, 44100.0)
+        duration = table.read("duration", number, 0.3, BOW_MOVES, LONGEST, "s")
+        if duration == BOW_MOVES:
+            table.wrong("duration", f"expected more than {BOW_MOVES} s")
+        fixed = {name: entry.default for name, entry in ENTRIES.items()}
+        fixed |= table.table("stroke").each(_checked)
+        instrument = table.table("instrument")
         override(Quantities(), instrument, folder)
-        return cls(rate, duration, instrument, fixed, folder)
+        return cls(rate, duration, instrument.data, fixed, folder)
 
     def check(self, axes: Sequence[Axis]) -> None:
         """Refuse axes that are none, or out of bounds.
@@ -127,7 +123,7 @@ class NoteBow:
             if axis.name.startswith("instrument."):
                 continue
             for value in axis.values:
-                _check(axis.name, value)
+                Fields({axis.name: value}).each(_checked)
             values[axis.name] = axis.values
         for string in values["string"]:
             lowest = OPEN_NOTES[int(string) - 1]
@@ -290,19 +286,12 @@ def nested(path: Sequence[str], value: Any) -> dict[str, Any]:
     return dict(entries)
 
 
-def _number(value: Any, name: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ParameterError(f"{name}: expected a number, got {value!r}")
-    return float(value)
-
-
-def _check(name: str, value: Any) -> None:
+def _checked(name: str, value: Any) -> Any:
     entry = ENTRIES.get(name)
     if entry is None:
-        raise ParameterError(f"unknown name {name!r} (known: {', '.join(ENTRIES)}, instrument....)")
-    number = _number(value, name)
-    unit = f" {entry.unit}" if entry.unit else ""
-    if not entry.lo <= number <= entry.hi:
-        raise ParameterError(f"{name}: {number:g} is not within {entry.lo:g} to {entry.hi:g}{unit}")
-    if entry.whole and number != int(number):
-        raise ParameterError(f"{name}: {number:g} is not a whole number")
+        hint = did_you_mean(name, ENTRIES)
+        raise ParameterError(f"unknown entry{hint} (known: {', '.join(ENTRIES)}, instrument....)")
+    found = number(value, entry.lo, entry.hi, entry.unit)
+    if entry.whole and found != int(found):
+        raise ParameterError(f"{brief(value)} is not a whole number")
+    return value

@@ -15,8 +15,8 @@ from yehu_server.lab.sweeps.axes import Axis, axis_from
 from yehu_server.lab.sweeps.gestures import GestureBow
 from yehu_server.lab.sweeps.notes import NoteBow
 from yehu_server.scores.gesture import Gesture
-from yehu_server.util.documents import parse_json, parse_toml
-from yehu_server.util.files import read_text
+from yehu_server.util.documents import Document, Fields
+from yehu_server.util.values import choice, choices, whole
 
 Array = Any
 
@@ -26,15 +26,8 @@ MOST_POINTS = 10**8  # of the finest grid
 MOST_LEVELS = 8
 BORDERS = ("regimes", "helmholtz")
 KNOWN = (
-    "about",
-    "sample_rate",
-    "duration",
-    "instrument",
-    "stroke",
-    "gesture",
-    "vary",
-    "refine",
-)
+    "about", "sample_rate", "duration", "instrument", "stroke", "gesture", "vary", "refine"
+)  # fmt: skip
 
 
 class Bow(Protocol):
@@ -113,32 +106,21 @@ def read_study(path: Path, vary: Sequence[Axis] = ()) -> Study:
     ParameterError
         Where it is wrong.
     """
-    try:
-        text = read_text(path, MOST_BYTES)
-        is_gesture = path.suffix == ".json"
-        data = parse_json(text) if is_gesture else parse_toml(text)
-    except OSError as error:
-        raise ScoreError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise ScoreError(f"{path}: not a study ({error})") from error
-    try:
-        data = {"gesture": data} if is_gesture else with_gesture(data, path.parent)
-        return study_of(with_axes(data, vary), path.parent)
-    except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+    document = Document(path, "a study", unreadable=ScoreError).read(path, MOST_BYTES)
+    if path.suffix == ".json":
+        data: Mapping[str, Any] = {"gesture": document.json().data}
+    else:
+        table = document.toml()
+        data = table.data
+        if isinstance(data.get("gesture"), str):
+            gesture = table.read("gesture", _gesture, None, path.parent)
+            data = {**data, "gesture": gesture}
+    return study_of(Fields(with_axes(data, vary), document), path.parent)
 
 
-def with_gesture(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The data of a study, with the gesture file that it names read into it."""
-    name = data.get("gesture")
-    if not isinstance(name, str):
-        return dict(data)
-    try:
-        return {**data, "gesture": parse_json(read_text(folder / name, MOST_BYTES))}
-    except OSError as error:
-        raise ParameterError(f"gesture {name}: {error.strerror}") from error
-    except ValueError as error:
-        raise ParameterError(f"gesture {name}: not a gesture file ({error})") from error
+def _gesture(name: str, folder: Path) -> Mapping[str, Any]:
+    """The data of the gesture file that a study names."""
+    return Document(name, "a gesture file").read(folder / name, MOST_BYTES).json().data
 
 
 def with_axes(data: Mapping[str, Any], axes: Sequence[Axis]) -> dict[str, Any]:
@@ -174,27 +156,25 @@ def study_of(data: Any, folder: Path = Path()) -> Study:
     ParameterError
         Where an entry is wrong.
     """
-    if not isinstance(data, Mapping):
-        raise ParameterError("expected a table")
-    for name in data:
-        if name not in KNOWN:
-            raise ParameterError(f"unknown name {name!r} (known: {', '.join(KNOWN)})")
-    vary = data.get("vary", {})
-    if not isinstance(vary, Mapping):
-        raise ParameterError("vary: expected a table of names")
-    axes = tuple(axis_from(name, entry) for name, entry in _flat(vary).items())
+    table = Fields.of(data)
+    table.only(*KNOWN)
+    vary = table.table("vary")
+    axes = tuple(Fields(_flat(vary.data), vary.document, "vary", vary.key).each(axis_from).values())
     if not axes:
-        raise ParameterError("nothing is varied: name it under [vary], or by --vary")
-    bow: Bow = GestureBow.of(data, folder) if "gesture" in data else NoteBow.of(data, folder)
-    refine, levels, border = _refinement(data.get("refine", {}), axes)
-    fine = tuple(axis.refined(levels) if i in refine else axis for i, axis in enumerate(axes))
-    kept = {**data, "folder": str(folder.absolute())}
+        vary.wrong("", "nothing is varied: name it under [vary], or by --vary")
+    made_by: Any = GestureBow if "gesture" in table.data else NoteBow
+    bow: Bow = made_by.of(table, folder)
+    refine, levels, border = _refinement(table.table("refine"), axes)
+    with table.at("refine"):
+        fine = tuple(axis.refined(levels) if i in refine else axis for i, axis in enumerate(axes))
+    kept = {**table.data, "folder": str(folder.absolute())}
     study = Study(kept, fine, refine, levels, border, bow)
-    if study.coarse > MOST_STROKES:
-        raise ParameterError(f"{study.coarse} strokes are more than {MOST_STROKES}")
-    if math.prod(study.shape) > MOST_POINTS:
-        raise ParameterError("the finest grid has too many points")
-    bow.check(fine)
+    with table.at():
+        if study.coarse > MOST_STROKES:
+            raise ParameterError(f"{study.coarse} strokes are more than {MOST_STROKES}")
+        if math.prod(study.shape) > MOST_POINTS:
+            raise ParameterError("the finest grid has too many points")
+        bow.check(fine)
     return study
 
 
@@ -217,20 +197,10 @@ def _flat(table: Mapping[str, Any], above: str = "") -> dict[str, Any]:
     return found
 
 
-def _refinement(entry: Any, axes: Sequence[Axis]) -> tuple[tuple[int, ...], int, str]:
-    if not isinstance(entry, Mapping):
-        raise ParameterError("refine: expected a table of axes and levels")
-    for name in entry:
-        if name not in {"axes", "levels", "border"}:
-            raise ParameterError(f"refine: unknown name {name!r} (known: axes, levels, border)")
+def _refinement(table: Fields, axes: Sequence[Axis]) -> tuple[tuple[int, ...], int, str]:
     names = [axis.name for axis in axes]
-    wanted = entry.get("axes", [])
-    if not isinstance(wanted, list) or not all(name in names for name in wanted):
-        raise ParameterError(f"refine axes: expected some of {', '.join(names)}")
-    levels = entry.get("levels", 0)
-    if isinstance(levels, bool) or not isinstance(levels, int) or not 0 <= levels <= MOST_LEVELS:
-        raise ParameterError(f"refine levels: expected 0 to {MOST_LEVELS}, got {levels!r}")
-    border = entry.get("border", BORDERS[0])
-    if border not in BORDERS:
-        raise ParameterError(f"refine border: {border!r} is not one of {', '.join(BORDERS)}")
+    wanted = table.read("axes", choices, [], names)
+    levels = table.read("levels", whole, 0, 0, MOST_LEVELS)
+    border = table.read("border", choice, BORDERS[0], BORDERS)
+    table.only()
     return tuple(sorted(names.index(name) for name in wanted)), levels if wanted else 0, border

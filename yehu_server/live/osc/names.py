@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable, Iterator
 from collections.abc import Mapping as Values
 from typing import Any
 
-from yehu_server.errors import ParameterError, RefusedError, YehuError
+from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean
 from yehu_server.live.osc.part_status import PART_STATUS
 from yehu_server.live.osc.patterns import PatternError, matches
 from yehu_server.live.osc.status import STATUS, STATUS_PREFIX, as_argument
@@ -46,8 +45,7 @@ def parameter_of(address: str) -> str:
         name = address.removeprefix(STATUS_PREFIX)
         if name in names:
             raise ParameterError(f"the status cannot be set; ask for it by {PREFIX}/get")
-        close = difflib.get_close_matches(name, names, n=1)
-        hint = f"; did you mean {STATUS_PREFIX}{close[0]}?" if close else ""
+        hint = did_you_mean(address, [STATUS_PREFIX + name for name in names], 0.8)
         raise ParameterError(f"unknown status value {address!r}{hint}")
     return find(address).address
 

@@ -1,0 +1,103 @@
+"""The one reader of TOML and JSON: what is wrong is told with line, place and a near word."""
+
+from __future__ import annotations
+
+import pytest
+
+from yehu_server.errors import MappingError, ParameterError
+from yehu_server.util.documents import Document, Fields
+from yehu_server.util.values import choice, flag, number, whole
+
+TEXT = """
+gain = 3
+[room]
+siz = 9
+decay = "long"
+[[bind]]
+channel = 1
+[[bind]]
+channel = 17
+soft = 1
+"""
+
+
+def read(table: Fields) -> list[object]:
+    room = table.table("room")
+    found: list[object] = [
+        table.read("gain", number, 0.0, -60.0, 6.0, "dB"),
+        room.read("size", number, 8.0),
+        room.read("decay", number, 2.0, 0.1, 9.0, "s"),
+    ]
+    room.only()
+    for bind in table.tables("bind"):
+        found += [bind.need("channel", whole, 1, 16), bind.read("soft", flag, False)]
+    table.only()
+    table.document.finish()
+    return found
+
+
+def document(text: str, most_errors: int = 1) -> Document:
+    return Document("mine.toml", "a file", MappingError, text=text, most_errors=most_errors)
+
+
+def test_all_errors_are_told_by_line_with_place_and_a_near_word():
+    with pytest.raises(MappingError) as error:
+        read(document(TEXT, 50).toml())
+    assert [str(error.value), *error.value.more] == [
+        "mine.toml:4: room.siz: unknown entry; did you mean size? (known: size, decay)",
+        "mine.toml:5: room.decay: expected a number, got 'long'",
+        "mine.toml:9: bind 2: channel: expected a whole number from 1 to 16, got 17",
+        "mine.toml:10: bind 2: soft: expected true or false, got 1",
+    ]
+
+
+def test_else_the_first_is_raised_at_once():
+    with pytest.raises(MappingError, match=r"^mine\.toml:5: room\.decay: expected a number"):
+        read(document(TEXT).toml())
+
+
+def test_what_is_right_is_read_and_what_is_missing_has_its_default():
+    assert read(document("gain = 3\nbind = [{channel = 2}]").toml()) == [3.0, 8.0, 2.0, 2, False]
+    assert read(document('{"gain": 3, "bind": []}').json()) == [3.0, 8.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("data", "reason"),
+    [
+        ([], "expected a table of names and values, got []"),
+        ({"gain": 9}, "gain: 9 is not within -60 to 6 dB"),
+        ({"gain": float("nan")}, "gain: nan is not finite"),
+        ({"gain": 10**5000}, "gain: a very large number is not finite"),
+        ({"room": 3}, "room: expected a table"),
+        ({"room": {"a\nb": 3}}, r"room: 'a\\nb': unknown entry"),
+        ({"bind": 3}, "bind: write each as [[bind]]"),
+        ({"bind": [3]}, "bind 1: expected a table"),
+        ({"bind": [{}]}, "bind 1: channel: missing"),
+        ({"x" * 10**6: 3}, f"{'x' * 77}...: unknown entry"),
+    ],
+)
+def test_data_without_a_file_have_their_place_alone(data, reason):
+    with pytest.raises(ParameterError) as error:
+        read(Fields(data))
+    assert str(error.value).startswith(reason.replace("\\\\", "\\"))
+    assert len(str(error.value)) < 200
+
+
+def test_an_error_keeps_the_place_that_it_has_and_gets_one_where_it_has_none():
+    table = Document("mine.toml", text="[bow]\nlaw = 'thermic'").toml()
+    match = r"^mine\.toml:2: bow\.law: .*did you mean thermal\?$"
+    with pytest.raises(ParameterError, match=match), table.at():
+        table.table("bow").read("law", choice, "", ("thermal", "plastic"))
+    with pytest.raises(ParameterError, match=r"^mine\.toml:1: bow: too heavy$"), table.at("bow"):
+        raise ParameterError("too heavy")
+
+
+@pytest.mark.parametrize("text", ["a = 1\na = 2\n", "\nb = ]", "\nb\n"])
+def test_what_is_no_toml_has_its_line(text):
+    with pytest.raises(MappingError, match=r"^mine\.toml:2: not a file \("):
+        document(text).toml()
+
+
+def test_what_is_no_json_has_its_line():
+    with pytest.raises(MappingError, match=r"^mine\.toml:2: not a file \("):
+        document('{"a":\n3').json()

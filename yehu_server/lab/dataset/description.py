@@ -12,8 +12,8 @@ from typing import Any
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.lab.dataset.draws import (
-    Between,
     Distribution,
+    UniformReal,
     chance,
     read_distribution,
     shares_of,
@@ -165,7 +165,7 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
 def _draws(table: Fields, kind: str) -> dict[str, Distribution]:
     known = STROKES if kind == "strokes" else NOTES
     draws: dict[str, Distribution] = {
-        name: Between(default, default)
+        name: UniformReal(default, default)
         for name, (default, _, _) in known.items()
         if default is not None
     }

@@ -20,7 +20,7 @@ PACKAGE = "yehu_server"
 # What other files reach. A change of anything else reaches the files of tests that name it.
 FOLDERS = {
     "web": ("tests/panel", "tests/ahead"),
-    "mappings": ("tests/surfaces", "tests/playing/test_mapping_files.py"),
+    "mappings": ("tests/surfaces", "tests/test_mappings_files.py"),
     "docs": ("tests/test_docs.py", "tests/documentation"),
 }
 _MODULE = re.compile(rf"\b{PACKAGE}(?:\.\w+)+")

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+import pytest
 from sound import alone
 
 from yehu_server.core.engine.instrument import Instrument
@@ -26,6 +27,8 @@ from yehu_server.live.midi.ports import MidiOptions
 from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.packets import unpack
 from yehu_server.live.server import Server
+
+pytestmark = pytest.mark.slow
 
 RATE = 48000
 DEVICE = "system, JACK"
@@ -186,7 +189,6 @@ STEPS = """
 import socket, sys, time
 from yehu_server.live.osc.packets import pack
 
-pytestmark = pytest.mark.slow
 osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 osc.connect(("127.0.0.1", int(sys.argv[1])))
 for step in range(500):

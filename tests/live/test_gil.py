@@ -10,6 +10,7 @@ import threading
 import time
 
 import numpy as np
+import pytest
 from sound import alone
 
 from yehu_server.core.engine.instrument import Instrument
@@ -18,6 +19,8 @@ from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
 from yehu_server.scores.capture_header import session_start_of
 from yehu_server.scores.capture_writer import CaptureWriter
+
+pytestmark = pytest.mark.slow
 
 RATE, BLOCK = 48000, 128
 A_SECOND_US = 1_000_000
@@ -103,7 +106,6 @@ from yehu_server.live.audio.stream import Stream
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.spec import InstrumentSpec
 
-pytestmark = pytest.mark.slow
 
 memory = SharedMemory()
 stage = Ensemble(

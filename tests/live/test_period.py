@@ -8,13 +8,14 @@ import time
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 DEVICE = "system, JACK Audio Connection Kit"
 BLOCK = 128
 MESSAGES = 80
 ASK_FOR = """
 import os, sys, jack
 
-pytestmark = pytest.mark.slow
 client = jack.Client("period", servername=sys.argv[1], no_start_server=True)
 client.blocksize = int(sys.argv[2])
 os._exit(0)

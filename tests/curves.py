@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.midi import curves, values
-from yehu_server.core.midi.dispatch import interpret
 from yehu_server.core.midi.events import CONTROL
+from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import MIDI, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.params.table import TABLE

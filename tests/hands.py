@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.midi.dispatch import interpret
+from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
 from yehu_server.core.player.notes import sounding_pitch

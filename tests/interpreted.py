@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.midi.dispatch import interpret
 from yehu_server.core.midi.events import EVENTS
+from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import IN_PORT, MIDI, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player.wishes import KINDS

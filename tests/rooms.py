@@ -9,8 +9,8 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import new_record
+from yehu_server.core.stage.late_field import ROOM, prepare_room, reverberate, set_room
 from yehu_server.core.stage.record import EVERY
-from yehu_server.core.stage.room import ROOM, prepare_room, reverberate, set_room
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ It needs matplotlib: ``pip install yehu-server[plots]``.
 """
 
 from yehu_server.lab.plot.energies import energy
-from yehu_server.lab.plot.maps import guettler, regimes, schelleng
 from yehu_server.lab.plot.shapes import strings
 from yehu_server.lab.plot.sounds import level, pitch, spectrogram
+from yehu_server.lab.plot.sweep_maps import guettler, regimes, schelleng
 
 __all__ = [
     "energy",

@@ -10,7 +10,7 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.player.wishes import BEGIN
-from yehu_server.core.stage.geometry import EARS
+from yehu_server.core.stage.image_sources import EARS
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.section_instruments import SECTION, section_specs
 from yehu_server.playing.style import Style

@@ -31,8 +31,8 @@ from yehu_server.core.player.bowing import (
 )
 from yehu_server.lab.plot.axes import LABELS
 from yehu_server.lab.plot.cells import limit_lines, regime_patches
-from yehu_server.lab.plot.maps import map_of
 from yehu_server.lab.plot.study import draw_limits_over, draw_map
+from yehu_server.lab.plot.sweep_maps import map_of
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.lab.sweeps.running import sweep
 from yehu_server.lab.sweeps.study import study_of

@@ -31,7 +31,7 @@ from yehu_server.lab.plot.cells import (
     regime_colours,
     regime_patches,
 )
-from yehu_server.lab.plot.maps import PERIOD_COLOURS, PERIODS
+from yehu_server.lab.plot.sweep_maps import PERIOD_COLOURS, PERIODS
 from yehu_server.playing.pitch_and_level import note_name
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,7 +8,7 @@ import soundfile
 from sound_files import MATRIX, STEP, few_and_many, matrix, noise
 
 from yehu_server.errors import OutputError
-from yehu_server.util import wav
+from yehu_server.util import wav_stream
 from yehu_server.util.sound_file import check_format, is_rendered, sound_file
 
 
@@ -102,8 +102,8 @@ def test_the_target_appears_only_when_it_is_whole(tmp_path):
 def test_a_wav_file_longer_than_its_sizes_can_say_is_refused(
     tmp_path, monkeypatch, subtype, bytes_each, channels
 ):
-    assert wav.WAV_LIMIT <= 2**32
-    monkeypatch.setattr(wav, "WAV_LIMIT", 1000 * channels * bytes_each)
+    assert wav_stream.WAV_LIMIT <= 2**32
+    monkeypatch.setattr(wav_stream, "WAV_LIMIT", 1000 * channels * bytes_each)
     write(tmp_path / "just.wav", noise(1000, channels), subtype=subtype)
     with pytest.raises(OutputError, match=r"long\.wav.*FLAC"):
         write(tmp_path / "long.wav", noise(1001, channels), subtype=subtype)
@@ -112,7 +112,7 @@ def test_a_wav_file_longer_than_its_sizes_can_say_is_refused(
 
 
 def test_flac_is_not_advised_for_more_channels_than_it_holds(tmp_path, monkeypatch):
-    monkeypatch.setattr(wav, "WAV_LIMIT", 1000)
+    monkeypatch.setattr(wav_stream, "WAV_LIMIT", 1000)
     with pytest.raises(OutputError, match=r"too long for a WAV file \(4 GiB\)$"):
         write(tmp_path / "long.wav", noise(1001, 9))
 

@@ -12,7 +12,7 @@ from sound_files import KEPT_FRAMES, NoiseTape
 from yehu_server.errors import OutputError
 from yehu_server.live.audio import recorder
 from yehu_server.live.audio.recorder import Recorder
-from yehu_server.util import wav
+from yehu_server.util import wav_stream
 
 RATE = 48000
 
@@ -63,7 +63,7 @@ def test_what_was_missed_is_said_and_is_silence_so_that_the_rest_keeps_its_place
 
 
 def test_a_file_as_long_as_can_be_ends_the_recording_and_is_kept(tape, tmp_path, monkeypatch):
-    monkeypatch.setattr(wav, "WAV_LIMIT", 8 * 2000)
+    monkeypatch.setattr(wav_stream, "WAV_LIMIT", 8 * 2000)
     monkeypatch.setattr(recorder, "EVERY_S", 0.001)
     said: list[str] = []
     recording = Recorder(tape, tmp_path / "r.wav", 0, said.append)

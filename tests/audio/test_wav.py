@@ -11,7 +11,7 @@ import pytest
 import soundfile
 
 from yehu_server.util.sound_file import SUBTYPES
-from yehu_server.util.wav import WavStream, encoded
+from yehu_server.util.wav_stream import WavStream, encoded
 
 EDGES = [1.0, -1.0, 0.0, -0.0, 1.5, -1.5, 2**-24, -(2**-24), 2**-31, -(2**-31), 3 * 2**-32]
 

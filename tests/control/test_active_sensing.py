@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import pytest
 
 from yehu_server.core.midi.events import DISCONNECT, EVENTS, MESSAGE
-from yehu_server.live.midi import process
+from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed
-from yehu_server.live.midi.process import ACTIVE_SENSING, SENSE_EVERY_S, Input, Inputs
+from yehu_server.live.midi.input_process import ACTIVE_SENSING, SENSE_EVERY_S, Input, Inputs
 from yehu_server.live.midi.routes import Router
 
 MS = 1_000_000
@@ -31,8 +31,8 @@ class Desk:
     def __init__(self, monkeypatch) -> None:
         self.now_ns = 100_000 * MS
         self.told: list[str] = []
-        monkeypatch.setattr(process.time, "monotonic", lambda: 1e-9 * self.now_ns)
-        monkeypatch.setattr(process.time, "monotonic_ns", lambda: self.now_ns)
+        monkeypatch.setattr(input_process.time, "monotonic", lambda: 1e-9 * self.now_ns)
+        monkeypatch.setattr(input_process.time, "monotonic_ns", lambda: self.now_ns)
         ring = SimpleNamespace(post=self.post)
         feed = MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)
         order = {"patterns": [], "others": True, "virtual": None, "api": None}

@@ -14,7 +14,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.rows import ROWS
 from yehu_server.core.player.wishes import BEGIN, KINDS, RAMP
 from yehu_server.core.stage.directivity import SIDES
-from yehu_server.core.stage.room import ROOM
+from yehu_server.core.stage.late_field import ROOM
 from yehu_server.core.stage.seat import SEAT
 from yehu_server.params.table import ENGINE, SLOT
 

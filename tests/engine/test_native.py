@@ -22,8 +22,8 @@ from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import ALL_FUNCTIONS
-from yehu_server.core.midi.dispatch import NATIVE_FUNCTIONS as PARTS
-from yehu_server.core.midi.dispatch import interpret
+from yehu_server.core.midi.interpret_events import NATIVE_FUNCTIONS as PARTS
+from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.rows import ROW

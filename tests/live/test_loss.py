@@ -434,7 +434,7 @@ def open_files() -> set[str]:
 
 def test_a_helper_process_that_is_ended_leaves_no_pipe_open(until):
     before = open_files()
-    helper = Child("yehu_server.live.midi.process", lambda _event: None)
+    helper = Child("yehu_server.live.midi.input_process", lambda _event: None)
     helper.stop()
     until(lambda: open_files() <= before, 2.0, "its pipes to be closed")
 
@@ -442,7 +442,7 @@ def test_a_helper_process_that_is_ended_leaves_no_pipe_open(until):
 def test_a_helper_process_that_crashes_leaves_no_pipe_open(until):
     before = open_files()
     events = []
-    helper = Child("yehu_server.live.midi.process", events.append)
+    helper = Child("yehu_server.live.midi.input_process", events.append)
     helper._process.kill()
     until(lambda: {"event": "gone"} in events, 2.0, "its end")
     time.sleep(0.1)
@@ -461,7 +461,7 @@ def test_a_helper_process_that_nobody_could_listen_to_is_ended(monkeypatch, star
 
     monkeypatch.setattr(threading.Thread, "start", fail)
     with pytest.raises(RuntimeError, match="thread"):
-        Child("yehu_server.live.midi.process", lambda _event: None)
+        Child("yehu_server.live.midi.input_process", lambda _event: None)
     monkeypatch.undo()
     assert open_files() <= before
 

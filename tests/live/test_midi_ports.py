@@ -20,8 +20,8 @@ from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.core.player.bowing import default_recipes
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
+from yehu_server.live.midi.input_process import Inputs
 from yehu_server.live.midi.ports import MidiOptions, MidiPorts
-from yehu_server.live.midi.process import Inputs
 from yehu_server.live.midi.routes import Router, is_wanted, stable_names
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server

@@ -49,7 +49,9 @@ def begun(jackd, serve, until):
     server = serve("--midi-api", "jack")
     osc = server.osc()
     server.said(f"playing on {DEVICE}")
-    until(lambda: {"audio.stream", "midi.process"} <= set(helpers(server)), 10.0, "its helpers")
+    until(
+        lambda: {"audio.stream", "midi.input_process"} <= set(helpers(server)), 10.0, "its helpers"
+    )
     return server, osc
 
 
@@ -57,7 +59,7 @@ def test_helpers_that_end_while_there_are_no_files_come_back_when_there_are(jack
     server, osc = begun(jackd, serve, until)
     pid, before, said = server.process.pid, helpers(server), len(server.lines)
     allowed = allow_files(pid, 3)
-    for name in ("audio.stream", "midi.process"):
+    for name in ("audio.stream", "midi.input_process"):
         os.kill(before[name], signal.SIGKILL)
     server.said("no sound: the audio process cannot be started: Too many open files", 10.0, said)
     server.said("MIDI inputs: Too many open files; trying again", 10.0, said)
@@ -70,7 +72,7 @@ def test_helpers_that_end_while_there_are_no_files_come_back_when_there_are(jack
 
     allow_files(pid, allowed)
     server.said(f"playing on {DEVICE}", 15.0, said)
-    until(lambda: "midi.process" in helpers(server), 15.0, "its MIDI process")
+    until(lambda: "midi.input_process" in helpers(server), 15.0, "its MIDI process")
     assert not any("Traceback" in line for line in server.lines)
     assert osc.status()["device_losses"] == 1
     assert server.end() == 0

@@ -14,12 +14,12 @@ from together import Together
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG_BYTES
-from yehu_server.core.midi.dispatch import interpret
+from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import IN_PORT, MIDI, clear_held, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.core.player import wishes as kinds
 from yehu_server.core.player.rows import ROW
-from yehu_server.core.stage.geometry import EARS
+from yehu_server.core.stage.image_sources import EARS
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
 from yehu_server.playing.binds import Bind
 from yehu_server.playing.mapping import Mapping

@@ -12,7 +12,7 @@ from acoustics import (
 )
 from rooms import Asked, Room
 
-from yehu_server.core.stage.room import LINES, mix
+from yehu_server.core.stage.late_field import LINES, mix
 
 STUDY, COURTYARD, HALL = Asked(5.0, 0.4, 0.4), Asked(14.0, 0.8, 0.6), Asked(25.0, 1.6, 0.35)
 PRESETS = {"study": STUDY, "courtyard": COURTYARD, "hall": HALL}

@@ -17,7 +17,7 @@ from yehu_server.compile.jit import Native, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.engine.atomics import at
 from yehu_server.core.engine.look import LOOK
-from yehu_server.core.midi.dispatch import interpret as interpret_event
+from yehu_server.core.midi.interpret_events import interpret as interpret_event
 from yehu_server.core.midi.record import MIDI, prepare_midi
 from yehu_server.core.midi.tables import SLOTS, TABLES
 from yehu_server.params.table import TABLE

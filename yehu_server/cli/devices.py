@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.errors import DeviceError
     from yehu_server.live.audio.devices import load_portaudio, outputs, quiet
-    from yehu_server.live.midi.process import list_inputs
+    from yehu_server.live.midi.input_process import list_inputs
 
     audio, audio_problem = [], ""
     with quiet():

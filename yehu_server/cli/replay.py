@@ -61,11 +61,10 @@ def add_to(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_server.core.engine.warming import warm_up
-    from yehu_server.live.audio.recorder import SUBTYPES
     from yehu_server.rendering.replay import replay
     from yehu_server.scores.capture import read_capture
     from yehu_server.util.files import check_distinct
-    from yehu_server.util.sound_file import format_of
+    from yehu_server.util.sound_file import DEFAULT_SUBTYPES, format_of
 
     check_distinct({"-o": arguments.output}, [arguments.capture])
     may_replace = check_output(arguments)
@@ -80,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
             capture,
             arguments.output,
             format_name=format_name,
-            subtype=arguments.subtype or SUBTYPES[format_name],
+            subtype=arguments.subtype or DEFAULT_SUBTYPES[format_name],
             max_duration_h=arguments.max_duration,
             progress=progress,
             may_replace=may_replace,

@@ -215,8 +215,8 @@ def options_of(arguments: argparse.Namespace) -> Any:
     """
     from yehu_server.live.addresses import Allowed
     from yehu_server.live.audio.output import OutputOptions
+    from yehu_server.live.midi.input_process import check_api
     from yehu_server.live.midi.ports import MidiOptions
-    from yehu_server.live.midi.process import check_api
     from yehu_server.live.options import ServeOptions
     from yehu_server.live.web.server import WebOptions
     from yehu_server.util.files import check_distinct

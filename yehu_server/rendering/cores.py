@@ -17,7 +17,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.intake import interpret_events
 from yehu_server.core.engine.mixing import mix_block
 from yehu_server.core.engine.sounding import STAGE_COLUMNS, sound_block
-from yehu_server.core.stage.geometry import EARS
+from yehu_server.core.stage.image_sources import EARS
 
 Array = Any
 

@@ -12,7 +12,7 @@ from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.rows import BEND
-from yehu_server.core.stage.geometry import EARS
+from yehu_server.core.stage.image_sources import EARS
 from yehu_server.playing.style import Style
 from yehu_server.scores.score import Score
 

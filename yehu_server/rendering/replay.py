@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.stage.geometry import EARS
+from yehu_server.core.stage.image_sources import EARS
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture import Capture
 from yehu_server.util.files import anything

@@ -12,14 +12,15 @@ import numpy as np
 import soundfile
 
 from yehu_server.errors import OutputError
-from yehu_server.util import flac, wav
+from yehu_server.util import flac_stream, wav_stream
 from yehu_server.util.files import anything, replacing, why
-from yehu_server.util.flac import FlacStream
-from yehu_server.util.wav import WavStream
+from yehu_server.util.flac_stream import FlacStream
+from yehu_server.util.wav_stream import WavStream
 
 FORMATS = ("wav", "flac")
-MOST_CHANNELS = {"wav": wav.MOST_CHANNELS, "flac": flac.MOST_CHANNELS}
+MOST_CHANNELS = {"wav": wav_stream.MOST_CHANNELS, "flac": flac_stream.MOST_CHANNELS}
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24", "float": "FLOAT"}
+DEFAULT_SUBTYPES = {"wav": "float", "flac": "24"}  # of recordings and replays
 RENDERED = (
     "yehu-server render"  # software named in a rendered file, which may therefore be replaced
 )
@@ -64,7 +65,9 @@ class SoundWriter:
         is_wav = format_name == "wav"
         self._target = target
         self._channels = channels
-        self._limit = wav.WAV_LIMIT // (channels * wav.BYTES[subtype]) if is_wav else None
+        self._limit = (
+            wav_stream.WAV_LIMIT // (channels * wav_stream.BYTES[subtype]) if is_wav else None
+        )
         self.frames = 0
         self.peak = 0.0
         self._power = 0.0
@@ -83,7 +86,7 @@ class SoundWriter:
         """Append samples [shape=(frames,) of one channel, or (frames, channels); full scale 1]."""
         self.frames += len(samples)
         if self._limit is not None and self.frames > self._limit:
-            instead = "; use FLAC" if self._channels <= flac.MOST_CHANNELS else ""
+            instead = "; use FLAC" if self._channels <= flac_stream.MOST_CHANNELS else ""
             raise OutputError(f"{self._target}: too long for a WAV file (4 GiB){instead}")
         self.peak = max(self.peak, float(np.abs(samples).max(initial=0.0)))
         self._power += float(np.square(samples, dtype=np.float64).sum())

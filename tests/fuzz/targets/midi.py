@@ -10,7 +10,7 @@ from fuzz.target import Program, target
 
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.live.midi.feed import MidiFeed
-from yehu_server.live.midi.process import Input
+from yehu_server.live.midi.input_process import Input
 from yehu_server.live.midi.routes import Router
 from yehu_server.playing.live_player import LivePlayer
 from yehu_server.playing.mapping import load, shipped_mappings

@@ -1,7 +1,8 @@
 """Interprets posted events when they are due, and distributes their wishes. Compiled.
 
-The events of a part lie with its first instrument. Each is interpreted once (``midi.interpret``),
-before the frames that it is for are computed; its wishes go to the heaps of those who play.
+The events of a part lie with its first instrument. Each is interpreted once, before the frames
+that it is for are computed (``midi.interpret_events``); its wishes go to the heaps of those who
+play.
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ from yehu_server.core.engine.rig import (
     TABLES_AT,
 )
 from yehu_server.core.engine.telemetry import METERS
-from yehu_server.core.midi.dispatch import interpret
 from yehu_server.core.midi.events import FINGER_ON, NOTE_OFF, NOTE_ON, RELEASE_ALL
+from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.keys import find_key
 from yehu_server.core.midi.record import MIDI, NONE
 from yehu_server.core.player.wishes import BEGIN, END, WISH

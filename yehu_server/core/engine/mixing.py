@@ -26,9 +26,10 @@ from yehu_server.core.engine.processor import flush_denormals, restore_denormals
 from yehu_server.core.engine.rig import METERS_AT, OUTPUT_AT, PARTS_AT, RIG_BYTES, SEAT_AT
 from yehu_server.core.engine.sounding import STAGE_COLUMNS
 from yehu_server.core.engine.telemetry import METERS, WINDOW_S
-from yehu_server.core.stage import room, seat
+from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
-from yehu_server.core.stage.geometry import EARS
+from yehu_server.core.stage.image_sources import EARS
+from yehu_server.core.stage.late_field import reverberate, set_room
 from yehu_server.core.stage.record import (
     BUSES,
     DIRECT,
@@ -40,7 +41,6 @@ from yehu_server.core.stage.record import (
     TAPE,
     TAPE_AT,
 )
-from yehu_server.core.stage.room import reverberate, set_room
 from yehu_server.core.stage.seat import (
     LEFT,
     RIGHT,
@@ -214,7 +214,7 @@ def is_valid(sample: float, limited: float) -> bool:
 @compiled_with_aliasing
 def reset_state(rigs: Any, stage: Any) -> None:
     """Begin with an empty stage, after numbers were lost."""
-    room.reset_state(stage.room)
+    late_field.reset_state(stage.room)
     for part in range(carray(at(rigs, PARTS_AT), (1,), np.int64)[0]):
         seat.reset_state(carray(at(rigs, part * RIG_BYTES + SEAT_AT), (1,), SEAT)[0])
 

@@ -28,7 +28,7 @@ from yehu_server.core.engine.native import (
     taped,
 )
 from yehu_server.core.engine.sounding import sound, sound_block
-from yehu_server.core.midi.dispatch import NATIVE_FUNCTIONS, interpret
+from yehu_server.core.midi.interpret_events import NATIVE_FUNCTIONS, interpret
 from yehu_server.core.player.listening import attend
 from yehu_server.core.player.wishes import fulfil
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.controls.record import CHUNK
-from yehu_server.core.stage.geometry import EARS
-from yehu_server.core.stage.room import ROOM, empty_room, prepare_room
+from yehu_server.core.stage.image_sources import EARS
+from yehu_server.core.stage.late_field import ROOM, empty_room, prepare_room
 
 TAPE = 1 << 19  # the last frames, for recorders: 10 s at 48 kHz
 EVERY = 32  # frames between two looks at what is asked of the room and the seats

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.stage import absorption, geometry
+from yehu_server.core.stage import absorption, image_sources
 from yehu_server.core.stage.directivity import SIDES, fall_still, prepare_sides, rest_sides
-from yehu_server.core.stage.geometry import EARS, REFERENCE, WALLS
-from yehu_server.core.stage.room import CLOSE_S
+from yehu_server.core.stage.image_sources import EARS, REFERENCE, WALLS
+from yehu_server.core.stage.late_field import CLOSE_S
 
 SPAN = 1 << 16  # frames of sound that are kept for reflections
 MOVE_S = 0.03  # in which reflections move to where they belong now
@@ -114,12 +114,12 @@ def set_reflections(
     s.moved = 1.0 if s.size == 0.0 else 0.0
     s.size, s.decay, s.damping, s.distance, s.pan = size, decay, damping, distance, pan
     s.now = 1 - s.now
-    geometry.find_images(size, distance, pan, decay, s.seconds, s.gain[s.now])
+    image_sources.find_images(size, distance, pan, decay, s.seconds, s.gain[s.now])
     for ear in range(EARS):
         for wall in range(WALLS):
             frames = int(math.floor(s.seconds[ear, wall] * s.rate + 0.5))  # noqa: RUF046 - a float, compiled
             s.delay[s.now, ear, wall] = min(frames, SPAN - 1)
-    way = geometry.mean_free_path(size) / geometry.SOUND
+    way = image_sources.mean_free_path(size) / image_sources.SOUND
     absorption.set_shelf(s, 0, way, decay, damping)
     low = s.b_0[0] + s.b_1[0]  # of which the gains know: the shelf keeps its shape only
     low /= 1.0 + s.a_1[0]

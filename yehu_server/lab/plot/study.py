@@ -21,7 +21,7 @@ from yehu_server.lab.plot.cells import (
     regime_patches,
     set_scale,
 )
-from yehu_server.lab.plot.maps import ALONG, FORCE, PERIOD_COLOURS, PERIODS, map_of, spread_of
+from yehu_server.lab.plot.sweep_maps import ALONG, FORCE, PERIOD_COLOURS, PERIODS, map_of, spread_of
 from yehu_server.lab.sweeps.limits import limits_of
 from yehu_server.lab.sweeps.result import Result
 from yehu_server.lab.sweeps.study import Study

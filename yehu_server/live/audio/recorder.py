@@ -11,12 +11,11 @@ import numpy as np
 
 from yehu_server.errors import OutputError
 from yehu_server.util.files import create, discard
-from yehu_server.util.sound_file import Samples, SoundWriter, format_of
-from yehu_server.util.wav import BYTES
+from yehu_server.util.sound_file import DEFAULT_SUBTYPES, Samples, SoundWriter, format_of
+from yehu_server.util.wav_stream import BYTES
 
 EVERY_S = 0.05
 CHANNELS = 2  # left and right
-SUBTYPES = {"wav": "float", "flac": "24"}
 ROOM_S = 1.0  # a recording begins only if so much fits on the disk
 
 
@@ -71,7 +70,7 @@ class Recorder:
         overwrite: bool = False,
     ) -> None:
         format_name, rate = format_of(target), round(tape.rate)
-        subtype = SUBTYPES[format_name]
+        subtype = DEFAULT_SUBTYPES[format_name]
         room_bytes = round(ROOM_S * rate) * CHANNELS * BYTES[subtype]
         self.target = target
         self.missed_frames = 0

@@ -27,7 +27,7 @@ class MidiOptions:
     patterns: Sequence[str] = ()  # empty: all but through ports
     virtual: str | None = None
     api: str | None = None  # None: the first there is
-    routes: Sequence[Route] = ()  # see midi_routes.Router
+    routes: Sequence[Route] = ()  # see routes.Router
 
 
 class MidiPorts:
@@ -63,7 +63,7 @@ class MidiPorts:
         self._numbers: dict[str, int] = {}  # a port that comes back gets its old one
         self._connected: dict[str, None] = {}
         self._supervisor = Supervisor(  # it ends as JACK's server does
-            "yehu_server.live.midi.process",
+            "yehu_server.live.midi.input_process",
             "MIDI inputs",
             on_event=self._on_event,
             attend=self._attend,

@@ -1,6 +1,6 @@
 """The table of OSC calls beside the parameters, for OSCQuery and the surfaces.
 
-``osc.OscHandler`` carries them out; docs/osc.md describes them.
+``part_calls`` and ``handler`` carry them out; docs/osc.md describes them.
 """
 
 from __future__ import annotations

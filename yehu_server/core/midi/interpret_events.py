@@ -16,6 +16,15 @@ from yehu_server.core.midi.binds import (
     reset_controllers_native,
     set_directly,
 )
+from yehu_server.core.midi.channel_messages import (
+    SUSTAIN,
+    change_control_native,
+    disconnect,
+    is_bound,
+    receive,
+    reset,
+    reset_native,
+)
 from yehu_server.core.midi.emit_wishes import (
     begin_key,
     begin_key_native,
@@ -44,15 +53,6 @@ from yehu_server.core.midi.events import (
     TABLES_TO,
 )
 from yehu_server.core.midi.keys import list_key
-from yehu_server.core.midi.messages import (
-    SUSTAIN,
-    change_control_native,
-    disconnect,
-    is_bound,
-    receive,
-    reset,
-    reset_native,
-)
 from yehu_server.core.midi.notes import (
     end_all,
     end_notes,

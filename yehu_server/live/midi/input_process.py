@@ -1,7 +1,7 @@
-"""The process that holds the MIDI inputs: ``python -m yehu_server.live.midi.process``.
+"""The process that holds the MIDI inputs: ``python -m yehu_server.live.midi.input_process``.
 
 It opens the wanted inputs as they appear, stamps each message on arrival, and puts it where the
-audio callback takes it (``midi_feed``). RtMidi over JACK crashes when the JACK server dies: then
+audio callback takes it (``feed``). RtMidi over JACK crashes when the JACK server dies: then
 this process ends, and a new one takes its place.
 """
 

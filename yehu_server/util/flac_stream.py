@@ -14,7 +14,7 @@ import numpy as np
 import soundfile
 
 from yehu_server.util.files import write_all
-from yehu_server.util.wav import check_shape
+from yehu_server.util.wav_stream import check_shape
 
 SUBTYPES = {"16": "PCM_16", "24": "PCM_24"}
 MOST_CHANNELS = 8

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.stage import absorption, geometry
+from yehu_server.core.stage import absorption, image_sources
 
 Array = Any
 
@@ -139,7 +139,7 @@ def reset_state(r: Any) -> None:
 def measure(r: Any, size: float) -> None:
     """Give the lines the lengths that belong to a size (m): primes, in equal ratios."""
     r.size = size
-    middle = PATHS * geometry.mean_free_path(size) / geometry.SOUND
+    middle = PATHS * image_sources.mean_free_path(size) / image_sources.SOUND
     middle = min(max(middle, LEAST_S), MOST_S)
     frames = 0
     for i in range(LINES):
@@ -152,7 +152,7 @@ def measure(r: Any, size: float) -> None:
     # (s), of which the diffuse field has as much.
     heard = LINES * r.rate / (frames * math.log(1e6))
     r.was_per_level = r.per_level
-    r.per_level = geometry.diffuse_level(size, 1.0) / math.sqrt(0.5 * heard)
+    r.per_level = image_sources.diffuse_level(size, 1.0) / math.sqrt(0.5 * heard)
 
 
 @compiled_exactly

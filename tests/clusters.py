@@ -11,7 +11,14 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import forks
+
 TESTS = Path(__file__).resolve().parent
+PYTHONPATH = f"{TESTS}:{TESTS.parent}"
+WORKER = (
+    f"import sys; sys.path[:0] = {PYTHONPATH.split(':')};"
+    "from distributed.cli.dask_worker import main; main()"
+)
 HERE = ("--host", "127.0.0.1", "--no-dashboard")
 
 
@@ -21,7 +28,7 @@ class Processes:
     def __init__(self, folder: Path, **environment: str) -> None:
         self.file = folder / "scheduler.json"
         self.log = folder / "log"
-        self.environment = {**os.environ, "PYTHONPATH": f"{TESTS}:{TESTS.parent}", **environment}
+        self.environment = {**os.environ, "PYTHONPATH": PYTHONPATH, **environment}
         self.scheduler = self._start("dask_scheduler", "--port", "0", "--scheduler-file", self.file)
         wait_until(lambda: self.file.exists() and self.file.read_text().endswith("}"))
         self.workers: list[subprocess.Popen] = []
@@ -33,11 +40,13 @@ class Processes:
         return self.workers[-1]
 
     def _start(self, what: str, *words: object) -> subprocess.Popen:
-        command = [sys.executable, "-m", f"distributed.cli.{what}", *map(str, words), *HERE]
         with self.log.open("a") as log:
-            return subprocess.Popen(
-                command, env=self.environment, stdout=log, stderr=log, cwd=self.file.parent
-            )
+            how = {"env": self.environment, "stdout": log, "stderr": log, "cwd": self.file.parent}
+            if what == "dask_worker" and self.environment["PYTHONPATH"] == PYTHONPATH:
+                return forks.start(*words, *HERE, code=WORKER, **how)
+            # The scheduler loads little, and a worker with other code must not have ours.
+            command = [sys.executable, "-m", f"distributed.cli.{what}", *map(str, words), *HERE]
+            return subprocess.Popen(command, **how)
 
     def end(self) -> None:
         for process in (*self.workers, self.scheduler):

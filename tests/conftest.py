@@ -2,10 +2,12 @@
 
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import forks
 import pytest
 from commands import is_one_line
 from hypothesis import settings
@@ -112,6 +114,13 @@ def command(capsys) -> Callable[..., tuple[int, str, str]]:
         return code, out, err
 
     return run
+
+
+@pytest.fixture
+def _forked_workers(monkeypatch) -> None:
+    """Let what `multiprocessing` spawns in this process begin as forks, where that is known."""
+    if sys.platform == "linux":
+        monkeypatch.setattr("multiprocessing.util.spawnv_passfds", forks.spawn)
 
 
 @pytest.fixture

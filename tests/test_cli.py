@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 import soundfile
 from commands import COMMAND, is_one_line
+from forks import start
 from scores import midi_file, notes
 
 import yehu_server
@@ -28,22 +29,8 @@ EXAMPLE = {
     "duration": 0.05,
     "controls": {"bow_force": 0.5, "bow_velocity": [[0, 0.0], [0.03, 0.2]]},
 }
-# A disk with 64 kB left. The kernel is compiled first: its cache needs more.
-FULL_DISK = (
-    "import resource; from yehu_server.core.engine.warming import warm_up; warm_up();"
-    "resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));" + COMMAND
-)
-
-
-def start(*words: object, code: str = COMMAND, **options) -> subprocess.Popen:
-    """Run a command line in another process, which can be interrupted."""
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    return subprocess.Popen(
-        [sys.executable, "-c", code, *(str(word) for word in words)],
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | options,
-    )
+# A disk with 64 kB left. The kernel has been compiled: its cache needs more.
+FULL_DISK = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536));" + COMMAND
 
 
 @pytest.fixture
@@ -545,12 +532,12 @@ def test_a_simulation_without_memory_says_so(refused, gesture, out, monkeypatch)
     assert not list(out.iterdir())
 
 
-def test_a_whole_run_in_a_process_of_its_own(tune, out):
-    process = start("render", tune, "-o", out / "x.wav", "--json")
-    stdout, err = process.communicate(timeout=60)
-    assert (process.returncode, err) == (0, "")
+def test_a_whole_run_in_a_new_python(tune, out):
+    command = [sys.executable, "-c", COMMAND, "render", tune, "-o", out / "x.wav", "--json"]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (run.returncode, run.stderr) == (0, "")
     sound, rate = soundfile.read(out / "x.wav")
-    assert json.loads(stdout)["duration_s"] == len(sound) / rate
+    assert json.loads(run.stdout)["duration_s"] == len(sound) / rate
     assert np.abs(sound).max() > 0.01
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import signal
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,12 +12,15 @@ import numpy as np
 import pytest
 import soundfile
 from clusters import cluster_in, wait_until
-from commands import COMMAND
+from forks import start
 
 from yehu_server.lab.dataset import making
 from yehu_server.lab.dataset.description import read_description
 from yehu_server.rendering import cluster_worker
 from yehu_server.util.files import shipped_folder
+
+# Where a whole command starts them, its workers are new Pythons.
+pytestmark = pytest.mark.usefixtures("_forked_workers")
 
 COUNT = 40
 TEXT = """\
@@ -42,16 +43,11 @@ def made(tmp_path_factory) -> Path:
     """A folder with a description, and the data set of it, made on two cores."""
     folder = tmp_path_factory.mktemp("dataset")
     (folder / "d.toml").write_text(TEXT)
-    process = start(folder / "d.toml", "-o", folder / "out", "--jobs", 2)
+    process = start("dataset", folder / "d.toml", "-o", folder / "out", "--jobs", 2)
     out, err = process.communicate(timeout=300)
     assert (process.returncode, err) == (0, "")
     assert "40 made, 0 up to date, 0 failed" in out
     return folder
-
-
-def start(*words: object) -> subprocess.Popen:
-    texts = [sys.executable, "-c", COMMAND, "dataset", *map(str, words)]
-    return subprocess.Popen(texts, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def lines(out: Path) -> list[dict]:
@@ -154,7 +150,7 @@ def test_a_sound_that_is_gone_or_changed_is_made_again(made, command, tmp_path):
 def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum):
     (tmp_path / "d.toml").write_text(TEXT.replace("duration = 0.1", "duration = 1.0"))
     words = (tmp_path / "d.toml", "-o", tmp_path / "out")
-    process = start(*words, "--jobs", 1)
+    process = start("dataset", *words, "--jobs", 1)
     hidden = tmp_path / "out" / ".yehu-server"
     wait_until(lambda: process.poll() is not None or list(hidden.glob("sounds-*.json")))
     process.send_signal(signum)

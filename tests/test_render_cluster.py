@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 from typing import Self
 
 import pytest
 from clusters import cluster_in, wait_until
-from commands import COMMAND, is_one_line
+from commands import is_one_line
+from forks import start
 from scores import midi_file, notes
 
 from yehu_server.rendering import cluster_worker
@@ -41,11 +40,6 @@ def made(out: Path) -> dict[str, bytes]:
         for path in out.rglob("*")
         if path.is_file() and ".yehu-server" not in path.parts
     }
-
-
-def start(*words: object) -> subprocess.Popen:
-    texts = [sys.executable, "-c", COMMAND, *map(str, words)]
-    return subprocess.Popen(texts, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 @pytest.fixture

@@ -16,12 +16,16 @@ from pathlib import Path
 import pytest
 import soundfile
 from commands import COMMAND, is_one_line
+from forks import start
 from scores import midi_file, notes
 
 from yehu_server.cli import _parser, folder_records, folder_tasks, render_one
 from yehu_server.errors import OutputError
 from yehu_server.rendering.workers import Event
 from yehu_server.util.sound_file import is_rendered
+
+# Where a whole command starts them, its workers are new Pythons.
+pytestmark = pytest.mark.usefixtures("_forked_workers")
 
 DRY = ("--dry", "--mono", "--tail", 0)  # in little time
 ODD = ("with space.mid", "line\nbreak.mid", os.fsdecode(b"no\xffutf-8.mid"), "x/y.mid", "x/Y.kar")
@@ -53,12 +57,6 @@ def folder(once, tmp_path) -> Path:
     """A copy of that folder, of its own."""
     shutil.copytree(once[0], tmp_path / "f", symlinks=True)
     return tmp_path / "f"
-
-
-def start(*words: object, code: str = COMMAND, **options) -> subprocess.Popen:
-    texts = [sys.executable, "-c", code, *map(str, words)]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    return subprocess.Popen(texts, **{**pipes, **options})
 
 
 def manifest(out: Path) -> dict[str, dict]:

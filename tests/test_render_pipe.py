@@ -7,13 +7,13 @@ import json
 import os
 import struct
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import soundfile
 from commands import COMMAND, is_one_line
+from forks import run, start
 from scores import midi_file, notes
 
 from yehu_server.cli.render_pipe import BROKEN_PIPE
@@ -26,10 +26,9 @@ def tune(tmp_path) -> Path:
     return midi_file(tmp_path / "tune.mid", notes((0.0, 0.2, 67, 90), (0.2, 0.1, 69, 90)))
 
 
-def piped(*words: object, given: bytes = b"", code: str = COMMAND) -> subprocess.CompletedProcess:
+def piped(*words: object, given: bytes = b"", **options) -> subprocess.CompletedProcess:
     """Run a command in a process of its own; what it writes, as bytes."""
-    texts = [sys.executable, "-c", code, *map(str, words)]
-    return subprocess.run(texts, input=given, capture_output=True, timeout=120, check=False)
+    return run(*words, given=given, text=False, **options)
 
 
 @pytest.fixture
@@ -84,8 +83,7 @@ def test_the_summary_goes_to_the_errors(tune):
 
 def test_a_reader_that_has_had_enough_ends_it_quietly(tmp_path):
     tune = midi_file(tmp_path / "long.mid", notes((0.0, 600.0, 67, 90)))
-    words = [sys.executable, "-c", COMMAND, "render", str(tune), "-o", "-", "--format", "raw"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+    with start("render", tune, "-o", "-", "--format", "raw", text=False) as process:
         assert len(process.stdout.read(1000)) == 1000
         process.stdout.close()
         assert process.stderr.read() == b""
@@ -94,11 +92,8 @@ def test_a_reader_that_has_had_enough_ends_it_quietly(tmp_path):
 
 def test_a_full_disk_behind_the_output_is_told(tune, tmp_path):
     limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096));"
-    words = [sys.executable, "-c", limit + COMMAND, "render", str(tune), "-o", "-", *DRY]
     with (tmp_path / "sound").open("wb") as full:
-        done = subprocess.run(
-            words, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False
-        )
+        done = run("render", tune, "-o", "-", *DRY, code=limit + COMMAND, stdout=full)
     assert done.returncode == 2
     assert is_one_line(done.stderr)
     assert "standard output: cannot write: File too large" in done.stderr
@@ -116,9 +111,7 @@ def test_a_full_disk_behind_the_output_is_told(tune, tmp_path):
     ids=str,
 )
 def test_a_wrong_pipe_gets_one_line(tmp_path, words, given, wrong):
-    done = piped(
-        "render", *words, given=given, code=f"import os; os.chdir({str(tmp_path)!r});" + COMMAND
-    )
+    done = piped("render", *words, given=given, cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, b"")
     assert wrong in done.stderr.decode()
     assert is_one_line(done.stderr.decode())
@@ -128,28 +121,15 @@ def test_a_wrong_pipe_gets_one_line(tmp_path, words, given, wrong):
 def test_an_input_without_end_is_refused(tmp_path):
     limit = "import yehu_server.scores.smf.reader as smf; smf.MAX_BYTES = 2**20;"
     with Path("/dev/zero").open("rb") as endless:
-        words = [
-            sys.executable,
-            "-c",
-            limit + COMMAND,
-            "render",
-            "-",
-            "-o",
-            str(tmp_path / "x.wav"),
-        ]
-        done = subprocess.run(
-            words, stdin=endless, capture_output=True, text=True, timeout=60, check=False
-        )
+        words = ("render", "-", "-o", tmp_path / "x.wav")
+        done = run(*words, code=limit + COMMAND, stdin=endless)
     assert done.returncode == 2
     assert "standard input: larger than 1 MiB" in done.stderr
 
 
 def test_sound_does_not_go_to_a_terminal(tune):
     ours, theirs = os.openpty()
-    words = [sys.executable, "-c", COMMAND, "render", str(tune), "-o", "-"]
-    done = subprocess.run(
-        words, stdout=theirs, stderr=subprocess.PIPE, text=True, timeout=60, check=False
-    )
+    done = run("render", tune, "-o", "-", stdout=theirs)
     os.close(theirs)
     os.close(ours)
     assert done.returncode == 2

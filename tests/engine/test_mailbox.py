@@ -6,13 +6,13 @@ import mmap
 import os
 import random
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable
 from functools import partial
 from itertools import combinations, product
 
+import forks
 import numba
 import numpy as np
 import pytest
@@ -211,11 +211,9 @@ class Shared:
         shared = mmap.mmap(descriptor, memory.memory_bytes(1))
         self.ensemble = sound.alone(RATE, memory=shared, is_live=True)
         self.ensemble.first.report_wishes()
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", code, str(descriptor), *map(str, arguments)],
-            pass_fds=[descriptor],
-            stdin=subprocess.PIPE,
-        )
+        words = (descriptor, *arguments)
+        pipes = {"stdin": subprocess.PIPE, "stdout": None, "stderr": None}
+        self._process = forks.start(*words, code=code, pass_fds=[descriptor], **pipes)
         os.close(descriptor)
 
     def __enter__(self) -> Ensemble:

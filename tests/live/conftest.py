@@ -1,7 +1,4 @@
-"""A JACK server for each file of tests, a recorder in another process, and `serve`.
-
-Run as a program, this file is that recorder.
-"""
+"""A JACK server for each file of tests, a recorder in another process, and `serve`."""
 
 from __future__ import annotations
 
@@ -22,6 +19,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import forks
 import numpy as np
 import pytest
 
@@ -29,11 +27,9 @@ from yehu_server.core.engine.warming import warm_up
 from yehu_server.live.osc.packets import pack, unpack
 from yehu_server.live.osc.status import STATUS
 
-ROOT = Path(__file__).resolve().parents[2]
+RECORDER = Path(__file__).with_name("recorder.py")
 RATE = 48000
-COMMAND = "import sys; from yehu_server.cli import main; sys.exit(main(sys.argv[1:]))"
 STARTED_WITHIN_S = 120.0  # where everything has to be compiled first
-RECORDED_S = 60
 
 
 def until(condition: Callable[[], Any], within_s: float, what: str) -> Any:
@@ -201,7 +197,7 @@ class Recorder:
     def __init__(self, jackd: Jackd, folder: Path, channels: int = 2) -> None:
         self._folder = folder
         self._process = subprocess.Popen(
-            [sys.executable, __file__, jackd.name, str(channels)],
+            [sys.executable, RECORDER, jackd.name, str(channels)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -261,59 +257,6 @@ def recorder(jackd, tmp_path) -> Iterator[Callable[..., Recorder]]:
         yield make
 
 
-def record(server: str, channels: int) -> None:
-    """Be the recorder: read orders from stdin, confirm each on stdout."""
-    import jack
-
-    for silence in (jack.set_error_function, jack.set_info_function):
-        silence(lambda _message: None)
-    client = jack.Client("recorder", servername=server, no_start_server=True)
-    inputs = [client.inports.register(f"in_{number}") for number in range(channels)]
-    samples = np.zeros((channels, RECORDED_S * client.samplerate), np.float32)
-    times = np.zeros((samples.shape[1] // client.blocksize + 1, 3), np.int64)
-    recorded, blocks, xruns = 0, 0, 0
-
-    @client.set_process_callback
-    def process(frames: int) -> None:
-        nonlocal recorded, blocks
-        if recorded + frames <= samples.shape[1]:
-            for channel, port in enumerate(inputs):
-                samples[channel, recorded : recorded + frames] = port.get_array()
-            times[blocks] = client.last_frame_time, frames, time.monotonic_ns()
-            recorded += frames
-            blocks += 1
-
-    @client.set_xrun_callback
-    def xrun(_delay_us: float) -> None:
-        nonlocal xruns
-        xruns += 1
-
-    client.set_shutdown_callback(lambda _status, _reason: None)
-    client.activate()
-
-    def connect() -> None:
-        for number, port in enumerate(inputs):
-            until(lambda: client.get_ports("yehu-server:out_"), 10.0, "the instrument's ports")
-            if not client.get_all_connections(port):
-                client.connect(f"yehu-server:out_{number}", port)
-
-    print("ready", flush=True)  # noqa: T201
-    for line in sys.stdin:
-        order, _, what = line.strip().partition(" ")
-        answer = {"connect": "connected", "save": "saved", "forget": "forgotten"}.get(order, order)
-        if order == "connect":
-            connect()
-        elif order == "freewheel":
-            client.set_freewheel(what == "on")
-        elif order == "forget":
-            recorded, blocks, xruns = 0, 0, 0
-        elif order == "save":
-            till, of = recorded, blocks
-            np.savez(what, samples=samples[:, :till], times=times[:of], xruns=xruns)
-        print(answer, flush=True)  # noqa: T201
-    os._exit(0)  # JACK may hang where its server is gone
-
-
 # ---------------------------------------------------------------- serve
 
 
@@ -370,14 +313,8 @@ class Serve:
         self._told = threading.Condition()
         self._clients: list[Osc] = []
         self._family: set[int] = set()
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", COMMAND, "serve", *map(str, words)],
-            env=environment | {"PYTHONPATH": str(ROOT)},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
+        self.process = forks.start(
+            *("serve", *words), env=environment, stdout=subprocess.DEVNULL, start_new_session=True
         )
         self._listener = threading.Thread(target=self._listen)
         self._listener.start()
@@ -451,12 +388,16 @@ def _lives(pid: int) -> bool:
 
 @pytest.fixture
 def serve(jackd) -> Iterator[Callable[..., Serve]]:
-    """Start ``yehu-server serve`` with options, with OSC at a free port by default."""
+    """Start ``yehu-server serve`` with options, with OSC at a free port by default.
+
+    Its page is one more process to start, of half a second: `panel` asks for it.
+    """
     with contextlib.ExitStack() as ending:
 
-        def start(*words: object, environment: dict[str, str] | None = None) -> Serve:
+        def start(*words: object, panel: bool = False) -> Serve:
             osc = () if "--osc" in words else ("--osc", "127.0.0.1:0")
-            made = Serve(environment or jackd.environment, *osc, "--http", "127.0.0.1:0", *words)
+            page = () if panel else ("--no-panel",)
+            made = Serve(jackd.environment, *osc, "--http", "127.0.0.1:0", *page, *words)
             ending.callback(made.close)
             return made
 
@@ -476,7 +417,3 @@ def silent() -> Iterator[Callable[..., Serve]]:
             return made
 
         yield start
-
-
-if __name__ == "__main__":
-    record(sys.argv[1], int(sys.argv[2]))

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import ctypes
 import json
-import subprocess
-import sys
 import threading
 import time
 
+import forks
 import numpy as np
 import pytest
 from sound import alone
@@ -135,13 +134,8 @@ os._exit(0)
 
 def test_the_gil_of_the_process_that_holds_the_stream_stops_nothing(jackd):
     jackd.start(BLOCK)
-    run = subprocess.run(
-        [sys.executable, "-c", SAME_PROCESS],
-        env=jackd.environment,
-        capture_output=True,
-        timeout=120.0,
-        check=True,
-    )
+    run = forks.run(code=SAME_PROCESS, env=jackd.environment)
+    assert run.returncode == 0, run.stderr
     # A callback that needs the GIL loses nearly all of each second's 375 blocks. Other
     # processes cost some of any second's, so the quietest second counts.
     held = min(json.loads(run.stdout), key=lambda second: second["underruns"])

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import forks
 import numpy as np
 import pytest
 import soundfile
@@ -164,10 +165,10 @@ def test_an_audio_server_that_hangs_is_left_and_taken_up_again(jackd, serve, tmp
 
 def test_an_audio_process_that_crashes_is_replaced(jackd, serve, tmp_path):
     jackd.start()
-    server, osc = begun(serve, tmp_path, "--no-panel")  # so that it is the only other process
+    server, osc = begun(serve, tmp_path)
     before = wait_for_frames(osc, 4_000)
     said = len(server.lines)
-    (audio,) = server.family()
+    (audio,) = server.family()  # there is no other process
     os.kill(audio, signal.SIGKILL)
     server.said(f"playing on {DEVICE}", 10.0, said)
     after = wait_for_frames(osc, 4_000)
@@ -361,12 +362,8 @@ def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_
     recorded = np.zeros((0, 2), np.float32)
     for _ in range(3):
         play(live, wishes)
-        audio = subprocess.Popen(
-            [sys.executable, "-c", PLAYS_ON, str(memory.descriptor)],
-            stdout=subprocess.PIPE,
-            pass_fds=[memory.descriptor],
-        )
-        assert audio.stdout.readline() == b"plays\n"
+        audio = forks.start(memory.descriptor, code=PLAYS_ON, pass_fds=[memory.descriptor])
+        assert audio.stdout.readline() == "plays\n"
         time.sleep(0.1)
         audio.kill()
         audio.communicate()
@@ -468,7 +465,7 @@ def test_a_helper_process_that_nobody_could_listen_to_is_ended(monkeypatch, star
 
 TALKS = """
 import time
-from yehu_server.child import Parent
+from yehu_server.util.processes import Parent
 parent = Parent()
 for _ in range(5000):
     parent.tell("midi", port="keystep", at=time.monotonic_ns(), bytes=[144, 60, 100])

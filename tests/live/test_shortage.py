@@ -46,7 +46,7 @@ def allow_files(pid: int, files: int) -> int:
 def begun(jackd, serve, until):
     """A server with both helpers, and a client of it."""
     jackd.start(512)
-    server = serve("--midi-api", "jack")
+    server = serve("--midi-api", "jack", panel=True)
     osc = server.osc()
     server.said(f"playing on {DEVICE}")
     until(

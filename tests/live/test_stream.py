@@ -12,16 +12,15 @@ import sys
 import time
 from pathlib import Path
 
+import forks
 import numpy as np
 import pytest
 import soundfile
-from commands import COMMAND
 
 from yehu_server.cli import main
 from yehu_server.rendering.replay import blocks
 from yehu_server.scores.capture import read_capture
 
-ROOT = Path(__file__).resolve().parents[2]
 RATE = 48000
 DEVICE = "system, JACK Audio Connection Kit"
 TRIES = 4
@@ -132,7 +131,7 @@ def test_it_plays_at_the_devices_own_rate_on_no_more_channels_than_it_has(jackd,
 def test_however_it_ends_notes_are_ended_and_files_are_whole(number, jackd, serve, tmp_path):
     jackd.start(512)
     words = ("--duration", 0.8) if number is None else ()
-    server = serve(*words, *files(tmp_path))
+    server = serve(*words, *files(tmp_path), panel=True)
     osc = server.osc()
     server.said(f"playing on {DEVICE}")
     server.family()
@@ -170,7 +169,7 @@ def test_a_killed_server_leaves_no_process_and_a_capture_that_can_be_replayed(
     jackd, serve, tmp_path
 ):
     jackd.start(512)
-    server = serve(*files(tmp_path))
+    server = serve(*files(tmp_path), panel=True)
     osc = server.osc()
     server.said(f"playing on {DEVICE}")
     osc.send("/note", 69, 100)
@@ -186,15 +185,7 @@ def test_a_killed_server_leaves_no_process_and_a_capture_that_can_be_replayed(
 
 def command(jackd, *words: object) -> subprocess.CompletedProcess:
     """Run a command to its end."""
-    return subprocess.run(
-        [sys.executable, "-c", COMMAND, *map(str, words)],
-        env=jackd.environment | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=120.0,
-        check=False,
-        stdin=subprocess.DEVNULL,
-    )
+    return forks.run(*words, env=jackd.environment)
 
 
 def refused(jackd, folder: Path, *words: object) -> str:

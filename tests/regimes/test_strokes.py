@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 
+import forks
 import numpy as np
 import pytest
 
@@ -145,15 +146,8 @@ print([float(found[name][0]) for name in found.dtype.names])
 
 
 def test_plain_python_finds_what_compiled_code_finds():
-    plain, compiled = (
-        subprocess.run(
-            [sys.executable, "-c", PRINT],
-            env=os.environ | {"NUMBA_DISABLE_JIT": word},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        for word in ("1", "0")
-    )
-    numbers = [json.loads(text.replace("nan", "NaN")) for text in (plain, compiled)]
+    command, environment = [sys.executable, "-c", PRINT], os.environ | {"NUMBA_DISABLE_JIT": "1"}
+    plain = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    compiled = forks.run(code=PRINT)
+    numbers = [json.loads(each.stdout.replace("nan", "NaN")) for each in (plain, compiled)]
     assert numbers[0] == pytest.approx(numbers[1], rel=1e-3, nan_ok=True)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import logging
+import os
 import signal
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
@@ -47,14 +50,20 @@ def main(argv: Sequence[str] | None = None) -> int:
             signal.signal(getattr(signal, name), _interrupt)
     logging.basicConfig(format="yehu-server: %(message)s", level=logging.WARNING)
     try:
-        arguments = parse(sys.argv[1:] if argv is None else argv, _parser())
-        code: int = arguments.run(arguments)
+        try:
+            arguments = parse(sys.argv[1:] if argv is None else argv, _parser())
+            code: int = arguments.run(arguments)
+        finally:
+            with contextlib.suppress(BrokenPipeError):
+                sys.stdout.flush()  # here, where we can tell that it is full
     except YehuError as error:
         warn(str(error))
         return 2
     except OSError as error:
         if error.errno != errno.ENOSPC:  # of standard output: files are told by their names
             raise
+        with Path(os.devnull).open("w") as nothing:  # Python would try again, and tell it again
+            os.dup2(nothing.fileno(), sys.stdout.fileno())
         warn(f"standard output: {why(error)}")
         return 2
     except MemoryError:

@@ -16,11 +16,13 @@ from yehu_server.params.table import ENGINE, SLOT
 RATE = 44100
 BRIDGE_X = 0.30  # m
 
-every = pytest.mark.parametrize("param", ENGINE, ids=lambda param: param.address)
-
 
 def value(instrument: Instrument, address: str) -> float:
     return float(instrument._rig["controls"]["value"][0, SLOT[address]])
+
+
+def all_values(instrument: Instrument) -> dict[str, float]:
+    return {param.address: value(instrument, param.address) for param in ENGINE}
 
 
 def controls(instrument: Instrument) -> np.ndarray:
@@ -37,36 +39,34 @@ def instrument() -> Instrument:
 # ---------------------------------------------------------------- ramps
 
 
-@every
-def test_every_parameter_starts_at_its_default(instrument, param):
-    assert value(instrument, param.address) == param.default
+def test_every_parameter_starts_at_its_default(instrument):
+    assert all_values(instrument) == {param.address: param.default for param in ENGINE}
 
 
-@every
-def test_a_ramp_goes_straight_and_ends_exactly_on_its_target(instrument, param):
-    start = param.default
-    target = param.lo + 0.7310585786300049 * (param.hi - param.lo)
-    instrument.write(param.address, target, ramp_ms=1e3 * 337 / RATE)
+def test_all_ramps_go_straight_and_end_exactly_on_their_targets(instrument):
+    starts = all_values(instrument)
+    targets = {p.address: p.lo + 0.7310585786300049 * (p.hi - p.lo) for p in ENGINE}
+    for address, target in targets.items():
+        instrument.write(address, target, ramp_ms=1e3 * 337 / RATE)
     run(instrument, 100)
-    assert value(instrument, param.address) == pytest.approx(start + (target - start) * 100 / 337)
+    between = {at: start + (targets[at] - start) * 100 / 337 for at, start in starts.items()}
+    assert all_values(instrument) == pytest.approx(between)
     run(instrument, 236)
-    assert value(instrument, param.address) != target
-    run(instrument, 1)
-    if param.address == "/pluck/force":
-        return  # let go by itself, see test_hands.py
-    assert value(instrument, param.address) == target
-    run(instrument, 500)
-    assert value(instrument, param.address) == target
+    assert not all_values(instrument).items() & targets.items()
+    del targets["/pluck/force"]  # let go by itself, see test_hands.py
+    for frames in (1, 500):
+        run(instrument, frames)
+        assert all_values(instrument).items() >= targets.items()
 
 
-@every
-def test_a_write_that_names_no_ramp_takes_the_parameters_own_smoothing(instrument, param):
-    frames = round(param.smooth_ms * 1e-3 * RATE)
-    instrument.write(param.address, param.hi if param.default < param.hi else param.lo)
-    run(instrument, frames - 1)
-    assert value(instrument, param.address) not in {param.lo, param.hi}
-    run(instrument, 1)
-    assert value(instrument, param.address) in {param.lo, param.hi}
+def test_a_write_that_names_no_ramp_takes_the_parameters_own_smoothing():
+    for param in ENGINE:
+        instrument, frames = Instrument(InstrumentSpec(RATE)), round(param.smooth_ms * 1e-3 * RATE)
+        instrument.write(param.address, param.hi if param.default < param.hi else param.lo)
+        run(instrument, frames - 1)
+        assert value(instrument, param.address) not in {param.lo, param.hi}, param
+        run(instrument, 1)
+        assert value(instrument, param.address) in {param.lo, param.hi}, param
 
 
 def test_a_write_without_a_ramp_acts_on_its_frame(instrument):

@@ -58,7 +58,7 @@ def whole() -> np.ndarray:
     return played(RATE)
 
 
-@pytest.mark.parametrize("block", [1, 64, 100, 333, 4096])
+@pytest.mark.parametrize("block", [1, 100, 4096])
 def test_what_is_heard_does_not_depend_on_the_size_of_blocks(whole, block):
     assert rms(whole) > 0.001
     np.testing.assert_array_equal(played(block), whole)
@@ -230,10 +230,9 @@ def test_a_state_lost_again_and_again_never_breaks_the_output():
 # ---------------------------------------------------------------- extremes
 
 
-@pytest.mark.parametrize("rate", [22050, 44100, 96000])
-@pytest.mark.parametrize("seed", range(3))
-def test_whatever_is_written_the_output_is_finite_and_within_full_scale(rate, seed):
-    chance = random.Random(1000 * seed + rate)
+@pytest.mark.parametrize("rate", [22050, 96000])
+def test_whatever_is_written_the_output_is_finite_and_within_full_scale(rate):
+    chance = random.Random(rate)
     instrument = Instrument(InstrumentSpec(rate))
     frame = 0
     while frame < 3 * rate:
@@ -254,18 +253,17 @@ def test_whatever_is_written_the_output_is_finite_and_within_full_scale(rate, se
 # ---------------------------------------------------------------- what it is told
 
 
-@pytest.mark.parametrize("param", ENGINE, ids=lambda param: param.address)
-def test_every_parameter_of_the_engine_answers_and_is_clamped(param):
+def test_every_parameter_of_the_engine_answers_and_is_clamped():
     instrument = Instrument(InstrumentSpec(RATE))
-    assert instrument.write(param.address, 1e9) == param.hi
-    assert instrument.write(param.address, -1e9) == param.lo
-    middle = 0.5 * (param.lo + param.hi)
-    assert instrument.write(param.address, middle) == middle
+    for param in ENGINE:
+        wanted = param.hi, param.lo, 0.5 * (param.lo + param.hi)
+        given = 1e9, -1e9, wanted[2]
+        assert tuple(instrument.write(param.address, value) for value in given) == wanted, param
 
 
-@pytest.mark.parametrize(
-    ("address", "value"),
-    [
+def test_what_the_engine_does_not_know_or_cannot_reckon_with_is_refused():
+    instrument = Instrument(InstrumentSpec(RATE))
+    for address, value in [
         ("/bow/speeed", 0.1),
         ("", 0.1),
         ("/bow/speed", math.nan),
@@ -273,12 +271,9 @@ def test_every_parameter_of_the_engine_answers_and_is_clamped(param):
         ("/bow/speed", True),
         ("/bow/speed", "0.1"),
         *((param.address, param.default) for param in TABLE if param not in ENGINE),
-    ],
-)
-def test_what_the_engine_does_not_know_or_cannot_reckon_with_is_refused(address, value):
-    instrument = Instrument(InstrumentSpec(RATE))
-    with pytest.raises(ParameterError):
-        instrument.write(address, value)
+    ]:
+        with pytest.raises(ParameterError):
+            instrument.write(address, value)
     assert not run_for(instrument, 0.01).any()
 
 

@@ -28,7 +28,6 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.mailbox import APPLIED_AT_ONCE, HEAP, LINE, LIVE_BUDGET, RING
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import TABLES_TO
-from yehu_server.core.player.record import PLAYER
 from yehu_server.core.player.rows import ROW, ROWS
 from yehu_server.core.player.wishes import BEGIN, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.params.table import ENGINE, SLOT
@@ -149,7 +148,7 @@ def collect(
 
 
 @pytest.mark.parametrize("make", [offline, live], ids=["offline", "live"])
-@pytest.mark.parametrize(("post", "count"), [(post_by_storm, 300_000), (post_by_python, 80_000)])
+@pytest.mark.parametrize(("post", "count"), [(post_by_storm, 100_000), (post_by_python, 20_000)])
 def test_wishes_come_whole_and_in_order_from_thread_to_thread(make, post, count):
     instrument = make()
     instrument.report_wishes()
@@ -231,7 +230,7 @@ class Shared:
 
 @needs_memfd
 def test_wishes_come_whole_and_in_order_to_another_process_and_its_reports_back():
-    count = 80_000
+    count = 20_000
     with Shared(CALLBACKS) as ensemble:
         instrument = ensemble.first
         posted = 0
@@ -252,7 +251,7 @@ def test_wishes_come_whole_and_in_order_to_another_process_and_its_reports_back(
 
 @needs_memfd
 def test_wishes_come_whole_and_in_order_from_another_process():
-    count = 80_000
+    count = 20_000
     with Shared(POSTER, count, *UNHEARD[0], *UNHEARD[1]) as ensemble:
         instrument = ensemble.first
         out = np.zeros(64, np.float32)
@@ -382,7 +381,7 @@ def postings(frames: int, most: int) -> st.SearchStrategy:
     return st.lists(st.tuples(st.lists(wish, max_size=most), st.integers(1, frames)), max_size=6)
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(st.one_of(postings(100, 30), postings(5, 60), postings(2, 120)))
 def test_wishes_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(batches):
     instrument, model = Instrument(InstrumentSpec(RATE)), Model()
@@ -404,7 +403,7 @@ def test_wishes_apply_by_frame_and_then_as_posted_whatever_the_order_of_posting(
     assert meters["waiting"] == len(model.waiting)
 
 
-@settings(max_examples=30)
+@settings(max_examples=20)
 @given(postings(300, 60), st.sampled_from([64, 100, 333, 4096]))
 def test_within_longer_blocks_they_apply_on_the_same_frames(batches, block):
     instrument, model = Instrument(InstrumentSpec(RATE)), Model()
@@ -418,9 +417,8 @@ def test_within_longer_blocks_they_apply_on_the_same_frames(batches, block):
     assert instrument.meters()["late_events"] == model.late
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_thousands_in_any_order_come_out_sorted(seed):
-    chance = random.Random(seed)
+def test_thousands_in_any_order_come_out_sorted():
+    chance = random.Random(1)
     instrument = Instrument(InstrumentSpec(RATE))
     instrument.report_wishes()
     frames = [chance.randrange(2000) for _ in range(HEAP)]
@@ -487,27 +485,25 @@ def test_a_live_instrument_takes_in_so_many_wishes_for_each_64_frames():
         assert instrument.meters()["waiting"] == waiting
 
 
-@pytest.mark.parametrize(
-    ("kind", "index"),
-    [
-        *product([RAMP], [-1, -2, SILENCE + 1, SILENCE + 5, 2**62, -(2**62)]),
-        *product([WRITE, HOLD, EXPRESS], [-1, -2, ROWS, ROWS + 5, 2**62, -(2**62)]),
-        *product([-1, -2, LAST + 1, LAST + 5, 2**62, -(2**62)], [0, ROW["/playing/speed"]]),
-    ],
-)
-def test_a_wish_of_no_kind_or_for_no_parameter_changes_nothing(kind, index):
-    instrument = Instrument(InstrumentSpec(RATE))
-    instrument.post(BEGIN, value=69.0, other=69.0)
-    run(instrument, 64)
-    before = instrument._rig[["controls", "player"]].copy()
-    instrument.post(kind, index=index, value=0.125, other=0.25)
-    run(instrument, 64)
-    assert instrument.meters()["applied"] == 2
-    after = instrument._rig[["controls", "player"]].copy()
-    for name in ("target", "silence_in"):
-        np.testing.assert_array_equal(after["controls"][name], before["controls"][name])
-    for name in PLAYER.names:
-        np.testing.assert_array_equal(after["player"][name], before["player"][name])
+def test_a_wish_of_no_kind_or_for_no_parameter_changes_nothing():
+    wild = (-1, -2, 2**62, -(2**62))
+    none = [
+        *product([RAMP], [*wild, SILENCE + 1, SILENCE + 5]),
+        *product([WRITE, HOLD, EXPRESS], [*wild, ROWS, ROWS + 5]),
+        *product([*wild, LAST + 1, LAST + 5], [0, ROW["/playing/speed"]]),
+    ]
+    instrument, usual = offline(), offline()
+    for each in (instrument, usual):
+        each.post(BEGIN, value=69.0, other=69.0)
+        run(each, 64)
+    for number, (kind, index) in enumerate(none):
+        instrument.post(kind, index=index, value=0.125, other=0.25)
+        run(instrument, 64)
+        run(usual, 64)
+        assert instrument.meters()["applied"] == 2 + number
+        for stage in ("controls", "player"):
+            same = instrument._rig[stage].tobytes() == usual._rig[stage].tobytes()
+            assert same, (stage, kind, index)
 
 
 def test_a_reset_leaves_nothing_to_apply():
@@ -641,7 +637,7 @@ def whole() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return crowded(RATE)
 
 
-@pytest.mark.parametrize("block", [1, 64, 100, 333, 4096])
+@pytest.mark.parametrize("block", [1, 100, 4096])
 def test_a_crowd_of_wishes_sounds_the_same_in_blocks_of_any_size(whole, block):
     for part, expected in zip(crowded(block), whole, strict=True):
         np.testing.assert_array_equal(part, expected)

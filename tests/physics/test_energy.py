@@ -57,9 +57,9 @@ def performance(t):
     }
 
 
-@pytest.mark.parametrize("rate", [44100.0, 48000.0, 96000.0])
-def test_ten_seconds_of_playing_create_and_lose_no_energy(rate):
-    run = play(performance, 10.0, rate)
+@pytest.mark.parametrize("rate", [44100.0, 96000.0])
+def test_four_seconds_of_playing_create_and_lose_no_energy(rate):
+    run = play(performance, 4.0, rate)
     balanced(run)
     # It did play: power came in, and each kind of loss took some.
     assert run["power_in"].max() > 0.1
@@ -67,7 +67,7 @@ def test_ten_seconds_of_playing_create_and_lose_no_energy(rate):
         assert run[f"loss_{name}"].max() > 1e-3, name
 
 
-@pytest.mark.parametrize("rate", [22050.0, 44100.0, 96000.0])
+@pytest.mark.parametrize("rate", [22050.0, 96000.0])
 def test_steps_in_every_control_create_no_energy(rate):
     """Bow and finger lifted and put down from one sample to the next, the finger jumping."""
 
@@ -79,7 +79,7 @@ def test_steps_in_every_control_create_no_energy(rate):
             "press": [np.where((2.9 * t) % 1.0 < 0.5, 5.0, 0.0)],
         }
 
-    run = play(jumps, 4.0, rate)
+    run = play(jumps, 2.0, rate)
     balanced(run)
     # The ledger has the energy of bristles and potentials that were reset.
     assert run["loss_bow_lift"].max() > 0.0
@@ -101,11 +101,11 @@ class TestOverlappingStencils:
     @pytest.mark.parametrize("nodes", [1.0, 1.3, 1.7, 2.0])
     def test_a_bow_one_or_two_nodes_from_the_bridge_balances(self, string, nodes):
         x_b = X_C - nodes * node(string)
-        balanced(play(self.bowed(string, x_b=x_b), 1.0))
+        balanced(play(self.bowed(string, x_b=x_b), 0.3))
 
     def test_a_finger_that_crosses_the_bow_balances(self, string):
         balanced(
-            play(lambda t: self.bowed(string, x_f=[0.255 + 0.02 * np.sin(19.0 * t)]), 2.0),
+            play(lambda t: self.bowed(string, x_f=[0.255 + 0.02 * np.sin(19.0 * t)]), 0.7),
         )
 
     def test_two_fingers_that_cross_each_other_balance(self, string):
@@ -113,7 +113,7 @@ class TestOverlappingStencils:
             x_f = [np.full(len(t), 0.1), 0.1 + 0.02 * np.sin(19.0 * t)]
             return self.bowed(string, x_f=x_f, press=[1.0, 2.0])
 
-        balanced(play(crossing, 2.0, fingers=2))
+        balanced(play(crossing, 0.7, fingers=2))
 
     def test_bow_bridge_and_two_fingers_within_five_nodes_balance(self, string):
         h = node(string)
@@ -123,7 +123,7 @@ class TestOverlappingStencils:
             x_f = [X_C - h * (2.2 + np.sin(7.0 * t)), X_C - h * (1.7 + np.sin(11.0 * t))]
             return self.bowed(string, x_b=x_b, x_f=x_f, press=[1.0, 3.0])
 
-        balanced(play(crowd, 2.0, fingers=2))
+        balanced(play(crowd, 1.0, fingers=2))
 
     def test_four_fingers_tapping_and_gliding_balance(self, string):
         def hand(t):
@@ -144,13 +144,13 @@ class TestOverlappingStencils:
                 ],
             )
 
-        balanced(play(hand, 2.0, fingers=4))
+        balanced(play(hand, 1.0, fingers=4))
 
 
 FREE = ("pluck F4", "pluck C5", "hammer")
 
 
-@pytest.mark.parametrize("rate", [22050.0, 44100.0, 48000.0, 96000.0])
+@pytest.mark.parametrize("rate", [22050.0, 48000.0])
 @pytest.mark.parametrize("how", FREE, ids=lambda how: how.replace(" ", "-"))
 def test_left_alone_the_instrument_only_ever_loses_energy(how, rate):
     """After a pluck or a strike, bow lifted, finger at rest: not a sample of growth."""

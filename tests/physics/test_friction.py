@@ -71,12 +71,12 @@ CASES = {
 
 @pytest.fixture(scope="module", params=CASES, ids=lambda name: name.replace(" ", "-"))
 def solved(request):
-    """Ten thousand random problems and their solutions."""
+    """Some thousand random problems and their solutions."""
     quantities, rate = CASES[request.param]
     model = kernel.prepare(quantities, rate)[0]
     pairs = [
         (problem, solve_friction(*problem[:4], BOW.mu_S, problem[4], model, problem[5]))
-        for problem in problems(10_000, seed=13)
+        for problem in problems(3000, seed=13)
     ]
     return quantities.bow, 1.0 / rate, pairs
 
@@ -131,7 +131,7 @@ def test_what_a_last_step_leaves_is_as_small_as_the_docstring_says():
 def test_at_absurd_speeds_the_answer_stays_finite_and_within_coulombs_law():
     """Up to 1 km/s. Rounding of free - v_r then hides the bristles: `converged` may be false."""
     model = kernel.prepare(YEHU, RATE)[0]
-    for free, mobility, z, F_N, tangent, string in problems(5000, seed=16, fastest=1000.0):
+    for free, mobility, z, F_N, tangent, string in problems(2000, seed=16, fastest=1000.0):
         within = min(abs(z), BOW.mu_S * F_N / BOW.epsilon_0)
         answer = solve_friction(free, mobility, within, F_N, BOW.mu_S, tangent, model, string)
         f_b, _, v_r, _, iterations, _ = answer
@@ -156,7 +156,7 @@ def test_where_the_start_is_does_not_change_the_answer():
     """With one solution: 1.34 mobility epsilon_0 k/2 < 1."""
     model = kernel.prepare(YEHU, RATE)[0]
     limit = 1.0 / (1.34 * BOW.epsilon_0 / (2.0 * RATE))
-    for free, mobility, z, F_N, tangent, string in problems(2000, seed=14):
+    for free, mobility, z, F_N, tangent, string in problems(1000, seed=14):
         if mobility < limit:
             one = solve_friction(free, mobility, z, F_N, BOW.mu_S, tangent, model, string)
             two = solve_friction(free, mobility, z, F_N, BOW.mu_S, NO_TANGENT, model, string)
@@ -258,7 +258,7 @@ def test_nothing_in_the_law_is_more_sudden_than_the_solver_takes_it_to_be():
     model = kernel.prepare(YEHU, RATE)[0]
     rng = np.random.default_rng(18)
     compared = 0
-    for _, mobility, z, F_N, _, string in problems(4000, seed=19):
+    for _, mobility, z, F_N, _, string in problems(2000, seed=19):
         reach = F_N / BOW.epsilon_0
         z_ba = BOW.xi[string] * BOW.mu_C * reach
         limit = max(1.2 * BOW.mu_S * reach, abs(z))
@@ -279,7 +279,7 @@ def test_nothing_in_the_law_is_more_sudden_than_the_solver_takes_it_to_be():
             third = 2.0 * (more[2] - less[2]) / (2.0 * dv)
             assert abs(third) <= 6.0 * jerk * (1.0 + abs(v_r) * per_v)
             compared += 1
-    assert compared > 1000
+    assert compared > 500
 
 
 def z_static(v_r, reach):
@@ -290,7 +290,7 @@ def z_static(v_r, reach):
 @pytest.mark.parametrize(
     ("rate", "A"), [(44100.0, A) for A in (0.5, 1.0, 1.5, 2.0)] + [(22050.0, 1.0)]
 )
-def test_ten_seconds_of_alternating_bow_force_stay_finite_and_converge(rate, A):
+def test_three_seconds_of_alternating_bow_force_stay_finite_and_converge(rate, A):
     """The case in which the paper's two-by-two Newton iteration blows up."""
 
     def alternating(t):
@@ -298,7 +298,7 @@ def test_ten_seconds_of_alternating_bow_force_stay_finite_and_converge(rate, A):
         v_b = 0.5 * np.sin(1.3 * turn) * np.cos(7.0 * turn)
         return {"F_N": A * np.sin(2.1 * turn), "v_b": v_b}
 
-    run = play(alternating, 10.0, rate)
+    run = play(alternating, 3.0, rate)
     assert np.isfinite(run.probes).all()
     assert run.state["lost"][0] == 0
     assert run.state["unconverged"][0] == 0

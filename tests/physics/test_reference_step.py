@@ -1,7 +1,7 @@
 """The kernel against tests/reference.py: the same equations, dense and slow.
 
 The model is chaotic, so whole runs cannot be compared: single steps from shared random
-states can, to rounding, and so can the first 200 samples of a start.
+states can, to rounding, and so can the first 100 samples of a start.
 """
 
 from collections import Counter
@@ -126,18 +126,14 @@ def friction_regime(params, controls, outputs):
     return f"string {outputs.bowed} slips" if chi > 0.0 else f"string {outputs.bowed} sticks"
 
 
-@pytest.fixture(
-    scope="module",
-    # A thousandfold tension modulation shows its coupling with the contacts.
-    params=[*((rate, 1.0) for rate in RATES), (44100.0, 0.0), (44100.0, 1000.0)],
-    ids=lambda case: "{:.0f}-modulation-{:.0f}".format(*case),
-)
-def compared(request):
-    """250 random steps by both: problem, reference (before and after), kernel."""
-    params, prepared = models(*request.param)
+@pytest.fixture(scope="module")
+def compared():
+    """400 random steps by both: problem, reference (before and after), kernel."""
     rng = np.random.default_rng(9)
     steps = []
-    for _ in range(250):
+    # A thousandfold tension modulation shows its coupling with the contacts.
+    for case in [(22050.0, 1.0), (44100.0, 0.0), (44100.0, 1000.0), (96000.0, 1.0)] * 100:
+        params, prepared = models(*case)
         state, controls = random_problem(params, rng)
         try:
             after, expected, outputs = step_reference(params, state, controls)
@@ -146,15 +142,14 @@ def compared(request):
         model = prepared[len(controls.x_f)]
         ledger = np.zeros((1, len(layout.LEDGER)))
         found = step_kernel(model, kernel_state(model, state), controls, ledger)
-        steps.append((state, controls, after, expected, outputs, found, ledger[0]))
-    return params, steps
+        steps.append((params, state, controls, after, expected, outputs, found, ledger[0]))
+    return steps
 
 
 def test_random_steps_meet_every_kind_of_contact(compared):
     """Otherwise the next test would prove little."""
-    params, steps = compared
     met = Counter()
-    for _, controls, _, _, outputs, _, _ in steps:
+    for params, _, controls, _, _, outputs, _, _ in compared:
         met["all"] += 1
         met[f"{len(controls.x_f)} fingers"] += 1
         met["touching"] += bool((outputs.g > 0.0).any())
@@ -166,13 +161,12 @@ def test_random_steps_meet_every_kind_of_contact(compared):
         h = params.strings[max(outputs.bowed, 0)].h
         met["bow at the bridge"] += controls.x_b > params.x_c - 2.0 * h
         met["finger at the bow"] += bool((np.abs(controls.x_f - controls.x_b) < 2.0 * h).any())
-    assert met["all"] >= 240
+    assert met["all"] >= 380
     assert min(met.values()) >= 20, met
 
 
 def test_one_step_from_any_state_is_the_references_to_rounding(compared):
-    _, steps = compared
-    for _, controls, _, expected, outputs, found, _ in steps:
+    for _, _, controls, _, expected, outputs, found, _ in compared:
         scales = natural_scales(expected, controls)
         for name, value in expected.items():
             if name == "v_r" and outputs.bowed < 0:
@@ -183,7 +177,6 @@ def test_one_step_from_any_state_is_the_references_to_rounding(compared):
 
 def test_one_row_of_the_ledger_is_the_references(compared):
     """Other tests rely on the kernel's ledger; this one checks it independently."""
-    params, steps = compared
     parts = {
         "loss_strings": "q_string",
         "loss_bridge": "q_bridge",
@@ -194,7 +187,7 @@ def test_one_row_of_the_ledger_is_the_references(compared):
         "loss_contact_reset": "q_reset_Psi",
         "power_in": "p",
     }
-    for state, controls, after, _, outputs, _, row in steps:
+    for params, state, controls, after, _, outputs, _, row in compared:
         expected = ref.ledger(params, state, after, outputs, controls)
         found = dict(zip(layout.LEDGER, row, strict=True))
         assert found["energy"] == pytest.approx(expected["h_after"], rel=1e-12)
@@ -213,9 +206,8 @@ def test_the_mean_potential_of_a_contact_is_never_negative(compared):
     theta is found with all contacts off, eq. (34): another contact on the same finger or
     the same nodes may still push this one below zero, by what it moves in one step.
     """
-    params, steps = compared
     alone = 0
-    for state, controls, _, _, outputs, found, row in steps:
+    for params, state, controls, _, _, outputs, found, row in compared:
         _, Psi = ref.after_resets(params, state, controls)
         mean = (found["Psi"] + Psi.ravel()) / 2.0
         allowed = 1e-12 if np.count_nonzero(outputs.g) == 1 else 1e-3
@@ -225,11 +217,10 @@ def test_the_mean_potential_of_a_contact_is_never_negative(compared):
     assert alone > 10
 
 
-@pytest.mark.parametrize("F_N", [0.7, -0.7], ids=["F4", "C5"])
-@pytest.mark.parametrize("fingers", [1, 2])
-def test_the_first_200_samples_of_a_start_are_the_references(F_N, fingers):
+@pytest.mark.parametrize(("F_N", "fingers"), [(0.7, 2), (-0.7, 1)], ids=["F4", "C5"])
+def test_the_first_100_samples_of_a_start_are_the_references(F_N, fingers):
     """Bowed and pressed, the fingers already on the strings, gliding."""
-    rate, frames = 44100.0, 200
+    rate, frames = 44100.0, 100
     params, prepared = models(rate)
     model = prepared[fingers]
     state = ref.rest_state(params, fingers)

@@ -13,7 +13,8 @@ from types import SimpleNamespace
 import pytest
 
 from yehu_server.cli import _parser, main, serve, terminal
-from yehu_server.cli.report import bindings_table, devices_report, mapping_report, status_line
+from yehu_server.cli.devices import devices_report
+from yehu_server.cli.report import bindings_table, mapping_report, status_line
 from yehu_server.errors import FIRST, LAST, one_line, shortened
 from yehu_server.live.audio.devices import AudioDevice
 from yehu_server.playing.binds import Bind

@@ -115,15 +115,9 @@ def test_a_wrong_call_gets_one_line_and_makes_nothing(songs, refused, monkeypatc
 
 
 class Elsewhere:
-    """A cluster on whose machines the folders are not there.
+    """A cluster on whose machines a folder is not there, or is, as `seen` tells."""
 
-    Parameters
-    ----------
-    seen : bool
-        What its workers said when they were asked.
-    """
-
-    def __init__(self, folder: Path, *, seen: bool) -> None:
+    def __init__(self, folder: Path, *, seen: bool = False) -> None:
         self._folder, self._seen = folder, seen
 
     def __enter__(self) -> Self:
@@ -133,17 +127,17 @@ class Elsewhere:
         pass
 
     def ask(self, question, *arguments):
-        answer = question(*arguments)
-        return {"tcp://worker": self._seen if isinstance(answer, bool) else answer}
+        return {"tcp://worker": question(*arguments)}
 
     def perform_all(self, perform, tasks):
         for job, task in enumerate(list(tasks)):
-            away = self._folder.with_name("away")
+            away = self._folder if self._seen else self._folder.with_name("away")
             self._folder.rename(away)
             try:
                 result = perform(task, lambda _done, _total: None)
             finally:
                 away.rename(self._folder)
+            assert bool(result.made) != (self._seen or "error" in result.line)
             yield Event(job, 1.0, result=result)
 
 
@@ -165,9 +159,7 @@ def test_scores_and_sounds_travel_where_workers_do_not_see_them(
 
 
 def test_a_file_of_the_users_own_is_not_replaced_by_what_has_travelled(songs, command, monkeypatch):
-    monkeypatch.setattr(
-        "yehu_server.rendering.cluster.Cluster", lambda *_: Elsewhere(songs / "in", seen=False)
-    )
+    monkeypatch.setattr("yehu_server.rendering.cluster.Cluster", lambda *_: Elsewhere(songs / "in"))
     own = songs / "out" / "0" / "0.wav"
     own.parent.mkdir(parents=True)
     own.write_bytes(b"my own")
@@ -181,12 +173,9 @@ def test_settings_that_a_worker_does_not_have_are_named(songs, refused, monkeypa
     class Without(Elsewhere):
         def ask(self, question, *arguments):
             answers = super().ask(question, *arguments)
-            lost = dict.fromkeys(arguments[0], "")
-            return {"tcp://worker": lost} if isinstance(answers["tcp://worker"], dict) else answers
+            return {"tcp://worker": dict.fromkeys(answers["tcp://worker"], "")}
 
-    monkeypatch.setattr(
-        "yehu_server.rendering.cluster.Cluster", lambda *_: Without(songs / "in", seen=False)
-    )
+    monkeypatch.setattr("yehu_server.rendering.cluster.Cluster", lambda *_: Without(songs / "in"))
     (songs / "i.json").write_text(SETTINGS)
     words = ("render", songs / "in", "-o", songs / "out", *DRY, "--dask", "x")
     line = refused(*words, "--instrument", songs / "i.json")

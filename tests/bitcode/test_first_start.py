@@ -16,7 +16,7 @@ from types import SimpleNamespace
 import pytest
 from powers import cube
 
-from yehu_server.cli.arguments import warn_of_compiling
+from yehu_server.cli.terminal import warn_of_compiling
 from yehu_server.compile import cache, jit
 from yehu_server.compile.bitcode import shipped, start
 from yehu_server.compile.bitcode.capture import CaptureError, capturing

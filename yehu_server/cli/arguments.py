@@ -1,13 +1,14 @@
-"""Arguments, warnings and progress bars that several commands share."""
+"""Arguments that several commands share, and what is made from them."""
 
 from __future__ import annotations
 
 import argparse
 import contextlib
-import sys
-from collections.abc import Callable, Iterator
+import inspect
+import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
@@ -17,15 +18,74 @@ from yehu_server.errors import one_line
 from yehu_server.live.addresses import OSC_ADDRESS, format_address, parse_address
 from yehu_server.util.files import shipped_folder
 
+if TYPE_CHECKING:
+    from yehu_server.core.physics.quantities import Quantities
+    from yehu_server.rendering.cluster import Cluster
+
+
+def add_options(group: Any, table: str, /, **details: Any) -> None:
+    """Add options to a parser, or a group of its options, from a table of usage and help.
+
+    Parameters
+    ----------
+    table : str
+        Rows such as ``--mono: one channel``, a flag; ``-o --output OUT: the file``;
+        ``--only NAME ...: may be repeated``; or ``score FILE: the score``, an argument. What
+        follows of a row is indented.
+    details
+        By the names of options, the other words that argparse takes, or the type alone.
+    """
+    for row in re.split(r"\n(?=\S)", inspect.cleandoc(table)):
+        usage, _, text = " ".join(row.split()).partition(": ")
+        *names, value = usage.split()
+        name = usage.rpartition("--")[2].split()[0].replace("-", "_")
+        words = details.pop(name, {})
+        words = {"help": text, **(words if isinstance(words, dict) else {"type": words})}
+        if value == "...":
+            words |= {"action": "append", "default": []}
+            value = names.pop()
+        if not value.startswith("-"):
+            words["metavar"] = value
+        else:
+            names.append(value)
+            if len(words) == 1:
+                words["action"] = "store_true"
+        group.add_argument(*names, **words)
+    if details:
+        raise TypeError(f"no row of the table is of {', '.join(details)}")
+
 
 def add_cluster(group: Any) -> None:
     """Add --dask, the address of a cluster's scheduler, to a parser or a group of its options."""
-    group.add_argument(
-        "--dask",
-        metavar="ADDRESS",
-        help="do the jobs on a cluster: the address of its Dask scheduler, such as "
-        "tcp://10.0.0.1:8786, or the file it wrote (needs yehu-server[cluster])",
+    add_options(
+        group,
+        """
+        --dask ADDRESS: do the jobs on a cluster: the address of its Dask scheduler, such as
+            tcp://10.0.0.1:8786, or the file it wrote (needs yehu-server[cluster])
+        """,
     )
+
+
+def cluster_of(
+    arguments: argparse.Namespace, setup: Callable[[], object]
+) -> contextlib.AbstractContextManager[Cluster | None]:
+    """The cluster that the option of `add_cluster` names, if it does, for the time of a block.
+
+    Parameters
+    ----------
+    setup : callable
+        What each worker calls before its first job.
+
+    Raises
+    ------
+    YehuError
+        Where it cannot be used.
+    """
+    if arguments.dask is None:
+        return contextlib.nullcontext()
+    from yehu_server.rendering.cluster import Cluster
+
+    return Cluster(arguments.dask, setup, warn)
 
 
 class Parser(argparse.ArgumentParser):
@@ -94,6 +154,11 @@ def add_command(
     return parser
 
 
+def add_actions(parser: argparse.ArgumentParser) -> Any:
+    """Let a command have actions; return what `add_action` adds them to."""
+    return parser.add_subparsers(title="actions", metavar="ACTION", required=True, prog=parser.prog)
+
+
 def add_action(actions: Any, name: str, run: Callable[[argparse.Namespace], int], text: str) -> Any:
     """Add an action of a command, with its help as the description; return its parser."""
     return add_command(actions, name, run, help=text, description=f"{text.capitalize()}.")
@@ -101,48 +166,60 @@ def add_action(actions: Any, name: str, run: Callable[[argparse.Namespace], int]
 
 def add_instrument(parser: argparse.ArgumentParser) -> None:
     """Add the option that names an instrument file."""
-    parser.add_argument(
-        "--instrument",
-        type=Path,
-        metavar="FILE",
-        help="a TOML or JSON file of physical quantities to change",
+    add_options(
+        parser,
+        "--instrument FILE: a TOML or JSON file of physical quantities to change",
+        instrument=Path,
     )
+
+
+def instrument_of(arguments: argparse.Namespace) -> Quantities:
+    """The physical quantities that the option of `add_instrument` asks for.
+
+    Raises
+    ------
+    YehuError
+        Where the file is wrong.
+    """
+    from yehu_server.core.physics.quantities import Quantities, read_quantities
+
+    return read_quantities(arguments.instrument) if arguments.instrument else Quantities()
 
 
 def add_reporting(parser: argparse.ArgumentParser) -> None:
     """Add --json and --quiet."""
-    parser.add_argument("--json", action="store_true", help="print one JSON object when done")
-    parser.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
+    add_options(
+        parser,
+        """
+        --json: print one JSON object when done
+        --quiet: no progress bar, no summary
+        """,
+    )
 
 
 def add_output(
     parser: argparse.ArgumentParser, kind: Callable[[str], Path] = target, more: str = ""
 ) -> None:
     """Add -o and --overwrite, for the sound file to write; `kind` converts its name."""
-    parser.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        type=kind,
-        metavar="OUT",
-        help=f"the sound file to write{more}",
-    )
-    parser.add_argument(
-        "--overwrite",
-        action="store_true",
-        help="replace OUT whatever it is (default: only files made by render and replay)",
+    add_options(
+        parser,
+        f"""
+        -o --output OUT: the sound file to write{more}
+        --overwrite: replace OUT whatever it is (default: only files made by render and replay)
+        """,
+        output={"required": True, "type": kind},
     )
 
 
-def add_folder(parser: argparse.ArgumentParser, *, required: bool = True, text: str = "") -> None:
+def add_folder(
+    parser: argparse.ArgumentParser,
+    *,
+    required: bool = True,
+    text: str = "folder to write to; created if missing",
+) -> None:
     """Add -o, for a folder to write to."""
-    parser.add_argument(
-        "-o",
-        "--output",
-        required=required,
-        type=target,
-        metavar="FOLDER",
-        help=text or "folder to write to; created if missing",
+    add_options(
+        parser, f"-o --output FOLDER: {text}", output={"required": required, "type": target}
     )
 
 
@@ -161,41 +238,41 @@ def check_output(
     OutputError
         Where it may not be written.
     """
-    from yehu_server.util.files import anything, check_free, check_target
-    from yehu_server.util.sound_file import is_rendered
+    from yehu_server.util.files import check_free, check_target
 
-    may_replace = anything if arguments.overwrite else is_rendered
+    may_replace = replaceable(arguments)
     check_target(output or arguments.output)
     check_free(output or arguments.output, may_replace)
     return may_replace
 
 
+def replaceable(arguments: argparse.Namespace) -> Callable[[Path], bool]:
+    """Which older files a sound may replace, as of ``files.replacing``."""
+    from yehu_server.util.files import anything
+    from yehu_server.util.sound_file import is_rendered
+
+    return anything if arguments.overwrite else is_rendered
+
+
 def add_gesture(parser: Any) -> None:
     """Add a gesture file, and options of what is kept of its run."""
-    parser.add_argument(
-        "gesture",
-        type=Path,
-        metavar="GESTURE.json",
-        help="a gesture file: motion of bow and finger",
-    )
-    parser.add_argument("--energy", action="store_true", help="also keep the energy ledger")
-    parser.add_argument(
-        "--strings",
-        type=positive,
-        default=0,
-        metavar="EVERY",
-        help="keep the shapes of the strings every EVERY samples (default: never)",
+    add_options(
+        parser,
+        """
+        gesture GESTURE.json: a gesture file: motion of bow and finger
+        --energy: also keep the energy ledger
+        --strings EVERY: keep the shapes of the strings every EVERY samples (default: never)
+        """,
+        gesture=Path,
+        strings={"type": positive, "default": 0},
     )
 
 
 def add_server(parser: Any) -> None:
     """Add --server, the address of a running server."""
-    parser.add_argument(
-        "--server",
-        default=format_address(*OSC_ADDRESS),
-        metavar="HOST:PORT",
-        help=f"the OSC address of the server (default: {format_address(*OSC_ADDRESS)})",
-    )
+    usual = format_address(*OSC_ADDRESS)
+    text = f"--server HOST:PORT: the OSC address of the server (default: {usual})"
+    add_options(parser, text, server={"default": usual})
 
 
 def server_of(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -207,48 +284,3 @@ def server_of(arguments: argparse.Namespace) -> tuple[str, int]:
         Where it is none.
     """
     return parse_address(arguments.server, *OSC_ADDRESS)
-
-
-def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> None:
-    """Warn where the model will be compiled: at its first use, or always if it is not cached.
-
-    Parameters
-    ----------
-    plays : bool
-        Whether the command plays the instrument, which is what code is made of in advance.
-    """
-    from yehu_server.compile.bitcode.start import why_not
-    from yehu_server.compile.jit import WHY_NOT_CACHED, cache_folder, source_hash
-
-    if arguments.quiet:
-        return
-    if WHY_NOT_CACHED:
-        warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
-    elif any(cache_folder().glob("*.code")):
-        return
-    elif not plays:
-        warn("compiling for this machine, once ...")
-    elif reason := why_not(source_hash()):
-        warn(f"compiling for this machine, once, for half a minute: {reason}")
-    else:
-        warn("preparing for this processor, once ...")
-
-
-@contextlib.contextmanager
-def progress_bar(arguments: argparse.Namespace, what: str, unit: str = "s") -> Iterator[Any]:
-    """Show a progress bar on a terminal; yield a function that takes what is done and the total."""
-    if arguments.quiet or not sys.stderr.isatty():
-        yield lambda _done, _total: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (
-        TextColumn(what),
-        BarColumn(),
-        TextColumn(f"{{task.completed:.1f}} of {{task.total:.1f}} {unit}"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=0.0)
-        yield lambda done, total: bar.update(task, completed=min(done, total), total=total)

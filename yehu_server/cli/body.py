@@ -9,8 +9,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_action, add_command
-from yehu_server.cli.converters import positive, target, whole
+from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
+from yehu_server.cli.converters import number_within, positive, target, whole
 from yehu_server.cli.terminal import print_result, warn
 
 if TYPE_CHECKING:
@@ -37,72 +37,70 @@ def add_to(commands: Any) -> None:
         description="Fit a body to measurements of a fiddle, and look at it.",
         epilog=EXAMPLES,
     )
-    actions = parser.add_subparsers(
-        title="actions", metavar="ACTION", required=True, prog=parser.prog
-    )
+    actions = add_actions(parser)
     _add_fit(actions)
     show = add_action(actions, "show", _show, "show a body, beside what was measured")
-    show.add_argument(
-        "body", nargs="?", type=Path, metavar="FILE",
-        help="an instrument file or a body file (default: the body that is shipped)",
-    )  # fmt: skip
+    add_options(
+        show,
+        "body FILE: an instrument file or a body file (default: the body that is shipped)",
+        body={"nargs": "?", "type": Path},
+    )
     _add_picture(show)
     taps = add_action(actions, "taps", _taps, "write taps of the shipped body, to try this with")
-    taps.add_argument(
-        "-o", "--output", required=True, type=target, metavar="FOLDER",
-        help="folder for the sound files; created if missing",
-    )  # fmt: skip
-    taps.add_argument("--count", type=positive, default=5, metavar="N", help="taps (default: 5)")
-    taps.add_argument(
-        "--noise-db", type=_decibels, default=40.0, metavar="DB",
-        help="how far noise lies below the signals (default: 40)",
-    )  # fmt: skip
-    taps.add_argument("--overwrite", action="store_true", help="replace files that are there")
+    add_options(
+        taps,
+        """
+        -o --output FOLDER: folder for the sound files; created if missing
+        --count N: taps (default: 5)
+        --noise-db DB: how far noise lies below the signals (default: 40)
+        --overwrite: replace files that are there
+        """,
+        output={"required": True, "type": target},
+        count={"type": positive, "default": 5},
+        noise_db={"type": number_within(0.0, 200.0, "dB"), "default": 40.0},
+    )
 
 
 def _add_fit(actions: Any) -> None:
     fit = add_action(actions, "fit", _fit, "fit a body to measurements")
-    fit.add_argument(
-        "measurements", nargs="*", type=Path, metavar="FILE",
-        help="taps as sound files or .csv, or responses as .csv or .uff",
-    )  # fmt: skip
-    fit.add_argument(
-        "-o", "--output", required=True, type=target, metavar="OUT",
-        help="an instrument file, .toml, with its body file beside it; or a body file, .json",
-    )  # fmt: skip
-    fit.add_argument(
-        "--radiation", nargs="+", type=Path, default=[], metavar="FILE",
-        help="measurements of which the sound pressure alone is used",
-    )  # fmt: skip
-    for name, text in (("--channels", "sound files"), ("--radiation-channels", "--radiation")):
-        fit.add_argument(
-            name, metavar="NAME=UNITS,...",
-            help=f"what the channels of {text} are, and their SI units at full scale: force, "
-            "velocity, acceleration, displacement, pressure or none",
-        )  # fmt: skip
-    fit.add_argument(
-        "--kind", choices=("mobility", "receptance", "accelerance", "radiation"),
-        help="what the responses of a .csv or .uff are that does not tell",
-    )  # fmt: skip
-    fit.add_argument(
-        "--band", type=_band, metavar="LO:HI",
-        help="frequencies to fit, Hz (default: from 100 to where the hammer excites)",
-    )  # fmt: skip
-    fit.add_argument(
-        "--modes", type=whole, metavar="N",
-        help="number of bridge modes, 1 to 16 (default: as many as show)",
-    )  # fmt: skip
-    fit.add_argument("--plot", type=target, metavar="PNG", help="draw measured and fitted, too")
-    fit.add_argument("--overwrite", action="store_true", help="replace other files, too")
-    fit.add_argument("--json", action="store_true", help="print one JSON object when done")
+    add_options(
+        fit,
+        """
+        measurements FILE: taps as sound files or .csv, or responses as .csv or .uff
+        -o --output OUT: an instrument file, .toml, with its body file beside it; or a body file,
+            .json
+        --radiation FILE: measurements of which the sound pressure alone is used
+        --channels NAME=UNITS,...: what the channels of sound files are, and their SI units at full
+            scale: force, velocity, acceleration, displacement, pressure or none
+        --radiation-channels NAME=UNITS,...: what the channels of --radiation are, and their SI
+            units at full scale: force, velocity, acceleration, displacement, pressure or none
+        --kind: what the responses of a .csv or .uff are that does not tell
+        --band LO:HI: frequencies to fit, Hz (default: from 100 to where the hammer excites)
+        --modes N: number of bridge modes, 1 to 16 (default: as many as show)
+        --plot PNG: draw measured and fitted, too
+        --overwrite: replace other files, too
+        --json: print one JSON object when done
+        """,
+        measurements={"nargs": "*", "type": Path},
+        output={"required": True, "type": target},
+        radiation={"nargs": "+", "type": Path, "default": []},
+        kind={"choices": ("mobility", "receptance", "accelerance", "radiation")},
+        band=_band,
+        modes=whole,
+        plot=target,
+    )
 
 
 def _add_picture(parser: Any) -> None:
-    parser.add_argument(
-        "-o", "--output", type=target, metavar="PNG", help="draw it, to this picture"
+    add_options(
+        parser,
+        """
+        -o --output PNG: draw it, to this picture
+        --overwrite: replace another file
+        --json: print one JSON object
+        """,
+        output=target,
     )
-    parser.add_argument("--overwrite", action="store_true", help="replace another file")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
 def _fit(arguments: argparse.Namespace) -> int:
@@ -195,9 +193,3 @@ def _band(text: str) -> tuple[float, float]:
     if not 0.0 < band[0] < band[1] < math.inf:
         raise argparse.ArgumentTypeError(f"{text!r} is not a band, such as 100:5000")
     return band
-
-
-def _decibels(text: str) -> float:
-    from yehu_server.cli.converters import within
-
-    return within(text, 0.0, 200.0, "dB")

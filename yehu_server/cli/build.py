@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import Parser, add_command, add_folder
+from yehu_server.cli.arguments import Parser, add_command, add_folder, add_options
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.style_options import add_tables, interpreted_style_of
 from yehu_server.cli.terminal import print_result
@@ -39,19 +39,15 @@ def add_to(commands: Any) -> None:
         help="wasm: a WebAssembly module, for pages; library: a shared library and its header",
     )
     add_folder(parser)
-    parser.add_argument(
-        "--rate",
-        nargs="+",
-        type=positive,
-        metavar="HZ",
-        help="sample rates that it can play at (default: 44100 48000)",
-    )
-    parser.add_argument(
-        "--cpu",
-        default="generic",
-        metavar="NAME",
-        help="processor of a library, by LLVM's name, such as x86-64-v3; "
-        "native: this one (default: any of its kind)",
+    add_options(
+        parser,
+        """
+        --rate HZ: sample rates that it can play at (default: 44100 48000)
+        --cpu NAME: processor of a library, by LLVM's name, such as x86-64-v3; native: this one
+            (default: any of its kind)
+        """,
+        rate={"nargs": "+", "type": positive},
+        cpu={"default": "generic"},
     )
     _add_tables(parser)
 
@@ -62,10 +58,14 @@ def _add_tables(command: Parser) -> None:
         "tables", write_tables, "write a mapping, tuning and presets as numbers, for yehu_map"
     )
     add_tables(parser)
-    parser.add_argument(
-        "-o", "--output", required=True, type=target, metavar="OUT", help="the file to write"
+    add_options(
+        parser,
+        """
+        -o --output OUT: the file to write
+        --overwrite: replace OUT if it exists
+        """,
+        output={"required": True, "type": target},
     )
-    parser.add_argument("--overwrite", action="store_true", help="replace OUT if it exists")
 
 
 def write_tables(arguments: argparse.Namespace) -> int:

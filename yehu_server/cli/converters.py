@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+from collections.abc import Callable
 from pathlib import Path
 
 LOWEST_A4, HIGHEST_A4 = 390.0, 480.0  # Hz
@@ -17,11 +19,6 @@ def target(text: str) -> Path:
     return Path(text)
 
 
-def a4(text: str) -> float:
-    """Convert the frequency of A4 in Hz."""
-    return within(text, LOWEST_A4, HIGHEST_A4, "Hz")
-
-
 def whole(text: str) -> int:
     """Convert a whole number."""
     try:
@@ -30,36 +27,16 @@ def whole(text: str) -> int:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
 
 
-def port(text: str) -> int:
-    """Convert the number of a port, 0 to 65535."""
-    value = whole(text)
-    if not 0 <= value <= 65535:
-        raise argparse.ArgumentTypeError(f"{value} is not a port, 0 to 65535")
-    return value
+def whole_within(lo: int, hi: float, wrong: str) -> Callable[[str], int]:
+    """Make a converter of a whole number within bounds; `wrong` is told of others."""
 
+    def convert(text: str) -> int:
+        value = whole(text)
+        if not lo <= value <= hi:
+            raise argparse.ArgumentTypeError(f"{value} {wrong}")
+        return value
 
-def seed(text: str) -> int:
-    """Convert a seed, 0 to 65535."""
-    value = whole(text)
-    if not 0 <= value <= 65535:
-        raise argparse.ArgumentTypeError(f"{value} is not a seed, 0 to 65535")
-    return value
-
-
-def positive(text: str) -> int:
-    """Convert a whole number from 1."""
-    value = whole(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"{value} is not 1 or more")
-    return value
-
-
-def channel(text: str) -> int:
-    """Convert a MIDI channel, 1 to 16, to 0 to 15."""
-    value = whole(text)
-    if not 1 <= value <= 16:
-        raise argparse.ArgumentTypeError(f"{value} is not a MIDI channel, 1 to 16")
-    return value - 1
+    return convert
 
 
 def within(text: str, lo: float, hi: float, unit: str) -> float:
@@ -73,21 +50,16 @@ def within(text: str, lo: float, hi: float, unit: str) -> float:
     return value
 
 
-def seconds(text: str) -> float:
-    """Convert seconds, 0 to 600."""
-    return within(text, 0.0, 600.0, "s")
+def number_within(lo: float, hi: float, unit: str) -> Callable[[str], float]:
+    """Make a converter of a number within bounds; see `within`."""
+    return lambda text: within(text, lo, hi, unit)
 
 
-def hours(text: str) -> float:
-    """Convert hours, up to 1000."""
-    return within(text, 0.0, 1000.0, "hours")
+port = whole_within(0, 65535, "is not a port, 0 to 65535")
+positive = whole_within(1, math.inf, "is not 1 or more")
+hours = number_within(0.0, 1000.0, "hours")
 
 
-def share(text: str) -> float:
-    """Convert a share, 0 to 1."""
-    return within(text, 0.0, 1.0, "")
-
-
-def decibels(text: str) -> float:
-    """Convert decibels, -60 to 24."""
-    return within(text, -60.0, 24.0, "dB")
+def channel(text: str) -> int:
+    """Convert a MIDI channel, 1 to 16, to 0 to 15."""
+    return whole_within(1, 16, "is not a MIDI channel, 1 to 16")(text) - 1

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import json
 import os
 import secrets
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -17,12 +17,12 @@ from yehu_server.cli.arguments import (
     add_cluster,
     add_command,
     add_folder,
+    add_options,
     add_reporting,
-    progress_bar,
-    warn_of_compiling,
+    cluster_of,
 )
 from yehu_server.cli.converters import positive
-from yehu_server.cli.terminal import print_result, warn
+from yehu_server.cli.terminal import print_report, progress_bar, warn, warn_of_compiling
 from yehu_server.errors import OutputError, ParameterError
 
 if TYPE_CHECKING:
@@ -50,14 +50,17 @@ def add_to(commands: Any) -> None:
         "with the forces, positions and velocities behind them, and the regime of the string.",
         epilog=EXAMPLES,
     )
-    parser.add_argument(
-        "description", type=Path, metavar="DESCRIPTION.toml", help="what is drawn, and how"
-    )
+    add_options(parser, "description DESCRIPTION.toml: what is drawn, and how", description=Path)
     add_folder(parser)
-    parser.add_argument(
-        "--count", type=positive, metavar="N", help="number of sounds, in place of the file's"
+    add_options(
+        parser,
+        """
+        --count N: number of sounds, in place of the file's
+        --jobs N: number of cores (default: all)
+        """,
+        count=positive,
+        jobs=positive,
     )
-    parser.add_argument("--jobs", type=positive, metavar="N", help="number of cores (default: all)")
     add_cluster(parser)
     add_reporting(parser)
 
@@ -75,16 +78,22 @@ def run(arguments: argparse.Namespace) -> int:
     description = replace(description, count=arguments.count or description.count)
     folder: Path = arguments.output.absolute()
     _check_folder(folder)
-    with _performing(arguments, description.rate) as performing, build_records.alone_in(folder):
+    setup = partial(making.set_up, description.rate)
+    if arguments.dask is None:
+        warn_of_compiling(arguments)
+        setup()
+    with cluster_of(arguments, setup) as cluster, build_records.alone_in(folder):
         check_manifest(folder)
         build_records.clear_work([folder])
         parts = making.parts_of(description, folder, _key(description.key))
         left, lines = making.split_up_to_date(parts)
         current = len(lines)
+        here = partial(_on_cores, arguments.jobs)
+        perform_all = here if cluster is None else partial(_on_cluster, cluster, folder)
         try:
             with (
                 progress_bar(arguments, "making", "sounds") as progress,
-                contextlib.closing(making.make_all(left, performing(folder))) as made,
+                contextlib.closing(making.make_all(left, perform_all)) as made,
             ):
                 for done, more in made if left else ():
                     lines += more
@@ -134,22 +143,6 @@ def _key(description: str) -> str:
     return key_of([*code, PACKAGE / "lab" / "simulation.py"], source_hash(), description)
 
 
-@contextlib.contextmanager
-def _performing(arguments: argparse.Namespace, rate: float) -> Iterator[Any]:
-    """Yield a function of the folder that yields what does all parts: here, or on a cluster."""
-    from yehu_server.lab.dataset.making import set_up
-
-    if arguments.dask is None:
-        warn_of_compiling(arguments)
-        set_up(rate)
-        yield lambda _folder: partial(_on_cores, arguments.jobs)
-        return
-    from yehu_server.rendering.cluster import Cluster
-
-    with Cluster(arguments.dask, partial(set_up, rate), warn) as cluster:
-        yield lambda folder: partial(_on_cluster, cluster, folder)
-
-
 def _on_cores(jobs: int | None, parts: Sequence[Part]) -> Any:
     from yehu_server.lab.dataset.making import perform
     from yehu_server.rendering.workers import perform_all
@@ -174,16 +167,9 @@ def _report(arguments: argparse.Namespace, lines: Sequence[dict[str, Any]], curr
     for line in failed:
         warn(f"{line['file']}: {line['error']}")
     made = len(lines) - len(failed) - current
-    regimes: dict[str, int] = {}
-    for line in lines:
-        if "labels" in line:
-            regime = line["labels"]["regime"]
-            regimes[regime] = regimes.get(regime, 0) + 1
-    if arguments.json:
-        found = {"made": made, "up_to_date": current, "failed": len(failed), "regimes": regimes}
-        print(json.dumps(found))
-    elif not arguments.quiet:
-        counts = f"{made} made, {current} up to date, {len(failed)} failed"
-        kinds = ", ".join(f"{count} {name}" for name, count in sorted(regimes.items()))
-        print_result(f"{arguments.output}: {counts} ({kinds})")
+    regimes = Counter(line["labels"]["regime"] for line in lines if "labels" in line)
+    fields = {"made": made, "up_to_date": current, "failed": len(failed), "regimes": regimes}
+    counts = f"{made} made, {current} up to date, {len(failed)} failed"
+    kinds = ", ".join(f"{count} {name}" for name, count in sorted(regimes.items()))
+    print_report(arguments, fields, f"{arguments.output}: {counts} ({kinds})")
     return 1 if failed else 0

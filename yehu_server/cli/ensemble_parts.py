@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,6 +60,7 @@ def players_of(
     YehuError
         Where there are too many parts, or what a file names is not there.
     """
+    from yehu_server.core.physics.quantities import read_quantities
     from yehu_server.playing.parts import seated
 
     room: Values = ()
@@ -73,13 +75,17 @@ def players_of(
 
         ensemble = read_ensemble(arguments.ensemble)
         _check_played(ensemble, scores)
-        entries, room = list(ensemble.parts), _room(ensemble, style)
+        entries, room = list(ensemble.parts), ensemble.room
+        if ensemble.room_name is not None:
+            with _at(ensemble.room_where):
+                room = room_of(ensemble.room_name, style.presets)
         files.append(ensemble.path)
     styles = seated([_style(entry, style, room) for entry in entries])
     for entry, own in zip(entries, styles, strict=True):
         instrument = quantities
         if entry.instrument is not None:
-            instrument = _instrument(entry)
+            with _at(entry.where):
+                instrument = read_quantities(entry.instrument)
             files.append(entry.instrument)
         files += own.files
         part = _part(entry, scores, instrument, phrasing, arguments)
@@ -149,42 +155,31 @@ def _warn_of_unplayed(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
         warn(f"{ensemble.path}: no part plays channel {channels}")
 
 
-def _room(ensemble: EnsembleFile, style: Style) -> Values:
-    if ensemble.room_name is None:
-        return ensemble.room
+@contextlib.contextmanager
+def _at(where: str) -> Iterator[None]:
+    """Let errors name the place in the ensemble file."""
     try:
-        return room_of(ensemble.room_name, style.presets)
+        yield
     except YehuError as error:
-        raise EnsembleError(f"{ensemble.room_where}: {error}") from error
+        raise EnsembleError(f"{where}: {error}") from error
 
 
 def _style(entry: PartEntry, style: Style, room: Values) -> Style:
     """The style of a part: that of all, with its own mapping, preset, settings and place."""
     from yehu_server.playing.mapping import load
 
-    try:
+    with _at(entry.where):
         if entry.mapping is not None:
             style = replace(style, mapping=load(entry.mapping))
         if entry.preset is not None:
             file, preset = style.presets.find_file(entry.preset), style.presets.find(entry.preset)
             kept = (pair for pair in style.start if is_of_room(pair[0]))  # of --room
             style = replace(style, preset=file, start=(*preset.values.items(), *kept))
-    except YehuError as error:
-        raise EnsembleError(f"{entry.where}: {error}") from error
     own = dict(entry.settings)
     settings = (pair for pair in style.settings if pair[0] not in own)
     place = {"/room/pan": entry.pan, "/room/distance": entry.distance, SECTION: entry.section}
     start = ((address, float(value)) for address, value in place.items() if value is not None)
     return replace(style, start=(*style.start, *room, *start), settings=(*settings, *own.items()))
-
-
-def _instrument(entry: PartEntry) -> Quantities:
-    from yehu_server.core.physics.quantities import read_quantities
-
-    try:
-        return read_quantities(entry.instrument or Path())
-    except YehuError as error:
-        raise EnsembleError(f"{entry.where}: {error}") from error
 
 
 def _part(

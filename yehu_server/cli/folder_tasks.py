@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from yehu_server.cli.arguments import replaceable
 from yehu_server.errors import OutputError, ScoreError, YehuError
 
 if TYPE_CHECKING:
@@ -64,11 +65,14 @@ class Done:
     ----------
     read : tuple of Path
         The files of settings that the sound was made from.
+    made : tuple of bytes
+        The results, where they have to travel.
     """
 
     line: Line
     is_full: bool = False
     read: tuple[Path, ...] = ()
+    made: tuple[bytes, ...] = ()
 
 
 def perform(task: Task, report_progress: ProgressCallback) -> Done:
@@ -104,7 +108,7 @@ def _keep_failure(task: Task, line: Line) -> None:
 
 def _made(task: Task, report_progress: ProgressCallback) -> Done:
     from yehu_server.cli.render_one import rendered
-    from yehu_server.cli.render_plot import check_plot
+    from yehu_server.lab.plot.png import check_picture
     from yehu_server.rendering import build_records
     from yehu_server.util.files import check_distinct, check_free, check_target, make_folder, why
 
@@ -117,7 +121,7 @@ def _made(task: Task, report_progress: ProgressCallback) -> Done:
     work = build_records.temporary_of(entry.target)
     if task.picture is not None:
         make_folder(task.picture.parent)
-        check_plot(task.picture, overwrite=options.overwrite)
+        check_picture(task.picture, "--plot", overwrite=options.overwrite)
     own = argparse.Namespace(**vars(options))
     own.midi, own.output, own.plot = [entry.source], work, task.picture
     own.overwrite, own.quiet, own.json, own.jobs = True, True, False, 1
@@ -157,14 +161,6 @@ def _made(task: Task, report_progress: ProgressCallback) -> Done:
         with contextlib.suppress(OSError):
             work.unlink(missing_ok=True)
     return Done(line, read=tuple(read))
-
-
-def replaceable(arguments: argparse.Namespace) -> Any:
-    """Which older files a result may replace, as of ``files.replacing``."""
-    from yehu_server.util.files import anything
-    from yehu_server.util.sound_file import is_rendered
-
-    return anything if arguments.overwrite else is_rendered
 
 
 def _programs(arguments: argparse.Namespace) -> list[Path]:

@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_command, add_server, server_of
+from yehu_server.cli.arguments import add_command, add_options, add_server, server_of
 from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import ParameterError, YehuError
@@ -37,25 +37,16 @@ def add_to(commands: Any) -> None:
         description="Bind the control that you move next to a parameter of a running server.",
         epilog=EXAMPLES,
     )
-    parser.add_argument(
-        "parameters",
-        nargs="*",
-        metavar="ADDRESS",
-        help="the parameters; without any, the command asks for them",
-    )
-    parser.add_argument(
-        "--soft",
-        action="store_true",
-        help="soft take-over: the knob has no effect until it reaches the present value",
-    )
-    parser.add_argument(
-        "--forget", action="store_true", help="remove the binds of these parameters"
-    )
-    parser.add_argument(
-        "--part",
-        type=positive,
-        metavar="N",
-        help="of several players, the one who moves the control, counted from 1 (default: 1)",
+    add_options(
+        parser,
+        """
+        parameters ADDRESS: the parameters; without any, the command asks for them
+        --soft: soft take-over: the knob has no effect until it reaches the present value
+        --forget: remove the binds of these parameters
+        --part N: of several players, the one who moves the control, counted from 1 (default: 1)
+        """,
+        parameters={"nargs": "*"},
+        part=positive,
     )
     add_server(parser)
 

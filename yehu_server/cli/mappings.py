@@ -10,7 +10,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_action, add_command, add_server, server_of
+from yehu_server.cli.arguments import (
+    add_action,
+    add_actions,
+    add_command,
+    add_options,
+    add_server,
+    server_of,
+)
 from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import MappingError, ParameterError
@@ -43,18 +50,16 @@ def add_to(commands: Any) -> None:
         description="List and show mappings; check or convert files of your own.",
         epilog=EXAMPLES,
     )
-    actions = parser.add_subparsers(
-        title="actions", metavar="ACTION", required=True, prog=parser.prog
-    )
+    actions = add_actions(parser)
     add_action(actions, "list", _list, "list the shipped mappings and your own")
     show = add_action(actions, "show", _show, "show the binds of a mapping")
-    show.add_argument(
-        "mapping", nargs="?", metavar="NAME", help="a mapping's name, or a file (default: keyboard)"
-    )
-    show.add_argument(
-        "--live",
-        action="store_true",
-        help="the binds of a running server, with present positions and values; Ctrl-C ends",
+    add_options(
+        show,
+        """
+        mapping NAME: a mapping's name, or a file (default: keyboard)
+        --live: the binds of a running server, with present positions and values; Ctrl-C ends
+        """,
+        mapping={"nargs": "?"},
     )
     add_server(show)
     check = add_action(actions, "check", _check, "check files and report all errors")
@@ -62,19 +67,17 @@ def add_to(commands: Any) -> None:
     convert = add_action(
         actions, "convert", _convert, "write a mapping as a file in canonical form"
     )
-    convert.add_argument(
-        "mapping",
-        metavar="FILE",
-        help="a file, also one with the output of show --json, or the name of a mapping",
-    )
-    convert.add_argument(
-        "-o", "--output", type=target, metavar="OUT", help="the file to write (default: print it)"
-    )
-    convert.add_argument(
-        "--overwrite", action="store_true", help="replace OUT if it exists, even if it is FILE"
+    add_options(
+        convert,
+        """
+        mapping FILE: a file, also one with the output of show --json, or the name of a mapping
+        -o --output OUT: the file to write (default: print it)
+        --overwrite: replace OUT if it exists, even if it is FILE
+        """,
+        output=target,
     )
     for action in (actions.choices["list"], show):
-        action.add_argument("--json", action="store_true", help="print one JSON object")
+        add_options(action, "--json: print one JSON object")
 
 
 def _list(arguments: argparse.Namespace) -> int:

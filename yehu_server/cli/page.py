@@ -16,7 +16,7 @@ from typing import Any, TextIO
 
 import segno
 
-from yehu_server.cli.arguments import add_command, add_folder
+from yehu_server.cli.arguments import add_command, add_folder, add_options
 from yehu_server.cli.converters import port
 from yehu_server.cli.terminal import print_result
 
@@ -67,14 +67,14 @@ def add_to(commands: Any) -> None:
     )
     wish = "write the page here and end; the folder is created if missing"
     add_folder(parser, required=False, text=wish)
-    parser.add_argument(
-        "--port",
-        type=port,
-        default=PORT,
-        metavar="N",
-        help=f"port to show it at; 0: a free one (default: {PORT})",
+    add_options(
+        parser,
+        f"""
+        --port N: port to show it at; 0: a free one (default: {PORT})
+        --open: open it in the browser
+        """,
+        port={"type": port, "default": PORT},
     )
-    parser.add_argument("--open", action="store_true", help="open it in the browser")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -7,7 +7,8 @@ import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.converters import whole
+from yehu_server.cli.arguments import add_options
+from yehu_server.cli.converters import whole_within
 from yehu_server.cli.style_options import mapping_of, style_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError, YehuError
@@ -24,48 +25,25 @@ MOST = 16  # engine.rig.MOST_PARTS, which takes a second to import
 
 def add_parts(group: Any) -> None:
     """Add the options to a group of a parser."""
-    group.add_argument(
-        "--parts",
-        type=_parts,
-        default=1,
-        metavar="N",
-        help=f"number of players on the stage, each with an instrument, 1 to {MOST} (default: 1)",
-    )
-    group.add_argument(
-        "--part",
-        action="append",
-        type=_numbered,
-        default=[],
-        metavar="N=PORT[:CHANNEL]",
-        help="part N is played from inputs with these words in their name, or one channel of them; "
-        "may be repeated (default: the first input plays part 1, the second part 2, ...)",
-    )
-    group.add_argument(
-        "--part-mapping",
-        action="append",
-        type=_numbered,
-        default=[],
-        metavar="N=FILE",
-        help="mapping of part N (default: that of --mapping); may be repeated",
-    )
-    group.add_argument(
-        "--part-preset",
-        action="append",
-        type=_numbered,
-        default=[],
-        metavar="N=NAME",
-        help="sound that part N starts with (default: that of --preset); may be repeated",
-    )
-    group.add_argument(
-        "--part-set",
-        action="append",
-        type=_numbered,
-        default=[],
-        metavar="N=ADDRESS=VALUE",
-        help="hold a parameter of part N, such as 2=/room/pan=-0.5; may be repeated",
-    )
-    group.add_argument(
-        "--dry", action="store_true", help="no room, and bodies that sound alike to both sides"
+    add_options(
+        group,
+        f"""
+        --parts N: number of players on the stage, each with an instrument, 1 to {MOST} (default: 1)
+        --part N=PORT[:CHANNEL] ...: part N is played from inputs with these words in their name, or
+            one channel of them; may be repeated (default: the first input plays part 1, the second
+            part 2, ...)
+        --part-mapping N=FILE ...: mapping of part N (default: that of --mapping); may be repeated
+        --part-preset N=NAME ...: sound that part N starts with (default: that of --preset); may be
+            repeated
+        --part-set N=ADDRESS=VALUE ...: hold a parameter of part N, such as 2=/room/pan=-0.5; may be
+            repeated
+        --dry: no room, and bodies that sound alike to both sides
+        """,
+        parts={"type": whole_within(1, MOST, f"parts: a stage has 1 to {MOST}"), "default": 1},
+        part=_numbered,
+        part_mapping=_numbered,
+        part_preset=_numbered,
+        part_set=_numbered,
     )
 
 
@@ -158,13 +136,6 @@ def _style(own: argparse.Namespace, number: int) -> Style:
 
 
 # ---------------------------------------------------------------- converters
-
-
-def _parts(text: str) -> int:
-    number = whole(text)
-    if not 1 <= number <= MOST:
-        raise argparse.ArgumentTypeError(f"{number} parts: a stage has 1 to {MOST}")
-    return number
 
 
 def _numbered(text: str) -> tuple[int, str]:

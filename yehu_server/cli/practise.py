@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import json
+import time
 from typing import Any
 
 from yehu_server.cli.arguments import (
     add_command,
     add_instrument,
+    add_options,
     add_reporting,
-    progress_bar,
-    warn_of_compiling,
+    instrument_of,
 )
 from yehu_server.cli.converters import target
 from yehu_server.cli.style_options import add_tuning, tuning_of
-from yehu_server.cli.terminal import print_result
+from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
 
 A4 = 440.0  # Hz
 
@@ -43,27 +43,25 @@ def add_to(commands: Any) -> None:
         "bow, until it speaks as well as can be found; write what was learnt, for --practice.",
         epilog=EXAMPLES,
     )
-    parser.add_argument(
-        "-o", "--output", required=True, type=target, metavar="OUT.json", help="the file to write"
-    )
-    parser.add_argument(
-        "--rate", type=float, default=44100.0, metavar="HZ", help="sample rate (default: 44100)"
+    add_options(
+        parser,
+        """
+        -o --output OUT.json: the file to write
+        --rate HZ: sample rate (default: 44100)
+        """,
+        output={"required": True, "type": target},
+        rate={"type": float, "default": 44100.0},
     )
     add_instrument(parser)
-    parser.add_argument(
-        "--preset", metavar="NAME", help="practise for the bow of a preset alone, in less time"
-    )
+    add_options(parser, "--preset NAME: practise for the bow of a preset alone, in less time")
     add_tuning(parser)
     add_reporting(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    import time
-
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.core.physics.grid import check_rate
-    from yehu_server.core.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibration_store import calibration_for
     from yehu_server.playing.practice import Practice
     from yehu_server.playing.practice_files import shipped_practice, write_practice
@@ -76,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_target(arguments.output)
     check_distinct({"-o": arguments.output}, own)
     values = {} if arguments.preset is None else Presets().load(arguments.preset).values
-    quantities = read_quantities(arguments.instrument) if arguments.instrument else Quantities()
+    quantities = instrument_of(arguments)
     start = time.perf_counter()
     warn_of_compiling(arguments)
     warm_up()
@@ -90,10 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     write_practice(arguments.output, table, arguments.rate)
     elapsed = time.perf_counter() - start
     improved = practice.notes_changed
-    if arguments.json:
-        print(json.dumps({"rate": arguments.rate, "improved": improved, "elapsed_s": elapsed}))
-    elif not arguments.quiet:
-        print_result(
-            f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now"
-        )
+    fields = {"rate": arguments.rate, "improved": improved, "elapsed_s": elapsed}
+    text = f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now"
+    print_report(arguments, fields, text)
     return 0

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_action, add_command
+from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
 from yehu_server.cli.style_options import add_presets_folder
 from yehu_server.cli.terminal import print_result, warn
 
@@ -29,15 +29,13 @@ def add_to(commands: Any) -> None:
         description="List and show presets; check files of your own.",
         epilog=EXAMPLES,
     )
-    actions = parser.add_subparsers(
-        title="actions", metavar="ACTION", required=True, prog=parser.prog
-    )
+    actions = add_actions(parser)
     listed = add_action(actions, "list", _list, "list the presets")
     show = add_action(actions, "show", _show, "show the values of a preset")
-    show.add_argument("preset", metavar="NAME", help="the name of a preset, or a file")
+    add_options(show, "preset NAME: the name of a preset, or a file")
     for action in (listed, show):
         add_presets_folder(action)
-        action.add_argument("--json", action="store_true", help="print one JSON object")
+        add_options(action, "--json: print one JSON object")
     check = add_action(actions, "check", _check, "check files and report all errors")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
 

@@ -12,16 +12,15 @@ from yehu_server.cli.arguments import (
     add_cluster,
     add_command,
     add_instrument,
+    add_options,
     add_output,
     add_reporting,
 )
 from yehu_server.cli.converters import (
     channel,
-    decibels,
     hours,
+    number_within,
     positive,
-    seconds,
-    share,
     target,
     whole,
 )
@@ -69,85 +68,42 @@ def add_to(commands: Any) -> None:
         "each to a file of its own.",
         epilog=EXAMPLES,
     )
-    parser.add_argument(
-        "midi",
-        nargs="+",
-        type=score_source,
-        metavar="IN.mid",
-        help="the MIDI files, or a folder of them; - reads standard input",
+    add_options(
+        parser,
+        "midi IN.mid: the MIDI files, or a folder of them; - reads standard input",
+        midi={"nargs": "+", "type": score_source},
     )
     add_output(parser, sound_target, "; - writes standard output; of a folder, a folder")
-    parser.add_argument(
-        "--rate",
-        type=whole,
-        default=44100,
-        metavar="HZ",
-        help="sample rate (default: 44100)",
-    )
-    parser.add_argument(
-        "--format",
-        choices=("wav", "flac", "raw"),
-        help="file format (default: by the ending of OUT); raw, samples alone, for -o -",
-    )
-    parser.add_argument(
-        "--subtype",
-        choices=("16", "24", "float"),
-        help="sample format (default: 24 bits; of raw, float)",
-    )
-    parser.add_argument(
-        "--channel",
-        type=channel,
-        action="append",
-        metavar="N",
-        help="play only this MIDI channel, 1 to 16; may be repeated (default: all but 10)",
-    )
-    parser.add_argument(
-        "--tail",
-        type=seconds,
-        metavar="SECONDS",
-        help="time after the end of the score, up to 600 "
-        "(default: until 80 dB below full scale, at most 5 s)",
-    )
-    parser.add_argument(
-        "--gain-db",
-        type=decibels,
-        metavar="DB",
-        help="gain before the limiter, -60 to 24 (default: 0, or that of --preset)",
-    )
-    parser.add_argument(
-        "--normalize", action="store_true", help="scale the result to a peak of -1 dBFS"
-    )
-    parser.add_argument(
-        "--phrasing",
-        type=share,
-        metavar="SHARE",
-        help="how much plain notes are shaped, by phrases, accents, slurs, vibrato and slides; "
-        "what a file marks stays: 0 to 1 (default: 0.5; 0: exactly as written)",
-    )
-    parser.add_argument(
-        "--song",
-        type=positive,
-        metavar="N",
-        help="play only the N-th song of each file, where a file has several "
-        "(default: one after another)",
-    )
-    parser.add_argument(
-        "--strict",
-        action="store_true",
-        help="refuse MIDI files with any damage, with exit code 1 (default: warn)",
-    )
-    parser.add_argument(
-        "--max-duration",
-        type=hours,
-        default=MAX_DURATION_H,
-        metavar="HOURS",
-        help=f"refuse MIDI files that last longer together (default: {MAX_DURATION_H:g})",
-    )
-    parser.add_argument(
-        "--plot",
-        type=target,
-        metavar="PNG",
-        help="also draw level, pitch asked and played, and spectrogram; of a folder, a folder",
+    add_options(
+        parser,
+        f"""
+        --rate HZ: sample rate (default: 44100)
+        --format: file format (default: by the ending of OUT); raw, samples alone, for -o -
+        --subtype: sample format (default: 24 bits; of raw, float)
+        --channel N: play only this MIDI channel, 1 to 16; may be repeated (default: all but 10)
+        --tail SECONDS: time after the end of the score, up to 600 (default: until 80 dB below full
+            scale, at most 5 s)
+        --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
+        --normalize: scale the result to a peak of -1 dBFS
+        --phrasing SHARE: how much plain notes are shaped, by phrases, accents, slurs, vibrato and
+            slides; what a file marks stays: 0 to 1 (default: 0.5; 0: exactly as written)
+        --song N: play only the N-th song of each file, where a file has several (default: one after
+            another)
+        --strict: refuse MIDI files with any damage, with exit code 1 (default: warn)
+        --max-duration HOURS: refuse MIDI files that last longer together (default:
+            {MAX_DURATION_H:g})
+        --plot PNG: also draw level, pitch asked and played, and spectrogram; of a folder, a folder
+        """,
+        rate={"type": whole, "default": 44100},
+        format={"choices": ("wav", "flac", "raw")},
+        subtype={"choices": ("16", "24", "float")},
+        channel={"type": channel, "action": "append"},
+        tail=number_within(0.0, 600.0, "s"),
+        gain_db=number_within(-60.0, 24.0, "dB"),
+        phrasing=number_within(0.0, 1.0, ""),
+        song=positive,
+        max_duration={"type": hours, "default": MAX_DURATION_H},
+        plot=target,
     )
     add_stage(parser)
     add_instrument(parser)

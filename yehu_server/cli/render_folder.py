@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Sequence
+from functools import partial
 
+from yehu_server.cli.arguments import cluster_of, instrument_of
 from yehu_server.cli.folder_tasks import Line
 from yehu_server.cli.render_pipe import is_piped
 from yehu_server.cli.terminal import print_result, warn
@@ -32,8 +34,9 @@ def is_for_folder(arguments: argparse.Namespace) -> bool:
 
 def run(arguments: argparse.Namespace) -> int:
     """Render a folder; return the exit code: 1 where some of its scores failed."""
+    from yehu_server.cli.folder_cluster import absolute
     from yehu_server.cli.folder_records import split_up_to_date
-    from yehu_server.cli.folder_runs import cluster_of, render_all
+    from yehu_server.cli.folder_runs import prepare, render_all
     from yehu_server.rendering import build_records
     from yehu_server.rendering.folder_tree import tree_of
 
@@ -45,7 +48,8 @@ def run(arguments: argparse.Namespace) -> int:
     for name, why in tree.skipped:
         warn(f"{name}: {why}")
     places = {entry.target.parent for entry in tree.entries}
-    with cluster_of(arguments) as cluster, build_records.alone_in(arguments.output):
+    setup = partial(prepare, absolute(arguments))
+    with cluster_of(arguments, setup) as cluster, build_records.alone_in(arguments.output):
         build_records.check_manifest(arguments.output)
         build_records.clear_work(places)
         lines: list[Line] = [{"file": name, "error": why} for name, why in tree.problems]
@@ -73,7 +77,6 @@ def _check(arguments: argparse.Namespace) -> str:
     from yehu_server.cli.stage_options import check_stage
     from yehu_server.cli.style_options import style_of
     from yehu_server.core.physics.grid import check_rate
-    from yehu_server.core.physics.quantities import read_quantities
     from yehu_server.util.sound_file import check_format
 
     form = arguments.format or "wav"
@@ -99,8 +102,7 @@ def _check(arguments: argparse.Namespace) -> str:
     check_rate(arguments.rate)
     check_stage(arguments)
     check_format(form, arguments.subtype or "24", 1 if arguments.mono else 2)
-    if arguments.instrument is not None:
-        read_quantities(arguments.instrument)
+    instrument_of(arguments)
     style_of(arguments)
     if arguments.plot is not None:
         from yehu_server.lab.plot.axes import check_matplotlib

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import check_output, progress_bar, warn_of_compiling
+from yehu_server.cli.arguments import check_output, instrument_of
 from yehu_server.cli.ensemble_parts import Players, players_of
 from yehu_server.cli.render_pipe import is_piped
-from yehu_server.cli.render_plot import PLOTTED_BLOCK, check_plot, plot_data_of, write_plot
 from yehu_server.cli.stage_options import check_stage, room_of, stem_files
 from yehu_server.cli.style_options import style_of
-from yehu_server.cli.terminal import warn
+from yehu_server.cli.terminal import progress_bar, warn, warn_of_compiling
 from yehu_server.errors import OutputError
 from yehu_server.util.files import anything, make_folder
 
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from yehu_server.scores.score import Score
 
 PHRASING = 0.5  # of files, where nothing else is asked for
+PLOTTED_BLOCK = 512  # frames between two readings of the pitch that is asked for
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,6 @@ def rendered(
     """
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.core.physics.grid import check_rate
-    from yehu_server.core.physics.quantities import Quantities, read_quantities
     from yehu_server.playing.calibration import calibration_key
     from yehu_server.rendering.options import Options
     from yehu_server.rendering.to_files import render
@@ -85,7 +84,7 @@ def rendered(
         gain_db=arguments.gain_db,
         normalize=arguments.normalize,
         style=style,
-        quantities=read_quantities(arguments.instrument) if arguments.instrument else Quantities(),
+        quantities=instrument_of(arguments),
         is_dry=arguments.dry,
         is_mono=arguments.mono,
         jobs=arguments.jobs,
@@ -93,7 +92,8 @@ def rendered(
     scores = _scores(arguments)
     players = _players(arguments, scores, options, phrasing)
     read = [*arguments.midi, *style.files, *instrument, *players.files]
-    stems = _stems(arguments, options, players, read)
+    stems = _stems(arguments, options, players)
+    check_distinct({**outputs, **{f"stem {stem.name}": stem for stem in stems}}, read)
     for warning in players.parts[0].score.warnings:
         warn(warning)
     warn_of_compiling(arguments)
@@ -102,14 +102,22 @@ def rendered(
     key = calibration_key(float(options.rate), options.quantities, style.a4)
     watch = None
     if arguments.plot is not None:
-        watch = plot_data_of(parts, options)
+        from yehu_server.rendering.plot_data import PlotData
+
+        longest_s = max(part.score.duration_s for part in parts)
+        watch = PlotData(float(options.rate), longest_s, len(parts), style.a4)
         options = replace(options, block=PLOTTED_BLOCK)
     with progress_bar(arguments, "rendering") as progress:
         summary = render(
             parts, arguments.output, options, follow or progress, may_replace, stems, watch
         )
     if watch is not None:
-        write_plot(watch, arguments.plot, parts, options, overwrite=arguments.overwrite)
+        from yehu_server.lab.plot.panels import write_picture
+
+        watch.finish()
+        voices = "" if len(parts) == 1 else f"{len(parts)} parts, "
+        title = f"{parts[0].score.name}: {voices}{options.rate / 1000.0:g} kHz"
+        write_picture(watch, arguments.plot, title, overwrite=arguments.overwrite)
     summary = replace(summary, percussion_notes=summary.percussion_notes + players.percussion_notes)
     fields = {**_fields(summary, style, stems), "phrasing": phrasing, "calibration": key}
     return Rendered(summary, fields, read)
@@ -119,7 +127,9 @@ def _outputs(arguments: argparse.Namespace) -> dict[str, Path]:
     """The files to write, by their options, beside stems."""
     outputs = {} if is_piped(arguments.output) else {"-o": arguments.output}
     if arguments.plot is not None:
-        check_plot(arguments.plot, overwrite=arguments.overwrite)
+        from yehu_server.lab.plot.png import check_picture
+
+        check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
         outputs["--plot"] = arguments.plot
     return outputs
 
@@ -158,22 +168,15 @@ def _players(
     return Players((replace(part, phrasing=0.0 if is_fingered(score) else phrasing),))
 
 
-def _stems(
-    arguments: argparse.Namespace, options: Options, players: Players, read: Sequence[Path]
-) -> list[Path]:
-    """The files of the stems that are asked for; checks that all outputs may be written."""
-    from yehu_server.util.files import check_distinct
-
-    stems = []
-    if arguments.stems is not None:
-        form = "wav" if options.format_name == "raw" else options.format_name
-        is_dry = options.is_dry
-        stems = stem_files(arguments.stems, players.parts, form, is_dry=is_dry)
-        make_folder(arguments.stems)
-        for stem in stems:
-            check_output(arguments, stem)
-    outputs = {**_outputs(arguments), **{f"stem {stem.name}": stem for stem in stems}}
-    check_distinct(outputs, read)
+def _stems(arguments: argparse.Namespace, options: Options, players: Players) -> list[Path]:
+    """The files of the stems that are asked for; checks that they may be written."""
+    if arguments.stems is None:
+        return []
+    form = "wav" if options.format_name == "raw" else options.format_name
+    stems = stem_files(arguments.stems, players.parts, form, is_dry=options.is_dry)
+    make_folder(arguments.stems)
+    for stem in stems:
+        check_output(arguments, stem)
     return stems
 
 
@@ -183,21 +186,21 @@ def _calibrated(arguments: argparse.Namespace, parts: Sequence[Part], rate: floa
     from yehu_server.playing.calibration_store import calibration_for
 
     known: dict[str, Any] = {}
+    calibrated = []
     with progress_bar(arguments, "calibrating", "notes") as progress:
         for part in parts:
             a4 = part.style.a4
             key = calibration_key(rate, part.quantities, a4)
             if key not in known:
                 known[key] = calibration_for(rate, part.quantities, a4=a4, progress=progress)
-    keys = (calibration_key(rate, part.quantities, part.style.a4) for part in parts)
-    return [replace(part, calibration=known[key]) for part, key in zip(parts, keys, strict=True)]
+            calibrated.append(replace(part, calibration=known[key]))
+    return calibrated
 
 
 def _fields(summary: Summary, style: Style, stems: Sequence[Path]) -> dict[str, Any]:
     """What --json tells of a rendering."""
-    fields = dict(vars(summary))
-    fields["channels"] = _by_number(fields.pop("notes_by_channel"))
-    fields["parts"] = [_part_fields(part) for part in summary.parts]
+    fields = _counts(summary)
+    fields["parts"] = [*map(_counts, summary.parts)]
     fields["stems"] = [*map(str, stems)]
     fields["policy"] = summary.policy.value
     fields["mapping"] = {"name": style.mapping.name, "files": [*map(str, style.mapping.files)]}
@@ -206,15 +209,12 @@ def _fields(summary: Summary, style: Style, stems: Sequence[Path]) -> dict[str, 
     return fields
 
 
-def _part_fields(part: PartSummary) -> dict[str, Any]:
-    """What --json tells of a part."""
-    fields = dict(vars(part))
-    fields["channels"] = _by_number(fields.pop("notes_by_channel"))
+def _counts(summary: Summary | PartSummary) -> dict[str, Any]:
+    """The fields of a summary, with channels counted from 1."""
+    fields = dict(vars(summary))
+    notes_by_channel = fields.pop("notes_by_channel")
+    fields["channels"] = {str(channel + 1): notes for channel, notes in notes_by_channel.items()}
     return fields
-
-
-def _by_number(notes_by_channel: dict[int, int]) -> dict[str, int]:
-    return {str(channel + 1): notes for channel, notes in notes_by_channel.items()}
 
 
 def _scores(arguments: argparse.Namespace) -> list[Score]:

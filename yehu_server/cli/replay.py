@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import (
     add_command,
+    add_options,
     add_output,
     add_reporting,
     check_output,
-    progress_bar,
-    warn_of_compiling,
 )
 from yehu_server.cli.converters import hours
-from yehu_server.cli.terminal import print_result, warn
+from yehu_server.cli.terminal import print_report, progress_bar, warn, warn_of_compiling
 
 MAX_DURATION_H = 12.0
 EXAMPLES = """\
@@ -38,28 +36,25 @@ def add_to(commands: Any) -> None:
         description="Render a capture of serve: the same samples, on the same build.",
         epilog=EXAMPLES,
     )
-    parser.add_argument("capture", type=Path, metavar="CAPTURE", help="a file of serve --capture")
+    add_options(parser, "capture CAPTURE: a file of serve --capture", capture=Path)
     add_output(parser)
-    parser.add_argument(
-        "--format", choices=("wav", "flac"), help="file format (default: by the ending of OUT)"
-    )
-    parser.add_argument(
-        "--subtype",
-        choices=("16", "24", "float"),
-        help="sample format (default: float in WAV, as recorded; 24 in FLAC)",
-    )
-    parser.add_argument(
-        "--max-duration",
-        type=hours,
-        default=MAX_DURATION_H,
-        metavar="HOURS",
-        help=f"refuse a capture that lasts longer (default: {MAX_DURATION_H:g})",
+    add_options(
+        parser,
+        f"""
+        --format: file format (default: by the ending of OUT)
+        --subtype: sample format (default: float in WAV, as recorded; 24 in FLAC)
+        --max-duration HOURS: refuse a capture that lasts longer (default: {MAX_DURATION_H:g})
+        """,
+        format={"choices": ("wav", "flac")},
+        subtype={"choices": ("16", "24", "float")},
+        max_duration={"type": hours, "default": MAX_DURATION_H},
     )
     add_reporting(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
+    from yehu_server.cli.report import replay_report
     from yehu_server.core.engine.warming import warm_up
     from yehu_server.rendering.replay import replay
     from yehu_server.scores.capture import read_capture
@@ -84,10 +79,5 @@ def run(arguments: argparse.Namespace) -> int:
             progress=progress,
             may_replace=may_replace,
         )
-    if arguments.json:
-        print(json.dumps(vars(result)))
-    elif not arguments.quiet:
-        from yehu_server.cli.report import replay_report
-
-        print_result(replay_report(arguments.output, result))
+    print_report(arguments, vars(result), replay_report(arguments.output, result))
     return 0

@@ -13,7 +13,6 @@ import numpy as np
 from yehu_server.errors import one_line
 from yehu_server.lab.simulation import Simulation
 from yehu_server.live.addresses import format_address
-from yehu_server.live.audio.devices import AudioDevice
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import note_name
@@ -101,33 +100,6 @@ def replay_report(target: Path, result: Replayed) -> str:
     return f"{line}\n{counted(result.events, 'event')}"
 
 
-def devices_report(
-    audio: Sequence[AudioDevice],
-    audio_problem: str,
-    midi_api: str,
-    midi: Sequence[str],
-    midi_problem: str,
-) -> None:
-    """Print tables of audio outputs and MIDI inputs."""
-    from rich.console import Console
-    from rich.table import Table
-
-    console = Console(markup=False, emoji=False)
-    table = Table(title="audio outputs", title_justify="left")
-    for column in ("name", "host API", "channels", "rate", "latency", ""):
-        table.add_column(column, overflow="fold")
-    for device in audio:
-        numbers = (str(device.channels), f"{device.rate:g} Hz", f"{device.latency_ms:.1f} ms")
-        mark = "default" if device.is_default else ""
-        table.add_row(one_line(device.name), one_line(device.host_api), *numbers, mark)
-    console.print(table if audio else one_line(f"no audio outputs{_because(audio_problem)}"))
-    table = Table(title=f"MIDI inputs ({midi_api})", title_justify="left")
-    table.add_column("name", overflow="fold")
-    for name in midi:
-        table.add_row(one_line(name))
-    console.print(table if midi else one_line(f"no MIDI inputs{_because(midi_problem)}"))
-
-
 def mapping_report(mapping: ControllerMapping) -> None:
     """Print a mapping as a table of sources, targets and ranges."""
     from rich.console import Console
@@ -173,10 +145,6 @@ def bindings_table(rows: Sequence[Sequence[Any]]) -> Table:
         cells = (source, param.address, span, at, f"{value:.4g}{unit}", terms)
         table.add_row(*map(one_line, cells))
     return table
-
-
-def _because(problem: str) -> str:
-    return f": {problem}" if problem else ""
 
 
 def status_line(status: Mapping[str, float | str]) -> str:

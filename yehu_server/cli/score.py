@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_action, add_command
+from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
 from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import print_result, warn
 
@@ -33,19 +33,19 @@ def add_to(commands: Any) -> None:
         description="Show what is understood of a written score, and what will be played.",
         epilog=EXAMPLES,
     )
-    actions = parser.add_subparsers(
-        title="actions", metavar="ACTION", required=True, prog=parser.prog
-    )
+    actions = add_actions(parser)
     show = add_action(actions, "show", _show, "show the notes of a score, and its marks")
-    show.add_argument("score", type=Path, metavar="FILE", help="a file of MusicXML or jianpu")
-    show.add_argument("--json", action="store_true", help="print one JSON object")
-    show.add_argument(
-        "--export-midi",
-        type=target,
-        metavar="OUT.mid",
-        help="write what is played as a MIDI file, and say what that cannot hold",
+    add_options(
+        show,
+        """
+        score FILE: a file of MusicXML or jianpu
+        --json: print one JSON object
+        --export-midi OUT.mid: write what is played as a MIDI file, and say what that cannot hold
+        --overwrite: replace OUT.mid if it exists
+        """,
+        score=Path,
+        export_midi=target,
     )
-    show.add_argument("--overwrite", action="store_true", help="replace OUT.mid if it exists")
 
 
 def _show(arguments: argparse.Namespace) -> int:

@@ -13,9 +13,9 @@ import webbrowser
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, progress_bar, warn_of_compiling
+from yehu_server.cli.arguments import add_command
 from yehu_server.cli.serve_options import add_arguments, options_of
-from yehu_server.cli.terminal import set_up_log
+from yehu_server.cli.terminal import progress_bar, set_up_log, warn_of_compiling
 from yehu_server.errors import YehuError
 
 try:

@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
+import time
 from typing import Any
 
-from yehu_server.cli.arguments import (
-    add_command,
-    add_gesture,
-    add_reporting,
-    progress_bar,
-    warn_of_compiling,
-)
+from yehu_server.cli.arguments import add_command, add_gesture, add_options, add_reporting
 from yehu_server.cli.converters import target
-from yehu_server.cli.terminal import print_result
+from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
 
 EXAMPLES = """\
 examples:
@@ -36,16 +30,17 @@ def add_to(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     add_gesture(parser)
-    parser.add_argument(
-        "-o", "--output", required=True, type=target, metavar="OUT.npz", help="the arrays to write"
+    add_options(
+        parser,
+        "-o --output OUT.npz: the arrays to write",
+        output={"required": True, "type": target},
     )
     add_reporting(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    import time
-
+    from yehu_server.cli.report import simulate_report
     from yehu_server.errors import OutputError
     from yehu_server.lab.simulation import simulate
     from yehu_server.scores.gesture import read_gesture
@@ -69,10 +64,6 @@ def run(arguments: argparse.Namespace) -> int:
         )
     result.save(arguments.output)
     elapsed = time.perf_counter() - start
-    if arguments.json:
-        print(json.dumps({**result.meta, "elapsed_s": elapsed}))
-    elif not arguments.quiet:
-        from yehu_server.cli.report import simulate_report
-
-        print_result(simulate_report(arguments.output, result))
+    text = simulate_report(arguments.output, result)
+    print_report(arguments, {**result.meta, "elapsed_s": elapsed}, text)
     return 0

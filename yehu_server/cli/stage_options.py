@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from yehu_server.cli.arguments import add_options
 from yehu_server.cli.converters import positive, target
 from yehu_server.errors import ParameterError
 
@@ -23,41 +24,23 @@ BY_MIDI = Path()  # --ensemble without a file
 def add_stage(parser: Any) -> None:
     """Add the options of a stage: room, channels, ensemble, stems."""
     group = parser.add_argument_group("the stage")
-    group.add_argument(
-        "--dry",
-        action="store_true",
-        help="no room, and a body that sounds alike to both sides (default: a small, quiet room)",
-    )
-    group.add_argument("--mono", action="store_true", help="write one channel, the mean of both")
-    group.add_argument(
-        "--room", metavar="NAME", help="the room: a preset of rooms, such as hall, or a file"
-    )
-    group.add_argument(
-        "--ensemble",
-        nargs="?",
-        type=_ensemble_file,
-        const=BY_MIDI,
-        metavar="FILE.toml",
-        help="each MIDI channel but 10 a yehu of its own, up to 16; a file tells who plays what "
-        "and sits where",
-    )
-    group.add_argument(
-        "--by",
-        choices=("channel", "track"),
-        default="channel",
-        help="with --ensemble: whether each channel or each track is a part (default: channel)",
-    )
-    group.add_argument(
-        "--stems",
-        type=target,
-        metavar="FOLDER",
-        help="also write what each part, and the room, gives to the mix: 01-NAME.wav ... room.wav",
-    )
-    group.add_argument(
-        "--jobs",
-        type=positive,
-        metavar="N",
-        help="number of cores for an ensemble or a folder (default: all); the sound is the same",
+    add_options(
+        group,
+        """
+        --dry: no room, and a body that sounds alike to both sides (default: a small, quiet room)
+        --mono: write one channel, the mean of both
+        --room NAME: the room: a preset of rooms, such as hall, or a file
+        --ensemble FILE.toml: each MIDI channel but 10 a yehu of its own, up to 16; a file tells who
+            plays what and sits where
+        --by: with --ensemble: whether each channel or each track is a part (default: channel)
+        --stems FOLDER: also write what each part, and the room, gives to the mix: 01-NAME.wav ...
+            room.wav
+        --jobs N: number of cores for an ensemble or a folder (default: all); the sound is the same
+        """,
+        ensemble={"nargs": "?", "type": _ensemble_file, "const": BY_MIDI},
+        by={"choices": ("channel", "track"), "default": "channel"},
+        stems=target,
+        jobs=positive,
     )
 
 

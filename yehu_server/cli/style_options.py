@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.converters import HIGHEST_A4, LOWEST_A4, a4, seed
+from yehu_server.cli.arguments import add_options
+from yehu_server.cli.converters import HIGHEST_A4, LOWEST_A4, number_within, whole_within
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
 
@@ -20,89 +21,62 @@ if TYPE_CHECKING:
 def add_playing(group: Any) -> None:
     """Add the options of playing that serve and render share; see `style_of`."""
     add_tables(group)
-    group.add_argument(
-        "--practice",
-        type=Path,
-        metavar="FILE",
-        help="how notes are bowed: what yehu-server practise wrote (default: as shipped)",
-    )
-    group.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="ADDRESS=VALUE",
-        help="hold a parameter at a value, such as /playing/bow_position=0.1; may be repeated",
-    )
-    group.add_argument(
-        "--open-strings",
-        choices=("always", "on-pitch", "never"),
-        default="always",
-        help="when C5 is played on the open outer string, not on the inner one (default: always)",
-    )
-    group.add_argument(
-        "--seed",
-        type=seed,
-        default=0,
-        metavar="N",
-        help="seed of the random variation between notes, 0 to 65535 (default: 0)",
+    add_options(
+        group,
+        """
+        --practice FILE: how notes are bowed: what yehu-server practise wrote (default: as shipped)
+        --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1; may
+            be repeated
+        --open-strings: when C5 is played on the open outer string, not on the inner one (default:
+            always)
+        --seed N: seed of the random variation between notes, 0 to 65535 (default: 0)
+        """,
+        practice=Path,
+        open_strings={"choices": ("always", "on-pitch", "never"), "default": "always"},
+        seed={"type": whole_within(0, 65535, "is not a seed, 0 to 65535"), "default": 0},
     )
 
 
 def add_tables(group: Any) -> None:
     """Add the options of how messages are interpreted; see `interpreted_style_of`."""
-    group.add_argument(
-        "--mapping",
-        metavar="FILE",
-        help="what controllers move: the name of a mapping, mine/NAME for one of yours, or a file "
-        "(default: keyboard)",
-    )
-    group.add_argument(
-        "--mpe",
-        action="store_true",
-        help="start with one MPE zone of 15 member channels; without --mapping, use the mapping "
-        "named mpe",
-    )
-    group.add_argument(
-        "--preset",
-        metavar="NAME",
-        help="the sound to start with: the name of a preset, or a file (see yehu-server presets); "
-        "a plus takes several together, such as sul-tasto+hall",
-    )
-    group.add_argument(
-        "--programs",
-        action="store_true",
-        help="let MIDI program changes select presets (default: they are ignored)",
+    add_options(
+        group,
+        """
+        --mapping FILE: what controllers move: the name of a mapping, mine/NAME for one of yours, or
+            a file (default: keyboard)
+        --mpe: start with one MPE zone of 15 member channels; without --mapping, use the mapping
+            named mpe
+        --preset NAME: the sound to start with: the name of a preset, or a file (see yehu-server
+            presets); a plus takes several together, such as sul-tasto+hall
+        --programs: let MIDI program changes select presets (default: they are ignored)
+        """,
     )
     add_presets_folder(group)
-    group.add_argument(
-        "--a4",
-        type=a4,
-        default=440.0,
-        metavar="HZ",
-        help=f"reference pitch, {LOWEST_A4:g} to {HIGHEST_A4:g} (default: 440)",
+    add_options(
+        group,
+        f"--a4 HZ: reference pitch, {LOWEST_A4:g} to {HIGHEST_A4:g} (default: 440)",
+        a4={"type": number_within(LOWEST_A4, HIGHEST_A4, "Hz"), "default": 440.0},
     )
     add_tuning(group)
-    group.add_argument(
-        "--range",
-        choices=("transpose", "clamp", "skip"),
-        default="transpose",
-        help="what happens to notes outside F4 to F6 (default: transpose, by octaves)",
+    add_options(
+        group,
+        "--range: what happens to notes outside F4 to F6 (default: transpose, by octaves)",
+        range={"choices": ("transpose", "clamp", "skip"), "default": "transpose"},
     )
 
 
 def add_tuning(group: Any) -> None:
     """Add the options that tell which pitch each key has, to a parser or a group of its options."""
-    group.add_argument(
-        "--tuning",
-        type=Path,
-        metavar="FILE.scl",
-        help="a Scala scale, or the name of a shipped one, from C up (default: equal temperament)",
-    )
-    group.add_argument(
-        "--keyboard-map",
-        type=Path,
-        metavar="FILE.kbm",
-        help="a Scala keyboard map, or the name of a shipped one; it fixes the pitch in Hz",
+    add_options(
+        group,
+        """
+        --tuning FILE.scl: a Scala scale, or the name of a shipped one, from C up (default: equal
+            temperament)
+        --keyboard-map FILE.kbm: a Scala keyboard map, or the name of a shipped one; it fixes the
+            pitch in Hz
+        """,
+        tuning=Path,
+        keyboard_map=Path,
     )
 
 
@@ -138,11 +112,10 @@ def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mappi
 
 def add_presets_folder(group: Any) -> None:
     """Add --presets, the folder of the user's presets."""
-    group.add_argument(
-        "--presets",
-        type=Path,
-        metavar="FOLDER",
-        help="folder of your own presets (default: in your configuration folder)",
+    add_options(
+        group,
+        "--presets FOLDER: folder of your own presets (default: in your configuration folder)",
+        presets=Path,
     )
 
 

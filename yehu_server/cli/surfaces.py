@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_folder
+from yehu_server.cli.arguments import add_command, add_folder, add_options
 from yehu_server.cli.terminal import print_result
 from yehu_server.live.addresses import OSC_ADDRESS, format_address, parse_address
 
@@ -32,31 +32,18 @@ def add_to(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     add_folder(parser)
-    parser.add_argument(
-        "--server",
-        default=format_address(*OSC_ADDRESS),
-        metavar="HOST:PORT",
-        help="address that Max, Pd and Open Stage Control send to "
-        f"(default: {format_address(*OSC_ADDRESS)}); in TouchOSC it is set by hand",
-    )
-    parser.add_argument(
-        "--part",
-        type=int,
-        metavar="N",
-        help="for part N of a server with several (serve --parts): the files speak to "
-        "/yehu/part/N, and have -part-N in their names",
-    )
-    parser.add_argument(
-        "--only",
-        action="append",
-        default=[],
-        metavar="NAME",
-        help="write only this file, such as yehu.pd; may be repeated",
-    )
-    parser.add_argument(
-        "--check",
-        action="store_true",
-        help="write nothing; exit with code 1 where a file is not up to date",
+    add_options(
+        parser,
+        f"""
+        --server HOST:PORT: address that Max, Pd and Open Stage Control send to (default:
+            {format_address(*OSC_ADDRESS)}); in TouchOSC it is set by hand
+        --part N: for part N of a server with several (serve --parts): the files speak to
+            /yehu/part/N, and have -part-N in their names
+        --only NAME ...: write only this file, such as yehu.pd; may be repeated
+        --check: write nothing; exit with code 1 where a file is not up to date
+        """,
+        server={"default": format_address(*OSC_ADDRESS)},
+        part=int,
     )
 
 

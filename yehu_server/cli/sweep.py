@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
-import json
+import time
 from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import (
     add_cluster,
     add_command,
+    add_options,
     add_reporting,
-    progress_bar,
-    warn_of_compiling,
+    cluster_of,
 )
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.sweep_show import add_show
-from yehu_server.cli.terminal import print_result, warn
+from yehu_server.cli.terminal import print_report, progress_bar, warn_of_compiling
 
 EXAMPLES = """\
 examples:
@@ -43,63 +42,33 @@ def add_to(commands: Any) -> None:
         "on with the same command. `sweep show FILE` draws the result.",
         epilog=EXAMPLES,
     )
-    parser.add_argument(
-        "study",
-        type=Path,
-        metavar="STUDY",
-        help="a study (TOML), or a gesture (JSON) to --vary",
-    )
-    parser.add_argument(
-        "-o",
-        "--output",
-        required=True,
-        type=target,
-        metavar="FILE",
-        help="the result to write, .npz",
-    )
-    parser.add_argument(
-        "--vary",
-        action="append",
-        default=[],
-        metavar="NAME=VALUES",
-        help="V1,V2,... or FROM:TO:STEPS or FROM:TO:STEPS:log; may be repeated",
-    )
-    parser.add_argument(
-        "--signals",
-        type=Path,
-        metavar="FOLDER",
-        help="also keep all signals of each stroke, as `simulate` does",
-    )
-    parser.add_argument(
-        "--energy", action="store_true", help="with --signals: the energy ledger too"
-    )
-    parser.add_argument(
-        "--strings",
-        type=positive,
-        default=0,
-        metavar="EVERY",
-        help="with --signals: the shapes of the strings every EVERY samples",
-    )
-    parser.add_argument(
-        "--workers",
-        type=positive,
-        metavar="N",
-        help="number of strokes at a time (default: one per core)",
+    add_options(
+        parser,
+        """
+        study STUDY: a study (TOML), or a gesture (JSON) to --vary
+        -o --output FILE: the result to write, .npz
+        --vary NAME=VALUES ...: V1,V2,... or FROM:TO:STEPS or FROM:TO:STEPS:log; may be repeated
+        --signals FOLDER: also keep all signals of each stroke, as `simulate` does
+        --energy: with --signals: the energy ledger too
+        --strings EVERY: with --signals: the shapes of the strings every EVERY samples
+        --workers N: number of strokes at a time (default: one per core)
+        """,
+        study=Path,
+        output={"required": True, "type": target},
+        signals=Path,
+        strings={"type": positive, "default": 0},
+        workers=positive,
     )
     add_cluster(parser)
-    parser.add_argument(
-        "--overwrite", action="store_true", help="replace an earlier result, or begin anew"
-    )
+    add_options(parser, "--overwrite: replace an earlier result, or begin anew")
     add_reporting(parser)
     add_show(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    import time
-
     from yehu_server.lab.sweeps.axes import axis_of
-    from yehu_server.lab.sweeps.running import check_free_result, sweep_to
+    from yehu_server.lab.sweeps.running import check_free_result, sweep_to, warm_up
     from yehu_server.lab.sweeps.signals import keep_signals, prepare_folder
     from yehu_server.lab.sweeps.study import read_study
 
@@ -109,7 +78,10 @@ def run(arguments: argparse.Namespace) -> int:
         prepare_folder(study, arguments.signals, overwrite=arguments.overwrite)
     start = time.perf_counter()
     warn_of_compiling(arguments, plays=False)
-    with _cluster(arguments) as cluster, progress_bar(arguments, "sweeping", "strokes") as progress:
+    with (
+        cluster_of(arguments, warm_up) as cluster,
+        progress_bar(arguments, "sweeping", "strokes") as progress,
+    ):
         result = sweep_to(
             study,
             arguments.output,
@@ -131,13 +103,10 @@ def run(arguments: argparse.Namespace) -> int:
                 progress=progress,
             )
     counts = counts_of(result)
-    if arguments.json:
-        print(json.dumps({"strokes": len(result), "elapsed_s": elapsed, "regimes": counts}))
-    elif not arguments.quiet:
-        print_result(f"{arguments.output}: {len(result)} strokes in {elapsed:.1f} s")
-        print_result(
-            ", ".join(f"{name} {100.0 * n / len(result):.0f} %" for name, n in counts.items())
-        )
+    shares = ", ".join(f"{name} {100.0 * n / len(result):.0f} %" for name, n in counts.items())
+    text = f"{arguments.output}: {len(result)} strokes in {elapsed:.1f} s\n{shares}"
+    fields = {"strokes": len(result), "elapsed_s": elapsed, "regimes": counts}
+    print_report(arguments, fields, text)
     return 0
 
 
@@ -149,13 +118,3 @@ def counts_of(result: Any) -> dict[str, int]:
         for number, name in enumerate(result.regimes)
         if (count := numbers.count(number))
     }
-
-
-def _cluster(arguments: argparse.Namespace) -> Any:
-    """A connection to the cluster of --dask, or none."""
-    if arguments.dask is None:
-        return contextlib.nullcontext()
-    from yehu_server.lab.sweeps.running import warm_up
-    from yehu_server.rendering.cluster import Cluster
-
-    return Cluster(arguments.dask, warm_up, warn)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
-from yehu_server.cli.arguments import Parser, add_reporting
+from yehu_server.cli.arguments import Parser, add_options, add_reporting
 from yehu_server.cli.converters import target
-from yehu_server.cli.terminal import print_result
+from yehu_server.cli.terminal import print_report
 
 DEFAULT = "regime"
 
@@ -16,24 +15,17 @@ DEFAULT = "regime"
 def add_show(command: Parser) -> None:
     """Add `sweep show` to the parser of `sweep`."""
     parser = command.add_word("show", show, "draw the result of a sweep")
-    parser.add_argument("result", type=Path, metavar="FILE", help="the result of a sweep")
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=target,
-        metavar="OUT",
-        help="a picture, .png, or a page to browse, .html (default: FILE with .png)",
-    )
-    parser.add_argument(
-        "--column",
-        default=DEFAULT,
-        metavar="NAME",
-        help="what a picture shows, such as helmholtz_s or pitch_hz (default: regime)",
-    )
-    parser.add_argument(
-        "--overwrite",
-        action="store_true",
-        help="replace OUT, whatever it is; pictures are replaced anyway",
+    add_options(
+        parser,
+        """
+        result FILE: the result of a sweep
+        -o --output OUT: a picture, .png, or a page to browse, .html (default: FILE with .png)
+        --column NAME: what a picture shows, such as helmholtz_s or pitch_hz (default: regime)
+        --overwrite: replace OUT, whatever it is; pictures are replaced anyway
+        """,
+        result=Path,
+        output=target,
+        column={"default": DEFAULT},
     )
     add_reporting(parser)
 
@@ -66,8 +58,6 @@ def show(arguments: argparse.Namespace) -> int:
         write_picture(result, output, arguments.column, overwrite=arguments.overwrite)
     else:
         write_page(result, output)
-    if arguments.json:
-        print(json.dumps({"strokes": len(result), "shape": result.shape, "output": str(output)}))
-    elif not arguments.quiet:
-        print_result(f"{output}: {len(result)} strokes")
+    fields = {"strokes": len(result), "shape": result.shape, "output": str(output)}
+    print_report(arguments, fields, f"{output}: {len(result)} strokes")
     return 0

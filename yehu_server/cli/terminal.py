@@ -1,4 +1,4 @@
-"""What commands print: results and warnings, a safe line at a time, and the log of serve."""
+"""What commands print: results, warnings, progress bars, and the log of serve."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import contextlib
 import json
 import logging
 import sys
+from collections.abc import Iterator
 from typing import Any
 
 from yehu_server.errors import one_line
@@ -18,9 +19,62 @@ def print_result(text: str, *, flush: bool = False) -> None:
         print(one_line(line), flush=flush)
 
 
+def print_report(arguments: argparse.Namespace, fields: dict[str, Any], text: str) -> None:
+    """Print what a command did: as JSON with --json, else in words; with --quiet, nothing."""
+    if arguments.json:
+        print(json.dumps(fields))
+    elif not arguments.quiet:
+        print_result(text)
+
+
 def warn(text: str) -> None:
     """Print a warning or an error on one line."""
     print(f"yehu-server: {one_line(text)}", file=sys.stderr)
+
+
+def warn_of_compiling(arguments: argparse.Namespace, *, plays: bool = True) -> None:
+    """Warn where the model will be compiled: at its first use, or always if it is not cached.
+
+    Parameters
+    ----------
+    plays : bool
+        Whether the command plays the instrument, which is what code is made of in advance.
+    """
+    from yehu_server.compile.bitcode.start import why_not
+    from yehu_server.compile.jit import WHY_NOT_CACHED, cache_folder, source_hash
+
+    if arguments.quiet:
+        return
+    if WHY_NOT_CACHED:
+        warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
+    elif any(cache_folder().glob("*.code")):
+        return
+    elif not plays:
+        warn("compiling for this machine, once ...")
+    elif reason := why_not(source_hash()):
+        warn(f"compiling for this machine, once, for half a minute: {reason}")
+    else:
+        warn("preparing for this processor, once ...")
+
+
+@contextlib.contextmanager
+def progress_bar(arguments: argparse.Namespace, what: str, unit: str = "s") -> Iterator[Any]:
+    """Show a progress bar on a terminal; yield a function that takes what is done and the total."""
+    if arguments.quiet or not sys.stderr.isatty():
+        yield lambda _done, _total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn(what),
+        BarColumn(),
+        TextColumn(f"{{task.completed:.1f}} of {{task.total:.1f}} {unit}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=0.0)
+        yield lambda done, total: bar.update(task, completed=min(done, total), total=total)
 
 
 LEVELS = ("debug", "info", "warning", "error")

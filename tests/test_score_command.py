@@ -53,6 +53,14 @@ def test_a_score_is_shown_as_json(command, tune):
     assert shown["parts"][0]["spans"] == [["slur", 4.0, 6.0, None]]
 
 
+def test_words_over_a_part_of_rests_alone_are_shown_at_no_note(command, tmp_path):
+    tune = tmp_path / "tune.jianpu"
+    tune.write_text('4/4 1 2 3 4\nNextPart\n4/4 0 "rit." 0 0 0 "a tempo"\n', encoding="utf-8")
+    code, out, err = command("score", "show", tune)
+    assert (code, err) == (0, "")
+    assert "part 2, not played, 0 notes" in out
+
+
 def test_what_is_played_is_written_as_midi(command, refused, tune, tmp_path):
     target = tmp_path / "out.mid"
     words = ("score", "show", tune, "--export-midi", target)

@@ -280,7 +280,7 @@ def test_errors_name_the_file(tmp_path):
         read_jianpu(tmp_path / "none.jianpu")
     large = tmp_path / "large.jianpu"
     large.write_bytes(b"1 " * MOST_BYTES)
-    with pytest.raises(ScoreError, match=r"large.jianpu: larger than 1024 KiB"):
+    with pytest.raises(ScoreError, match=r"large.jianpu: larger than 1 MiB"):
         read_jianpu(large)
     wrong = tmp_path / "wrong.jianpu"
     wrong.write_bytes(b"1 }")

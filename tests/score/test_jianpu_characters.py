@@ -10,7 +10,7 @@ import pytest
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.characters import living
-from yehu_server.scores.jianpu.reader import parse_jianpu, read_ersipu
+from yehu_server.scores.jianpu.reader import parse_jianpu, read_jianpu
 from yehu_server.scores.written.notated import Note
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "huo_wu.jianpu"
@@ -118,7 +118,7 @@ def test_gongche_characters_are_read_where_that_is_said():
 
 
 def test_the_example_is_understood_whole():
-    score = read_ersipu(EXAMPLE)
+    score = read_jianpu(EXAMPLE)
     assert not score.unknown
     assert not score.warnings
     assert sum(bool(note.contour) for note in score.parts[0].notes) >= 6

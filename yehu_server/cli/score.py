@@ -65,7 +65,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 def _export(arguments: argparse.Namespace, written: Written) -> None:
     from yehu_server.scores.midi_export import midi_file
-    from yehu_server.scores.reading import naming
+    from yehu_server.scores.score import naming
     from yehu_server.scores.written.performed import performed
     from yehu_server.util.files import anything, check_distinct, nothing, replacing
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.params.spec import Curve, Param, Place
@@ -12,315 +13,173 @@ FINGERS = (1, 2, 3, 4)
 STRING_NAMES = ("inner", "outer")
 
 
+_engine = partial(Param, place=Place.ENGINE)
+_owned = partial(_engine, owned=True)  # by the player, as notes sound
+
+
 def _finger(number: int) -> tuple[Param, Param]:
     return (
-        Param(
-            f"/finger/{number}/position", "x_f", "m", 0.008, 0.28, 0.05,
-            f"Position of finger {number} on the strings, measured from the restraining loop.",
-            place=Place.ENGINE, owned=True,
-        ),
-        Param(
-            f"/finger/{number}/press", "-f_ext", "N", 0.0, 10.0, 0.0,
-            f"Force of finger {number} on the strings; 0 lifts it.",
-            place=Place.ENGINE, smooth_ms=10.0, owned=True,
-        ),
+        _owned(f"/finger/{number}/position", "x_f", "m", 0.008, 0.28, 0.05,
+            f"Position of finger {number} on the strings, measured from the restraining loop."),
+        _owned(f"/finger/{number}/press", "-f_ext", "N", 0.0, 10.0, 0.0,
+            f"Force of finger {number} on the strings; 0 lifts it.", smooth_ms=10.0),
     )  # fmt: skip
 
 
 def _string(name: str, which: str) -> tuple[Param, Param]:
     return (
-        Param(
-            f"/string/{name}/tuning", "T", "cents", -200.0, 40.0, 0.0,
-            f"Detuning of the {which} string by its tension; 0 is in tune.",
-            place=Place.ENGINE, smooth_ms=50.0,
-        ),
-        Param(
-            f"/string/{name}/loss", "sigma_0, sigma_1", "1", 0.25, 4.0, 1.0,
+        _engine(f"/string/{name}/tuning", "T", "cents", -200.0, 40.0, 0.0,
+            f"Detuning of the {which} string by its tension; 0 is in tune.", smooth_ms=50.0),
+        _engine(f"/string/{name}/loss", "sigma_0, sigma_1", "1", 0.25, 4.0, 1.0,
             f"Damping of the {which} string, as a factor on the measured one.",
-            place=Place.ENGINE, curve=Curve.EXP, smooth_ms=50.0,
-        ),
+            curve=Curve.EXP, smooth_ms=50.0),
     )  # fmt: skip
 
 
 TABLE: tuple[Param, ...] = (
-    Param(
-        "/bow/speed", "v_b", "m/s", -2.0, 2.0, 0.0,
-        "Speed of the bow; the sign is its direction.",
-        place=Place.ENGINE, smooth_ms=20.0, owned=True,
-    ),
-    Param(
-        "/bow/side", "sign F_N", "1", -1.0, 1.0, 0.0,
+    _owned("/bow/speed", "v_b", "m/s", -2.0, 2.0, 0.0,
+        "Speed of the bow; the sign is its direction.", smooth_ms=20.0),
+    _owned("/bow/side", "sign F_N", "1", -1.0, 1.0, 0.0,
         "Which string the hair lies on: 1 the inner (F4), -1 the outer (C5), 0 lifted.",
-        place=Place.ENGINE, smooth_ms=10.0, owned=True,
-    ),
-    Param(
-        "/bow/force", "|F_N|", "N", 0.0, 5.0, 0.5,
-        "Bow force in newtons; effective where /bow/assist is below 1.",
-        place=Place.ENGINE, owned=True,
-    ),
-    Param(
-        "/bow/pressure", "F_N / F_max", "1", 0.0, 12.0, 0.4,
+        smooth_ms=10.0),
+    _owned("/bow/force", "|F_N|", "N", 0.0, 5.0, 0.5,
+        "Bow force in newtons; effective where /bow/assist is below 1."),
+    _owned("/bow/pressure", "F_N / F_max", "1", 0.0, 12.0, 0.4,
         "Bow force relative to bow speed, as a fraction of Schelleng's upper limit; fast strokes "
-        "get up to 0.6 more.",
-        place=Place.ENGINE, smooth_ms=10.0, owned=True,
-    ),
-    Param(
-        "/bow/assist", "", "1", 0.0, 1.0, 1.0,
-        "1: /bow/pressure sets the bow force, so that the string speaks; 0: /bow/force does.",
-        place=Place.ENGINE, owned=True,
-    ),
-    Param(
-        "/bow/position", "beta", "1", 0.04, 0.5, 0.13,
+        "get up to 0.6 more.", smooth_ms=10.0),
+    _owned("/bow/assist", "", "1", 0.0, 1.0, 1.0,
+        "1: /bow/pressure sets the bow force, so that the string speaks; 0: /bow/force does."),
+    _owned("/bow/position", "beta", "1", 0.04, 0.5, 0.13,
         "Distance of the bow from the bridge as a fraction of the sounding length.",
-        place=Place.ENGINE, smooth_ms=20.0, owned=True,
-    ),
-    Param(
-        "/bow/tremolo", "", "1/s", 0.0, 20.0, 0.0,
-        "Tremolo: strokes a second, back and forth; 0: the sign of /bow/speed is the direction.",
-        place=Place.ENGINE, owned=True,
-    ),
-    Param(
-        "/bow/noise", "", "1", 0.0, 1.0, 0.025,
+        smooth_ms=20.0),
+    _owned("/bow/tremolo", "", "1/s", 0.0, 20.0, 0.0,
+        "Tremolo: strokes a second, back and forth; 0: the sign of /bow/speed is the direction."),
+    _engine("/bow/noise", "", "1", 0.0, 1.0, 0.025,
         "How much friction varies along the bow, by the rosin on its hair, as a fraction of it: "
-        "0.1 is breathy, from 0.2 the tone breaks.",
-        place=Place.ENGINE, smooth_ms=20.0,
-    ),
+        "0.1 is breathy, from 0.2 the tone breaks.", smooth_ms=20.0),
     *(row for number in FINGERS for row in _finger(number)),
-    Param(
-        "/vibrato/depth", "", "cents", 0.0, 200.0, 0.0,
-        "Depth of the vibrato to either side, of all fingers that are down.",
-        place=Place.ENGINE, smooth_ms=20.0, owned=True,
-    ),
-    Param(
-        "/vibrato/press", "", "1", 0.0, 1.0, 0.0,
-        "Variation of the finger force with the vibrato, as a fraction of it.",
-        place=Place.ENGINE, smooth_ms=20.0, owned=True,
-    ),
-    Param(
-        "/vibrato/rate", "", "Hz", 0.5, 12.0, 5.5,
-        "Rate of the vibrato.",
-        place=Place.ENGINE, smooth_ms=20.0, owned=True,
-    ),
-    Param(
-        "/vibrato/onset", "", "1", 0.0, 1.0, 1.0,
-        "Fade-in of the vibrato: none up to 0.4, then gradually to its full depth at 1.",
-        place=Place.ENGINE, owned=True,
-    ),
-    Param(
-        "/pluck/force", "F_p", "N", -5.0, 5.0, 0.0,
+    _owned("/vibrato/depth", "", "cents", 0.0, 200.0, 0.0,
+        "Depth of the vibrato to either side, of all fingers that are down.", smooth_ms=20.0),
+    _owned("/vibrato/press", "", "1", 0.0, 1.0, 0.0,
+        "Variation of the finger force with the vibrato, as a fraction of it.", smooth_ms=20.0),
+    _owned("/vibrato/rate", "", "Hz", 0.5, 12.0, 5.5,
+        "Rate of the vibrato.", smooth_ms=20.0),
+    _owned("/vibrato/onset", "", "1", 0.0, 1.0, 1.0,
+        "Fade-in of the vibrato: none up to 0.4, then gradually to its full depth at 1."),
+    _owned("/pluck/force", "F_p", "N", -5.0, 5.0, 0.0,
         "Plucks: pulls a string aside with this force and releases it; above 0 the inner (F4).",
-        place=Place.ENGINE, smooth_ms=12.0, owned=True,
-    ),
-    Param(
-        "/pluck/position", "", "1", 0.05, 0.9, 0.3,
-        "Distance of the pluck from the bridge as a fraction of the sounding length.",
-        place=Place.ENGINE, owned=True,
-    ),
+        smooth_ms=12.0),
+    _owned("/pluck/position", "", "1", 0.05, 0.9, 0.3,
+        "Distance of the pluck from the bridge as a fraction of the sounding length."),
     *(row for name, note in zip(STRING_NAMES, ("F4", "C5"), strict=True)
       for row in _string(name, f"{name} ({note})")),
-    Param(
-        "/output/gain", "", "dB", -60.0, 24.0, 0.0,
-        "Gain of the output, before the limiter.",
-        place=Place.ENGINE, smooth_ms=20.0,
-    ),
-    Param(
-        "/output/level", "", "1", 0.0, 1.0, 1.0,
+    _engine("/output/gain", "", "dB", -60.0, 24.0, 0.0,
+        "Gain of the output, before the limiter.", smooth_ms=20.0),
+    _owned("/output/level", "", "1", 0.0, 1.0, 1.0,
         "Amplitude factor of the output, from the player's volume and expression.",
-        place=Place.ENGINE, smooth_ms=20.0, owned=True,
-    ),
-    Param(
-        "/output/balance", "", "dB", -36.0, 36.0, 0.0,
-        "Gain that makes this note as loud as the others of its velocity.",
-        place=Place.ENGINE, smooth_ms=20.0, owned=True,
-    ),
-    Param(
-        "/output/limiter", "", "dB", -24.0, 0.0, -3.0,
+        smooth_ms=20.0),
+    _owned("/output/balance", "", "dB", -36.0, 36.0, 0.0,
+        "Gain that makes this note as loud as the others of its velocity.", smooth_ms=20.0),
+    _engine("/output/limiter", "", "dB", -24.0, 0.0, -3.0,
         "Level above which peaks of the mix are limited; at 0 they are clipped at full scale.",
-        place=Place.ENGINE, smooth_ms=20.0, is_shared=True,
-    ),
-    Param(
-        "/body/gain", "", "dB", -24.0, 24.0, 0.0,
-        "Gain of the sound that the body radiates, before the blend.",
-        place=Place.ENGINE, smooth_ms=20.0,
-    ),
-    Param(
-        "/body/blend", "", "1", 0.0, 1.0, 0.0,
+        smooth_ms=20.0, is_shared=True),
+    _engine("/body/gain", "", "dB", -24.0, 24.0, 0.0,
+        "Gain of the sound that the body radiates, before the blend.", smooth_ms=20.0),
+    _engine("/body/blend", "", "1", 0.0, 1.0, 0.0,
         "Mix from the radiated sound (0) to the force of the strings on the bridge (1).",
-        place=Place.ENGINE, smooth_ms=20.0,
-    ),
-    Param(
-        "/body/width", "", "1", 0.0, 1.0, 0.3,
+        smooth_ms=20.0),
+    _engine("/body/width", "", "1", 0.0, 1.0, 0.3,
         "How much the sound of the body differs to both sides, above some 1.5 kHz; 0: not at all.",
-        place=Place.ENGINE, smooth_ms=20.0,
-    ),
-    Param(
-        "/room/size", "", "m", 2.0, 40.0, 5.0,
-        "Length of the room; its width and height go with it.",
-        place=Place.ENGINE, curve=Curve.EXP, is_shared=True,
-    ),
-    Param(
-        "/room/decay", "", "s", 0.1, 10.0, 0.4,
+        smooth_ms=20.0),
+    _engine("/room/size", "", "m", 2.0, 40.0, 5.0,
+        "Length of the room; its width and height go with it.", curve=Curve.EXP, is_shared=True),
+    _engine("/room/decay", "", "s", 0.1, 10.0, 0.4,
         "Reverberation time: the time in which the sound of the room decays by 60 dB.",
-        place=Place.ENGINE, curve=Curve.EXP, smooth_ms=50.0, is_shared=True,
-    ),
-    Param(
-        "/room/damping", "", "1", 0.0, 1.0, 0.4,
+        curve=Curve.EXP, smooth_ms=50.0, is_shared=True),
+    _engine("/room/damping", "", "1", 0.0, 1.0, 0.4,
         "How much sooner high notes decay, above some 2.5 kHz: 0 as low ones, 1 in a fifth of the "
-        "time.",
-        place=Place.ENGINE, smooth_ms=50.0, is_shared=True,
-    ),
-    Param(
-        "/room/level", "", "1", 0.0, 1.0, 0.15,
+        "time.", smooth_ms=50.0, is_shared=True),
+    _engine("/room/level", "", "1", 0.0, 1.0, 0.15,
         "Level of the room: 0 none, 1 as in a room of this size and reverberation time.",
-        place=Place.ENGINE, smooth_ms=50.0, is_shared=True,
-    ),
-    Param(
-        "/room/distance", "", "m", 1.0, 20.0, 2.0,
+        smooth_ms=50.0, is_shared=True),
+    _engine("/room/distance", "", "m", 1.0, 20.0, 2.0,
         "Distance of the player from the listener: farther is quieter, and has more of the room.",
-        place=Place.ENGINE, curve=Curve.EXP, smooth_ms=50.0,
-    ),
-    Param(
-        "/room/pan", "", "1", -1.0, 1.0, 0.0,
-        "Place of the player: -1 left, 0 in the middle, 1 right.",
-        place=Place.ENGINE, smooth_ms=20.0,
-    ),
-    Param(
-        "/body/evenness", "", "1", 0.0, 1.0, 0.9,
-        "From the body's own loudness of each note (0) to equal loudness of all notes (1).",
-    ),
-    Param(
-        "/playing/dynamics", "", "1", 0.0, 1.0, 1.0,
-        "Dynamics, by bow speed and level: 1 gives the full /playing/speed; 0 lifts the bow.",
-    ),
-    Param(
-        "/playing/speed", "", "m/s", 0.03, 0.6, 0.2,
-        "Bow speed at full dynamics; less for notes that do not speak at it.", curve=Curve.EXP,
-    ),
-    Param(
-        "/playing/velocity", "", "1", 0.0, 1.0, 0.63,
+        curve=Curve.EXP, smooth_ms=50.0),
+    _engine("/room/pan", "", "1", -1.0, 1.0, 0.0,
+        "Place of the player: -1 left, 0 in the middle, 1 right.", smooth_ms=20.0),
+    Param("/body/evenness", "", "1", 0.0, 1.0, 0.9,
+        "From the body's own loudness of each note (0) to equal loudness of all notes (1)."),
+    Param("/playing/dynamics", "", "1", 0.0, 1.0, 1.0,
+        "Dynamics, by bow speed and level: 1 gives the full /playing/speed; 0 lifts the bow."),
+    Param("/playing/speed", "", "m/s", 0.03, 0.6, 0.2,
+        "Bow speed at full dynamics; less for notes that do not speak at it.", curve=Curve.EXP),
+    Param("/playing/velocity", "", "1", 0.0, 1.0, 0.63,
         "How hard a note is struck: its loudness, by bow and gain, and its attack; 0.63, of a "
-        "keyboard's 80, leaves them as the other parameters say.",
-    ),
-    Param(
-        "/playing/pressure", "", "1", 0.05, 2.0, 0.4,
+        "keyboard's 80, leaves them as the other parameters say."),
+    Param("/playing/pressure", "", "1", 0.05, 2.0, 0.4,
         "Bow force relative to bow speed: flautando up to 0.2, ordinary to 0.6, scratching "
-        "from 1.",
-    ),
-    Param(
-        "/playing/bow_position", "", "1", 0.05, 0.3, 0.13,
-        "Distance of the bow from the bridge as a fraction of the sounding length.",
-    ),
-    Param(
-        "/playing/tremolo", "", "1/s", 0.0, 20.0, 0.0,
-        "Tremolo: strokes a second, back and forth; 0: one stroke a note.",
-    ),
-    Param(
-        "/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
-        "From 0.5 up notes are plucked, harder with more /playing/pressure.", is_choice=True,
-    ),
-    Param(
-        "/playing/string", "", "1", 0.0, 2.0, 0.0,
+        "from 1."),
+    Param("/playing/bow_position", "", "1", 0.05, 0.3, 0.13,
+        "Distance of the bow from the bridge as a fraction of the sounding length."),
+    Param("/playing/tremolo", "", "1/s", 0.0, 20.0, 0.0,
+        "Tremolo: strokes a second, back and forth; 0: one stroke a note."),
+    Param("/playing/pizzicato", "", "1", 0.0, 1.0, 0.0,
+        "From 0.5 up notes are plucked, harder with more /playing/pressure.", is_choice=True),
+    Param("/playing/string", "", "1", 0.0, 2.0, 0.0,
         "String on which notes are played: 0 either, 1 the inner (F4), 2 the outer (C5).",
-        is_choice=True,
-    ),
-    Param(
-        "/playing/direction", "", "1", -1.0, 1.0, 0.0,
-        "Direction of new strokes: 0 alternating, 1 always down, -1 always up.", is_choice=True,
-    ),
-    Param(
-        "/playing/bow_length", "", "m", 0.0, 2.0, 0.7,
-        "Length of the bow's hair; strokes are planned for it, and turn at its ends. 0: endless.",
-    ),
-    Param(
-        "/playing/note_length", "", "s", 0.0, 60.0, 0.0,
-        "How long the notes that begin will last, for planning strokes; 0: not known.",
-    ),
-    Param(
-        "/playing/press", "", "N", 0.3, 6.0, 1.5,
-        "Force of the finger on the string (that of the bow: /playing/pressure).",
-    ),
-    Param(
-        "/playing/vibrato", "", "cents", 0.0, 100.0, 0.0,
-        "Depth of the vibrato to either side.",
-    ),
-    Param(
-        "/playing/vibrato_press", "", "1", 0.0, 1.0, 0.0,
-        "Variation of the finger force with the vibrato, as a fraction of it.",
-    ),
-    Param(
-        "/playing/vibrato_rate", "", "Hz", 2.0, 10.0, 5.5,
-        "Rate of the vibrato.",
-    ),
-    Param(
-        "/playing/vibrato_delay", "", "ms", 0.0, 3000.0, 500.0,
-        "Fade-in time of each note's vibrato: none for 0.4 of it, then gradually.",
-    ),
-    Param(
-        "/playing/bend", "", "semitones", -48.0, 48.0, 0.0,
-        "Pitch bend: distance of the finger from the note.", smooth_ms=8.0,
-    ),
-    Param(
-        "/playing/bend_range", "", "semitones", 0.0, 48.0, 2.0,
-        "Pitch bend range: the bend at either end of the pitch wheel, until RPN 0 sets it.",
-    ),
-    Param(
-        "/playing/volume", "", "1", 0.0, 1.0, 1.0,
-        "Level of the instrument (amplitude is its square).",
-    ),
-    Param(
-        "/playing/expression", "", "1", 0.0, 1.0, 1.0,
-        "Level within the volume (amplitude is its square).",
-    ),
-    Param(
-        "/playing/assist", "", "1", 0.0, 1.0, 1.0,
-        "1: the player's bow force follows bow speed, so that the string speaks; 0: it does not.",
-    ),
-    Param(
-        "/playing/variation", "", "1", 0.0, 1.0, 0.25,
+        is_choice=True),
+    Param("/playing/direction", "", "1", -1.0, 1.0, 0.0,
+        "Direction of new strokes: 0 alternating, 1 always down, -1 always up.", is_choice=True),
+    Param("/playing/bow_length", "", "m", 0.0, 2.0, 0.7,
+        "Length of the bow's hair; strokes are planned for it, and turn at its ends. 0: endless."),
+    Param("/playing/note_length", "", "s", 0.0, 60.0, 0.0,
+        "How long the notes that begin will last, for planning strokes; 0: not known."),
+    Param("/playing/press", "", "N", 0.3, 6.0, 1.5,
+        "Force of the finger on the string (that of the bow: /playing/pressure)."),
+    Param("/playing/vibrato", "", "cents", 0.0, 100.0, 0.0,
+        "Depth of the vibrato to either side."),
+    Param("/playing/vibrato_press", "", "1", 0.0, 1.0, 0.0,
+        "Variation of the finger force with the vibrato, as a fraction of it."),
+    Param("/playing/vibrato_rate", "", "Hz", 2.0, 10.0, 5.5,
+        "Rate of the vibrato."),
+    Param("/playing/vibrato_delay", "", "ms", 0.0, 3000.0, 500.0,
+        "Fade-in time of each note's vibrato: none for 0.4 of it, then gradually."),
+    Param("/playing/bend", "", "semitones", -48.0, 48.0, 0.0,
+        "Pitch bend: distance of the finger from the note.", smooth_ms=8.0),
+    Param("/playing/bend_range", "", "semitones", 0.0, 48.0, 2.0,
+        "Pitch bend range: the bend at either end of the pitch wheel, until RPN 0 sets it."),
+    Param("/playing/volume", "", "1", 0.0, 1.0, 1.0,
+        "Level of the instrument (amplitude is its square)."),
+    Param("/playing/expression", "", "1", 0.0, 1.0, 1.0,
+        "Level within the volume (amplitude is its square)."),
+    Param("/playing/assist", "", "1", 0.0, 1.0, 1.0,
+        "1: the player's bow force follows bow speed, so that the string speaks; 0: it does not."),
+    Param("/playing/variation", "", "1", 0.0, 1.0, 0.25,
         "How much the hands vary: from note to note, in bow speed, bow force, intonation and how "
-        "fingers land; and within notes, by drift, tremor and an uneven vibrato.",
-    ),
-    Param(
-        "/playing/listening", "", "1", 0.0, 1.0, 1.0,
+        "fingers land; and within notes, by drift, tremor and an uneven vibrato."),
+    Param("/playing/listening", "", "1", 0.0, 1.0, 1.0,
         "How far the player corrects finger and bow by what the string does: 0 plays by measured "
-        "tables alone.",
-    ),
-    Param(
-        "/playing/phrasing", "", "1", 0.0, 1.0, 0.0,
+        "tables alone."),
+    Param("/playing/phrasing", "", "1", 0.0, 1.0, 0.0,
         "How much the player shapes plain notes by itself: vibrato that comes late on long notes, "
-        "slides on leaps. Files get phrases, accents and slurs too (render --phrasing).",
-    ),
-    Param(
-        "/playing/section", "", "1", 1.0, 16.0, 1.0,
+        "slides on leaps. Files get phrases, accents and slurs too (render --phrasing)."),
+    Param("/playing/section", "", "1", 1.0, 16.0, 1.0,
         "How many people play this part, each on an instrument of their own; at most as many as "
-        "it began with.", is_choice=True,
-    ),
-    Param(
-        "/playing/attack", "", "ms", 5.0, 500.0, 40.0,
-        "Time in which the bow reaches the speed and force of a new note.",
-    ),
-    Param(
-        "/playing/release", "", "ms", 5.0, 2000.0, 60.0,
+        "it began with.", is_choice=True),
+    Param("/playing/attack", "", "ms", 5.0, 500.0, 40.0,
+        "Time in which the bow reaches the speed and force of a new note."),
+    Param("/playing/release", "", "ms", 5.0, 2000.0, 60.0,
         "Time in which the bow leaves the string at the end of a note; not the call "
-        f"{PREFIX}/release.",
-    ),
-    Param(
-        "/playing/portamento", "", "1", 0.0, 1.0, 0.0,
-        "From 0.5 up the finger slides from note to note; below, it steps.", is_choice=True,
-    ),
-    Param(
-        "/playing/portamento_time", "", "ms", 5.0, 2000.0, 120.0,
-        "Duration of a portamento slide.",
-    ),
-    Param(
-        "/engine/calibration", "", "1", 0.0, 1.0, 1.0,
-        "1: fingers stop where the model was measured to be in tune; 0: where an ideal string is.",
-    ),
-    Param(
-        "/engine/seed", "", "1", 0.0, 65535.0, 0.0,
+        f"{PREFIX}/release."),
+    Param("/playing/portamento", "", "1", 0.0, 1.0, 0.0,
+        "From 0.5 up the finger slides from note to note; below, it steps.", is_choice=True),
+    Param("/playing/portamento_time", "", "ms", 5.0, 2000.0, 120.0,
+        "Duration of a portamento slide."),
+    Param("/engine/calibration", "", "1", 0.0, 1.0, 1.0,
+        "1: fingers stop where the model was measured to be in tune; 0: where an ideal string is."),
+    Param("/engine/seed", "", "1", 0.0, 65535.0, 0.0,
         "Seed of the random numbers of /playing/variation; a new one restarts their sequence.",
-        is_choice=True,
-    ),
+        is_choice=True),
 )  # fmt: skip
 
 UNIT = "/unit"  # suffix of an address: the same parameter as 0 to 1

@@ -119,20 +119,16 @@ class Bind:
     @property
     def terms(self) -> tuple[str, ...]:
         """All settings that are not at their defaults, beside span and curve, for reading."""
-        terms = []
-        if self.input_range != (0.0, 1.0):
-            terms.append(f"sends {self.input_range[0]:g} to {self.input_range[1]:g}")
-        if self.channels:
-            terms.append(f"channel {', '.join(map(str, self.channels))}")
-        if self.smoothing_ms:
-            terms.append(f"within {self.smoothing_ms:g} ms")
-        if self.is_soft:
-            terms.append("soft")
-        if self.is_exclusive:
-            terms.append("alone")
-        if self.is_global:
-            terms.append("global")
-        return tuple(terms)
+        lo, hi = self.input_range
+        terms = {
+            f"sends {lo:g} to {hi:g}": (lo, hi) != (0.0, 1.0),
+            f"channel {', '.join(map(str, self.channels))}": self.channels,
+            f"within {self.smoothing_ms:g} ms": self.smoothing_ms,
+            "soft": self.is_soft,
+            "alone": self.is_exclusive,
+            "global": self.is_global,
+        }
+        return tuple(term for term, is_set in terms.items() if is_set)
 
     def from_unit(self, position: float) -> float:
         """Map the source's position, 0 to 1, to the target's value."""

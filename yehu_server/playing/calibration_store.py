@@ -29,7 +29,7 @@ from yehu_server.playing.calibration import (
     starting_tension,
 )
 from yehu_server.playing.pitch_and_level import cents
-from yehu_server.util.files import read_text
+from yehu_server.util.files import read_text, why
 from yehu_server.util.sealed import SealError, read_sealed, write_sealed
 
 log = logging.getLogger(__name__)
@@ -63,10 +63,14 @@ def calibration_for(
     key = calibration_key(rate, quantities, a4)
     if key in _shipped():
         return read_calibration(_shipped()[key], quantities, a4)
-    found = _kept(key, quantities, a4)
+    path = data_folder() / f"calibration-{key}.json"
+    found = _kept(path, quantities, a4)
     if found is None:
         found = calibrate(rate, quantities, a4=a4, progress=progress)
-        _keep(key, found)
+        try:
+            write_sealed(path, json.dumps(as_data(found)).encode())
+        except OSError as error:
+            log.warning("%s: %s; the calibration is not kept for the next start", path, why(error))
     return found
 
 
@@ -124,25 +128,11 @@ def _shipped() -> dict[str, Any]:
     return found
 
 
-def _file(key: str) -> Path:
-    return data_folder() / f"calibration-{key}.json"
-
-
-def _kept(key: str, quantities: Quantities, a4: float) -> Calibration | None:
-    """The calibration cached under a key; None where there is none, or the file is damaged."""
-    path = _file(key)
+def _kept(path: Path, quantities: Quantities, a4: float) -> Calibration | None:
+    """The calibration in a file; None where there is none, or it is damaged."""
     try:
         payload = read_sealed(path)
         return None if payload is None else read_calibration(json.loads(payload), quantities, a4)
     except (SealError, ParameterError, ValueError, RecursionError) as error:
         log.warning("%s: %s; measuring anew", path, error)
         return None
-
-
-def _keep(key: str, calibration: Calibration) -> None:
-    path = _file(key)
-    try:
-        write_sealed(path, json.dumps(as_data(calibration)).encode())
-    except OSError as error:
-        reason = error.strerror or error
-        log.warning("%s: %s; the calibration is not kept for the next start", path, reason)

@@ -23,6 +23,7 @@ from yehu_server.util.files import write_text
 
 # How far a source has to move, 0 to 1: pedals and breath sensors are noisy at rest.
 DISTANCE = 1.0 / 16.0
+PRESSURES = {"aftertouch": sources.PRESSURE, "polytouch": sources.POLY_PRESSURE}
 AT_REST = {sources.BEND: 0.5, sources.PRESSURE: 0.0, sources.POLY_PRESSURE: 0.0}
 
 
@@ -57,10 +58,8 @@ class Learner:
         channel = sources.CHANNELS * port + message.channel
         if message.type == "pitchwheel":
             return self._moved(channel, sources.BEND, (message.pitch + 8192) / 16383.0)
-        if message.type == "aftertouch":
-            return self._moved(channel, sources.PRESSURE, message.value / STEPS)
-        if message.type == "polytouch":
-            return self._moved(channel, sources.POLY_PRESSURE, message.value / STEPS)
+        if message.type in PRESSURES:
+            return self._moved(channel, PRESSURES[message.type], message.value / STEPS)
         if message.type == "control_change":
             return self._control(channel, message.control, message.value)
         return None

@@ -111,8 +111,10 @@ def mapping_file_from(table: Fields) -> MappingFile:
 
 
 def _bind(table: Fields) -> Bind | None:
-    source = table.read("source", _source, None)
-    param = table.read("target", _target, None)
+    source = table.read("source", lambda value: sources.canonical(line(value)), None)
+    param: Param | None = table.read(
+        "target", lambda value: entries.settable_param(line(value), "map to one"), None
+    )
     curve: Curve | Breakpoints | None = table.read("curve", entries.curve, None)
     span = table.read("span", entries.span, None, param)
     bind = Bind(
@@ -136,14 +138,6 @@ def _bind(table: Fields) -> Bind | None:
     for name, reason in _conflicts(bind, table.data):
         table.wrong(name, reason)
     return bind
-
-
-def _source(value: Any) -> str:
-    return sources.canonical(line(value))
-
-
-def _target(value: Any) -> Param:
-    return entries.settable_param(line(value), "map to one")
 
 
 def _conflicts(bind: Bind, entry: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -42,11 +42,8 @@ def _shipped() -> dict[float, Array]:
 def as_text(data: Any) -> str:
     """What `as_data` made as JSON, with a line for each note."""
     text = json.dumps(data, indent=1)
-    return re.sub(r"\[\s+([-\d.,\s]+?)\s+\]", _in_a_line, text) + "\n"
-
-
-def _in_a_line(values: re.Match[str]) -> str:
-    return f"[{' '.join(values[1].split())}]"
+    row = re.compile(r"\[\s+([-\d.,\s]+?)\s+\]")
+    return row.sub(lambda values: f"[{' '.join(values[1].split())}]", text) + "\n"
 
 
 def as_data(table: Array, rate: float) -> dict[str, Any]:

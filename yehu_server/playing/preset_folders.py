@@ -157,14 +157,11 @@ class Presets:
                 errors.append(error)
         return presets, errors
 
-    def _is_only_own(self, name: str) -> bool:
-        return not self._shipped_file(name).is_file()
-
     def programs(self) -> dict[int, Preset]:
         """The presets of MIDI programs, 1 to 128: the user's own first, then by name."""
         found: dict[int, Preset] = {}
         for preset in sorted(self.all()[0], key=lambda preset: not self.is_own(preset.name)):
-            is_known = self._own_first or not self._is_only_own(preset.name)
+            is_known = self._own_first or self._shipped_file(preset.name).is_file()
             if preset.program is not None and is_known:
                 found.setdefault(preset.program, preset)
         return found

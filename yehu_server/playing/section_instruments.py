@@ -109,15 +109,9 @@ def vary(
     for string, tension in zip(quantities.strings, calibration.tensions, strict=True):
         density, loss = factor(DENSITY), factor(LOSS)
         tuned = math.exp2(float(by_chance.uniform(-TUNED_CENTS, TUNED_CENTS)) / 600.0)
-        strings.append(
-            replace(
-                string,
-                rho=string.rho * density,
-                E=string.E * factor(STIFFNESS),
-                sigma_0=string.sigma_0 * loss,
-                sigma_1=string.sigma_1 * loss,
-            )
-        )
+        rho, stiffness = string.rho * density, string.E * factor(STIFFNESS)
+        losses = {"sigma_0": string.sigma_0 * loss, "sigma_1": string.sigma_1 * loss}
+        strings.append(replace(string, rho=rho, E=stiffness, **losses))
         tensions.append(tension * density * tuned)
     rosin = factor(ROSIN)
     bow = replace(
@@ -126,13 +120,8 @@ def vary(
         mu_S=quantities.bow.mu_S * rosin,
         hair=float(by_chance.integers(MOST_HAIRS)),
     )
-    own = replace(
-        quantities,
-        string_1=strings[0],
-        string_2=strings[1],
-        bow=bow,
-        body=_vary_body(quantities.body, factor),
-    )
+    body = _vary_body(quantities.body, factor)
+    own = replace(quantities, string_1=strings[0], string_2=strings[1], bow=bow, body=body)
     return replace(calibration, tensions=(tensions[0], tensions[1])), own
 
 

@@ -28,12 +28,10 @@ POLICIES = {
     RangePolicy.SKIP: tables.SKIP,
 }
 WORDS = {
-    sources.BEND: tables.BEND,
-    sources.PRESSURE: tables.PRESSURE,
-    sources.POLY_PRESSURE: tables.POLY_PRESSURE,
-    sources.VELOCITY: tables.VELOCITY,
+    sources.BEND: tables.BEND, sources.PRESSURE: tables.PRESSURE,
+    sources.POLY_PRESSURE: tables.POLY_PRESSURE, sources.VELOCITY: tables.VELOCITY,
     sources.NOTE: tables.NOTE,
-}
+}  # fmt: skip
 
 
 class Controls:

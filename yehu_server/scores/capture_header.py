@@ -74,21 +74,14 @@ def header_of(beginning: SessionStart) -> dict[str, Any]:
 
 def _as_data(start: InstrumentSpec, before: Sequence[InstrumentSpec]) -> dict[str, Any]:
     """The JSON values of a player; what an earlier player has too is given as its number."""
-    calibration: Any = None if start.calibration is None else as_data(start.calibration)
-    bowing: Any = start.bowing.tolist()
-    for place, other in enumerate(before, start=1):
-        if other.calibration is not None and other.calibration == start.calibration:
-            calibration = place
-            break
-    for place, other in enumerate(before, start=1):
-        if np.array_equal(other.bowing, start.bowing):
-            bowing = place
-            break
+    calibration, others = start.calibration, list(enumerate(before, start=1))
+    tuned_alike = (at for at, other in others if calibration and other.calibration == calibration)
+    bowed_alike = (at for at, other in others if np.array_equal(other.bowing, start.bowing))
     return {
         "seed": start.seed,
         "open_strings": start.open_strings.value,
-        "calibration": calibration,
-        "bowing": bowing,
+        "calibration": next(tuned_alike, None if calibration is None else as_data(calibration)),
+        "bowing": next(bowed_alike, None) or start.bowing.tolist(),
         "body": start.body,
         "quantities": _changes(start.quantities, Quantities()),
         "values": start.values,

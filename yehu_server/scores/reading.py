@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.errors import ScoreError, one_line
-from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration
+from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
 from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.notated import Written
@@ -128,11 +127,7 @@ def read_written(path: Path) -> Written:
         One line naming the file, where it cannot be read or is none of these.
     """
     kind = path.suffix.lower()
-    if kind in ERSIPU:
-        from yehu_server.scores.jianpu.reader import read_ersipu
-
-        return read_ersipu(path)
-    if kind in JIANPU:
+    if kind in (*JIANPU, *ERSIPU):
         from yehu_server.scores.jianpu.reader import read_jianpu
 
         return read_jianpu(path)
@@ -153,15 +148,6 @@ def is_written(path: Path) -> bool:
         return False
     kind = path.suffix.lower()
     return kind in WRITTEN or (kind not in MIDI and _is_xml(data))
-
-
-@contextlib.contextmanager
-def naming(path: Path) -> Iterator[None]:
-    """Let errors about a score name its file."""
-    try:
-        yield
-    except ScoreError as error:
-        raise type(error)(f"{one_line(str(path))}: {error}") from None
 
 
 def _beginning(path: Path) -> bytes:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import math
-from collections.abc import Sequence
+import os
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import ClassVar
 
 import mido
 
-from yehu_server.errors import ScoreError
+from yehu_server.errors import ScoreError, one_line
+from yehu_server.util.files import read_bytes, why
 
 MAX_DURATION_H = 2.0  # of all that is played, where no other is asked for
 LONGEST_DURATION_H = 1000.0  # that may be asked for
@@ -22,6 +27,36 @@ def check_duration(seconds: float, max_duration_h: float, what: str = "the score
         raise ScoreError(
             f"{what} {hours:.3g} hours, more than {max_duration_h:g}: see --max-duration"
         )
+
+
+@contextlib.contextmanager
+def naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Let errors about a score name its file."""
+    try:
+        yield
+    except ScoreError as error:
+        raise type(error)(f"{one_line(os.fspath(path))}: {error}") from None
+
+
+def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:
+    """Read the file of a score.
+
+    Raises
+    ------
+    ScoreError
+        One line, without the file's name: where it cannot be read, is too large or empty.
+    """
+    try:
+        data = read_bytes(Path(path), most_bytes)
+    except OSError as error:
+        if error.errno == errno.EFBIG:
+            raise ScoreError(f"larger than {most_bytes >> 20} MiB") from None
+        raise ScoreError(f"cannot be read ({why(error).lower()})") from None
+    except ValueError:  # a NUL in the name
+        raise ScoreError("cannot be read (no such file name)") from None
+    if not data.strip():
+        raise ScoreError("is empty")
+    return data
 
 
 @dataclass(frozen=True)

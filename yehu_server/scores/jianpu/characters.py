@@ -28,20 +28,9 @@ HEAVY_SEMITONES = {SAN: -1.5, LIU: 5.3}
 LIVING_SEMITONES = 2.75  # re, raised by three quarters of a semitone [Xianshi]
 
 GONGCHEPU = {
-    "合": -5.0,
-    **dict.fromkeys("四士", -3.0),
-    "一": -1.0,
-    "上": 0.0,
-    "尺": 2.0,
-    "工": 4.0,
-    "凡": 5.0,
-    "六": 7.0,
-    "五": 9.0,
-    "乙": 11.0,
-    "仩": 12.0,
-    "伬": 14.0,
-    "仜": 16.0,
-}
+    "合": -5.0, "四": -3.0, "士": -3.0, "一": -1.0, "上": 0.0, "尺": 2.0, "工": 4.0, "凡": 5.0,
+    "六": 7.0, "五": 9.0, "乙": 11.0, "仩": 12.0, "伬": 14.0, "仜": 16.0,
+}  # fmt: skip
 
 CHARACTERS = frozenset({*ERSIPU, *GONGCHEPU})
 NOTATIONS = {"二四谱": ERSIPU, "二四譜": ERSIPU, "工尺谱": GONGCHEPU, "工尺譜": GONGCHEPU}
@@ -63,27 +52,14 @@ class Mode:
     living: bool = False
 
 
-_LIGHT_SIX = Mode()
-_HEAVY_SIX = Mode(frozenset({SAN, LIU}))
-_LIGHT_THREE_HEAVY_SIX = Mode(frozenset({LIU}))
-_LIVING_FIVE = Mode(frozenset({SAN, LIU}), living=True)
-
+USUAL_MODE = Mode()
+_HEAVY = frozenset({SAN, LIU})
 _MODES = {
-    "轻六": _LIGHT_SIX,
-    "轻三六": _LIGHT_SIX,
-    "轻三轻六": _LIGHT_SIX,
-    "qingliu": _LIGHT_SIX,
-    "重六": _HEAVY_SIX,
-    "重三六": _HEAVY_SIX,
-    "重三重六": _HEAVY_SIX,
-    "zhongliu": _HEAVY_SIX,
-    "轻三重六": _LIGHT_THREE_HEAVY_SIX,
-    "qingsanzhongliu": _LIGHT_THREE_HEAVY_SIX,
-    "活五": _LIVING_FIVE,
-    "活三五": _LIVING_FIVE,
-    "huowu": _LIVING_FIVE,
+    **dict.fromkeys(("轻六", "轻三六", "轻三轻六", "qingliu"), USUAL_MODE),
+    **dict.fromkeys(("重六", "重三六", "重三重六", "zhongliu"), Mode(_HEAVY)),
+    **dict.fromkeys(("轻三重六", "qingsanzhongliu"), Mode(frozenset({LIU}))),
+    **dict.fromkeys(("活五", "活三五", "huowu"), Mode(_HEAVY, living=True)),
 }
-USUAL_MODE = _LIGHT_SIX
 
 
 def mode_named(name: str) -> Mode | None:

@@ -1,4 +1,4 @@
-"""Repeats and endings of a jianpu text, da capo and dal segno: read, and unfolded."""
+"""The elements of a jianpu text, with its repeats, endings and jumps: read, and unfolded."""
 
 from __future__ import annotations
 
@@ -9,7 +9,77 @@ from fractions import Fraction
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.bars import Bars
+from yehu_server.scores.jianpu.mark_words import Action
+from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.jianpu.text import Word, failure
+from yehu_server.scores.written.notated import Grace
+
+MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
+MOST_DEPTH = 8  # repeats within repeats
+MOST_TIMES = 100
+
+
+@dataclass(slots=True)
+class Sounding:
+    """A note, rest or dash as it will be played, perhaps several times.
+
+    Attributes
+    ----------
+    pitch : float or None
+        MIDI note; None for a rest or dash.
+    other : float or None
+        The other note of a tremolo between two.
+    living : str
+        The character, of a living note of 二四谱.
+    actions : list of Action
+        What the words after it do, in order.
+    """
+
+    kind: Kind
+    length: Fraction
+    pitch: float | None = None
+    other: float | None = None
+    living: str = ""
+    before: tuple[Grace, ...] = ()
+    after: tuple[Grace, ...] = ()
+    actions: list[Action] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class TempoMark:
+    """A tempo from here on."""
+
+    quarters_per_minute: float
+
+
+@dataclass(frozen=True, slots=True)
+class MetreMark:
+    """A metre from here on, and how long the bar is that it begins with (quarters)."""
+
+    bar: Fraction
+    first: Fraction
+
+
+class Jump(Enum):
+    """A sign of the form; its value is its word."""
+
+    FINE = "Fine"
+    SEGNO = "Segno"
+    TO_CODA = "ToCoda"
+    DA_CAPO = "DC"
+    DAL_SEGNO = "DS"
+
+
+BACK = (Jump.DA_CAPO, Jump.DAL_SEGNO)
+
+
+@dataclass
+class Repeat:
+    """What is played several times, and the endings, of which each time takes one."""
+
+    times: int
+    body: list[object] = field(default_factory=list)
+    endings: list[list[object]] = field(default_factory=list)
 
 
 @dataclass
@@ -42,11 +112,14 @@ class RepeatStack:
         """A repeat begins. Raises ScoreError beyond its bounds."""
         if len(times) > 4 or int(times) > MOST_TIMES:
             raise failure(word, f"more than {MOST_TIMES} times")
-        if len(self._stack) >= MOST_DEPTH:
-            raise failure(word, f"more than {MOST_DEPTH} repeats within each other")
+        self._check_depth(word)
         repeat = Repeat(int(times))
         self.add(repeat)
         self._stack.append(_Open(repeat.body, word, repeat, self._bars.place))
+
+    def _check_depth(self, word: Word) -> None:
+        if len(self._stack) >= MOST_DEPTH:
+            raise failure(word, f"more than {MOST_DEPTH} repeats within each other")
 
     def open_endings(self, word: Word) -> None:
         """The endings of the repeat before begin. Raises ScoreError where there is none."""
@@ -54,8 +127,7 @@ class RepeatStack:
         before = elements[-1] if elements else None
         if not isinstance(before, Repeat) or before.endings:
             raise failure(word, "A{ belongs after the } of a repeat")
-        if len(self._stack) >= MOST_DEPTH:
-            raise failure(word, f"more than {MOST_DEPTH} repeats within each other")
+        self._check_depth(word)
         before.endings.append([])
         self._bars.undo_repeat()
         opened = _Open(before.endings[0], word, before, self._bars.place, endings=True)
@@ -86,33 +158,6 @@ class RepeatStack:
         if self._stack:
             raise failure(self._stack[-1].word, "has no } that ends it")
         return self._all
-
-
-MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
-MOST_DEPTH = 8  # repeats within repeats
-MOST_TIMES = 100
-
-
-class Jump(Enum):
-    """A sign of the form; its value is its word."""
-
-    FINE = "Fine"
-    SEGNO = "Segno"
-    TO_CODA = "ToCoda"
-    DA_CAPO = "DC"
-    DAL_SEGNO = "DS"
-
-
-BACK = (Jump.DA_CAPO, Jump.DAL_SEGNO)
-
-
-@dataclass
-class Repeat:
-    """What is played several times, and the endings, of which each time takes one."""
-
-    times: int
-    body: list[object] = field(default_factory=list)
-    endings: list[list[object]] = field(default_factory=list)
 
 
 def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:

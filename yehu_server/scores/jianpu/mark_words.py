@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from functools import lru_cache
 
-from yehu_server.scores.written.notated import DYNAMICS, FORCED, Mark
+from yehu_server.scores.written.notated import DYNAMICS, FORCED
 from yehu_server.scores.written.words import meaning_of
 
 
@@ -45,80 +45,48 @@ def _sign(name: str, value: float | None = None) -> Action:
     return Action(Act.SIGN, name, value)
 
 
+def _marks(names: Mapping[str, str]) -> dict[str, Action]:
+    return {word: _mark(name) for word, name in names.items()}
+
+
 # LilyPond's commands, with a backslash before them, and their short forms.
 COMMANDS: Mapping[str, Action] = {
     **{name: _sign(name) for name in (*DYNAMICS, *FORCED)},
-    "<": Action(Act.HAIRPIN, "crescendo"),
-    ">": Action(Act.HAIRPIN, "diminuendo"),
+    **dict.fromkeys(("<", "cresc"), Action(Act.HAIRPIN, "crescendo")),
+    **dict.fromkeys((">", "decresc", "dim"), Action(Act.HAIRPIN, "diminuendo")),
     "!": Action(Act.HAIRPIN_END),
-    "cresc": Action(Act.HAIRPIN, "crescendo"),
-    "decresc": Action(Act.HAIRPIN, "diminuendo"),
-    "dim": Action(Act.HAIRPIN, "diminuendo"),
-    "upbow": _mark("up-bow"),
-    "downbow": _mark("down-bow"),
-    "staccato": _mark("staccato"),
-    "staccatissimo": _mark("staccatissimo"),
-    "tenuto": _mark("tenuto"),
-    "portato": _mark("portato"),
-    "accent": _mark("accent"),
-    "marcato": _mark("marcato"),
-    "espressivo": _mark("soft-accent"),
-    "fermata": _mark("fermata"),
-    "shortfermata": _mark("fermata"),
-    "longfermata": _mark("fermata"),
-    "verylongfermata": _mark("fermata"),
-    "breathe": _mark("breath"),
-    "caesura": _mark("caesura"),
-    "trill": _mark("trill"),
-    "mordent": _mark("mordent"),
-    "prall": _mark("inverted-mordent"),
-    "turn": _mark("turn"),
-    "reverseturn": _mark("inverted-turn"),
-    "flageolet": _mark("harmonic"),
-    "open": _mark("open-string"),
-    "snappizzicato": _mark("snap-pizzicato"),
     "glissando": Action(Act.GLISSANDO),
-    "1": _mark("inner-string"),
-    "2": _mark("outer-string"),
-}
-SHORT: Mapping[str, str] = {
-    ".": "staccato",
-    "!": "staccatissimo",
-    "_": "portato",
-    ">": "accent",
-    "^": "marcato",
-}  # as in -. and ->
+    **_marks({
+        "upbow": "up-bow", "downbow": "down-bow", "staccato": "staccato",
+        "staccatissimo": "staccatissimo", "tenuto": "tenuto", "portato": "portato",
+        "accent": "accent", "marcato": "marcato", "espressivo": "soft-accent",
+        "fermata": "fermata", "shortfermata": "fermata", "longfermata": "fermata",
+        "verylongfermata": "fermata", "breathe": "breath", "caesura": "caesura",
+        "trill": "trill", "mordent": "mordent", "prall": "inverted-mordent", "turn": "turn",
+        "reverseturn": "inverted-turn", "flageolet": "harmonic", "open": "open-string",
+        "snappizzicato": "snap-pizzicato", "1": "inner-string", "2": "outer-string",
+    }),
+}  # fmt: skip
+# As in -. and ->
+SHORT = {".": "staccato", "!": "staccatissimo", "_": "portato", ">": "accent", "^": "marcato"}
 
 # Of the erhu; with or without Fr= before them.
 FINGERING: Mapping[str, Action] = {
-    "0": _mark("finger", 0),
-    "1": _mark("finger", 1),
-    "2": _mark("finger", 2),
-    "3": _mark("finger", 3),
-    "4": _mark("finger", 4),
-    "空": _mark("finger", 0),
-    "一": _mark("finger", 1),
-    "二": _mark("finger", 2),
-    "三": _mark("finger", 3),
-    "四": _mark("finger", 4),
-    "内": _mark("inner-string"),
-    "外": _mark("outer-string"),
-    "harmonic": _mark("harmonic"),
-    "up": _mark("slide-in-up"),
-    "down": _mark("slide-in-down"),
+    **{sign: _mark("finger", number) for number, sign in enumerate("01234")},
+    **{sign: _mark("finger", number) for number, sign in enumerate("空一二三四")},
+    **_marks({
+        "内": "inner-string", "外": "outer-string", "harmonic": "harmonic", "up": "slide-in-up",
+        "down": "slide-in-down", "tilde": "vibrato", "staccato": "staccato",
+    }),
     "bend": Action(Act.CONTOUR),
-    "tilde": _mark("vibrato"),
-    "staccato": _mark("staccato"),
-}
+}  # fmt: skip
 NAMED = ("harmonic", "up", "down", "bend", "tilde", "staccato", "souyin")
 THERE_AND_BACK = ((0.0, 0.0), (0.4, 0.0), (0.6, -2.0), (0.8, 0.0))  # by ear
 
 # Before the note that they belong to.
 AHEAD: Mapping[str, Action] = {
-    "slideUp": _mark("slide-in-up"),
-    "slideDown": _mark("slide-in-down"),
-    "glis": Action(Act.GLISSANDO),
-    "gliss": Action(Act.GLISSANDO),
+    **_marks({"slideUp": "slide-in-up", "slideDown": "slide-in-down"}),
+    **dict.fromkeys(("glis", "gliss"), Action(Act.GLISSANDO)),
 }
 
 # Texts above or below the notes that mean something in jianpu alone.
@@ -128,9 +96,7 @@ TEXTS: Mapping[str, Action] = {
     "拨": _sign("pizz"),
     "拉": _sign("arco"),
     "不揉": _sign("vibrato", 0.0),
-    "tr": _mark("trill"),
-    "颤音": _mark("trill"),
-    "泛音": _mark("harmonic"),
+    **_marks({"tr": "trill", "颤音": "trill", "泛音": "harmonic"}),
 }
 
 BRACKETS: Mapping[str, Action] = {
@@ -176,8 +142,3 @@ def _text(text: str) -> Action | None:
     if meaning.kind not in acts:  # a da capo as a text
         return None
     return Action(acts[meaning.kind], meaning.name, meaning.value)
-
-
-def mark_of(action: Action) -> Mark:
-    """The mark that an action of kind MARK puts on its note."""
-    return Mark(action.name, action.value)

@@ -95,41 +95,18 @@ def note_word(text: str, octaves: Octaves) -> NoteWord | None:
     length = _length(head)
     if length is None:
         return None
-    whole = _Whole(*length, len(plain) - len(head), shift, tremolo)
+    dashes = len(plain) - len(head)
     bare = "".join(sign for sign in head if sign not in "cqsdh\\.")
-    if not bare.strip("-"):
-        return whole.dash(len(bare), head)
-    return whole.note(bare, octaves)
-
-
-@dataclass(frozen=True, slots=True)
-class _Whole:
-    """What belongs to a whole word."""
-
-    beams: int | None
-    dots: int
-    dashes: int
-    shift: int
-    tremolo: bool
-
-    def dash(self, inside: int, head: str) -> NoteWord | None:
-        """A dash, perhaps with its length before or behind it, or a base octave alone."""
-        count = self.dashes + inside
-        if self.tremolo or not (count or (self.shift and not head)):
+    if not bare.strip("-"):  # a dash, with its length before or behind it, or a base octave alone
+        dashes += len(bare)
+        if tremolo or not (dashes or (shift and not head)):
             return None
-        return NoteWord(Kind.DASH, (), self.beams, self.dots, count, self.shift, False, False)
-
-    def note(self, bare: str, octaves: Octaves) -> NoteWord | None:
-        """A note of these signs, a rest or a beat."""
-        kind, unsure = {"0": Kind.REST, "x": Kind.BEAT}.get(bare), False
-        figures: tuple[Figure, ...] = ()
-        if kind is None:
-            kind = Kind.NOTE
-            figures, unsure = _figures(bare, octaves)
-            if not figures:
-                return None
-        length = (self.beams, self.dots, self.dashes)
-        return NoteWord(kind, figures, *length, self.shift, self.tremolo, unsure)
+        return NoteWord(Kind.DASH, (), *length, dashes, shift, False, False)
+    kind = {"0": Kind.REST, "x": Kind.BEAT}.get(bare, Kind.NOTE)
+    figures, unsure = _figures(bare, octaves) if kind is Kind.NOTE else ((), False)
+    if kind is Kind.NOTE and not figures:
+        return None
+    return NoteWord(kind, figures, *length, dashes, shift, tremolo, unsure)
 
 
 def _length(text: str) -> tuple[int | None, int] | None:
@@ -176,9 +153,8 @@ def _shared(between: list[str], octaves: Octaves) -> tuple[list[str], list[str],
     are doubtful. Other signs belong to the figure after them, or to the last one.
     """
     count = len(between) - 1
-    befores, afters = [""] * count, [""] * count
-    if count == 1:
-        return [between[0]], [between[1]], False
+    befores = [between[0], *[""] * (count - 1)]
+    afters = [*[""] * (count - 1), between[-1]]
     marked = [any(sign in "'," for sign in signs) for signs in between]
     last = count
     while last and marked[last]:
@@ -187,22 +163,15 @@ def _shared(between: list[str], octaves: Octaves) -> tuple[list[str], list[str],
     while first < last and marked[first]:
         first += 1
     unsure = False
-    for place, signs in enumerate(between):
-        marks = "".join(sign for sign in signs if sign in "',")
-        others = signs.replace("'", "").replace(",", "")
-        if place == 0:
-            befores[0] += signs
-            continue
-        if place == count:
-            afters[-1] += signs
-            continue
-        befores[place] += others
-        if not marks:
+    for place in range(1, count):
+        befores[place] = between[place].replace("'", "").replace(",", "")
+        if not marked[place]:
             continue
         leads = place < first
         if first <= place <= last:
             unsure = unsure or octaves is Octaves.UNSAID
             leads = octaves is Octaves.BEFORE
+        marks = "".join(sign for sign in between[place] if sign in "',")
         if leads:
             befores[place] += marks
         else:
@@ -230,47 +199,28 @@ def grace_word(text: str, octaves: Octaves) -> GraceWord | None:
     found = _GRACE.fullmatch(text) if len(text) <= MOST_LETTERS else None
     if found is None:
         return None
-    inside = found[1] or found[2]
     lengths: list[Fraction] = []
-    beams, joined, bare = 2, 0, ""
-    for sign in inside:
+    beams, bare = 2, ""
+    for sign in found[1] or found[2]:
         if sign in "qsdh":
             beams = LENGTHS.index(sign)
-        elif sign == "&":  # the next one sounds with the one before
-            joined += 1
-            bare += sign
-        else:
-            bare += sign
-            if "1" <= sign <= "9" or sign in CHARACTERS:
-                lengths.append(Fraction(1, 2**beams))
-                beams = 2
-    figures, unsure = _figures(bare.replace("&", ""), octaves)
-    if not figures:
-        return None
-    if joined:
-        return _top_notes(bare, octaves, lengths, found[2] is not None)
-    notes = tuple(zip(figures, lengths, strict=True))
-    return GraceWord(notes, found[2] is not None, unsure)
-
-
-def _top_notes(
-    bare: str, octaves: Octaves, lengths: list[Fraction], after: bool
-) -> GraceWord | None:
-    """Grace notes of which some sound together: the highest of those alone."""
+            continue
+        bare += sign
+        if "1" <= sign <= "9" or sign in CHARACTERS:
+            lengths.append(Fraction(1, 2**beams))
+            beams = 2
     notes: list[tuple[Figure, Fraction]] = []
-    unsure = joins = False
-    left = list(lengths)
-    for group in bare.split("&"):
+    left, unsure = iter(lengths), False
+    for number, group in enumerate(bare.split("&")):
         figures, doubt = _figures(group, octaves)
         if not figures:
             return None
         unsure = unsure or doubt
-        pairs = [(figure, left.pop(0)) for figure in figures]
-        if joins:
+        pairs = [(figure, next(left)) for figure in figures]
+        if number:  # the first sounds with the one before: the higher is played
             notes[-1] = max(notes[-1], pairs.pop(0), key=lambda pair: height(pair[0]))
         notes += pairs
-        joins = True
-    return GraceWord(tuple(notes), after, unsure)
+    return GraceWord(tuple(notes), found[2] is not None, unsure)
 
 
 def height(figure: Figure) -> float:

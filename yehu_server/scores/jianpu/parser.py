@@ -8,8 +8,14 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from yehu_server.scores.jianpu.bars import Bars
-from yehu_server.scores.jianpu.elements import MetreMark, Sounding, TempoMark
-from yehu_server.scores.jianpu.form import MOST_UNFOLDED, Jump, RepeatStack
+from yehu_server.scores.jianpu.form import (
+    MOST_UNFOLDED,
+    Jump,
+    MetreMark,
+    RepeatStack,
+    Sounding,
+    TempoMark,
+)
 from yehu_server.scores.jianpu.mark_words import AHEAD, SILENT, Act, Action, action_of
 from yehu_server.scores.jianpu.note_words import (
     Figure,
@@ -70,7 +76,7 @@ class PartParser:
             self._as_action,
             self._as_graces,
             self._as_form,
-            self._as_key,
+            lambda word: self.scale.read_key(word.text),
             self._as_tempo,
             self._as_metre,
             self._as_rest_of_bars,
@@ -229,10 +235,7 @@ class PartParser:
             return text in SILENT or _LETTER.fullmatch(text) is not None
         return True
 
-    # ------------------------------------------------------------ key, tempo, metre
-
-    def _as_key(self, word: Word) -> bool:
-        return self.scale.read_key(word.text)
+    # ------------------------------------------------------------ tempo, metre
 
     def _as_tempo(self, word: Word) -> bool:
         found = _TEMPO.fullmatch(word.text)

@@ -3,51 +3,55 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from yehu_server.scores.jianpu.characters import living
-from yehu_server.scores.jianpu.elements import MetreMark, Sounding, TempoMark
-from yehu_server.scores.jianpu.mark_words import THERE_AND_BACK, Act, Action, mark_of
+from yehu_server.scores.jianpu.characters import Contour, living
+from yehu_server.scores.jianpu.form import MetreMark, Sounding, TempoMark
+from yehu_server.scores.jianpu.mark_words import THERE_AND_BACK, Act, Action
 from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.score import Metre
 from yehu_server.scores.written.notated import (
     DYNAMICS,
     FORCED,
+    LONGEST_CHANGE,
     SIGNS,
     USUAL_TEMPO,
-    Grace,
     Mark,
     Note,
+    OpenSpan,
     Sign,
     Span,
     Tempo,
 )
 
 TREMOLO_NOTE = Fraction(1, 8)  # of a tremolo between two notes: a demisemiquaver
-LONGEST_CHANGE = Fraction(8)  # of tempo, where nothing written ends it
 MOST_TREMOLO_NOTES = 20_000
 
 
 @dataclass(slots=True)
 class _Draft:
-    """A note whose length may still grow."""
+    """A note that may still grow, by ties and dashes."""
 
-    beat: Fraction
-    length: Fraction
-    pitch: float
-    other: float | None
-    living: str
-    marks: list[Mark]
-    before: tuple[Grace, ...]
-    after: tuple[Grace, ...]
+    note: Note
+    element: Sounding
     returns: bool = False  # slides away and back
+
+    def grow(self, more: Sounding, marks: Iterable[Mark]) -> None:
+        """Let it go on with another element."""
+        note = self.note
+        self.note = replace(
+            note,
+            length=note.length + more.length,
+            marks=(*note.marks, *marks),
+            after=(*note.after, *more.after),
+        )
 
 
 @dataclass
 class Played:
-    """What a part plays, from a beat on.
+    """What a part plays.
 
     Attributes
     ----------
@@ -57,7 +61,6 @@ class Played:
         Whether a metre begins with a short bar.
     """
 
-    begin: Fraction
     end: Fraction
     notes: list[Note] = field(default_factory=list)
     spans: list[Span] = field(default_factory=list)
@@ -71,13 +74,13 @@ class PartPlayer:
     """Walks once through the elements of a part."""
 
     def __init__(self, begin: Fraction, notices: Counter[str]) -> None:
-        self._played = Played(begin, begin)
+        self._played = played = Played(begin)
         self._notices = notices
         self._drafts: list[_Draft] = []
         self._tied = False
         self._slurs: list[Fraction] = []
-        self._hairpin: tuple[str, Fraction] | None = None
-        self._change: tuple[str, Fraction] | None = None  # of tempo
+        self._hairpin = OpenSpan(played.spans)
+        self._change = OpenSpan(played.spans, LONGEST_CHANGE)  # of tempo
         self._glissando: Fraction | None = None
         self._tempo = USUAL_TEMPO
 
@@ -92,8 +95,8 @@ class PartPlayer:
             elif isinstance(element, MetreMark):
                 self._metre(element)
         self._untied()
-        self._end_hairpin(played.end)
-        self._end_change(played.end)
+        self._hairpin.end(played.end)
+        self._change.end(played.end)
         if self._slurs:
             self._notices["slurs without an end left out"] += len(self._slurs)
         for draft in self._drafts:
@@ -106,13 +109,11 @@ class PartPlayer:
         begin = self._played.end
         self._played.end = begin + element.length
         last = self._drafts[-1] if self._drafts else None
-        goes_on = last is not None and last.beat + last.length == begin
+        goes_on = last is not None and last.note.end == begin
         if element.kind is Kind.NOTE and element.pitch is not None:
             self._note(element, element.pitch, begin, last if goes_on else None)
         elif element.kind is Kind.DASH and last is not None and goes_on:
-            last.length += element.length
-            last.after += element.after
-            last.marks += _marks(element)
+            last.grow(element, _marks(element))
         else:
             self._rest(element, begin)
         for action in element.actions:
@@ -130,35 +131,23 @@ class PartPlayer:
 
     def _note(self, element: Sounding, pitch: float, begin: Fraction, last: _Draft | None) -> None:
         marks = _marks(element)
-        if self._tied and last is not None and last.pitch == pitch and not element.before:
-            last.length += element.length
-            last.marks += [mark for mark in marks if mark not in last.marks]
-            last.after += element.after
+        if self._tied and last is not None and last.note.pitch == pitch and not element.before:
+            last.grow(element, [mark for mark in marks if mark not in last.note.marks])
             self._tied = False
             return
         self._untied()
         if self._glissando is not None:
             self._span("glissando", self._glissando, begin)
             self._glissando = None
-        self._drafts.append(
-            _Draft(
-                begin,
-                element.length,
-                pitch,
-                element.other,
-                element.living,
-                marks,
-                element.before,
-                element.after,
-            )
-        )
+        note = Note(begin, element.length, pitch, tuple(marks), element.before, element.after)
+        self._drafts.append(_Draft(note, element))
 
     def _act(self, action: Action, begin: Fraction) -> None:
         last = self._drafts[-1] if self._drafts else None
-        onset = begin if last is None else last.beat  # of the note that the word is written at
+        onset = begin if last is None else last.note.beat  # of the note that the word is written at
         if action.act is Act.SIGN:
             if action.name in DYNAMICS or action.name in FORCED:
-                self._end_hairpin(begin)
+                self._hairpin.end(begin)
             self._played.signs.append(Sign(begin, action.name, action.value))
         elif action.act is Act.SLUR:
             self._slurs.append(onset)
@@ -170,10 +159,9 @@ class PartPlayer:
         elif action.act is Act.TIE:
             self._tied = True
         elif action.act is Act.HAIRPIN:
-            self._end_hairpin(begin)
-            self._hairpin = (action.name, begin)
+            self._hairpin.begin(action.name, begin)
         elif action.act is Act.HAIRPIN_END:
-            self._end_hairpin(begin)
+            self._hairpin.end(begin)
         elif action.act is Act.GLISSANDO:
             self._glissando = onset
         elif action.act is Act.CONTOUR and last is not None:
@@ -181,11 +169,9 @@ class PartPlayer:
         elif action.act is Act.TEMPO and action.value is not None:
             self._change_tempo(action.value, begin)
         elif action.act is Act.TEMPO_CHANGE:
-            self._end_change(begin)
-            self._change = (action.name, begin)
+            self._change.begin(action.name, begin)
         elif action.act is Act.TEMPO_AGAIN:
-            self._end_change(begin)
-            self._played.tempi.append(Tempo(begin, self._tempo))
+            self._change_tempo(self._tempo, begin)
 
     def _untied(self) -> None:
         if self._tied:
@@ -196,19 +182,8 @@ class PartPlayer:
         if end > begin:
             self._played.spans.append(Span(name, begin, end))
 
-    def _end_hairpin(self, at: Fraction) -> None:
-        if self._hairpin is not None:
-            self._span(*self._hairpin, at)
-        self._hairpin = None
-
-    def _end_change(self, at: Fraction) -> None:
-        if self._change is not None:
-            name, begin = self._change
-            self._span(name, begin, min(at, begin + LONGEST_CHANGE))
-        self._change = None
-
     def _change_tempo(self, tempo: float, at: Fraction) -> None:
-        self._end_change(at)
+        self._change.end(at)
         self._tempo = tempo
         self._played.tempi.append(Tempo(at, tempo))
 
@@ -222,43 +197,33 @@ class PartPlayer:
     # ------------------------------------------------------------ notes
 
     def _finish(self, draft: _Draft) -> None:
-        if draft.other is not None:
-            self._tremolo(draft, draft.other)
+        note, element = draft.note, draft.element
+        if element.other is not None:
+            self._tremolo(note, element.other)
             return
-        contour: tuple[tuple[float, float], ...] = ()
-        if draft.living:
-            contour = living(draft.living, draft.length)
-        elif draft.returns:
-            contour = THERE_AND_BACK
-        self._played.notes.append(
-            Note(
-                draft.beat,
-                draft.length,
-                draft.pitch,
-                tuple(draft.marks),
-                draft.before,
-                draft.after,
-                contour,
-            )
-        )
+        contour: Contour = THERE_AND_BACK if draft.returns else ()
+        if element.living:
+            contour = living(element.living, note.length)
+        self._played.notes.append(replace(note, contour=contour))
 
-    def _tremolo(self, draft: _Draft, other: float) -> None:
+    def _tremolo(self, note: Note, other: float) -> None:
         """Two notes in turns, under one bow."""
-        count = max(2, int(draft.length / TREMOLO_NOTE))
+        count = max(2, int(note.length / TREMOLO_NOTE))
         if len(self._played.notes) + count > MOST_TREMOLO_NOTES:
             self._notices["tremolos between two notes, of which the first is played"] += 1
-            self._played.notes.append(Note(draft.beat, draft.length, draft.pitch))
+            self._played.notes.append(Note(note.beat, note.length, note.pitch))
             return
-        length = draft.length / count
-        for number in range(count):
-            pitch = other if number % 2 else draft.pitch
-            marks = tuple(draft.marks) if number == 0 else ()
-            before = draft.before if number == 0 else ()
-            after = draft.after if number == count - 1 else ()
-            beat = draft.beat + number * length
-            self._played.notes.append(Note(beat, length, pitch, marks, before, after))
-        self._span("slur", draft.beat, draft.beat + (count - 1) * length)
+        length = note.length / count
+        turns = [
+            Note(note.beat + number * length, length, other if number % 2 else note.pitch)
+            for number in range(count)
+        ]
+        turns[0] = replace(turns[0], marks=note.marks, before=note.before)
+        turns[-1] = replace(turns[-1], after=note.after)
+        self._played.notes += turns
+        self._span("slur", note.beat, turns[-1].beat)
 
 
 def _marks(element: Sounding) -> list[Mark]:
-    return [mark_of(action) for action in element.actions if action.act is Act.MARK]
+    marks = (action for action in element.actions if action.act is Act.MARK)
+    return [Mark(action.name, action.value) for action in marks]

@@ -1,19 +1,17 @@
 """Reads jianpu (简谱, numbered notation), written as text in the words of jianpu-ly, and 二四谱.
 
 The format is that of [jianpu-ly], as docs/jianpu.md describes it. 二四谱 and 工尺谱 are read
-with it (`jianpu_characters`).
+with it (`characters`).
 """
 
 from __future__ import annotations
 
-import errno
 import os
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from pathlib import Path
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.characters import NOTATIONS, mode_named
@@ -23,7 +21,7 @@ from yehu_server.scores.jianpu.parser import PartParser
 from yehu_server.scores.jianpu.part import PartPlayer, Played
 from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Header, Word, decoded, printable, words_of
-from yehu_server.scores.score import COMMON_TIME, Metre
+from yehu_server.scores.score import COMMON_TIME, Metre, naming, read_score_bytes
 from yehu_server.scores.written.notated import (
     MOST_BEATS,
     MOST_PARTS,
@@ -34,7 +32,6 @@ from yehu_server.scores.written.notated import (
     Tempo,
     Written,
 )
-from yehu_server.util.files import read_bytes
 
 MOST_BYTES = 1 << 20
 MOST_MOVEMENTS = 64
@@ -45,36 +42,17 @@ Words = list[Word | Header]  # of a part
 
 
 def read_jianpu(path: str | os.PathLike[str]) -> Written:
-    """Read a file of jianpu.
+    """Read a file of jianpu or 二四谱.
 
     Raises
     ------
     ScoreError
         One line that names the file, and the line and column of what cannot be read: where it is
         missing, larger than 1 MiB or no text; has no notes, or more than
-        `jianpu_form.MOST_UNFOLDED` in a part; where a repeat or tuplet does not end.
+        `form.MOST_UNFOLDED` in a part; where a repeat or tuplet does not end.
     """
-    name = os.fspath(path)
-    name = name if name.isprintable() else ascii(name)
-    try:
-        return parse_jianpu(_bytes(path))
-    except ScoreError as error:
-        raise ScoreError(f"{name}: {error}") from None
-
-
-def _bytes(path: str | os.PathLike[str]) -> bytes:
-    try:
-        data = read_bytes(Path(path), MOST_BYTES)
-    except OSError as error:
-        if error.errno == errno.EFBIG:
-            raise ScoreError(f"larger than {MOST_BYTES // 2**10} KiB") from None
-        reason = error.strerror or type(error).__name__
-        raise ScoreError(f"cannot be read ({reason.lower()})") from None
-    except ValueError:  # a NUL in the name
-        raise ScoreError("cannot be read (no such file name)") from None
-    if not data.strip():
-        raise ScoreError("is empty")
-    return data
+    with naming(path):
+        return parse_jianpu(read_score_bytes(path, MOST_BYTES))
 
 
 def parse_jianpu(data: bytes) -> Written:
@@ -200,14 +178,3 @@ class _Reader:
                 beat += Fraction(metre.quarters)
                 number += 1
         return tuple(bars)
-
-
-def read_ersipu(path: str | os.PathLike[str]) -> Written:
-    """Read a file of 二四谱, which is in F where no key is written.
-
-    Raises
-    ------
-    ScoreError
-        As `read_jianpu`.
-    """
-    return read_jianpu(path)

@@ -68,7 +68,7 @@ class BarReader:
         self._ending: frozenset[int] = frozenset()
         self._notes = 0
         self._at = Fraction(0)
-        self._bar = RawBar("", BarLines(False, 0, frozenset(), set()))
+        self._bar = RawBar("", BarLines())
 
     def read(self, measure: Element) -> RawBar:
         """Read one <measure>.
@@ -78,7 +78,7 @@ class BarReader:
         ScoreError
             Where it is longer, or has more notes, than any music.
         """
-        lines = BarLines(False, 0, self._ending, set())
+        lines = BarLines(endings=self._ending)
         self._bar = bar = RawBar(measure.get("number", "")[:8], lines)
         self._at = Fraction(0)
         directions = DirectionReader(bar.directions, lines.jumps, self._unknown)

@@ -6,18 +6,17 @@ Nothing but the file itself is opened: neither its document type nor what an arc
 
 from __future__ import annotations
 
-import errno
 import io
+import os
 import zipfile
 import zlib
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 from xml.parsers import expat
 
 from yehu_server.errors import ScoreError
+from yehu_server.scores.score import read_score_bytes
 from yehu_server.scores.written.notated import MOST_BYTES
-from yehu_server.util.files import read_bytes, why
 
 MOST_XML_BYTES = 32 << 20
 MOST_ELEMENTS = 1_000_000
@@ -35,7 +34,7 @@ DAMAGED = (
 )  # fmt: skip
 
 
-def read_root(path: Path) -> ET.Element:
+def read_root(path: str | os.PathLike[str]) -> ET.Element:
     """Read the root element of a file.
 
     Raises
@@ -43,16 +42,7 @@ def read_root(path: Path) -> ET.Element:
     ScoreError
         One line, without the file's name.
     """
-    try:
-        data = read_bytes(path, MOST_XML_BYTES)
-    except OSError as error:
-        if error.errno == errno.EFBIG:
-            raise ScoreError(f"larger than {MOST_XML_BYTES >> 20} MiB") from None
-        raise ScoreError(f"cannot be read ({why(error).lower()})") from None
-    except ValueError:  # a NUL in the name
-        raise ScoreError("cannot be read (no such file name)") from None
-    if not data:
-        raise ScoreError("is empty")
+    data = read_score_bytes(path, MOST_XML_BYTES)
     return parse(unpacked(data) if data.startswith(ZIP) else data)
 
 

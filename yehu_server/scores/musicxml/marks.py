@@ -17,18 +17,16 @@ ACCIDENTALS: Mapping[str, float] = {
 }  # fmt: skip
 MOST_SHOWN = 40  # characters of an unknown mark
 
-# Elements of <articulations>, <ornaments> and <technical> that are the same mark here.
-ARTICULATIONS: Mapping[str, str] = {
+# Elements of <notations>, <articulations> and <technical> that are the same mark here.
+MARKS: Mapping[str, str] = {
+    "fermata": "fermata", "arpeggiate": "arpeggio",
     "accent": "accent", "strong-accent": "marcato", "staccato": "staccato", "tenuto": "tenuto",
     "detached-legato": "portato", "staccatissimo": "staccatissimo", "spiccato": "spiccato",
     "scoop": "slide-in-up", "plop": "slide-in-down", "doit": "slide-out-up",
     "falloff": "slide-out-down", "breath-mark": "breath", "caesura": "caesura", "stress": "stress",
     "unstress": "unstress", "soft-accent": "soft-accent",
-}  # fmt: skip
-TECHNICAL: Mapping[str, str] = {
-    "up-bow": "up-bow", "down-bow": "down-bow", "open-string": "open-string",
-    "snap-pizzicato": "snap-pizzicato", "harmonic": "harmonic", "open": "open-string",
-    "pluck": "pizzicato",
+    "up-bow": "up-bow", "down-bow": "down-bow", "open-string": "open-string", "open": "open-string",
+    "snap-pizzicato": "snap-pizzicato", "pluck": "pizzicato",
 }  # fmt: skip
 # Those of which the value is an interval of the key: +1 above, -1 below.
 ORNAMENTS: Mapping[str, tuple[str, int]] = {
@@ -39,8 +37,11 @@ ORNAMENTS: Mapping[str, tuple[str, int]] = {
     "haydn": ("turn", 1),
 }  # fmt: skip
 # These say nothing about the sound, or are read elsewhere.
-SILENT = {"accidental-mark", "tied", "slur", "tuplet", "glissando", "slide", "wavy-line"}
-HIGH_STRING, LOW_STRING = 1, 2  # MusicXML counts strings from the highest
+SILENT = {
+    "accidental-mark", "tied", "slur", "tuplet", "glissando", "slide", "wavy-line", "dynamics",
+}  # fmt: skip
+GROUPS = {"articulations", "ornaments", "technical"}
+STRINGS = {1.0: "outer-string", 2.0: "inner-string"}  # counted from the highest
 
 Count = Callable[[str], None]
 
@@ -97,93 +98,52 @@ class NoteMarks:
         self._count = count
         self.marks: list[Mark] = []
 
-    def read(self, notations: Element) -> None:
-        """Read one <notations> element, but for spans and dynamics."""
-        for child in notations:
-            if child.tag == "articulations":
-                self._articulations(child)
-            elif child.tag == "ornaments":
-                self._ornaments(child)
-            elif child.tag == "technical":
-                self._technical(child)
-            elif child.tag == "fermata":
-                self.add("fermata")
-            elif child.tag == "arpeggiate":
-                self.add("arpeggio")
-            elif child.tag not in SILENT and child.tag != "dynamics":
-                self._unknown(child)
-
-    def add(self, name: str, value: float | None = None) -> None:
-        """Add a mark."""
-        self.marks.append(Mark(name, value))
-
-    def _unknown(self, element: Element) -> None:
-        self._count(f"{printable(element.tag)} {printable(element.text or '')}".strip())
-
-    def _articulations(self, articulations: Element) -> None:
-        for child in articulations:
-            if child.tag in ARTICULATIONS:
-                self.add(ARTICULATIONS[child.tag])
-            else:
-                self._unknown(child)
-
-    def _ornaments(self, ornaments: Element) -> None:
-        accidentals = {
-            child.get("placement", "above"): ACCIDENTALS.get((child.text or "").strip())
-            for child in ornaments
-            if child.tag == "accidental-mark"
-        }
-        for child in ornaments:
-            if child.tag in ORNAMENTS:
-                name, way = ORNAMENTS[child.tag]
-                alter = accidentals.get("above" if way > 0 else "below")
-                self.add(name, self._interval(way, alter))
-            elif child.tag == "tremolo":
+    def read(self, parent: Element) -> None:
+        """Read one <notations> element or group in it, but for spans and dynamics."""
+        for child in parent:
+            tag = child.tag
+            if tag in GROUPS:
+                self.read(child)
+            elif tag in MARKS:
+                self._add(MARKS[tag])
+            elif tag in ORNAMENTS:
+                name, way = ORNAMENTS[tag]
+                self._add(name, self._interval(way, _accidental(parent, way)))
+            elif tag == "tremolo":
                 self._tremolo(child)
-            elif child.tag not in SILENT:
-                self._unknown(child)
+            elif tag == "harmonic":
+                self._harmonic(child)
+            elif tag == "string" and number(child.text) in STRINGS:
+                self._add(STRINGS[number(child.text)])
+            elif tag == "fingering" and (child.text or "").strip() in {*"01234", ""}:
+                if finger := (child.text or "").strip():
+                    self._add("finger", float(finger))
+            elif tag not in SILENT:
+                self._count(f"{printable(tag)} {printable(child.text or '')}".strip())
+
+    def _add(self, name: str, value: float | None = None) -> None:
+        self.marks.append(Mark(name, value))
 
     def _tremolo(self, tremolo: Element) -> None:
         kind = tremolo.get("type", "single")
-        strokes = number(tremolo.text, 3.0)
         if kind == "single":
-            self.add("tremolo", min(max(strokes, 1.0), 8.0))
+            self._add("tremolo", min(max(number(tremolo.text, 3.0), 1.0), 8.0))
         elif kind == "unmeasured":
-            self.add("tremolo")
+            self._add("tremolo")
         # `start` and `stop` are over two notes: `voices` makes them a trill.
-
-    def _technical(self, technical: Element) -> None:
-        for child in technical:
-            if child.tag == "harmonic":
-                self._harmonic(child)
-            elif child.tag == "string":
-                self._string(child)
-            elif child.tag == "fingering":
-                self._finger(child)
-            elif child.tag in TECHNICAL:
-                self.add(TECHNICAL[child.tag])
-            else:
-                self._unknown(child)
 
     def _harmonic(self, harmonic: Element) -> None:
         if harmonic.find("artificial") is not None:
             self._count("artificial harmonic")
         elif harmonic.find("base-pitch") is None and harmonic.find("touching-pitch") is None:
-            self.add("harmonic")
+            self._add("harmonic")
         # Of a harmonic with three notes, the sounding one says it; the others are not played.
 
-    def _string(self, string: Element) -> None:
-        value = number(string.text)
-        if value == HIGH_STRING:
-            self.add("outer-string")
-        elif value == LOW_STRING:
-            self.add("inner-string")
-        else:
-            self._count(f"string {printable(string.text or '')}")
 
-    def _finger(self, fingering: Element) -> None:
-        text = (fingering.text or "").strip()
-        if text in {"0", "1", "2", "3", "4"}:
-            self.add("finger", float(text))
-        elif text:
-            self._count(f"fingering {printable(text)}")
+def _accidental(ornaments: Element, way: int) -> float | None:
+    """The accidental (semitones) above or below ornaments, where one is written."""
+    found = None
+    for mark in ornaments.iterfind("accidental-mark"):
+        if mark.get("placement", "above") == ("above" if way > 0 else "below"):
+            found = ACCIDENTALS.get((mark.text or "").strip())
+    return found

@@ -8,16 +8,15 @@ from __future__ import annotations
 import os
 from collections import Counter
 from fractions import Fraction
-from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
-from yehu_server.errors import ScoreError, one_line
+from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.bars import FINEST, BarReader, RawBar
 from yehu_server.scores.musicxml.file import read_root
 from yehu_server.scores.musicxml.marks import printable
 from yehu_server.scores.musicxml.repeats import BarLines, order_of
 from yehu_server.scores.musicxml.voices import parts_of
-from yehu_server.scores.score import COMMON_TIME, Metre
+from yehu_server.scores.score import COMMON_TIME, Metre, naming
 from yehu_server.scores.written.notated import (
     MOST_BEATS,
     MOST_NOTES,
@@ -26,6 +25,7 @@ from yehu_server.scores.written.notated import (
     Part,
     Tempo,
     Written,
+    times,
 )
 
 MOST_KINDS = 100  # of unknown marks that are named
@@ -41,10 +41,8 @@ def read_musicxml(path: str | os.PathLike[str]) -> Written:
         One line naming the file, whatever its bytes: where it cannot be read, is no MusicXML or
         is beyond all bounds.
     """
-    try:
-        return written_of(read_root(Path(path)))
-    except ScoreError as error:
-        raise ScoreError(f"{one_line(os.fspath(path))}: {error}") from None
+    with naming(path):
+        return written_of(read_root(path))
 
 
 def written_of(root: Element) -> Written:
@@ -90,7 +88,7 @@ def written_of(root: Element) -> Written:
         ),
         _title(root),
         dict(unknown.most_common(MOST_KINDS)),
-        tuple(f"{text} ({times} times)" if times > 1 else text for text, times in warnings.items()),
+        tuple(times(text, count) for text, count in warnings.items()),
     )
 
 
@@ -122,7 +120,7 @@ def _partwise(root: Element) -> Element:
 
 def _lines(parts_bars: list[list[RawBar]], number: int) -> BarLines:
     """What the bar lines of all parts say; many writers give repeats to the first part alone."""
-    found = BarLines(False, 0, frozenset(), set())
+    found = BarLines()
     for bars in parts_bars:
         if number < len(bars):
             lines = bars[number].lines

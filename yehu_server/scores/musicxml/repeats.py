@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from yehu_server.errors import ScoreError
 
@@ -27,10 +27,10 @@ class BarLines:
         Of dacapo, dalsegno, tocoda and fine, at its end; segno and coda, at its beginning.
     """
 
-    forward: bool
-    times: int
-    endings: frozenset[int]
-    jumps: set[str]
+    forward: bool = False
+    times: int = 0
+    endings: frozenset[int] = frozenset()
+    jumps: set[str] = field(default_factory=set)
 
 
 def order_of(bars: Sequence[BarLines]) -> list[int]:

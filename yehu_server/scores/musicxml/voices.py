@@ -8,13 +8,23 @@ from fractions import Fraction
 
 from yehu_server.scores.musicxml.bars import RawBar, RawNote
 from yehu_server.scores.musicxml.directions import RawDirection
-from yehu_server.scores.written.notated import DYNAMICS, FORCED, Grace, Mark, Note, Part, Sign, Span
+from yehu_server.scores.written.notated import (
+    DYNAMICS,
+    FORCED,
+    LONGEST_CHANGE,
+    Grace,
+    Mark,
+    Note,
+    OpenSpan,
+    Part,
+    Sign,
+    Span,
+)
 
 SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
 MOST_VOICES = 16  # of a part; no music has more
 WEDGES = ("crescendo", "diminuendo")
-# Words such as "cresc." and "rit." act until the next sign, or so long (quarters).
-LONGEST_HAIRPIN, LONGEST_CHANGE = Fraction(32), Fraction(8)
+LONGEST_HAIRPIN = Fraction(32)  # in words, where no sign ends it
 
 
 @dataclass
@@ -106,17 +116,17 @@ class Voice:
         self.spans.append(Span("slur", one.beat, other.beat))
 
 
-@dataclass
 class Directions:
     """The directions of one part, bar by bar."""
 
-    signs: list[Sign] = field(default_factory=list)
-    spans: list[Span] = field(default_factory=list)
-    tempi: list[tuple[Fraction, float]] = field(default_factory=list)
-    _wedges: dict[str, tuple[str, Fraction]] = field(default_factory=dict)
-    _hairpin: tuple[str, Fraction] | None = None  # in words
-    _change: tuple[str, Fraction] | None = None
-    _steady: float | None = None  # the tempo before a change
+    def __init__(self) -> None:
+        self.signs: list[Sign] = []
+        self.spans: list[Span] = []
+        self.tempi: list[tuple[Fraction, float]] = []
+        self._wedges: dict[str, tuple[str, Fraction]] = {}
+        self._hairpin = OpenSpan(self.spans, LONGEST_HAIRPIN)  # in words
+        self._change = OpenSpan(self.spans, LONGEST_CHANGE)
+        self._steady: float | None = None  # the tempo before a change
 
     def add_bar(self, directions: list[RawDirection], begin: Fraction) -> None:
         """Add the directions of a bar that begins at a beat."""
@@ -126,52 +136,33 @@ class Directions:
     def _add(self, raw: RawDirection, beat: Fraction) -> None:
         if raw.kind == "sign":
             if raw.name in DYNAMICS or raw.name in FORCED:
-                self._end_hairpin(beat)
+                self._hairpin.end(beat)
             sign = Sign(beat, raw.name, raw.value)
             if sign not in self.signs[-8:]:  # two staves may say the same
                 self.signs.append(sign)
         elif raw.kind == "wedge" and raw.name in WEDGES:
-            self._end_hairpin(beat)
+            self._hairpin.end(beat)
             self._wedges[raw.number] = (raw.name, beat)
         elif raw.kind == "wedge":
             name, opened = self._wedges.pop(raw.number, ("", beat))
             if opened < beat:
                 self.spans.append(Span(name, opened, beat))
         elif raw.kind == "hairpin":
-            self._end_hairpin(beat)
-            self._hairpin = (raw.name, beat)
+            self._hairpin.begin(raw.name, beat)
         elif raw.kind == "dashes" and raw.name == "stop":
-            self._end_hairpin(beat)
+            self._hairpin.end(beat)
         elif raw.kind == "change":
-            self._end_change(beat)
-            self._change = (raw.name, beat)
-        elif raw.kind == "back":
-            self._end_change(beat)
+            self._change.begin(raw.name, beat)
+        elif raw.kind in ("back", "tempo"):
+            self._change.end(beat)
+            self._steady = self._steady if raw.kind == "back" else raw.value
             if self._steady is not None:
                 self.tempi.append((beat, self._steady))
-        elif raw.kind == "tempo" and raw.value is not None:
-            self._end_change(beat)
-            self._steady = raw.value
-            self.tempi.append((beat, raw.value))
 
     def end(self, beat: Fraction) -> None:
         """End what is still open at the end of the score."""
-        self._end_hairpin(beat)
-        self._end_change(beat)
-
-    def _end_hairpin(self, beat: Fraction) -> None:
-        if self._hairpin is not None:
-            name, opened = self._hairpin
-            if opened < beat:
-                self.spans.append(Span(name, opened, min(beat, opened + LONGEST_HAIRPIN)))
-            self._hairpin = None
-
-    def _end_change(self, beat: Fraction) -> None:
-        if self._change is not None:
-            name, opened = self._change
-            if opened < beat:
-                self.spans.append(Span(name, opened, min(beat, opened + LONGEST_CHANGE)))
-            self._change = None
+        self._hairpin.end(beat)
+        self._change.end(beat)
 
 
 def parts_of(

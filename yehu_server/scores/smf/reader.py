@@ -8,7 +8,6 @@ each fault.
 
 from __future__ import annotations
 
-import errno
 import os
 from bisect import bisect_right
 from collections import defaultdict
@@ -28,15 +27,17 @@ from yehu_server.scores.score import (
     ScoreEvent,
     check_duration,
     concatenate,
+    naming,
+    read_score_bytes,
 )
 from yehu_server.scores.smf.chunks import Part, read_parts
 from yehu_server.scores.smf.faults import DamageReport
 from yehu_server.scores.smf.track import Clock, Placed, Track, checked_division
 from yehu_server.scores.smf.wrapper import unwrapped
-from yehu_server.util.files import read_bytes
 
 PERCUSSION = 9  # whose notes end by themselves
-ALL_SOUND_OFF, ALL_NOTES_OFF = 120, 123  # and from there on, changes of mode end notes too
+# Controllers: all sound off, all notes off, and changes of mode, which end notes too.
+ENDS_ALL = {120, *range(123, 128)}
 
 
 def ended(messages: Sequence[Placed], faults: DamageReport) -> list[Placed]:
@@ -50,7 +51,7 @@ def ended(messages: Sequence[Placed], faults: DamageReport) -> list[Placed]:
         return list(messages)
     onsets: dict[int, list[int]] = defaultdict(list)  # of each channel, ticks
     for tick, message, _ in messages:
-        if _begins(message):
+        if message.type == "note_on" and message.velocity > 0:
             onsets[message.channel].append(tick)
     added: list[Placed] = []
     for tick, message, at in held:
@@ -63,10 +64,6 @@ def ended(messages: Sequence[Placed], faults: DamageReport) -> list[Placed]:
     return sorted([*added, *messages], key=itemgetter(0))  # stable: before the next note
 
 
-def _begins(message: mido.Message) -> bool:
-    return bool(message.type == "note_on" and message.velocity > 0)
-
-
 def _held(messages: Sequence[Placed]) -> list[Placed]:
     """The note-ons that still hold at the end, in the order of the channels."""
     held: dict[int, dict[int, Placed]] = defaultdict(dict)  # by channel and key
@@ -77,14 +74,10 @@ def _held(messages: Sequence[Placed]) -> list[Placed]:
             held[message.channel][message.note] = placed
         elif kind in ("note_on", "note_off"):
             held[message.channel].pop(message.note, None)
-        elif kind == "control_change" and _ends_all(message.control):
+        elif kind == "control_change" and message.control in ENDS_ALL:
             held[message.channel].clear()
     held.pop(PERCUSSION, None)
     return [placed for notes in held.values() for placed in notes.values()]
-
-
-def _ends_all(control: int) -> bool:
-    return control == ALL_SOUND_OFF or control >= ALL_NOTES_OFF
 
 
 MAX_BYTES = 64 * 2**20
@@ -123,35 +116,12 @@ def read_score(
         One line naming the file, whatever its bytes: missing, unreadable, too large or
         too long, not a MIDI file, or without one channel message to play.
     """
-    shown = os.fspath(path)
-    if not shown.isprintable():  # a line break or a stray byte in a name
-        shown = ascii(shown)
     faults = DamageReport()
-    try:
-        score = _parse(_load(path), song, max_duration_h, faults)
+    with naming(path):
+        score = _parse(read_score_bytes(path, MAX_BYTES), song, max_duration_h, faults)
         if strict:
             faults.refuse()
-    except ScoreError as error:
-        raise type(error)(f"{shown}: {error}") from None
     return replace(score, name=Path(path).stem, warnings=faults.warnings)
-
-
-# ---------------------------------------------------------------- the file
-
-
-def _load(path: str | os.PathLike[str]) -> bytes:
-    try:
-        data = read_bytes(Path(path), MAX_BYTES)
-    except OSError as error:
-        if error.errno == errno.EFBIG:
-            raise ScoreError(f"larger than {MAX_BYTES // 2**20} MiB") from None
-        reason = error.strerror or type(error).__name__
-        raise ScoreError(f"cannot be read ({reason.lower()})") from None
-    except ValueError:  # a NUL in the name
-        raise ScoreError("cannot be read (no such file name)") from None
-    if not data:
-        raise ScoreError("is empty")
-    return data
 
 
 def _parse(data: bytes, song: int | None, max_duration_h: float, faults: DamageReport) -> Score:

@@ -21,6 +21,7 @@ MOST_BEATS = 400_000  # quarter notes; a day at 278 a minute
 MOST_PARTS = 64
 LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0  # quarter notes a minute
 USUAL_TEMPO = 100.0  # where none is written
+LONGEST_CHANGE = Fraction(8)  # quarters of a change of tempo, where nothing written ends it
 
 # Marks on notes, and what their values are; None stands for the usual value.
 MARKS: Mapping[str, str] = {
@@ -73,34 +74,18 @@ SPANS: Mapping[str, str] = {
     "accelerando": "value: the tempo at the end, as a multiple of that at the beginning",
 }
 
-# Signs at a beat, which hold from there on.
+# Signs at a beat, which hold from there on. MIDI velocities, by ear; mf is the keyboard's 80 at
+# which parameters hold as they are.
 DYNAMICS: Mapping[str, int] = {
-    "pppp": 16,
-    "ppp": 24,
-    "pp": 36,
-    "p": 50,
-    "mp": 64,
-    "mf": 80,
-    "f": 96,
-    "ff": 112,
-    "fff": 122,
-    "ffff": 127,
-    "n": 10,
-}  # MIDI velocities, by ear; mf is the keyboard's 80 at which parameters hold as they are
+    "pppp": 16, "ppp": 24, "pp": 36, "p": 50, "mp": 64, "mf": 80, "f": 96, "ff": 112, "fff": 122,
+    "ffff": 127, "n": 10,
+}  # fmt: skip
 # One note of the first loudness, and then the second; None: as before.
 FORCED: Mapping[str, tuple[str, str | None]] = {
-    "sf": ("f", None),
-    "sfz": ("ff", None),
-    "sffz": ("fff", None),
-    "fz": ("ff", None),
-    "rf": ("f", None),
-    "rfz": ("f", None),
-    "fp": ("f", "p"),
-    "sfp": ("f", "p"),
-    "sfpp": ("f", "pp"),
-    "sfzp": ("ff", "p"),
-    "pf": ("p", "f"),
-}
+    "sf": ("f", None), "sfz": ("ff", None), "sffz": ("fff", None), "fz": ("ff", None),
+    "rf": ("f", None), "rfz": ("f", None), "fp": ("f", "p"), "sfp": ("f", "p"),
+    "sfpp": ("f", "pp"), "sfzp": ("ff", "p"), "pf": ("p", "f"),
+}  # fmt: skip
 SIGNS: Mapping[str, str] = {
     **{name: f"velocity {velocity}" for name, velocity in DYNAMICS.items()},
     **{name: f"{first}, then {then or 'as before'}" for name, (first, then) in FORCED.items()},
@@ -124,6 +109,11 @@ SIGNS: Mapping[str, str] = {
     "caesura": "time stops for a moment before it",
     "breath": "the note before ends a little early",
 }
+
+
+def times(text: str, count: int) -> str:
+    """A warning, and how often it is meant."""
+    return f"{text} ({count} times)" if count > 1 else text
 
 
 @dataclass(frozen=True)
@@ -188,6 +178,35 @@ class Span:
     value: float | None = None
 
 
+class OpenSpan:
+    """What words such as cresc. or rit. begin: it acts until something else ends it.
+
+    Parameters
+    ----------
+    spans : list of Span
+        Where it is put when it ends.
+    longest : Fraction, optional
+        Quarters after which it acts no more.
+    """
+
+    def __init__(self, spans: list[Span], longest: Fraction | None = None) -> None:
+        self._spans, self._longest = spans, longest
+        self._open: tuple[str, Fraction] | None = None
+
+    def begin(self, name: str, beat: Fraction) -> None:
+        """Begin a span, and end the one before."""
+        self.end(beat)
+        self._open = name, beat
+
+    def end(self, beat: Fraction) -> None:
+        """End the span, if one is open."""
+        if self._open is not None and self._open[1] < beat:
+            name, begin = self._open
+            end = beat if self._longest is None else min(beat, begin + self._longest)
+            self._spans.append(Span(name, begin, end))
+        self._open = None
+
+
 @dataclass(frozen=True)
 class Sign:
     """What is written at a beat and holds from there on: a name of SIGNS."""
@@ -244,6 +263,11 @@ class Written:
     title: str = ""
     unknown: Mapping[str, int] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+
+    @property
+    def not_understood(self) -> list[str]:
+        """A line for each mark that was not understood."""
+        return [times(f"not understood: {mark}", count) for mark, count in self.unknown.items()]
 
     @property
     def end(self) -> Fraction:

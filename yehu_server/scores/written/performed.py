@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
@@ -30,7 +29,7 @@ from yehu_server.scores.written.mark_settings import (
     harmonic_of,
     values_of,
 )
-from yehu_server.scores.written.notated import Note, Part, Written
+from yehu_server.scores.written.notated import Note, Part, Written, times
 from yehu_server.scores.written.ornaments import touches_of
 from yehu_server.scores.written.part_bowing import Played, bowed, has_bowing
 from yehu_server.scores.written.pitch_curve import curve_of
@@ -62,7 +61,7 @@ def performed(written: Written) -> Score:
     if not any(part.notes for part in written.parts):
         raise ScoreError("has no note to play")
     clock = WrittenClock(written)
-    warnings = [*_of_unknown(written), *written.warnings]
+    warnings = [*written.not_understood, *written.warnings]
     parts = [part for part in written.parts if part.notes]
     if len(parts) > len(CHANNELS):
         warnings.append(f"{len(parts)} parts; the first {len(CHANNELS)} are played")
@@ -74,16 +73,11 @@ def performed(written: Written) -> Score:
     left: Counter[str] = Counter()
     for channel, part in zip(CHANNELS, parts, strict=False):
         timed += _Performer(part, channel, clock, left, len(timed)).events()
-    warnings += [f"{mark} ({count} times)" if count > 1 else mark for mark, count in left.items()]
+    warnings += [times(mark, count) for mark, count in left.items()]
     timed.sort(key=lambda each: each[:3])
     end_s = max(clock.seconds(written.end), timed[-1][0])
     events = tuple(event for *_, event in timed)
     return Score(events, end_s, written.title, tuple(warnings), written.metres)
-
-
-def _of_unknown(written: Written) -> Iterator[str]:
-    for mark, count in written.unknown.items():
-        yield f"not understood: {mark}" + (f" ({count} times)" if count > 1 else "")
 
 
 class _Performer:

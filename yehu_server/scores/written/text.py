@@ -44,11 +44,7 @@ def lines_of(written: Written) -> Iterator[str]:
 
 def told_unknown(written: Written) -> Iterator[str]:
     """What was not understood, and the warnings."""
-    for mark, count in written.unknown.items():
-        yield f"not understood: {mark}" + (f" ({count} times)" if count > 1 else "")
-    yield from written.warnings
-    if not written.unknown and not written.warnings:
-        yield "all marks understood"
+    yield from [*written.not_understood, *written.warnings] or ["all marks understood"]
 
 
 def _tempi(written: Written) -> list[Tempo]:
@@ -90,7 +86,7 @@ def _around(part: Part) -> dict[Fraction, list[str]]:
         at = bisect_left(beats, sign.beat)  # it holds from the next note on
         if at < len(beats):
             put(beats[at], f"[{_mark(Mark(sign.name, sign.value))}]")
-    for span in part.spans:
+    for span in part.spans if beats else ():
         put(span.begin, f"{span.name} (")
         put(span.end, f") {span.name}")
     return around
